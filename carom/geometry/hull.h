@@ -1,0 +1,47 @@
+// Convex polyhedra as half-edge meshes, built from points.
+#pragma once
+
+#include "carom/geometry/shape3.h"
+
+namespace carom::geometry {
+
+struct HullEdge {
+  std::uint16_t origin;  ///< vertex where this half-edge starts
+  std::uint16_t twin;    ///< the half-edge of the neighbouring face along the same edge
+  std::uint16_t next;    ///< the next half-edge counterclockwise round the same face
+  std::uint16_t face;
+};
+struct HullFace {
+  std::uint16_t first_edge;
+  std::uint16_t edge_count;
+};
+/// {x : normal·x = offset}, with the normal outward.
+struct HullPlane {
+  Vec3f normal;
+  float offset;
+};
+
+/// A convex polyhedron swept by a sphere of `radius` (0: sharp). Immutable once built; share it between shapes.
+struct Hull {
+  std::vector<Vec3f> vertices;
+  std::vector<HullPlane> planes;  ///< one a face
+  std::vector<HullFace> faces;
+  std::vector<HullEdge> edges;    ///< half-edges; a half-edge and its twin stand beside each other (2k, 2k + 1)
+  Bounds3f bounds;                ///< of the vertices, without the radius
+  Vec3f centroid;
+  float volume = 0;
+  float inner_radius = 0;         ///< radius of the largest sphere about the centroid inside the polyhedron
+  float radius = 0;
+};
+
+/// The convex hull of at least four points that are not in one plane, with coplanar triangles merged into faces.
+/// Points closer than a tolerance relative to the size of the cloud are welded. Errors: not finite, flat, more than
+/// `max_vertices` corners (≤ 255; where `simplify` is set the least important corners are dropped instead).
+struct HullOptions {
+  float radius = 0;
+  int max_vertices = 128;
+  bool simplify = false;
+};
+CAROM_API core::Result<std::shared_ptr<const Hull>> make_hull(std::span<const Vec3f> points, const HullOptions& = {});
+
+}  // namespace carom::geometry

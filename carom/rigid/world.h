@@ -1,0 +1,152 @@
+// A world of rigid bodies in two or three dimensions.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "carom/core/result.h"
+#include "carom/export.h"
+#include "carom/rigid/effector.h"
+#include "carom/rigid/events.h"
+#include "carom/rigid/state.h"
+
+namespace carom::rigid {
+using core::Result;
+using core::Status;
+
+/// Which shapes a query sees.
+struct QueryFilter {
+  std::uint64_t category = ~std::uint64_t{0};
+  std::uint64_t mask = ~std::uint64_t{0};
+};
+template <class D> struct RayHit {
+  ShapeId shape{};
+  typename D::Position point{};
+  typename D::Vector normal{};
+  float fraction = 1;
+  std::uint32_t child = 0;  ///< triangle, cell or compound child
+};
+
+/// Bodies, shapes, joints and effectors, and their motion in time. Not copyable; two worlds in two threads are
+/// independent. Every function that takes a handle or a number from outside returns an error for a stale, foreign or
+/// null handle and for a number that is not finite or out of range, and leaves the world as it was.
+template <class D> class CAROM_API World {
+ public:
+  using Vector = typename D::Vector;
+  using Position = typename D::Position;
+  using Rotation = typename D::Rotation;
+  using Angular = typename D::Angular;
+  using Pose = typename D::Pose;
+  using Shape = typename D::Shape;
+
+  /// Out-of-range fields are errors at the first step; see `check`.
+  explicit World(const WorldDef<D>& definition = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  static Status check(const WorldDef<D>& definition);
+  const WorldDef<D>& definition() const;
+
+  // Bodies
+  Result<BodyId> create_body(const BodyDef<D>& definition);
+  Status destroy_body(BodyId body);  ///< with its shapes and joints
+  bool contains(BodyId body) const;
+  Result<BodyState<D>> state(BodyId body) const;
+  Result<BodyDef<D>> body_definition(BodyId body) const;  ///< as it is now: definition and state in one
+  Result<geometry::MassProperties2> mass_properties2(BodyId body) const requires(D::dimension == 2);
+  Result<geometry::MassProperties3> mass_properties3(BodyId body) const requires(D::dimension == 3);
+  Status set_mass_properties(BodyId body, const typename D::MassProperties& properties);  ///< instead of the shapes'
+  Status set_pose(BodyId body, Position position, Rotation rotation);                      ///< teleports
+  Status set_velocity(BodyId body, Vector linear, Angular angular);
+  Status set_target_pose(BodyId body, Position position, Rotation rotation, float dt);  ///< kinematic: be there in dt
+  Status set_type(BodyId body, BodyType type);
+  Status set_awake(BodyId body, bool awake);
+  Status set_enabled(BodyId body, bool enabled);
+  Status set_locks(BodyId body, MotionLocks locks);
+  Status set_damping(BodyId body, float linear, float angular);
+  Status set_gravity_scale(BodyId body, float scale);
+  Status set_user_data(BodyId body, std::uint64_t data);
+
+  // Forces last for one step; impulses act at once. Points and vectors in world axes.
+  Status add_force(BodyId body, Vector force);  ///< N, at the centre of mass
+  Status add_force_at(BodyId body, Vector force, Position point);
+  Status add_torque(BodyId body, Angular torque);
+  Status add_impulse(BodyId body, Vector impulse);  ///< N·s
+  Status add_impulse_at(BodyId body, Vector impulse, Position point);
+  Status add_angular_impulse(BodyId body, Angular impulse);
+
+  // Shapes
+  Result<ShapeId> add_shape(BodyId body, const Shape& shape, const ShapeDef<D>& definition = {});
+  Status destroy_shape(ShapeId shape);
+  bool contains(ShapeId shape) const;
+  Result<BodyId> body_of(ShapeId shape) const;
+  Result<Shape> shape_geometry(ShapeId shape) const;
+  Result<ShapeDef<D>> shape_definition(ShapeId shape) const;
+  Status set_material(ShapeId shape, const Material& material);
+  Status set_filter(ShapeId shape, const Filter& filter);
+
+  // Joints. One definition struct a type (definitions.h).
+  Result<JointId> create_joint(const DistanceJointDef<D>& definition);
+  Result<JointId> create_joint(const BallJointDef<D>& definition);
+  Result<JointId> create_joint(const HingeJointDef<D>& definition);
+  Result<JointId> create_joint(const SliderJointDef<D>& definition);
+  Result<JointId> create_joint(const WeldJointDef<D>& definition);
+  Result<JointId> create_joint(const MotorJointDef<D>& definition);
+  Result<JointId> create_joint(const MouseJointDef<D>& definition);
+  Status destroy_joint(JointId joint);
+  bool contains(JointId joint) const;
+  Result<JointState<D>> joint_state(JointId joint) const;
+  Result<AnyJointDef<D>> joint_definition(JointId joint) const;  ///< as it is now
+  Status set_motor(JointId joint, const JointMotor& motor);
+  Status set_limit(JointId joint, const JointLimit& limit);
+  Status set_spring(JointId joint, const JointSpring& spring);
+  Status set_mouse_target(JointId joint, Position target);
+
+  // Effectors: forces that act on their own every step (effector.h).
+  Result<EffectorId> add_effector(const EffectorDef<D>& definition);
+  Status destroy_effector(EffectorId effector);
+  Result<EffectorDef<D>> effector_definition(EffectorId effector) const;
+  Status set_effector(EffectorId effector, const EffectorDef<D>& definition);
+
+  Status set_gravity(Vector gravity);
+
+  /// Advances by dt seconds (0 < dt ≤ 1). No allocation once warm. Callers fix dt: see ode/clock.h.
+  Status step(float dt);
+  std::uint64_t step_count() const;
+  double time() const;  ///< s
+  Events<D> events() const;
+
+  // Queries. Rays and casts go from `origin` by `translation`.
+  Result<RayHit<D>> ray_cast(Position origin, Vector translation, QueryFilter filter = {}) const;  ///< closest; null shape: none
+  Status ray_cast_all(Position origin, Vector translation, std::vector<RayHit<D>>& hits, QueryFilter filter = {}) const;
+  Result<RayHit<D>> shape_cast(const Shape& shape, const Pose& pose, Vector translation, QueryFilter filter = {}) const;
+  Status overlap(const Shape& shape, const Pose& pose, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
+  Status overlap_bounds(const typename D::Bounds& bounds, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
+
+  // The whole world, in creation order of what still exists.
+  void bodies(std::vector<BodyId>& out) const;
+  void shapes(BodyId body, std::vector<ShapeId>& out) const;
+  void joints(std::vector<JointId>& out) const;
+  void effectors(std::vector<EffectorId>& out) const;
+  void contacts(std::vector<ContactView<D>>& out) const;  ///< touching contacts with points and impulses
+
+  Totals<D> totals() const;          ///< mass, momentum, angular momentum, energies
+  Counters counters() const;         ///< bodies, awake, shapes, contacts, joints, islands, colours, bytes
+  StepProfile profile() const;       ///< ms of the last step, by stage
+  float worst_penetration() const;   ///< m, over touching contacts after the last step
+  float worst_joint_error() const;   ///< m
+  /// 64-bit hash of every body's pose, velocity and sleep state, in creation order.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self_;
+};
+
+extern template class World<Dim2>;
+extern template class World<Dim3>;
+using World2 = World<Dim2>;
+using World3 = World<Dim3>;
+
+}  // namespace carom::rigid

@@ -1,0 +1,14 @@
+# One target that carries the compile flags of everything in this repository.
+add_library(carom_flags INTERFACE)
+target_compile_features(carom_flags INTERFACE cxx_std_20)
+# Bit-equal results on every compiler need strict IEEE arithmetic: no contraction to fused multiply-add and no
+# reassociation. No one reads errno or floating-point traps, so square roots may be single instructions.
+target_compile_options(carom_flags INTERFACE
+  -ffp-contract=off -fno-math-errno -fno-trapping-math
+  -Wall -Wextra -Wpedantic -Wno-psabi $<$<BOOL:${CAROM_WERROR}>:-Werror>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-misleading-indentation>
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-warning-option -Wno-missing-field-initializers -Wno-gnu-anonymous-struct -Wno-nested-anon-types>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>)
+target_include_directories(carom_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+find_package(Threads)
