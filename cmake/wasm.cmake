@@ -1,0 +1,16 @@
+# WebAssembly by clang and wasi-libc (Debian: clang-19, lld-19, wasi-libc, libc++-19-dev-wasm32, libclang-rt-19-dev-wasm32).
+# One thread, SIMD128, no exceptions: the same sources and the same bits as the native build.
+set(CMAKE_SYSTEM_NAME WASI)
+set(CMAKE_SYSTEM_VERSION 1)
+set(CMAKE_SYSTEM_PROCESSOR wasm32)
+set(UNIX TRUE)
+find_program(CAROM_WASM_CC NAMES clang-20 clang-19 clang-18 clang-17 clang REQUIRED)
+find_program(CAROM_WASM_CXX NAMES clang++-20 clang++-19 clang++-18 clang++-17 clang++ REQUIRED)
+set(CMAKE_C_COMPILER ${CAROM_WASM_CC})
+set(CMAKE_CXX_COMPILER ${CAROM_WASM_CXX})
+set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fno-exceptions -fno-rtti -D_WASI_EMULATED_PROCESS_CLOCKS")
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-lwasi-emulated-process-clocks")
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_EXECUTABLE_SUFFIX .wasm)
