@@ -1,0 +1,78 @@
+# Shared by ./play and ./check: says what is done, installs what is missing, builds. Sourced, not run.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+started=$SECONDS
+log_folder=build/log
+mkdir -p "$log_folder"
+
+say() { printf '\033[1m[%3ds] %s\033[0m\n' $((SECONDS - started)) "$*"; }
+fail() { printf '\033[31m[%3ds] failed: %s\033[0m\n' $((SECONDS - started)) "$*" >&2; exit 1; }
+
+# quietly NAME COMMAND…: output to build/log/NAME.log; on failure its last lines and where the rest is.
+quietly() {
+  local name=$1 log="$log_folder/$1.log"
+  shift
+  if ! "$@" >"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    fail "$name: the command was: $* (whole output: $log)"
+  fi
+}
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"
+  elif command -v sudo >/dev/null; then sudo "$@"
+  else fail "packages are missing and there is neither root nor sudo: please run: apt-get install $*"; fi
+}
+
+is_installed() { dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'; }
+is_known() { [ -n "$(apt-cache madison "$1" 2>/dev/null)" ]; }
+
+# install_packages PACKAGE…: only what is missing, without recommendations.
+install_packages() {
+  command -v dpkg-query >/dev/null || fail "this script installs packages on Debian and Ubuntu; elsewhere install: $*"
+  local missing=() package
+  for package in "$@"; do is_installed "$package" || missing+=("$package"); done
+  [ ${#missing[@]} = 0 ] && return
+  say "installing ${#missing[@]} packages: ${missing[*]}"
+  quietly apt-update as_root apt-get update
+  quietly apt-install as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+}
+
+# The newest clang whose WebAssembly C++ library this distribution carries.
+newest_clang() {
+  local version
+  for version in 20 19 18 17 16; do
+    if is_known "libc++-$version-dev-wasm32"; then echo $version; return; fi
+  done
+  fail "no clang with a WebAssembly C++ library (libc++-NN-dev-wasm32) in this distribution"
+}
+
+build_packages=(g++ cmake ninja-build make pkg-config ca-certificates libboost-dev libcairo2-dev libcli11-dev nlohmann-json3-dev
+  libtinyobjloader-dev)
+node_ready() { command -v node >/dev/null && command -v npm >/dev/null && [ "$(node -p 'process.versions.node.split(".")[0]')" -ge 18 ]; }
+
+setup_build() {
+  install_packages "${build_packages[@]}"
+  if ! node_ready; then install_packages nodejs npm; node_ready || fail "node 18 or newer and npm are needed for the page"; fi
+}
+
+jobs=$(nproc)
+
+# build_native: the release build in build/release, as few translation units (a cold build is short).
+build_native() {
+  local extra=()
+  command -v ccache >/dev/null && extra+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  say "configuring build/release"
+  quietly configure cmake --preset release -DCAROM_UNITY=ON "${extra[@]}" "$@"
+  say "building with $jobs jobs"
+  if [ -t 1 ]; then cmake --build build/release --parallel "$jobs" || fail "the build"
+  else quietly build cmake --build build/release --parallel "$jobs"; fi
+}
+
+build_page() {
+  say "building the page"
+  if [ ! -d apps/playground/node_modules ] || [ apps/playground/package-lock.json -nt apps/playground/node_modules/.package-lock.json ]; then
+    quietly npm-ci npm ci --prefix apps/playground --no-audit --no-fund
+  fi
+  quietly page npm run --prefix apps/playground build
+}
