@@ -1,0 +1,95 @@
+// A running scene: a world of the plane or of space, or a flight, with the names of the file.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carom/rigid/world.h"
+
+namespace carom::scene {
+using core::Result;
+using core::Status;
+
+enum class Kind : std::uint8_t { rigid, flight };
+
+namespace detail {
+struct Expression;
+class Flight;
+}  // namespace detail
+
+struct SceneBody {
+  std::string name;
+  rigid::BodyId id{};
+  std::uint32_t color = 0;  ///< 0xRRGGBB
+  bool colored = false;
+};
+struct SceneJoint {
+  std::string name;
+  rigid::JointId id{};
+};
+struct SceneEffector {
+  std::string name;
+  rigid::EffectorId id{};
+};
+
+/// A quantity of the world, compiled once and read every step. See docs/scene-files.md for what it may say.
+class CAROM_API Probe {
+ public:
+  std::string text;
+  std::string unit;  ///< SI unit of the value, "" for a plain number
+
+  /// What one name in the expression stands for.
+  struct Source {
+    enum class Kind : std::uint8_t { world, body, joint, flight } kind = Kind::world;
+    int field = 0, component = 0;
+    rigid::BodyId body{};
+    rigid::JointId joint{};
+  };
+  std::vector<Source> sources;
+  std::shared_ptr<const detail::Expression> expression;
+};
+
+class CAROM_API SceneWorld {
+ public:
+  SceneWorld();
+  ~SceneWorld();
+  SceneWorld(SceneWorld&&) noexcept;
+  SceneWorld& operator=(SceneWorld&&) noexcept;
+
+  Kind kind = Kind::rigid;
+  int dimension = 3;
+  double dt = 1.0 / 60;  ///< s
+  double duration = 10;  ///< s
+  std::unique_ptr<rigid::World2> world2;  ///< one of these three is there
+  std::unique_ptr<rigid::World3> world3;
+  std::unique_ptr<detail::Flight> flight;
+  std::vector<SceneBody> bodies;  ///< in creation order
+  std::vector<SceneJoint> joints;
+  std::vector<SceneEffector> effectors;
+
+  Status step();  ///< by dt
+  double time() const;
+  std::uint64_t step_count() const;
+  std::uint64_t state_hash() const;
+
+  /// Null where there is none.
+  const SceneBody* find_body(std::string_view name) const;
+  const SceneJoint* find_joint(std::string_view name) const;
+  const SceneBody* find_body(rigid::BodyId id) const;
+
+  /// "ball.position.y", "energy.kinetic", "time", … or an expression of them.
+  Result<Probe> probe(std::string_view expression) const;
+  double read(const Probe& probe) const;  ///< SI; NaN where a body is gone
+};
+
+/// The `scene` message of docs/protocol.md (JSON text) and the binary mesh messages it refers to.
+/// A body's id in messages and frames is its place in SceneWorld::bodies (or in creation order of the world).
+struct SceneMessages {
+  std::string scene;
+  std::vector<std::string> meshes;
+};
+CAROM_API SceneMessages scene_messages(const SceneWorld& world, const double* ground = nullptr);
+
+}  // namespace carom::scene
