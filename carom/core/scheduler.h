@@ -1,0 +1,54 @@
+// Fork–join parallel loops. The library's own thread pool is the default; a game hands in its own job system by
+// deriving from TaskScheduler.
+#pragma once
+
+#include <memory>
+
+#include "carom/core/function_ref.h"
+#include "carom/export.h"
+
+namespace carom::core {
+
+/// Runs the chunks of a loop, on one thread or on several, and returns when all are done.
+///
+/// The contract that makes results independent of the thread count: [0, count) is cut into chunks
+/// [k·grain, min((k + 1)·grain, count)), the same for every scheduler; every chunk is run exactly once, in any order,
+/// on any thread. Chunks must write to disjoint places. What a chunk produces for later reduction goes to a place
+/// chosen by k = begin / grain, never by `worker`, and is reduced in the order of k afterwards.
+///
+/// `worker` lies in [0, thread_count()) and is unique among chunks of this call that run at the same time: it picks
+/// scratch memory. The calling thread takes part.
+class CAROM_API TaskScheduler {
+ public:
+  using Body = FunctionRef<void(int begin, int end, int worker)>;
+
+  virtual ~TaskScheduler() = default;
+  virtual int thread_count() const = 0;
+  /// count ≤ 0 does nothing; grain < 1 counts as 1. Must not allocate. The body must not throw.
+  virtual void parallel_for(int count, int grain, Body body) = 0;
+};
+
+/// Everything on the calling thread, chunks in order.
+class CAROM_API SerialScheduler final : public TaskScheduler {
+ public:
+  int thread_count() const override { return 1; }
+  void parallel_for(int count, int grain, Body body) override {
+    if (grain < 1) grain = 1;
+    for (int begin = 0; begin < count;) {
+      const int end = count - begin > grain ? begin + grain : count;
+      body(begin, end, 0);
+      begin = end;
+    }
+  }
+};
+
+/// A pool of `threads` workers, the calling thread included (clamped to 1 … 64). Idle workers spin for some tens of
+/// microseconds and then sleep, so that the stages of a physics step follow each other without system calls.
+/// A call that comes while another is running (nested in a body, or from another thread) is run on its own calling
+/// thread alone, with the same chunks. One thread, and WASM without threads, give a SerialScheduler.
+CAROM_API std::unique_ptr<TaskScheduler> make_thread_pool(int threads);
+
+/// Hardware threads of this machine, at least 1.
+CAROM_API int hardware_threads();
+
+}  // namespace carom::core
