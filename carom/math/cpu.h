@@ -1,0 +1,33 @@
+// Which instruction set the machine offers, so that a kernel compiled for several can be picked at run time.
+#pragma once
+
+#include "carom/export.h"
+
+namespace carom::math {
+
+/// In rising order. `baseline` is what the whole library is compiled for: SSE2, NEON or WASM SIMD128, four lanes.
+enum class InstructionSet { baseline, avx2, avx512 };
+
+/// The best instruction set that this processor and operating system run; avx512 means F, VL, DQ and BW.
+CAROM_API InstructionSet detect_instruction_set();
+
+/// `wanted` where the machine has it, else the best one it has. Results are the same in bits either way.
+inline InstructionSet choose_instruction_set(InstructionSet wanted) {
+  const InstructionSet best = detect_instruction_set();
+  return wanted < best ? wanted : best;
+}
+
+/// Float lanes: 4, 8 or 16.
+constexpr int simd_width(InstructionSet set) {
+  return set == InstructionSet::avx512 ? 16 : (set == InstructionSet::avx2 ? 8 : 4);
+}
+/// The instruction set of a width of 4, 8 or 16 lanes (anything else: the next lower).
+constexpr InstructionSet instruction_set_of_width(int width) {
+  return width >= 16 ? InstructionSet::avx512 : (width >= 8 ? InstructionSet::avx2 : InstructionSet::baseline);
+}
+/// "baseline", "avx2" or "avx512".
+constexpr const char* to_string(InstructionSet set) {
+  return set == InstructionSet::avx512 ? "avx512" : (set == InstructionSet::avx2 ? "avx2" : "baseline");
+}
+
+}  // namespace carom::math
