@@ -1,0 +1,200 @@
+// A bounding-volume tree over boxes that come, move and go: the broad phase of a world.
+// Boxes are kept in the precision they come in (double in a world), because float boxes relative to one origin would
+// grow by a metre at 10⁷ m; a node of space then fills one cache line.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "carom/export.h"
+#include "carom/geometry/detail/tree_build.h"
+
+namespace carom::geometry {
+
+/// Leaves are named by their node, which stays the same until it is removed. The structure is a pure function of the
+/// calls made, so two worlds with the same history visit in the same order. Copy it to keep a snapshot.
+/// V: Vec2d, Vec3d, Vec2f or Vec3f. Coordinates beyond ±10¹⁵ m are taken as that (an infinite plane's box).
+template <class V>
+class CAROM_API DynamicTree {
+ public:
+  using Box = Bounds<V>;
+  using Scalar = typename detail::Axes<V>::Scalar;
+
+  /// Returns the leaf. `item` is the caller's own number.
+  int insert(const Box& box, std::uint32_t item);
+  void remove(int leaf);
+  /// Gives the leaf a new box, and a new place in the tree.
+  void update(int leaf, const Box& box);
+  /// Gives the leaf a new box but leaves it in its place, widening what is above: cheaper than `update`, for many
+  /// movers in a step. What has been widened is built anew by `rebuild_enlarged`.
+  void enlarge(int leaf, const Box& box);
+  /// Rebuilds the parts above enlarged leaves. Returns how many subtrees were sorted into new places.
+  int rebuild_enlarged();
+  /// Builds the whole tree anew from its leaves (binned surface area heuristic); leaves keep their names.
+  void rebuild();
+  /// Inserts all boxes at once: leaves[i] (if not null) is the leaf of boxes[i], items[i] its item. Much faster, and a
+  /// better tree, than one by one.
+  void insert_all(std::span<const Box> boxes, std::span<const std::uint32_t> items, int* leaves);
+  void clear();
+  void reserve(int leaves);
+
+  const Box& bounds(int leaf) const { return nodes_[std::size_t(leaf)].box; }
+  std::uint32_t item(int leaf) const { return std::uint32_t(nodes_[std::size_t(leaf)].child_a); }
+  void set_item(int leaf, std::uint32_t item) { nodes_[std::size_t(leaf)].child_a = std::int32_t(item); }
+  int size() const { return count_; }  ///< leaves
+  bool empty() const { return root_ < 0; }
+  Box root_bounds() const { return root_ < 0 ? Box{} : nodes_[std::size_t(root_)].box; }
+  std::size_t bytes() const {
+    return nodes_.capacity() * sizeof(Node) + build_.capacity() * sizeof(detail::BuildItem<V>);
+  }
+
+  /// Calls visit(item) for every leaf whose box meets `box`; visit returns false to stop.
+  template <class Visit>
+  void query(const Box& box, Visit&& visit) const {
+    if (root_ < 0) return;
+    detail::TraversalStack stack;
+    std::int32_t index = root_;
+    if (!detail::boxes_meet(nodes_[std::size_t(index)].box, box)) return;
+    while (true) {
+      const Node& node = nodes_[std::size_t(index)];
+      if (node.child_b < 0) {
+        if (!visit(std::uint32_t(node.child_a))) return;
+      } else {
+        const bool a = detail::boxes_meet(nodes_[std::size_t(node.child_a)].box, box);
+        const bool b = detail::boxes_meet(nodes_[std::size_t(node.child_b)].box, box);
+        if (a) {
+          if (b) stack.push(std::uint32_t(node.child_b));
+          index = node.child_a;
+          continue;
+        }
+        if (b) {
+          index = node.child_b;
+          continue;
+        }
+      }
+      if (stack.empty()) return;
+      index = std::int32_t(stack.pop());
+    }
+  }
+
+  /// The box of half extents `extents` (zero: a ray) travels from `origin` by `translation`. Calls
+  /// visit(item, limit) → new limit for every leaf that it may meet before `limit` (at first 1), near ones first where
+  /// that is cheap to know: return `limit` to go on, a smaller fraction to clip, 0 to stop.
+  template <class Visit>
+  void cast(V origin, V translation, V extents, Visit&& visit) const {
+    if (root_ < 0) return;
+    const detail::SlabRay<V> ray(origin, translation, extents);
+    Scalar limit = 1;
+    detail::TraversalStack stack;
+    stack.push(std::uint32_t(root_));
+    while (!stack.empty()) {
+      const Node& node = nodes_[stack.pop()];
+      if (ray.enter(node.box, limit) > limit) continue;
+      if (node.child_b < 0) {
+        limit = Scalar(visit(std::uint32_t(node.child_a), limit));
+        if (!(limit > 0)) return;
+        continue;
+      }
+      const Scalar a = ray.enter(nodes_[std::size_t(node.child_a)].box, limit);
+      const Scalar b = ray.enter(nodes_[std::size_t(node.child_b)].box, limit);
+      const bool b_first = b < a;
+      const std::int32_t near = b_first ? node.child_b : node.child_a, far = b_first ? node.child_a : node.child_b;
+      if ((b_first ? a : b) <= limit) stack.push(std::uint32_t(far));
+      if ((b_first ? b : a) <= limit) stack.push(std::uint32_t(near));
+    }
+  }
+
+  /// Calls visit(item_of_this, item_of_other) for every pair of leaves whose boxes meet, one tree against another.
+  template <class Visit>
+  void pairs(const DynamicTree& other, Visit&& visit) const {
+    if (root_ < 0 || other.root_ < 0) return;
+    detail::TraversalStack stack;
+    stack.push(std::uint32_t(other.root_));
+    stack.push(std::uint32_t(root_));
+    while (!stack.empty()) {
+      const std::uint32_t i = stack.pop();
+      const std::uint32_t j = stack.pop();
+      const Node &a = nodes_[i], &b = other.nodes_[j];
+      if (!detail::boxes_meet(a.box, b.box)) continue;
+      const bool leaf_a = a.child_b < 0, leaf_b = b.child_b < 0;
+      if (leaf_a && leaf_b) {
+        visit(std::uint32_t(a.child_a), std::uint32_t(b.child_a));
+      } else if (leaf_b || (!leaf_a && detail::surface(a.box) >= detail::surface(b.box))) {
+        stack.push(j), stack.push(std::uint32_t(a.child_b));
+        stack.push(j), stack.push(std::uint32_t(a.child_a));
+      } else {
+        stack.push(std::uint32_t(b.child_b)), stack.push(i);
+        stack.push(std::uint32_t(b.child_a)), stack.push(i);
+      }
+    }
+  }
+
+  /// Calls visit(item, item) once for every pair of different leaves of this tree whose boxes meet.
+  template <class Visit>
+  void self_pairs(Visit&& visit) const {
+    if (root_ < 0) return;
+    detail::TraversalStack stack;
+    stack.push(std::uint32_t(root_));
+    stack.push(std::uint32_t(root_));
+    while (!stack.empty()) {
+      const std::uint32_t i = stack.pop();
+      const std::uint32_t j = stack.pop();
+      const Node &a = nodes_[i], &b = nodes_[j];
+      if (i == j) {
+        if (a.child_b < 0) continue;
+        const std::uint32_t l = std::uint32_t(a.child_a), r = std::uint32_t(a.child_b);
+        stack.push(r), stack.push(l);
+        stack.push(r), stack.push(r);
+        stack.push(l), stack.push(l);
+        continue;
+      }
+      if (!detail::boxes_meet(a.box, b.box)) continue;
+      const bool leaf_a = a.child_b < 0, leaf_b = b.child_b < 0;
+      if (leaf_a && leaf_b) {
+        visit(std::uint32_t(a.child_a), std::uint32_t(b.child_a));
+      } else if (leaf_b || (!leaf_a && detail::surface(a.box) >= detail::surface(b.box))) {
+        stack.push(j), stack.push(std::uint32_t(a.child_b));
+        stack.push(j), stack.push(std::uint32_t(a.child_a));
+      } else {
+        stack.push(std::uint32_t(b.child_b)), stack.push(i);
+        stack.push(std::uint32_t(b.child_a)), stack.push(i);
+      }
+    }
+  }
+
+  /// For tests and reports: levels below the root, summed surface of inner nodes over that of the root, and whether
+  /// every link and box is consistent.
+  int height() const;
+  double cost() const;
+  bool valid() const;
+
+ private:
+  struct Node {
+    Box box{};
+    std::int32_t parent = -1;   ///< free nodes: the next free one
+    std::int32_t child_a = -1;  ///< leaves: the item
+    std::int32_t child_b = -1;  ///< −1: leaf
+    std::uint32_t enlarged = 0;
+  };
+  int take_node();
+  void give_node(int node);
+  void link(int leaf);
+  void unlink(int leaf);
+  void refit_and_rotate(int node);
+  void rotate(int node);
+  int build(std::span<detail::BuildItem<V>> items);
+
+  std::vector<Node> nodes_;
+  std::vector<detail::BuildItem<V>> build_;
+  std::int32_t root_ = -1, free_ = -1;
+  int count_ = 0;
+};
+
+extern template class DynamicTree<Vec2d>;
+extern template class DynamicTree<Vec3d>;
+extern template class DynamicTree<Vec2f>;
+extern template class DynamicTree<Vec3f>;
+using DynamicTree2 = DynamicTree<Vec2d>;
+using DynamicTree3 = DynamicTree<Vec3d>;
+
+}  // namespace carom::geometry
