@@ -39,4 +39,10 @@ template <class T> constexpr Bounds<Vec3<T>> grow(const Bounds<Vec3<T>>& b, T m)
   return {b.low - Vec3<T>{m, m, m}, b.high + Vec3<T>{m, m, m}};
 }
 
+/// What a shape may measure, in metres: a radius or half extent from `min_shape_size` to `max_shape_size`, coordinates
+/// of vertices at most `max_shape_size` in size. Within these limits no mass or inertia of an ordinary material
+/// overflows a float.
+inline constexpr double min_shape_size = 1e-6;
+inline constexpr double max_shape_size = 1e7;
+
 }  // namespace carom::geometry

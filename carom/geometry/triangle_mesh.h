@@ -16,6 +16,7 @@ struct TriangleMesh {
   std::vector<std::uint32_t> indices;   ///< three a triangle
   std::vector<std::uint8_t> edge_flags;  ///< one a triangle; edge i runs from corner i to corner i + 1
   StaticTree tree;                       ///< over the triangles
+  Bounds3f bounds;
   int triangle_count() const { return int(indices.size() / 3); }
 };
 
