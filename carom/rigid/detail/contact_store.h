@@ -1,0 +1,73 @@
+// Pairs of shapes whose bounds overlap, and the manifolds of those that touch.
+#pragma once
+
+#include <vector>
+
+#include "carom/rigid/detail/constraint_graph.h"
+
+namespace carom::rigid::detail {
+
+enum ContactFlag : std::uint16_t {
+  contact_touching = 1,     ///< has at least one manifold with a point at or below zero… or, for sensors, overlaps
+  contact_sensor = 2,
+  contact_many = 4,         ///< mesh, height field, compound or chain: several manifolds
+  contact_events = 8,       ///< begin and end events wanted
+  contact_hit_events = 16,
+  contact_cached = 32,      ///< `base` and the manifolds come from an earlier full update
+  contact_apart = 64,       ///< the last full update found nothing within margin + slack
+  contact_in_use = 128,
+  contact_round = 256,      ///< a sphere or circle takes part: always computed anew, it costs little
+  contact_began = 512,      ///< a begin event was sent, so an end event is due
+};
+
+/// A pair of shapes. `shape[0]` is A: normals point from it to B.
+template <class D> struct ContactRecord {
+  std::int32_t shape[2] = {none, none};
+  std::int32_t body[2] = {none, none};
+  std::int32_t next[2] = {none, none};      ///< edge keys (2·contact + side) in the lists of the bodies
+  std::int32_t previous[2] = {none, none};
+  std::int32_t awake_index = none;          ///< place in ContactStore::awake
+  std::int32_t first_manifold = none;
+  std::uint16_t flags = 0;
+  std::uint16_t manifold_count = 0;
+  float extent = 0;                         ///< m: how far a turn by one radian moves the surfaces
+  geometry::PairCache cache{};
+  typename D::Transform base{};             ///< B in A when the manifolds were last computed in full
+};
+
+/// What the solver did for a manifold, kept for warm starting, events and pictures.
+template <class D> struct ManifoldImpulses {
+  float normal[D::max_points] = {};  ///< N·s, of the last substep
+  float peak[D::max_points] = {};    ///< N·s, largest of the last step
+  typename D::Vector friction{};     ///< N·s on B, world axes
+  float twist = 0;                   ///< N·m·s about the normal (3D)
+  typename D::Angular rolling{};     ///< N·m·s on B
+};
+
+/// One patch of contact: a unit of the constraint graph.
+template <class D> struct ManifoldRecord {
+  std::int32_t contact = none;
+  std::int32_t next = none;          ///< of the same contact
+  GraphPlace place{};
+  std::uint32_t child = 0;
+  float friction = 0, restitution = 0, rolling_resistance = 0, tangent_speed = 0;
+  typename D::Manifold manifold{};   ///< in A's shape frame, at the contact's `base`
+  ManifoldImpulses<D> impulses{};
+  typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass
+  bool anchored = false;
+};
+
+template <class D> struct ContactStore {
+  std::vector<ContactRecord<D>> contacts;
+  std::vector<ManifoldRecord<D>> manifolds;
+  std::vector<std::int32_t> free_contacts, free_manifolds;
+  std::vector<std::int32_t> awake;   ///< contacts with an awake body, updated every step
+  int count = 0;
+
+  ContactRecord<D>& at(std::int32_t i) { return contacts[std::size_t(i)]; }
+  const ContactRecord<D>& at(std::int32_t i) const { return contacts[std::size_t(i)]; }
+  ManifoldRecord<D>& manifold(std::int32_t i) { return manifolds[std::size_t(i)]; }
+  const ManifoldRecord<D>& manifold(std::int32_t i) const { return manifolds[std::size_t(i)]; }
+};
+
+}  // namespace carom::rigid::detail

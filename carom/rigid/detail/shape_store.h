@@ -1,0 +1,51 @@
+// Shapes by slot.
+#pragma once
+
+#include <vector>
+
+#include "carom/core/pool.h"
+#include "carom/geometry/dynamic_tree.h"
+#include "carom/rigid/detail/body_store.h"
+
+namespace carom::rigid::detail {
+
+enum ShapeFlag : std::uint8_t {
+  shape_sensor = 1,
+  shape_contact_events = 2,
+  shape_hit_events = 4,
+  shape_many = 8,        ///< collides with several manifolds
+  shape_moved = 16,      ///< its fat bounds changed: look for new pairs
+  shape_round = 32,      ///< a sphere or circle
+};
+
+/// The tree in which a shape is: after its body's type.
+enum TreeIndex : std::int8_t { tree_fixed = 0, tree_kinematic = 1, tree_dynamic = 2, tree_none = -1 };
+
+template <class D> struct ShapeRecord {
+  typename D::Shape geometry{};
+  typename D::Transform local{};         ///< shape → body
+  std::int32_t body = none;
+  std::int32_t next = none;              ///< of the same body, in order of creation
+  std::int32_t leaf = none;              ///< in the tree
+  std::int8_t tree = tree_none;          ///< TreeIndex
+  std::uint8_t flags = 0;                ///< ShapeFlag
+  bool at_origin = true;                 ///< local is the identity
+  float outer_extent = 0;                ///< m: farthest point from the body's centre of mass
+  float margin = 0;                      ///< m by which fat bounds exceed the tight ones
+  float density = 0;                     ///< kg/m³ or kg/m²
+  Material material{};
+  Filter filter{};
+  std::uint64_t user_data = 0;
+};
+
+template <class D> struct ShapeStore {
+  core::SlotPool<ShapeTag> slots;
+  std::vector<ShapeRecord<D>> record;            ///< by slot
+  geometry::DynamicTree<typename D::Position> trees[3];  ///< items are slots of shapes
+
+  explicit ShapeStore(std::uint16_t world) : slots(world) {}
+  ShapeRecord<D>& at(std::int32_t slot) { return record[std::size_t(slot)]; }
+  const ShapeRecord<D>& at(std::int32_t slot) const { return record[std::size_t(slot)]; }
+};
+
+}  // namespace carom::rigid::detail

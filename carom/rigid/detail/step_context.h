@@ -1,0 +1,36 @@
+// What a stage of the step sees.
+#pragma once
+
+#include "carom/core/arena.h"
+#include "carom/core/scheduler.h"
+#include "carom/rigid/detail/body_store.h"
+
+namespace carom::rigid::detail {
+
+template <class D> struct WorldImplementation;
+
+/// A soft constraint's constants for a substep h (implicit spring and damper, Catto, "Soft constraints", GDC 2011;
+/// "Solver2D" 2024): Δλ = −mass_scale·m_eff·(v + bias_rate·C) − impulse_scale·λ.
+struct Softness {
+  float bias_rate = 0, mass_scale = 1, impulse_scale = 0;
+};
+inline Softness make_softness(float hertz, float damping_ratio, float h) {
+  if (hertz == 0) return {};
+  const float omega = 2 * pi_f * hertz;
+  const float a1 = 2 * damping_ratio + h * omega, a2 = h * omega * a1, a3 = 1 / (1 + a2);
+  return {omega / a1, a2 * a3, a3};
+}
+
+template <class D> struct StepContext {
+  WorldImplementation<D>& world;
+  core::TaskScheduler& scheduler;
+  core::Arena& arena;          ///< of this step, for the calling thread only
+  float dt = 0, inverse_dt = 0;
+  float h = 0, inverse_h = 0;  ///< of a substep
+  int substeps = 1;
+  Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
+  float push_speed = 0;        ///< m/s, limit of the speed at which overlaps separate
+  SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones
+};
+
+}  // namespace carom::rigid::detail

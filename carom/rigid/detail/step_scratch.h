@@ -1,0 +1,39 @@
+// Arrays that a step fills and keeps its capacity in, so that a warm step does not allocate.
+#pragma once
+
+#include <vector>
+
+#include "carom/rigid/detail/contact_store.h"
+#include "carom/rigid/events.h"
+
+namespace carom::rigid::detail {
+
+/// A manifold found by the narrow phase that its contact does not hold yet.
+template <class D> struct FoundManifold {
+  std::int32_t awake_index;  ///< of the contact
+  std::uint32_t child;
+  typename D::Manifold manifold;
+};
+struct FoundPair {
+  std::int32_t a, b;  ///< slots of shapes, a < b
+  friend bool operator<(const FoundPair& l, const FoundPair& r) { return l.a != r.a ? l.a < r.a : l.b < r.b; }
+  friend bool operator==(const FoundPair& l, const FoundPair& r) { return l.a == r.a && l.b == r.b; }
+};
+
+template <class D> struct StepScratch {
+  std::vector<std::int32_t> moved;                          ///< shapes whose fat bounds changed
+  std::vector<std::vector<FoundPair>> found_pairs;          ///< by worker
+  std::vector<FoundPair> pairs;
+  std::vector<std::uint8_t> contact_changes;                ///< by place in ContactStore::awake
+  std::vector<std::vector<FoundManifold<D>>> found_manifolds;  ///< by worker
+  std::vector<FoundManifold<D>> manifolds;
+  std::vector<std::int32_t> island_parent, island_list;
+
+  std::vector<ContactBeginEvent> contact_begin;
+  std::vector<ContactEndEvent> contact_end, pending_contact_end;  ///< pending: from calls between steps
+  std::vector<ContactHitEvent<D>> contact_hit;
+  std::vector<SensorEvent> sensor_begin, sensor_end, pending_sensor_end;
+  std::vector<SleepEvent> fell_asleep, quarantined;
+};
+
+}  // namespace carom::rigid::detail
