@@ -1,0 +1,63 @@
+// Pointers on the view: every finger (or the mouse) may hold its own body.
+import * as THREE from 'three';
+import type {Viewer} from './viewer';
+
+interface Hold { plane: THREE.Plane; held: boolean; local?: THREE.Vector3; point: THREE.Vector3; target: THREE.Vector3 }
+
+export class Hands {
+  private holds = new Map<number, Hold>();
+
+  constructor(private canvas: HTMLCanvasElement, private viewer: Viewer, private send: (message: object) => void) {
+    canvas.style.touchAction = 'none';
+    // Capture phase: decide before the orbit controls see the pointer.
+    canvas.addEventListener('pointerdown', (event) => this.down(event), true);
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    for (const end of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(end, (event) => this.up(event.pointerId));
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.button !== 0 || !this.viewer.dynamicBodyAt(event.clientX, event.clientY)) return;
+    this.viewer.enableOrbit(false);
+    this.canvas.setPointerCapture(event.pointerId);
+    this.canvas.classList.add('grabbing');
+    const ray = this.viewer.ray(event.clientX, event.clientY);
+    const hold = {plane: new THREE.Plane(), held: false, point: new THREE.Vector3(), target: new THREE.Vector3()};
+    this.holds.set(event.pointerId, hold);
+    this.send({type: 'grab', pointer: event.pointerId, origin: ray.origin.toArray(), direction: ray.direction.toArray()});
+  }
+
+  grabbed(pointer: number, body: number, point: number[]): void {
+    const hold = this.holds.get(pointer);
+    if (!hold) { this.send({type: 'release', pointer}); return; }
+    if (body < 0) { this.up(pointer); return; }
+    hold.held = true;
+    hold.point.set(point[0], point[1], point[2]);
+    hold.target.copy(hold.point);
+    hold.plane.setFromNormalAndCoplanarPoint(this.viewer.viewDirection, hold.point);
+  }
+
+  private move(event: PointerEvent): void {
+    const hold = this.holds.get(event.pointerId);
+    if (!hold) {
+      if (event.pointerType === 'mouse' && event.buttons === 0)
+        this.canvas.classList.toggle('grab', this.viewer.dynamicBodyAt(event.clientX, event.clientY));
+      return;
+    }
+    if (!hold.held) return;
+    const hit = this.viewer.ray(event.clientX, event.clientY).intersectPlane(hold.plane, hold.target);
+    if (hit) this.send({type: 'drag', pointer: event.pointerId, target: hold.target.toArray()});
+  }
+
+  private up(pointer: number): void {
+    const hold = this.holds.get(pointer);
+    if (!hold) return;
+    this.holds.delete(pointer);
+    if (hold.held) this.send({type: 'release', pointer});
+    if (this.holds.size === 0) {
+      this.viewer.enableOrbit(true);
+      this.canvas.classList.remove('grabbing');
+    }
+  }
+
+  releaseAll(): void { for (const pointer of [...this.holds.keys()]) this.up(pointer); }
+}

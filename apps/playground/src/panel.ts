@@ -1,0 +1,97 @@
+// The side panel: text, sliders made from the demo's declaration, and numbers.
+import type {Opened, Parameter, Stats} from './protocol';
+import {fromDisplay, short, toDisplay, unitOf} from './quantities';
+
+const element = <K extends keyof HTMLElementTagNameMap>(tag: K, properties: Record<string, unknown> = {}, ...children: (Node | string)[]) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+};
+
+export class Panel {
+  private shown = new Map<string, (si: number) => void>();
+
+  constructor(private send: (message: object) => void) {}
+
+  open(demo: Opened): void {
+    const about = document.getElementById('about')!;
+    about.replaceChildren(element('p', {className: 'summary', textContent: demo.summary}));
+    if (demo.text) {
+      const text = element('div', {className: 'text'});
+      for (const paragraph of demo.text.split('\n\n')) {
+        const formula = /^\s{2,}|^[^.]{0,80}=[^.]{0,120}$/.test(paragraph);
+        text.append(element('p', {className: formula ? 'formula' : '', textContent: paragraph.trim()}));
+      }
+      about.append(element('details', {open: false}, element('summary', {textContent: 'What this shows'}), text));
+    }
+    const list = document.getElementById('parameters')!;
+    this.shown.clear();
+    list.replaceChildren(...demo.parameters.map((p) => this.slider(p)));
+    list.parentElement!.hidden = demo.parameters.length === 0;
+    document.getElementById('plot-heading')!.parentElement!.hidden = demo.plots.length === 0;
+    this.inputs(demo);
+  }
+
+  setValues(values: Record<string, number>): void {
+    for (const [name, value] of Object.entries(values)) this.shown.get(name)?.(value);
+  }
+
+  private slider(p: Parameter): HTMLElement {
+    const id = `parameter-${p.name}`, unit = unitOf(p);
+    const shownStep = Math.abs(p.step * (p.display_factor ?? 1)) || 'any';
+    const range = element('input', {type: 'range', id, min: String(toDisplay(p, p.minimum)), max: String(toDisplay(p, p.maximum)), title: p.description});
+    range.step = String(shownStep);
+    const number = element('input', {type: 'number', className: 'number', min: range.min, max: range.max, title: p.description});
+    number.step = 'any';
+    number.setAttribute('aria-label', `${p.label} in ${unit || 'units of one'}`);
+    const show = (si: number) => {
+      const value = short(toDisplay(p, si), 5);
+      range.value = String(toDisplay(p, si));
+      range.setAttribute('aria-valuetext', `${value} ${unit}`);
+      if (document.activeElement !== number) number.value = String(Number(toDisplay(p, si).toPrecision(6)));
+    };
+    const change = (text: string) => {
+      const shown = Number(text);
+      if (text === '' || !Number.isFinite(shown)) { show(p.value); return; }
+      p.value = Math.min(p.maximum, Math.max(p.minimum, fromDisplay(p, shown)));
+      show(p.value);
+      this.send({type: 'set', name: p.name, value: p.value});
+    };
+    // A parameter that is not live restarts the demo: wait until the slider is let go.
+    range.addEventListener(p.live ? 'input' : 'change', () => change(range.value));
+    if (!p.live) range.addEventListener('input', () => { number.value = range.value; });
+    number.addEventListener('change', () => change(number.value));
+    this.shown.set(p.name, (si) => { p.value = si; show(si); });
+    show(p.value);
+    return element('div', {className: 'parameter', title: p.description},
+      element('label', {htmlFor: id, textContent: p.label}),
+      element('span', {className: 'quantity'}, number, element('span', {className: 'unit', textContent: unit})), range);
+  }
+
+  private inputs(demo: Opened): void {
+    const host = document.getElementById('inputs')!;
+    host.replaceChildren(...demo.inputs.map((input) => {
+      const key = input.keys.map((k) => k.replace(/^Key|^Digit/, '').replace('ArrowUp', '↑').replace('ArrowDown', '↓').replace('ArrowLeft', '←').replace('ArrowRight', '→').replace('Space', '␣')).join(' ');
+      const button = element('button', {type: 'button', title: `${input.label} (${key})`}, input.label, ' ', element('kbd', {textContent: key}));
+      const press = (value: number) => this.send({type: 'input', action: input.action, value});
+      button.onpointerdown = (event) => { button.setPointerCapture(event.pointerId); press(input.value); };
+      if (input.kind === 'hold') button.onpointerup = button.onpointercancel = () => press(0);
+      button.onclick = (event) => { if (event.detail === 0) { press(input.value); if (input.kind === 'hold') setTimeout(() => press(0), 250); } };
+      return button;
+    }));
+    host.hidden = demo.inputs.length === 0;
+  }
+
+  numbers(stats: Stats): void {
+    const rows: [string, string][] = [
+      ['Bodies', `${stats.bodies} (${stats.awake} awake)`], ['Contacts', String(stats.contacts)], ['Joints', String(stats.joints)],
+      ['Islands', String(stats.islands)], ['Step', `${stats.stepMs.toFixed(2)} ms on ${stats.threads} thread${stats.threads === 1 ? '' : 's'}`],
+      ['Real time', `${short(stats.realTimeFactor, 3)}×`], ['Kinetic energy', `${short(stats.kinetic)} J`],
+      ['Potential energy', `${short(stats.potential)} J`], ['Worst penetration', `${short(1000 * stats.penetration, 3)} mm`], ['State hash', stats.hash],
+    ];
+    const list = document.getElementById('numbers')!;
+    if (list.children.length !== 2 * rows.length)
+      list.replaceChildren(...rows.flatMap(([name]) => [element('dt', {textContent: name}), element('dd')]));
+    rows.forEach(([, value], i) => { list.children[2 * i + 1].textContent = value; });
+  }
+}

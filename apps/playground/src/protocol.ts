@@ -1,0 +1,91 @@
+// The messages of docs/protocol.md, as types and as a decoder of the binary ones.
+
+export interface DemoSummary { id: string; title: string; summary: string; group: string; chapter: string; dimension: number }
+export interface Parameter {
+  name: string; label: string; unit: string; display_unit: string; display_factor?: number; display_offset?: number;
+  description: string; minimum: number; maximum: number; step: number; value: number; live: boolean;
+}
+export interface Axis { label: string; unit: string }
+export interface Series { name: string; style: 'line' | 'points'; points?: [number, number][] }
+export interface PlotDeclaration { title: string; x: Axis; y: Axis; series: Series[] }
+export interface Camera { position: number[]; target: number[]; field_of_view?: number; height?: number; follow?: number }
+export interface Input { action: string; label: string; keys: string[]; kind: 'hold' | 'press'; value: number }
+export interface Opened {
+  type: 'opened'; demo: string; title: string; summary: string; text: string; dimension: 2 | 3; dt: number; camera: Camera;
+  parameters: Parameter[]; plots: PlotDeclaration[]; inputs: Input[];
+}
+export interface Shape {
+  kind: string; local: number[]; radius?: number; half_length?: number; half_height?: number; half_extents?: number[];
+  normal?: number[]; mesh?: number; points?: number[][]; loop?: boolean;
+}
+export interface Body {
+  id: number; name: string; type: 'fixed' | 'kinematic' | 'dynamic'; color?: string; position: number[]; rotation: number[];
+  shapes: Shape[];
+}
+export type HostMessage =
+  | {type: 'welcome'; protocol: number; version: string; engine: string; demos: DemoSummary[]}
+  | Opened
+  | {type: 'scene'; bodies: Body[]; ground?: {level: number}}
+  | {type: 'bodies'; add: Body[]; remove: number[]}
+  | {type: 'grabbed'; pointer: number; body: number; point: number[]}
+  | {type: 'status'; running: boolean; speed: number; time: number; step: number; message?: string}
+  | {type: 'values'; values: Record<string, number>}
+  | {type: 'error'; message: string};
+
+export interface Mesh { kind: 'mesh'; id: number; positions: Float32Array; indices: Uint32Array }
+export interface Stats {
+  bodies: number; awake: number; contacts: number; joints: number; islands: number; threads: number; stepMs: number;
+  realTimeFactor: number; kinetic: number; potential: number; hash: string; penetration: number;
+}
+export interface Frame {
+  kind: 'frame'; key: boolean; dimension: number; sequence: number; step: number; time: number; origin: [number, number, number];
+  /** Views into the message: body i has id ids(i), position and rotation below. */
+  count: number; bodies: DataView; samples: {plot: number; series: number; x: number; y: number}[];
+  lines: Float32Array; lineColors: Uint32Array; stats?: Stats;
+}
+
+export const BODY_BYTES = 24;
+const HEADER_BYTES = 56, SAMPLE_BYTES = 20, LINE_BYTES = 28, STATS_BYTES = 64;
+
+/** Decodes one binary message, or throws with what was wrong: a page must never draw half a frame. */
+export function decode(buffer: ArrayBuffer): Mesh | Frame {
+  const view = new DataView(buffer);
+  if (view.byteLength < 16) throw new Error(`message of ${view.byteLength} bytes, expected at least 16`);
+  const kind = view.getUint8(0);
+  if (kind === 1) {
+    const vertices = view.getUint32(8, true), indices = view.getUint32(12, true);
+    const expected = 16 + 12 * vertices + 4 * indices;
+    if (view.byteLength !== expected) throw new Error(`mesh of ${view.byteLength} bytes, expected ${expected}`);
+    return {kind: 'mesh', id: view.getUint32(4, true), positions: new Float32Array(buffer, 16, 3 * vertices),
+      indices: new Uint32Array(buffer, 16 + 12 * vertices, indices)};
+  }
+  if (kind !== 2) throw new Error(`message of unknown kind ${kind}`);
+  if (view.byteLength < HEADER_BYTES) throw new Error(`frame of ${view.byteLength} bytes has no whole header`);
+  const flags = view.getUint8(1), count = view.getUint32(12, true), samples = view.getUint32(16, true), lines = view.getUint32(20, true);
+  const expected = HEADER_BYTES + BODY_BYTES * count + SAMPLE_BYTES * samples + LINE_BYTES * lines + (flags & 2 ? STATS_BYTES : 0);
+  if (view.byteLength !== expected) throw new Error(`frame of ${view.byteLength} bytes, expected ${expected}`);
+  let at = HEADER_BYTES;
+  const bodies = new DataView(buffer, at, BODY_BYTES * count);
+  at += BODY_BYTES * count;
+  const frame: Frame = {
+    kind: 'frame', key: (flags & 1) !== 0, dimension: view.getUint16(2, true), sequence: view.getUint32(4, true),
+    step: view.getUint32(8, true), time: view.getFloat64(24, true),
+    origin: [view.getFloat64(32, true), view.getFloat64(40, true), view.getFloat64(48, true)], count, bodies, samples: [],
+    lines: new Float32Array(6 * lines), lineColors: new Uint32Array(lines),
+  };
+  for (let i = 0; i < samples; ++i, at += SAMPLE_BYTES)
+    frame.samples.push({plot: view.getUint16(at, true), series: view.getUint16(at + 2, true), x: view.getFloat64(at + 4, true), y: view.getFloat64(at + 12, true)});
+  for (let i = 0; i < lines; ++i, at += LINE_BYTES) {
+    for (let k = 0; k < 6; ++k) frame.lines[6 * i + k] = view.getFloat32(at + 4 * k, true);
+    frame.lineColors[i] = view.getUint32(at + 24, true);
+  }
+  if (flags & 2) {
+    const u = (k: number) => view.getUint32(at + k, true);
+    frame.stats = {
+      bodies: u(0), awake: u(4), contacts: u(8), joints: u(12), islands: u(16), threads: u(20), stepMs: view.getFloat32(at + 24, true),
+      realTimeFactor: view.getFloat32(at + 28, true), kinetic: view.getFloat64(at + 32, true), potential: view.getFloat64(at + 40, true),
+      hash: view.getBigUint64(at + 48, true).toString(16).padStart(16, '0'), penetration: view.getFloat64(at + 56, true),
+    };
+  }
+  return frame;
+}

@@ -1,0 +1,336 @@
+// Draws the bodies of a scene with three.js: instanced shapes, soft shadows, a ground with a metric grid.
+import * as THREE from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
+import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Shape} from './protocol';
+import {Ground} from './ground';
+import {drawable2, drawable3, type Drawable} from './shapes';
+
+const PALETTE = ['#e4572e', '#f4b942', '#2a9d8f', '#4a8fe7', '#9b6dd6', '#e07a9b', '#6bbf59', '#d98e4a'];
+
+/** One instanced mesh for all shapes of one geometry. Grows by doubling. */
+class Batch {
+  mesh: THREE.InstancedMesh;
+  owners: number[] = [];
+
+  constructor(private geometry: THREE.BufferGeometry, private material: THREE.Material, private parent: THREE.Object3D) {
+    this.mesh = this.allocate(16);
+  }
+  private allocate(capacity: number): THREE.InstancedMesh {
+    const mesh = new THREE.InstancedMesh(this.geometry, this.material, capacity);
+    mesh.count = 0;
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.frustumCulled = false;
+    mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+    mesh.setColorAt(0, new THREE.Color());
+    this.parent.add(mesh);
+    return mesh;
+  }
+  add(owner: number, matrix: THREE.Matrix4, color: THREE.Color): number {
+    const slot = this.mesh.count;
+    if (slot === this.mesh.instanceMatrix.count) {
+      const old = this.mesh;
+      this.mesh = this.allocate(2 * slot);
+      this.mesh.instanceMatrix.array.set(old.instanceMatrix.array);
+      this.mesh.instanceColor!.array.set(old.instanceColor!.array);
+      this.mesh.count = slot;
+      this.parent.remove(old);
+      old.dispose();
+    }
+    this.owners[slot] = owner;
+    this.mesh.count = slot + 1;
+    this.mesh.setMatrixAt(slot, matrix);
+    this.mesh.setColorAt(slot, color);
+    this.touch();
+    return slot;
+  }
+  touch(): void {
+    this.mesh.instanceMatrix.needsUpdate = true;
+    this.mesh.instanceColor!.needsUpdate = true;
+    this.mesh.boundingSphere = null;
+  }
+  dispose(): void {
+    this.parent.remove(this.mesh);
+    this.mesh.dispose();
+    this.geometry.dispose();
+  }
+}
+
+interface Part { batch: Batch; slot: number; local: THREE.Matrix4 }
+interface Drawn { body: Body; parts: Part[]; position: THREE.Vector3; rotation: THREE.Quaternion; color: THREE.Color; asleep: boolean }
+
+export class Viewer {
+  readonly renderer: THREE.WebGLRenderer;
+  camera: THREE.PerspectiveCamera | THREE.OrthographicCamera = new THREE.PerspectiveCamera();
+  dimension: 2 | 3 = 3;
+  private scene = new THREE.Scene();
+  private root = new THREE.Group();
+  private controls: OrbitControls;
+  private sun = new THREE.DirectionalLight('#fff4e0', 2.4);
+  private sky = new THREE.HemisphereLight('#dfeaff', '#8a8072', 0.5);
+  private ground = new Ground();
+  private lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({vertexColors: true, transparent: true}));
+  private hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: '#ff2d55', depthTest: false}));
+  private material = new THREE.MeshStandardMaterial({vertexColors: true, roughness: 0.72, metalness: 0});
+  private material2 = new THREE.MeshBasicMaterial({vertexColors: true, side: THREE.DoubleSide});
+  private batches = new Map<string, Batch>();
+  private drawn = new Map<number, Drawn>();
+  private meshes = new Map<number, Mesh>();
+  private waiting: {id: number; shape: Shape}[] = [];
+  private origin = new THREE.Vector3();
+  private follow = -1;
+  private home: Camera = {position: [8, 6, 12], target: [0, 1, 0]};
+  private pixel = 0.02;
+
+  constructor(private canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 0.95;
+    const pmrem = new THREE.PMREMGenerator(this.renderer);
+    this.scene.environment = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.scene.environmentIntensity = 0.55;
+    pmrem.dispose();
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.bias = -0.0004;
+    this.sun.shadow.normalBias = 0.02;
+    this.sun.shadow.radius = 3;
+    this.hand.renderOrder = 10;
+    this.hand.visible = false;
+    this.lines.frustumCulled = this.hand.frustumCulled = false;
+    this.scene.add(this.root, this.sun, this.sun.target, this.sky, this.ground.group, this.lines, this.hand);
+    this.controls = new OrbitControls(this.camera, canvas);
+    const scheme = matchMedia('(prefers-color-scheme: dark)');
+    const theme = () => this.setTheme(scheme.matches);
+    scheme.addEventListener('change', theme);
+    theme();
+  }
+
+  private setTheme(dark: boolean): void {
+    this.scene.background = new THREE.Color(dark ? '#10161f' : '#dde6ee');
+    this.scene.fog = null;
+    this.ground.setTheme(dark);
+  }
+
+  /** A new demo: camera, dimension, nothing drawn yet. */
+  open(dimension: 2 | 3, camera: Camera): void {
+    this.clear();
+    this.meshes.clear();
+    this.dimension = dimension;
+    this.home = camera;
+    this.resetView();
+  }
+
+  resetView(): void {
+    const {position, target} = this.home;
+    const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
+    this.follow = this.home.follow ?? -1;
+    this.controls.dispose();
+    if (this.dimension === 2) {
+      const height = this.home.height ?? 20;
+      this.pixel = height / 600;
+      this.camera = new THREE.OrthographicCamera(-height * aspect / 2, height * aspect / 2, height / 2, -height / 2, 0.1, 100);
+      this.camera.position.set(target[0], target[1], 50);
+      this.controls = new OrbitControls(this.camera, this.canvas);
+      this.controls.enableRotate = false;
+      this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
+      this.controls.touches.ONE = THREE.TOUCH.PAN;
+      this.controls.target.set(target[0], target[1], 0);
+    } else {
+      const distance = new THREE.Vector3(...(position as [number, number, number])).distanceTo(new THREE.Vector3(...(target as [number, number, number])));
+      this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
+      this.camera.position.set(position[0], position[1], position[2]);
+      this.controls = new OrbitControls(this.camera, this.canvas);
+      this.controls.target.set(target[0], target[1], target[2]);
+      this.controls.maxPolarAngle = Math.PI * 0.95;
+      this.sunFor(distance);
+      this.ground.setScale(distance);
+    }
+    this.controls.enableDamping = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.controls.dampingFactor = 0.12;
+    this.controls.update();
+    this.resize();
+    if (this.dimension === 2) this.ground.showPlane(this.home.height ?? 20, aspect, target);
+  }
+
+  private sunFor(distance: number): void {
+    const reach = Math.max(6, 0.9 * distance);
+    const camera = this.sun.shadow.camera;
+    camera.left = camera.bottom = -reach;
+    camera.right = camera.top = reach;
+    camera.near = 0.1;
+    camera.far = 6 * reach;
+    camera.updateProjectionMatrix();
+    this.sun.userData.reach = reach;
+  }
+
+  setGround(level: number | undefined): void {
+    if (this.dimension === 3) this.ground.showGround(level);
+  }
+
+  enableOrbit(enabled: boolean): void { this.controls.enabled = enabled; }
+
+  private clear(): void {
+    for (const batch of this.batches.values()) batch.dispose();
+    this.batches.clear();
+    this.drawn.clear();
+    this.waiting = [];
+    this.setLines(new Float32Array(), new Uint32Array());
+    this.showHand();
+    this.origin.set(0, 0, 0);
+  }
+
+  setBodies(bodies: Body[]): void {
+    this.clear();
+    for (const body of bodies) this.addBody(body);
+  }
+
+  addBody(body: Body): void {
+    const [w, x, y, z] = body.rotation;
+    const drawn: Drawn = {
+      body, parts: [], asleep: false, color: new THREE.Color(body.color ?? this.colorOf(body)),
+      position: new THREE.Vector3(...(body.position as [number, number, number])).sub(this.origin), rotation: new THREE.Quaternion(x, y, z, w),
+    };
+    this.drawn.set(body.id, drawn);
+    for (const shape of body.shapes) this.addShape(drawn, shape);
+  }
+
+  private colorOf(body: Body): string {
+    if (body.type === 'fixed') return this.dimension === 2 ? '#7d8894' : '#b9b4a9';
+    if (body.type === 'kinematic') return '#7a8fa6';
+    return PALETTE[body.id % PALETTE.length];
+  }
+
+  private addShape(drawn: Drawn, shape: Shape): void {
+    const found: Drawable | undefined = this.dimension === 3 ? drawable3(shape, this.meshes) : drawable2(shape, this.pixel);
+    if (!found) {
+      if (shape.kind === 'mesh') this.waiting.push({id: drawn.body.id, shape});
+      return;
+    }
+    let batch = this.batches.get(found.key);
+    if (!batch) this.batches.set(found.key, batch = new Batch(found.build(), this.dimension === 3 ? this.material : this.material2, this.root));
+    const [px, py, pz, qw, qx, qy, qz] = shape.local;
+    const local = new THREE.Matrix4().compose(new THREE.Vector3(px, py, pz), new THREE.Quaternion(qx, qy, qz, qw), found.scale);
+    const pose = new THREE.Matrix4().compose(drawn.position, drawn.rotation, new THREE.Vector3(1, 1, 1));
+    drawn.parts.push({batch, local, slot: batch.add(drawn.body.id, pose.multiply(local), drawn.color)});
+  }
+
+  removeBodies(ids: number[]): void {
+    const gone = new Set(ids);
+    const left = [...this.drawn.values()].filter((d) => !gone.has(d.body.id));
+    const origin = this.origin.clone();
+    const kept = left.map((d) => ({...d.body, position: d.position.clone().add(origin).toArray() as number[],
+      rotation: [d.rotation.w, d.rotation.x, d.rotation.y, d.rotation.z]}));
+    this.setBodies(kept);
+  }
+
+  addMesh(mesh: Mesh): void {
+    this.meshes.set(mesh.id, mesh);
+    const ready = this.waiting.filter((w) => w.shape.mesh === mesh.id);
+    this.waiting = this.waiting.filter((w) => w.shape.mesh !== mesh.id);
+    for (const {id, shape} of ready) {
+      const drawn = this.drawn.get(id);
+      if (drawn) this.addShape(drawn, shape);
+    }
+  }
+
+  apply(frame: Frame): void {
+    this.origin.set(...frame.origin);
+    const pose = new THREE.Matrix4(), matrix = new THREE.Matrix4(), unit = new THREE.Vector3(1, 1, 1), tone = new THREE.Color();
+    const touched = new Set<Batch>();
+    const view = frame.bodies;
+    for (let i = 0; i < frame.count; ++i) {
+      const at = i * BODY_BYTES;
+      const word = view.getUint32(at, true);
+      const drawn = this.drawn.get(word & 0x7fffffff);
+      if (!drawn) continue;
+      drawn.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true));
+      drawn.rotation.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
+      pose.compose(drawn.position, drawn.rotation, unit);
+      const asleep = (word >>> 31) === 1;
+      for (const {batch, slot, local} of drawn.parts) {
+        batch.mesh.setMatrixAt(slot, matrix.multiplyMatrices(pose, local));
+        if (asleep !== drawn.asleep) batch.mesh.setColorAt(slot, asleep ? tone.copy(drawn.color).lerp(new THREE.Color('#8a8f98'), 0.55) : drawn.color);
+        touched.add(batch);
+      }
+      drawn.asleep = asleep;
+      if (drawn.body.id === this.follow) this.moveWith(drawn.position);
+    }
+    for (const batch of touched) batch.touch();
+    this.setLines(frame.lines, frame.lineColors);
+  }
+
+  private moveWith(position: THREE.Vector3): void {
+    const shift = position.clone().sub(this.controls.target);
+    if (this.dimension === 2) shift.z = 0;
+    this.camera.position.add(shift);
+    this.controls.target.add(shift);
+  }
+
+  private setLines(points: Float32Array, colors: Uint32Array): void {
+    const rgba = new Float32Array(8 * colors.length);
+    colors.forEach((c, i) => {
+      const rgb = new THREE.Color().setRGB((c >>> 24) / 255, (c >>> 16 & 255) / 255, (c >>> 8 & 255) / 255, THREE.SRGBColorSpace);
+      for (const k of [0, 4]) rgba.set([rgb.r, rgb.g, rgb.b, (c & 255) / 255], 8 * i + k);
+    });
+    this.lines.geometry.dispose();
+    this.lines.geometry = new THREE.BufferGeometry();
+    this.lines.geometry.setAttribute('position', new THREE.BufferAttribute(points, 3));
+    this.lines.geometry.setAttribute('color', new THREE.BufferAttribute(rgba, 4));
+    this.lines.visible = colors.length > 0;
+    this.lines.position.z = this.dimension === 2 ? 1 : 0;
+  }
+
+  /** The ray through a place of the canvas (CSS pixels), in world coordinates. */
+  ray(x: number, y: number): THREE.Ray {
+    const box = this.canvas.getBoundingClientRect();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
+    caster.ray.origin.add(this.origin);
+    return caster.ray;
+  }
+
+  /** Whether a body that moves lies under the pointer: then a drag pulls it, otherwise it turns the view. */
+  dynamicBodyAt(x: number, y: number): boolean {
+    const ray = this.ray(x, y);
+    ray.origin.sub(this.origin);
+    const caster = new THREE.Raycaster(ray.origin, ray.direction);
+    const hit = caster.intersectObjects([...this.batches.values()].map((b) => b.mesh), false)[0];
+    if (!hit || hit.instanceId === undefined) return false;
+    for (const batch of this.batches.values())
+      if (batch.mesh === hit.object) return this.drawn.get(batch.owners[hit.instanceId])?.body.type === 'dynamic';
+    return false;
+  }
+
+  get viewDirection(): THREE.Vector3 { return this.camera.getWorldDirection(new THREE.Vector3()); }
+
+  /** The spring between a grabbed point and the pointer; no arguments: hidden. World coordinates. */
+  showHand(from?: THREE.Vector3, to?: THREE.Vector3): void {
+    this.hand.visible = !!(from && to);
+    if (from && to) this.hand.geometry.setFromPoints([from.clone().sub(this.origin), to.clone().sub(this.origin)]);
+  }
+
+  resize(): void {
+    const width = this.canvas.clientWidth, height = Math.max(1, this.canvas.clientHeight);
+    this.renderer.setSize(width, height, false);
+    if (this.camera instanceof THREE.PerspectiveCamera) this.camera.aspect = width / height;
+    else {
+      const half = (this.camera.top - this.camera.bottom) / 2;
+      this.camera.left = -half * width / height;
+      this.camera.right = half * width / height;
+    }
+    this.camera.updateProjectionMatrix();
+  }
+
+  render(): void {
+    this.controls.update();
+    const reach = this.sun.userData.reach ?? 20;
+    const center = this.controls.target;
+    this.sun.target.position.copy(center);
+    this.sun.position.copy(center).add(new THREE.Vector3(0.45, 1, 0.35).normalize().multiplyScalar(3 * reach));
+    this.renderer.render(this.scene, this.camera);
+  }
+}
