@@ -1,0 +1,29 @@
+// Effectors by slot.
+#pragma once
+
+#include <vector>
+
+#include "carom/core/pool.h"
+#include "carom/rigid/detail/body_store.h"
+#include "carom/rigid/effector.h"
+
+namespace carom::rigid::detail {
+
+template <class D> struct EffectorData {
+  EffectorDef<D> definition{};
+  std::uint64_t birth = 0;
+  std::int32_t joint = none;  ///< slot of the internal joint of a spring–damper
+};
+
+template <class D> struct EffectorStore {
+  core::SlotPool<EffectorTag> slots;
+  std::vector<EffectorData<D>> data;   ///< by slot
+  std::vector<std::int32_t> in_order;  ///< slots by birth
+  std::uint64_t births = 0;
+
+  explicit EffectorStore(std::uint16_t world) : slots(world) {}
+  int count() const { return slots.size(); }
+  std::size_t bytes() const { return slots.bytes() + data.capacity() * sizeof(EffectorData<D>) + in_order.capacity() * 4; }
+};
+
+}  // namespace carom::rigid::detail

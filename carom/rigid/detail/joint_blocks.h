@@ -1,0 +1,338 @@
+// The blocks that joints are made of. Each holds what it needs through a step, and knows three things: how to give last
+// substep's impulse again (warm_start), how to remove the error of velocity and position (solve), and what it exerted.
+// Moments arms turn with the bodies in every pass: unlike contacts, joints see large rotations in a step.
+//
+//   PointBlock    the anchors coincide                     ball, hinge, weld, motor, mouse
+//   AngularBlock  the frames have the same attitude        weld, slider, motor, ball spring and friction
+//   HingeBlock    the z axes are parallel (3D)             hinge
+//   SlideBlock    B's anchor stays on A's x axis           slider
+//   LinearAxis    spring, motor and limits along an axis   distance, slider
+//   AngularAxis   the same about an axis                   hinge, twist and cone of a ball
+#pragma once
+
+#include "carom/rigid/detail/joint_angle.h"
+#include "carom/rigid/detail/joint_pair.h"
+#include "carom/rigid/detail/joint_response.h"
+
+namespace carom::rigid::detail {
+
+/// What all joints of a pass share.
+struct JointPass {
+  float h = 0;          ///< s, substep
+  float inverse_h = 0;
+  bool use_bias = true;  ///< false: the relaxing pass
+  Response rigid{};
+};
+
+struct BlockBodies {
+  std::int32_t body_a = -1, body_b = -1;  ///< of the solver; −1: the world
+};
+
+/// What a rigid row does in this pass, or the spring's own law. False: nothing to do.
+inline bool select_response(const Response& own, bool rigid, const JointPass& pass, Response& out) {
+  if (rigid) {
+    out = pass.use_bias ? pass.rigid : velocity_only;
+    return true;
+  }
+  out = own;
+  return pass.use_bias;
+}
+template <class V> V clamp_magnitude(V v, float limit) {
+  const float l = magnitude(v);
+  return l > limit ? v * (limit / l) : v;
+}
+inline Vec2f clamp_magnitude(Vec2f v, float limit) {
+  const float l = math::length(v);
+  return l > limit ? v * (limit / l) : v;
+}
+
+template <class D> struct PointBlock : BlockBodies {
+  using Vector = typename D::Vector;
+  Vector arm_a{}, arm_b{};  ///< from the centres of mass, world axes at the start of the step
+  Vector offset{};          ///< centre of B minus centre of A at the start of the step
+  Vector impulse{};
+  Response response{};
+  float max_impulse = 1e30f;
+  bool rigid = true;
+
+  void warm_start(BodyPair<D>& pair) const {
+    pair.apply(impulse, rotate(pair.turn_a, arm_a), rotate(pair.turn_b, arm_b));
+  }
+  void solve(BodyPair<D>& pair, const JointPass& pass) {
+    Response r;
+    if (!select_response(response, rigid, pass, r)) return;
+    const Vector a = rotate(pair.turn_a, arm_a), b = rotate(pair.turn_b, arm_b);
+    const Vector error = offset + pair.shift + (b - a);
+    const Vector v = pair.point_velocity(a, b);
+    const Vector wanted = solve_mobility(point_mobility(pair, a, b), r.velocity * v + r.position * error);
+    const Vector old = impulse;
+    impulse = old - wanted - r.memory * old;
+    if (max_impulse < 1e29f) impulse = clamp_magnitude(impulse, max_impulse);
+    pair.apply(impulse - old, a, b);
+  }
+};
+
+template <class D> struct AngularBlock : BlockBodies {
+  using Angular = typename D::Angular;
+  typename D::Rotation frame_a{}, frame_b{};  ///< joint frames in the world at the start of the step
+  Angular impulse{};
+  Response response{};
+  float max_impulse = 1e30f;
+  bool rigid = true;     ///< else a spring, or friction
+  bool friction = false;  ///< no wanted attitude
+
+  void warm_start(BodyPair<D>& pair) const { pair.apply_angular(impulse); }
+  void solve(BodyPair<D>& pair, const JointPass& pass) {
+    Response r;
+    if (friction) r = velocity_only;
+    else if (!select_response(response, rigid, pass, r)) return;
+    Angular error{};
+    if (r.position > 0) {
+      if constexpr (D::dimension == 2) {
+        error = twist_angle(conjugate(pair.turn_a * frame_a) * (pair.turn_b * frame_b));
+      } else {
+        error = rotation_vector_of((pair.turn_b * frame_b) * conjugate(pair.turn_a * frame_a));
+      }
+    }
+    const auto mobility = pair.inverse_inertia_a + pair.inverse_inertia_b;
+    const Angular wanted =
+        solve_mobility(mobility, r.velocity * (pair.spin_b - pair.spin_a) + r.position * error);
+    const Angular old = impulse;
+    impulse = old - wanted - r.memory * old;
+    if (max_impulse < 1e29f) impulse = clamp_magnitude(impulse, max_impulse);
+    pair.apply_angular(impulse - old);
+  }
+};
+
+/// Space only. With z of B against x and y of A: C₁ = x_a·z_b, Ċ₁ = (ω_b − ω_a)·(z_b × x_a); C₂ likewise with y_a.
+struct HingeBlock : BlockBodies {
+  Vec3f x_a{}, y_a{}, z_b{};
+  Vec2f impulse{};
+
+  void directions(const BodyPair<Dim3>& pair, Vec3f& u, Vec3f& v, Vec2f& error) const {
+    const Vec3f z = rotate(pair.turn_b, z_b), x = rotate(pair.turn_a, x_a), y = rotate(pair.turn_a, y_a);
+    u = cross(z, x);
+    v = cross(z, y);
+    error = {dot(z, x), dot(z, y)};
+  }
+  void warm_start(BodyPair<Dim3>& pair) const {
+    Vec3f u, v;
+    Vec2f error;
+    directions(pair, u, v, error);
+    pair.apply_angular(impulse.x * u + impulse.y * v);
+  }
+  void solve(BodyPair<Dim3>& pair, const JointPass& pass) {
+    const Response r = pass.use_bias ? pass.rigid : velocity_only;
+    Vec3f u, v;
+    Vec2f error;
+    directions(pair, u, v, error);
+    const Mat3f k = pair.inverse_inertia_a + pair.inverse_inertia_b;
+    const Vec3f ku = k * u, kv = k * v;
+    const float uv = dot(u, kv);
+    const Mat2f mobility{{dot(u, ku), uv}, {uv, dot(v, kv)}};
+    const Vec3f spin = pair.spin_b - pair.spin_a;
+    const Vec2f wanted =
+        solve_mobility(mobility, r.velocity * Vec2f{dot(u, spin), dot(v, spin)} + r.position * error);
+    const Vec2f old = impulse;
+    impulse = old - wanted - r.memory * old;
+    const Vec2f change = impulse - old;
+    pair.apply_angular(change.x * u + change.y * v);
+  }
+};
+
+/// The rows across A's x axis. Ċ = n·(v_b − v_a) + (arm_b × n)·ω_b − ((d + arm_a) × n)·ω_a, with d from anchor to anchor.
+template <class D> struct SlideBlock : BlockBodies {
+  using Vector = typename D::Vector;
+  static constexpr int rows = D::dimension - 1;
+  Vector arm_a{}, arm_b{}, offset{};
+  Vector normal[rows];  ///< world axes at the start of the step
+  float impulse[rows] = {};
+
+  struct Row {
+    Vector n{};
+    typename D::Angular lever_a{}, lever_b{};
+    float error = 0;
+  };
+  void directions(const BodyPair<D>& pair, Row (&row)[rows]) const {
+    const Vector b = rotate(pair.turn_b, arm_b);
+    const Vector reach = offset + pair.shift + b;  // from A's centre to B's anchor
+    const Vector d = reach - rotate(pair.turn_a, arm_a);
+    for (int i = 0; i < rows; ++i) {
+      row[i].n = rotate(pair.turn_a, normal[i]);
+      row[i].lever_a = cross(reach, row[i].n);
+      row[i].lever_b = cross(b, row[i].n);
+      row[i].error = dot(d, row[i].n);
+    }
+  }
+  void warm_start(BodyPair<D>& pair) const {
+    Row row[rows];
+    directions(pair, row);
+    for (int i = 0; i < rows; ++i) pair.apply_row(impulse[i], row[i].n, row[i].lever_a, row[i].lever_b);
+  }
+  void solve(BodyPair<D>& pair, const JointPass& pass) {
+    const Response r = pass.use_bias ? pass.rigid : velocity_only;
+    Row row[rows];
+    directions(pair, row);
+    float wanted[rows], residual[rows];
+    for (int i = 0; i < rows; ++i)
+      residual[i] = r.velocity * pair.row_velocity(row[i].n, row[i].lever_a, row[i].lever_b) + r.position * row[i].error;
+    const float k00 = pair.row_inverse_mass(row[0].lever_a, row[0].lever_b);
+    if constexpr (rows == 1) {
+      wanted[0] = solve_mobility(k00, residual[0]);
+    } else {
+      const float k11 = pair.row_inverse_mass(row[1].lever_a, row[1].lever_b);
+      const float k01 = inner(row[0].lever_a, pair.inverse_inertia_a * row[1].lever_a) +
+                        inner(row[0].lever_b, pair.inverse_inertia_b * row[1].lever_b);
+      const Vec2f x = solve_mobility(Mat2f{{k00, k01}, {k01, k11}}, Vec2f{residual[0], residual[1]});
+      wanted[0] = x.x;
+      wanted[1] = x.y;
+    }
+    for (int i = 0; i < rows; ++i) {
+      const float change = -wanted[i] - r.memory * impulse[i];
+      impulse[i] += change;
+      pair.apply_row(change, row[i].n, row[i].lever_a, row[i].lever_b);
+    }
+  }
+};
+
+/// Spring, motor and limits of one coordinate. Solved one after the other on the coordinate's own speed.
+struct AxisLaw {
+  enum Flag : std::uint8_t { spring = 1, motor = 2, lower = 4, upper = 8, rigid = 16, pull_only = 32, periodic = 64 };
+  std::uint8_t flags = 0;
+  Response response{};
+  float rest = 0, speed = 0, max_motor_impulse = 0, low = 0, high = 0;
+  float spring_impulse = 0, motor_impulse = 0, lower_impulse = 0, upper_impulse = 0;
+
+  bool has(Flag f) const { return (flags & f) != 0; }
+  bool needs_coordinate() const { return (flags & (spring | lower | upper)) != 0; }
+  float total() const { return spring_impulse + motor_impulse + lower_impulse - upper_impulse; }
+
+  /// Returns the impulse to add; `v` is the rate of `coordinate`.
+  float solve(float inverse_mass, float coordinate, float v, const JointPass& pass) {
+    if (!(inverse_mass > 0)) return 0;
+    const float mass = 1 / inverse_mass;
+    float sum = 0;
+    Response r;
+    if (has(spring) && select_response(response, has(rigid), pass, r)) {
+      const float error = has(periodic) ? wrap_angle(coordinate - rest) : coordinate - rest;
+      const float old = spring_impulse;
+      spring_impulse = old - mass * (r.velocity * v + r.position * error) - r.memory * old;
+      if (has(pull_only)) spring_impulse = min(spring_impulse, 0.0f);
+      add(spring_impulse - old, inverse_mass, v, sum);
+    }
+    if (has(motor)) {
+      const float old = motor_impulse;
+      motor_impulse = clamp(old - mass * (v - speed), -max_motor_impulse, max_motor_impulse);
+      add(motor_impulse - old, inverse_mass, v, sum);
+    }
+    float x = coordinate;
+    if (has(periodic) && (has(lower) || has(upper))) {
+      const float middle = 0.5f * (low + high);
+      x = middle + wrap_angle(coordinate - middle);  // the turn nearest to the permitted range
+    }
+    if (has(lower)) add(one_sided(lower_impulse, mass, x - low, v, pass), inverse_mass, v, sum);
+    if (has(upper)) add(-one_sided(upper_impulse, mass, high - x, -v, pass), inverse_mass, v, sum);
+    return sum;
+  }
+
+ private:
+  static void add(float change, float inverse_mass, float& v, float& sum) {
+    v += inverse_mass * change;
+    sum += change;
+  }
+  /// A stop: `gap` may close within the substep, but no further. Returns the change of its impulse.
+  static float one_sided(float& impulse, float mass, float gap, float v, const JointPass& pass) {
+    const float old = impulse;
+    float next;
+    if (gap > 0) {
+      next = old - mass * (v + gap * pass.inverse_h);
+    } else {
+      const Response r = pass.use_bias ? pass.rigid : velocity_only;
+      next = old - mass * (r.velocity * v + r.position * gap) - r.memory * old;
+    }
+    impulse = max(next, 0.0f);
+    return impulse - old;
+  }
+};
+
+template <class D> struct LinearAxis : BlockBodies {
+  using Vector = typename D::Vector;
+  bool between_anchors = true;  ///< the axis runs from anchor to anchor; else it is fixed in A
+  Vector arm_a{}, arm_b{}, offset{};
+  Vector axis{};  ///< A's axis in the world at the start of the step; between anchors: used where they coincide
+  AxisLaw law{};
+
+  struct Row {
+    Vector n{};
+    typename D::Angular lever_a{}, lever_b{};
+    float coordinate = 0;
+  };
+  Row row(const BodyPair<D>& pair) const {
+    const Vector a = rotate(pair.turn_a, arm_a), b = rotate(pair.turn_b, arm_b);
+    const Vector reach = offset + pair.shift + b, d = reach - a;
+    Row r;
+    if (between_anchors) {
+      r.coordinate = math::length(d);
+      r.n = r.coordinate > 1e-6f ? d * (1 / r.coordinate) : axis;
+      r.lever_a = cross(a, r.n);
+    } else {
+      r.n = rotate(pair.turn_a, axis);
+      r.coordinate = dot(d, r.n);
+      r.lever_a = cross(reach, r.n);
+    }
+    r.lever_b = cross(b, r.n);
+    return r;
+  }
+  void warm_start(BodyPair<D>& pair) const {
+    const Row r = row(pair);
+    pair.apply_row(law.total(), r.n, r.lever_a, r.lever_b);
+  }
+  void solve(BodyPair<D>& pair, const JointPass& pass) {
+    const Row r = row(pair);
+    const float change = law.solve(pair.row_inverse_mass(r.lever_a, r.lever_b), r.coordinate,
+                                   pair.row_velocity(r.n, r.lever_a, r.lever_b), pass);
+    pair.apply_row(change, r.n, r.lever_a, r.lever_b);
+  }
+};
+
+/// The coordinate is the turn of frame B in frame A about z, or the angle between the z axes (cone, 3D).
+template <class D> struct AngularAxis : BlockBodies {
+  using Angular = typename D::Angular;
+  typename D::Rotation frame_a{}, frame_b{};
+  bool cone = false;
+  AxisLaw law{};
+
+  /// For the twist φ of a swing–twist decomposition φ̇ = (ω_b − ω_a)·(z_a + z_b)/(1 + z_a·z_b).
+  Angular row(const BodyPair<D>& pair, bool with_coordinate, float& coordinate) const {
+    coordinate = 0;
+    if constexpr (D::dimension == 2) {
+      if (with_coordinate) coordinate = twist_angle(conjugate(pair.turn_a * frame_a) * (pair.turn_b * frame_b));
+      return 1;
+    } else {
+      const Quatf a = pair.turn_a * frame_a, b = pair.turn_b * frame_b;
+      const Vec3f z_a = rotate(a, Vec3f{0, 0, 1}), z_b = rotate(b, Vec3f{0, 0, 1});
+      const float cosine = dot(z_a, z_b);
+      if (cone) {
+        const Vec3f u = cross(z_a, z_b);
+        const float sine = math::length(u);
+        coordinate = math::atan2(sine, cosine);
+        return sine > 1e-6f ? u * (1 / sine) : rotate(a, Vec3f{1, 0, 0});
+      }
+      if (with_coordinate) coordinate = twist_angle(conjugate(a) * b);
+      return (z_a + z_b) * (1 / max(1 + cosine, 0.02f));
+    }
+  }
+  void warm_start(BodyPair<D>& pair) const {
+    float unused;
+    pair.apply_angular(law.total() * row(pair, false, unused));
+  }
+  void solve(BodyPair<D>& pair, const JointPass& pass) {
+    float coordinate;
+    const Angular n = row(pair, law.needs_coordinate(), coordinate);
+    const float inverse_mass = inner(n, pair.inverse_inertia_a * n) + inner(n, pair.inverse_inertia_b * n);
+    const float change = law.solve(inverse_mass, coordinate, inner(n, pair.spin_b - pair.spin_a), pass);
+    pair.apply_angular(change * n);
+  }
+};
+
+}  // namespace carom::rigid::detail

@@ -1,0 +1,59 @@
+// Joints by slot: what the user asked for, what they exerted last (to start from in the next step), and the records
+// that the solver streams through.
+#pragma once
+
+#include <vector>
+
+#include "carom/core/pool.h"
+#include "carom/rigid/detail/joint_header.h"
+#include "carom/rigid/state.h"
+
+namespace carom::rigid::detail {
+
+/// Impulses of the last substep, N·s and N·m·s: where the next one starts.
+template <class D> struct JointMemory {
+  struct Axis {
+    float spring = 0, motor = 0, lower = 0, upper = 0;
+  };
+  typename D::Vector point{};
+  typename D::Angular angular{}, friction{};
+  Vec2f hinge{}, slide{};
+  Axis linear{}, twist{}, cone{};
+};
+
+template <class D> struct JointData {
+  AnyJointDef<D> definition{};  ///< body_a and body_b as the user gave them
+  JointMemory<D> memory{};
+  typename D::Vector force{};    ///< N, on B, in the last substep
+  typename D::Angular torque{};  ///< N·m, on B
+  std::uint64_t birth = 0;
+  /// A spring–damper effector lives as a distance joint with these instead of a frequency; users do not see it.
+  bool internal = false;
+  double stiffness = 0, damping = 0;  ///< N/m, N·s/m
+};
+
+template <class D> struct JointStore {
+  core::SlotPool<JointTag> slots;
+  std::vector<JointHeader> headers;  ///< by slot
+  std::vector<JointData<D>> data;    ///< by slot
+  std::uint64_t births = 0;
+  int internal_count = 0;            ///< joints in `slots` that belong to effectors
+
+  // Of the step, in the order of the graph: records of joint_record.h, one after another.
+  std::vector<std::int32_t> order;        ///< slots
+  std::vector<std::uint32_t> offset;      ///< of each record in `records`, in units of 16 bytes, one more at the end
+  std::vector<std::int32_t> color_begin;  ///< place in `order` at which each colour begins, one more at the end
+  struct alignas(16) Unit {
+    unsigned char bytes[16];
+  };
+  std::vector<Unit> records;
+
+  explicit JointStore(std::uint16_t world) : slots(world) {}
+  int count() const { return slots.size() - internal_count; }
+  std::size_t bytes() const {
+    return slots.bytes() + headers.capacity() * sizeof(JointHeader) + data.capacity() * sizeof(JointData<D>) +
+           order.capacity() * 4 + offset.capacity() * 4 + records.capacity() * sizeof(Unit);
+  }
+};
+
+}  // namespace carom::rigid::detail
