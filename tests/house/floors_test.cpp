@@ -14,9 +14,9 @@ namespace {
 
 const std::map<std::string, int>& floors() {
   static const std::map<std::string, int> table = {
-      {"math", 0},      {"core", 1},   {"ode", 1},   {"geometry", 2}, {"environment", 3}, {"forces", 3},
-      {"rigid", 4},     {"particles", 5}, {"vehicles", 6}, {"sports", 6}, {"ballistics", 6}, {"blast", 6},
-      {"sound", 6},     {"devices", 6}, {"display", 6}, {"scene", 7}};
+      {"math", 0},  {"core", 1},      {"ode", 1},      {"geometry", 2}, {"environment", 3}, {"forces", 3},
+      {"rigid", 4}, {"particles", 5}, {"vehicles", 6}, {"sports", 6},   {"ballistics", 6},  {"blast", 6},
+      {"sound", 6}, {"devices", 6},   {"display", 6},  {"scene", 7}};
   return table;
 }
 

@@ -1,0 +1,141 @@
+#include "benchmarks/recipe.h"
+
+#include <cmath>
+
+namespace carom::bench {
+namespace {
+
+BodyRecipe box(double x, double y, double z, float hx, float hy, float hz, bool fixed = false) {
+  BodyRecipe b;
+  b.fixed = fixed;
+  b.size[0] = hx, b.size[1] = hy, b.size[2] = hz;
+  b.position[0] = x, b.position[1] = y, b.position[2] = z;
+  return b;
+}
+
+// 5 050 unit cubes in one planar pyramid of 100 rows.
+Recipe large_pyramid(int dimension) {
+  Recipe r;
+  r.name = dimension == 2 ? "large_pyramid_2d" : "large_pyramid";
+  r.dimension = dimension;
+  r.steps = dimension == 2 ? 500 : 200;
+  r.density = dimension == 2 ? 1.0f : 100.0f;
+  r.bodies.push_back(dimension == 2 ? box(0, -1, 0, 100, 1, 1, true) : box(0, -1, 0, 400, 1, 400, true));
+  for (int i = 0; i < 100; ++i)
+    for (int j = i; j < 100; ++j) r.bodies.push_back(box(0.5 * (i + 1) + (j - i) - 50, i + 0.5, 0, 0.5f, 0.5f, 0.5f));
+  return r;
+}
+
+// 14 × 14 pyramids of 55 unit cubes.
+Recipe many_pyramids() {
+  Recipe r;
+  r.name = "many_pyramids";
+  r.density = 100;
+  r.bodies.push_back(box(0, -1, 0, 77, 1, 77, true));
+  for (int i = 0; i < 14; ++i)
+    for (int j = 0; j < 14; ++j)
+      for (int row = 0; row < 10; ++row)
+        for (int column = row; column < 10; ++column)
+          r.bodies.push_back(box(0.5 * (row + 1) + (column - row) - 0.5 - 76 + 11 * j, row + 0.5, -76 + i * 152.0 / 13,
+                                 0.5f, 0.5f, 0.5f));
+  return r;
+}
+
+// 20 pyramids of 55 unit cubes, 3 m apart.
+Recipe twenty_pyramids() {
+  Recipe r;
+  r.name = "twenty_pyramids";
+  r.steps = 300;
+  r.gravity = 9.81f;
+  r.density = 1;
+  r.bodies.push_back(box(0, -1, 0, 200, 1, 200, true));
+  for (int k = 0; k < 20; ++k)
+    for (int i = 0; i < 10; ++i)
+      for (int j = 0; j < 10 - i; ++j)
+        r.bodies.push_back(box(-4.5 + 0.5 * i + j, 0.5 + i, 3.0 * (k - 10), 0.5f, 0.5f, 0.5f));
+  return r;
+}
+
+// 2 000 cubes, spheres and capsules fall into a walled pit.
+Recipe heap() {
+  Recipe r;
+  r.name = "heap";
+  r.steps = 300;
+  r.gravity = 9.81f;
+  r.density = 1;
+  r.friction = r.ground_friction = 0.5f;
+  r.bodies.push_back(box(0, -1, 0, 200, 1, 200, true));
+  for (int side : {-1, 1}) {
+    r.bodies.push_back(box(7.5 * side, 10, 0, 1, 12, 8.5f, true));
+    r.bodies.push_back(box(0, 10, 7.5 * side, 6.5f, 12, 1, true));
+  }
+  std::uint32_t state = 12345;
+  const auto draw = [&state] {
+    state = 1664525u * state + 1013904223u;
+    return double(state >> 8) / 16777216.0;
+  };
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 10; ++x)
+      for (int z = 0; z < 10; ++z) {
+        BodyRecipe b;
+        b.position[0] = 1.25 * (x - 4.5) + 0.1 * (draw() - 0.5);
+        b.position[1] = 1 + 1.25 * y;
+        b.position[2] = 1.25 * (z - 4.5) + 0.1 * (draw() - 0.5);
+        double axis[3] = {0, 0, 0}, length = 0;
+        for (double& a : axis) a = draw() - 0.5, length += a * a;
+        const double angle = 3 * draw(), s = std::sin(angle / 2) / std::sqrt(length);
+        b.rotation[0] = float(std::cos(angle / 2));
+        for (int k = 0; k < 3; ++k) b.rotation[k + 1] = float(s * axis[k]);
+        switch ((x + y + z) % 3) {
+          case 0:
+            b.kind = Kind::box, b.size[0] = b.size[1] = b.size[2] = 0.4f;
+            break;
+          case 1:
+            b.kind = Kind::sphere, b.size[0] = 0.45f;
+            break;
+          default:
+            b.kind = Kind::capsule, b.size[0] = 0.3f, b.size[1] = 0.3f;
+        }
+        r.bodies.push_back(b);
+      }
+  return r;
+}
+
+// 100 × 100 spheres in a net of 19 800 ball joints that hangs from its upper edge; nothing collides.
+Recipe joint_grid() {
+  Recipe r;
+  r.name = "joint_grid";
+  constexpr int n = 100;
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i) {
+      BodyRecipe b;
+      b.kind = Kind::sphere;
+      b.fixed = i == 0;
+      b.size[0] = 0.4f;
+      b.position[0] = k, b.position[1] = -i;
+      b.collides = false;
+      const int index = int(r.bodies.size());
+      r.bodies.push_back(b);
+      if (i > 0) r.joints.push_back({index - 1, index, {0, -0.5f, 0}, {0, 0.5f, 0}});
+      if (k > 0) r.joints.push_back({index - n, index, {0.5f, 0, 0}, {-0.5f, 0, 0}});
+    }
+  return r;
+}
+
+}  // namespace
+
+std::vector<std::string> recipe_names() {
+  return {"large_pyramid", "many_pyramids", "twenty_pyramids", "heap", "joint_grid", "large_pyramid_2d"};
+}
+
+Recipe make_recipe(const std::string& name) {
+  if (name == "large_pyramid") return large_pyramid(3);
+  if (name == "large_pyramid_2d") return large_pyramid(2);
+  if (name == "many_pyramids") return many_pyramids();
+  if (name == "twenty_pyramids") return twenty_pyramids();
+  if (name == "heap") return heap();
+  if (name == "joint_grid") return joint_grid();
+  return {};
+}
+
+}  // namespace carom::bench
