@@ -90,6 +90,7 @@ Outcome run(const Recipe& recipe, const Settings& settings) {
   outcome.worst_penetration = world.worst_penetration();
   outcome.worst_joint_gap = world.worst_joint_error();
   outcome.bytes = world.counters().bytes;
+  outcome.hash = world.state_hash();
   return outcome;
 }
 

@@ -1,6 +1,6 @@
 #include "benchmarks/recipe.h"
 
-#include <cmath>
+#include "carom/math/elementary.h"
 
 namespace carom::bench {
 namespace {
@@ -83,8 +83,8 @@ Recipe heap() {
         b.position[2] = 1.25 * (z - 4.5) + 0.1 * (draw() - 0.5);
         double axis[3] = {0, 0, 0}, length = 0;
         for (double& a : axis) a = draw() - 0.5, length += a * a;
-        const double angle = 3 * draw(), s = std::sin(angle / 2) / std::sqrt(length);
-        b.rotation[0] = float(std::cos(angle / 2));
+        const double angle = 3 * draw(), s = math::sin(angle / 2) / math::sqrt(length);
+        b.rotation[0] = float(math::cos(angle / 2));
         for (int k = 0; k < 3; ++k) b.rotation[k + 1] = float(s * axis[k]);
         switch ((x + y + z) % 3) {
           case 0:

@@ -2,6 +2,7 @@
 // order. The recipes are those of shared scenes that the engines' authors publish; see docs/benchmarks.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -50,6 +51,7 @@ struct Outcome {
   double worst_joint_gap = 0;    ///< m at the end
   int escaped = 0;               ///< bodies outside 200 m (heap: outside its walls)
   std::size_t bytes = 0;         ///< where the engine tells
+  std::uint64_t hash = 0;        ///< of the final state, Carom only
 };
 
 struct Settings {

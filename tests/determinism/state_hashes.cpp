@@ -1,0 +1,66 @@
+// Prints the state hashes of scenes that every build of Carom must agree on: compilers, SIMD widths, thread counts and
+// WebAssembly (tools/check_determinism.sh compares the printed lines).
+//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--recipes]
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "apps/host/registry.h"
+#include "apps/host/simulation.h"
+#include "benchmarks/recipe.h"
+
+namespace {
+
+bool print_demos(int threads) {
+  carom::host::SimulationOptions options;
+  options.threads = threads;
+  for (const carom::host::DemoFactory make : carom::host::demos()) {
+    auto demo = make();
+    carom::host::Demo& opener = *demo;
+    auto opened = opener.open(std::move(demo), {}, options);
+    if (!opened) {
+      std::fprintf(stderr, "state_hashes: %s\n", opened.error().message.c_str());
+      return false;
+    }
+    carom::host::Simulation& simulation = **opened;
+    for (int step = 0; step < 600; ++step)
+      if (const auto status = simulation.step(); !status) {
+        std::fprintf(stderr, "state_hashes: %s\n", status.error().message.c_str());
+        return false;
+      }
+    std::printf("demo %s 600 %016llx\n", simulation.declaration().id.c_str(),
+                static_cast<unsigned long long>(simulation.state_hash()));
+  }
+  return true;
+}
+
+void print_recipes(int threads, int width) {
+  for (const std::string& name : carom::bench::recipe_names()) {
+    carom::bench::Settings settings;
+    settings.threads = threads;
+    settings.simd_width = width;
+    settings.steps = 60;
+    const carom::bench::Outcome outcome = carom::bench::run_carom(carom::bench::make_recipe(name), settings);
+    std::printf("recipe %s 60 %016llx\n", name.c_str(), static_cast<unsigned long long>(outcome.hash));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int threads = 1, width = 0;
+  bool demos = false, recipes = false;
+  for (int i = 1; i < argc; ++i) {
+    if (!std::strcmp(argv[i], "--threads") && i + 1 < argc) threads = std::atoi(argv[++i]);
+    else if (!std::strcmp(argv[i], "--width") && i + 1 < argc) width = std::atoi(argv[++i]);
+    else if (!std::strcmp(argv[i], "--demos")) demos = true;
+    else if (!std::strcmp(argv[i], "--recipes")) recipes = true;
+    else {
+      std::fprintf(stderr, "state_hashes: unknown option %s\n", argv[i]);
+      return 2;
+    }
+  }
+  const bool all = !demos && !recipes;
+  if ((all || demos) && !print_demos(threads)) return 1;
+  if (all || recipes) print_recipes(threads, width);
+}
