@@ -40,9 +40,12 @@ install_packages() {
 
 # The newest clang whose WebAssembly C++ library this distribution carries.
 newest_clang() {
-  local version
-  for version in 20 19 18 17 16; do
-    if is_known "libc++-$version-dev-wasm32"; then echo $version; return; fi
+  local version attempt
+  for attempt in lists-as-they-are lists-updated; do
+    for version in 20 19 18 17 16; do
+      if is_known "libc++-$version-dev-wasm32"; then echo $version; return; fi
+    done
+    [ $attempt = lists-as-they-are ] && quietly apt-update as_root apt-get update >&2
   done
   fail "no clang with a WebAssembly C++ library (libc++-NN-dev-wasm32) in this distribution"
 }
