@@ -305,6 +305,17 @@ export class Viewer {
     return false;
   }
 
+  /** Where a body's origin appears on the page (CSS pixels), for tests and labels. */
+  screenOf(id: number): {x: number; y: number} | undefined {
+    const drawn = this.drawn.get(id);
+    if (!drawn) return undefined;
+    const box = this.canvas.getBoundingClientRect();
+    const p = drawn.position.clone().project(this.camera);
+    return {x: box.left + (p.x + 1) / 2 * box.width, y: box.top + (1 - p.y) / 2 * box.height};
+  }
+  bodyPosition(id: number): number[] | undefined { return this.drawn.get(id)?.position.toArray(); }
+  bodyIds(type: Body['type']): number[] { return [...this.drawn.values()].filter((d) => d.body.type === type).map((d) => d.body.id); }
+
   get viewDirection(): THREE.Vector3 { return this.camera.getWorldDirection(new THREE.Vector3()); }
 
   /** The spring between a grabbed point and the pointer; no arguments: hidden. World coordinates. */

@@ -1,0 +1,193 @@
+// The page against the real engine: `carom serve` and headless Chromium. CAROM names the program, CHROMIUM the browser.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {existsSync, mkdirSync, readFileSync} from 'node:fs';
+import {dirname, join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {createRequire} from 'node:module';
+import {chromium} from 'playwright-core';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const carom = process.env.CAROM ?? join(here, '../../../build/release/apps/command/carom');
+const browserPath = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/google-chrome', '/usr/bin/chromium-browser'].find(existsSync);
+const pictures = process.env.PICTURES ?? join(here, '../../../out/page');
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+let server, browser, url;
+
+async function serve(port = 0) {
+  const child = spawn(carom, ['serve', '--port', String(port)], {stdio: ['ignore', 'pipe', 'inherit']});
+  const found = await new Promise((resolve, reject) => {
+    let text = '';
+    child.stdout.on('data', (bytes) => {
+      text += bytes;
+      const match = text.match(/http:\/\/[\w.:[\]]+\//);
+      if (match) resolve(match[0]);
+    });
+    child.on('exit', (code) => reject(new Error(`carom serve ended with ${code}: ${text}`)));
+    setTimeout(() => reject(new Error(`carom serve printed no address: ${text}`)), 20000).unref();
+  });
+  return {child, url: found};
+}
+
+before(async () => {
+  mkdirSync(pictures, {recursive: true});
+  ({child: server, url} = await serve());
+  browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
+});
+after(async () => {
+  await browser?.close();
+  server?.kill('SIGINT');
+});
+
+/** A page with a demo open; fails the test on any error of the page. */
+async function open(demo, {viewport = {width: 1280, height: 800}, ...options} = {}) {
+  const context = await browser.newContext({viewport, ...options});
+  const page = await context.newPage();
+  page.problems = [];
+  page.on('pageerror', (error) => page.problems.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
+  await page.goto(`${url}${demo ? `#${demo}` : ''}`);
+  await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 15000});
+  page.done = async () => {
+    assert.deepEqual(page.problems, []);
+    await context.close();
+  };
+  return page;
+}
+const stepOf = (page) => page.$eval('#clock', (e) => Number(e.textContent.match(/step (\d+)/)[1]));
+const until = (page, text) => page.waitForFunction((t) => document.querySelector('#run').textContent === t, text);
+const bodies = (page, type) => page.evaluate((t) => window.caromPage.viewer.bodyIds(t), type);
+const place = (page, id) => page.evaluate((i) => window.caromPage.viewer.bodyPosition(i), id);
+const screen = (page, id) => page.evaluate((i) => window.caromPage.viewer.screenOf(i), id);
+async function demosOf(page) { return page.$$eval('#demos a', (links) => links.map((a) => a.dataset.demo)); }
+
+test('the first picture stands within two seconds of the load', async () => {
+  const start = Date.now();
+  const page = await open('');
+  assert.ok(Date.now() - start < 2000 + 3000, `${Date.now() - start} ms under software rendering`);
+  assert.ok((await demosOf(page)).length >= 8);
+  await page.done();
+});
+
+test('every demo opens, moves or stands, shows its numbers, and is accessible', async () => {
+  const page = await open('');
+  const demos = await demosOf(page);
+  for (const demo of demos) {
+    await page.evaluate((d) => { location.hash = d; }, demo);
+    await page.waitForFunction((d) => document.querySelector(`#demos a[aria-current]`)?.dataset.demo === d, demo);
+    await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 5, null, {timeout: 20000});
+    await page.waitForTimeout(700);
+    await page.screenshot({path: join(pictures, `${demo.replace(/\W/g, '_')}.png`)});
+    assert.notEqual(await page.textContent('#numbers'), '', demo);
+    assert.ok((await page.textContent('#about')).length > 20, `${demo} says what it shows`);
+    await page.evaluate(axe);
+    const serious = await page.evaluate(async () => (await window.axe.run()).violations.filter((v) => ['serious', 'critical'].includes(v.impact))
+      .map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`));
+    assert.deepEqual(serious, [], demo);
+  }
+  await page.done();
+});
+
+test('pause holds, step advances by one, restart begins anew, run goes on', async () => {
+  const page = await open('wall_and_wrecking_ball');
+  await page.click('#run');
+  await until(page, 'Run');
+  await page.waitForTimeout(200);
+  const held = await stepOf(page);
+  await page.waitForTimeout(300);
+  assert.equal(await stepOf(page), held);
+  await page.click('#step');
+  await page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) === n, held + 1);
+  await page.click('#restart');
+  await page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) < n, held);
+  await page.done();
+});
+
+test('a body is grabbed with the mouse, follows it, and falls when let go', async () => {
+  const page = await open('twenty_pyramids');
+  await page.waitForTimeout(400);
+  const ids = await bodies(page, 'dynamic');
+  // The nearest body whose middle lies under its own pixel: the pyramids' tops are free.
+  const top = await page.evaluate((all) => all.map((i) => [i, window.caromPage.viewer.bodyPosition(i)]).filter(([, p]) => p[1] > 9)
+    .sort((a, b) => b[1][2] - a[1][2])[0][0], ids);
+  const at = await screen(page, top), before = await place(page, top);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.waitForTimeout(150);
+  await page.mouse.move(at.x, at.y - 90, {steps: 12});
+  await page.waitForTimeout(1200);
+  const lifted = await place(page, top);
+  assert.ok(lifted[1] > before[1] + 0.5, `lifted from ${before[1]} to ${lifted[1]}`);
+  await page.screenshot({path: join(pictures, 'grabbed.png')});
+  await page.mouse.up();
+  await page.waitForTimeout(2500);
+  assert.ok((await place(page, top))[1] < lifted[1] - 0.5);
+  await page.done();
+});
+
+test('a slider changes its parameter and the plot fills', async () => {
+  const page = await open('collision_lab_2d');
+  const slider = page.locator('#parameters input[type=range]').first();
+  const number = page.locator('#parameters input[type=number]').first();
+  const before = await number.inputValue();
+  await slider.focus();
+  for (let i = 0; i < 5; ++i) await page.keyboard.press('ArrowLeft');
+  await page.waitForTimeout(300);
+  assert.notEqual(await number.inputValue(), before);
+  await page.waitForSelector('#plot canvas');
+  await page.done();
+});
+
+test('the hovercraft is driven by keys', async () => {
+  const page = await open('hovercraft');
+  await page.focus('#view');
+  const craft = (await bodies(page, 'dynamic'))[0], before = await place(page, craft);
+  await page.keyboard.down('ArrowUp');
+  await page.waitForTimeout(1200);
+  await page.keyboard.up('ArrowUp');
+  const after = await place(page, craft);
+  assert.ok(Math.hypot(after[0] - before[0], after[1] - before[1]) > 0.3, `${before} → ${after}`);
+  await page.done();
+});
+
+test('a phone of 360 pixels shows the view, opens the menu and the panel', async () => {
+  const page = await open('wall_and_wrecking_ball', {viewport: {width: 360, height: 740}, hasTouch: true, isMobile: true});
+  const box = await page.locator('#view').boundingBox();
+  assert.ok(box.width > 350 && box.height > 400);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing sticks out');
+  await page.tap('#menu');
+  await page.waitForTimeout(200);
+  await page.screenshot({path: join(pictures, 'phone_menu.png')});
+  await page.tap('#demos a >> nth=1');
+  await page.tap('#panel-toggle');
+  await page.waitForTimeout(800);
+  await page.screenshot({path: join(pictures, 'phone_panel.png')});
+  await page.done();
+});
+
+test('dark theme', async () => {
+  const page = await open('wall_and_wrecking_ball', {colorScheme: 'dark'});
+  await page.waitForTimeout(1500);
+  await page.screenshot({path: join(pictures, 'dark.png')});
+  await page.done();
+});
+
+test('a lost connection is said, and mended when the server is back', async () => {
+  const own = await serve();
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  await page.goto(own.url);
+  await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 15000});
+  own.child.kill('SIGINT');
+  await page.waitForSelector('#notice:not([hidden])');
+  assert.match(await page.textContent('#notice'), /connection/);
+  const again = await serve(new URL(own.url).port);
+  await page.waitForSelector('#notice', {state: 'hidden', timeout: 15000});
+  const step = await stepOf(page);
+  await page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) !== n, step);
+  again.child.kill('SIGINT');
+  await context.close();
+});
