@@ -9,13 +9,15 @@
 
 namespace carom::rigid::detail {
 
-template <class D> struct EffectorData {
+template <class D>
+struct EffectorData {
   EffectorDef<D> definition{};
   std::uint64_t birth = 0;
   std::int32_t joint = none;  ///< slot of the internal joint of a spring–damper
 };
 
-template <class D> struct EffectorStore {
+template <class D>
+struct EffectorStore {
   core::SlotPool<EffectorTag> slots;
   std::vector<EffectorData<D>> data;   ///< by slot
   std::vector<std::int32_t> in_order;  ///< slots by birth
@@ -23,7 +25,9 @@ template <class D> struct EffectorStore {
 
   explicit EffectorStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size(); }
-  std::size_t bytes() const { return slots.bytes() + data.capacity() * sizeof(EffectorData<D>) + in_order.capacity() * 4; }
+  std::size_t bytes() const {
+    return slots.bytes() + data.capacity() * sizeof(EffectorData<D>) + in_order.capacity() * 4;
+  }
 };
 
 }  // namespace carom::rigid::detail

@@ -14,9 +14,7 @@ inline float wrap_angle(float x) {
 
 /// The turn about z (3D: the twist of the swing–twist decomposition), rad in [−π, π].
 inline float twist_angle(Rot2f q) { return math::atan2(q.s, q.c); }
-inline float twist_angle(const Quatf& q) {
-  return q.w < 0 ? 2 * math::atan2(-q.z, -q.w) : 2 * math::atan2(q.z, q.w);
-}
+inline float twist_angle(const Quatf& q) { return q.w < 0 ? 2 * math::atan2(-q.z, -q.w) : 2 * math::atan2(q.z, q.w); }
 
 /// The rotation vector of a unit quaternion, |angle| ≤ π.
 inline Vec3f rotation_vector_of(Quatf q) {

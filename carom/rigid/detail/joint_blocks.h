@@ -18,14 +18,10 @@ namespace carom::rigid::detail {
 
 /// What all joints of a pass share.
 struct JointPass {
-  float h = 0;          ///< s, substep
+  float h = 0;  ///< s, substep
   float inverse_h = 0;
   bool use_bias = true;  ///< false: the relaxing pass
   Response rigid{};
-};
-
-struct BlockBodies {
-  std::int32_t body_a = -1, body_b = -1;  ///< of the solver; −1: the world
 };
 
 /// What a rigid row does in this pass, or the spring's own law. False: nothing to do.
@@ -37,7 +33,8 @@ inline bool select_response(const Response& own, bool rigid, const JointPass& pa
   out = own;
   return pass.use_bias;
 }
-template <class V> V clamp_magnitude(V v, float limit) {
+template <class V>
+V clamp_magnitude(V v, float limit) {
   const float l = magnitude(v);
   return l > limit ? v * (limit / l) : v;
 }
@@ -46,7 +43,8 @@ inline Vec2f clamp_magnitude(Vec2f v, float limit) {
   return l > limit ? v * (limit / l) : v;
 }
 
-template <class D> struct PointBlock : BlockBodies {
+template <class D>
+struct PointBlock {
   using Vector = typename D::Vector;
   Vector arm_a{}, arm_b{};  ///< from the centres of mass, world axes at the start of the step
   Vector offset{};          ///< centre of B minus centre of A at the start of the step
@@ -72,20 +70,23 @@ template <class D> struct PointBlock : BlockBodies {
   }
 };
 
-template <class D> struct AngularBlock : BlockBodies {
+template <class D>
+struct AngularBlock {
   using Angular = typename D::Angular;
   typename D::Rotation frame_a{}, frame_b{};  ///< joint frames in the world at the start of the step
   Angular impulse{};
   Response response{};
   float max_impulse = 1e30f;
-  bool rigid = true;     ///< else a spring, or friction
+  bool rigid = true;      ///< else a spring, or friction
   bool friction = false;  ///< no wanted attitude
 
   void warm_start(BodyPair<D>& pair) const { pair.apply_angular(impulse); }
   void solve(BodyPair<D>& pair, const JointPass& pass) {
     Response r;
-    if (friction) r = velocity_only;
-    else if (!select_response(response, rigid, pass, r)) return;
+    if (friction)
+      r = velocity_only;
+    else if (!select_response(response, rigid, pass, r))
+      return;
     Angular error{};
     if (r.position > 0) {
       if constexpr (D::dimension == 2) {
@@ -95,8 +96,7 @@ template <class D> struct AngularBlock : BlockBodies {
       }
     }
     const auto mobility = pair.inverse_inertia_a + pair.inverse_inertia_b;
-    const Angular wanted =
-        solve_mobility(mobility, r.velocity * (pair.spin_b - pair.spin_a) + r.position * error);
+    const Angular wanted = solve_mobility(mobility, r.velocity * (pair.spin_b - pair.spin_a) + r.position * error);
     const Angular old = impulse;
     impulse = old - wanted - r.memory * old;
     if (max_impulse < 1e29f) impulse = clamp_magnitude(impulse, max_impulse);
@@ -105,7 +105,7 @@ template <class D> struct AngularBlock : BlockBodies {
 };
 
 /// Space only. With z of B against x and y of A: C₁ = x_a·z_b, Ċ₁ = (ω_b − ω_a)·(z_b × x_a); C₂ likewise with y_a.
-struct HingeBlock : BlockBodies {
+struct HingeBlock {
   Vec3f x_a{}, y_a{}, z_b{};
   Vec2f impulse{};
 
@@ -131,8 +131,7 @@ struct HingeBlock : BlockBodies {
     const float uv = dot(u, kv);
     const Mat2f mobility{{dot(u, ku), uv}, {uv, dot(v, kv)}};
     const Vec3f spin = pair.spin_b - pair.spin_a;
-    const Vec2f wanted =
-        solve_mobility(mobility, r.velocity * Vec2f{dot(u, spin), dot(v, spin)} + r.position * error);
+    const Vec2f wanted = solve_mobility(mobility, r.velocity * Vec2f{dot(u, spin), dot(v, spin)} + r.position * error);
     const Vec2f old = impulse;
     impulse = old - wanted - r.memory * old;
     const Vec2f change = impulse - old;
@@ -140,8 +139,10 @@ struct HingeBlock : BlockBodies {
   }
 };
 
-/// The rows across A's x axis. Ċ = n·(v_b − v_a) + (arm_b × n)·ω_b − ((d + arm_a) × n)·ω_a, with d from anchor to anchor.
-template <class D> struct SlideBlock : BlockBodies {
+/// The rows across A's x axis. Ċ = n·(v_b − v_a) + (arm_b × n)·ω_b − ((d + arm_a) × n)·ω_a, with d from anchor to
+/// anchor.
+template <class D>
+struct SlideBlock {
   using Vector = typename D::Vector;
   static constexpr int rows = D::dimension - 1;
   Vector arm_a{}, arm_b{}, offset{};
@@ -175,7 +176,8 @@ template <class D> struct SlideBlock : BlockBodies {
     directions(pair, row);
     float wanted[rows], residual[rows];
     for (int i = 0; i < rows; ++i)
-      residual[i] = r.velocity * pair.row_velocity(row[i].n, row[i].lever_a, row[i].lever_b) + r.position * row[i].error;
+      residual[i] =
+          r.velocity * pair.row_velocity(row[i].n, row[i].lever_a, row[i].lever_b) + r.position * row[i].error;
     const float k00 = pair.row_inverse_mass(row[0].lever_a, row[0].lever_b);
     if constexpr (rows == 1) {
       wanted[0] = solve_mobility(k00, residual[0]);
@@ -255,7 +257,8 @@ struct AxisLaw {
   }
 };
 
-template <class D> struct LinearAxis : BlockBodies {
+template <class D>
+struct LinearAxis {
   using Vector = typename D::Vector;
   bool between_anchors = true;  ///< the axis runs from anchor to anchor; else it is fixed in A
   Vector arm_a{}, arm_b{}, offset{};
@@ -296,7 +299,8 @@ template <class D> struct LinearAxis : BlockBodies {
 };
 
 /// The coordinate is the turn of frame B in frame A about z, or the angle between the z axes (cone, 3D).
-template <class D> struct AngularAxis : BlockBodies {
+template <class D>
+struct AngularAxis {
   using Angular = typename D::Angular;
   typename D::Rotation frame_a{}, frame_b{};
   bool cone = false;

@@ -11,7 +11,8 @@ inline float magnitude(float a) { return math::abs(a); }
 inline float magnitude(Vec3f a) { return math::length(a); }
 
 /// The working copy of the two bodies of a joint. A fixed body or the world has zero inverse mass and inertia.
-template <class D> struct BodyPair {
+template <class D>
+struct BodyPair {
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   using Inertia = typename D::Inertia;
@@ -67,8 +68,14 @@ inline void add_point_mobility(Mat2f& k, Vec2f r, float inertia) {
 
 /// m⁻¹ v of a symmetric positive semi-definite m; directions in which nothing can move get nothing.
 inline Vec2f solve_mobility(Mat2f m, Vec2f v) {
-  if (!(m.cx.x > 0)) { m.cx.x = 1; v.x = 0; }
-  if (!(m.cy.y > 0)) { m.cy.y = 1; v.y = 0; }
+  if (!(m.cx.x > 0)) {
+    m.cx.x = 1;
+    v.x = 0;
+  }
+  if (!(m.cy.y > 0)) {
+    m.cy.y = 1;
+    v.y = 0;
+  }
   const float d = m.cx.x * m.cy.y - m.cy.x * m.cx.y;
   if (!(d > 1e-7f * m.cx.x * m.cy.y)) {  // the two rows are one: move along the stiffer diagonal only
     return m.cx.x >= m.cy.y ? Vec2f{v.x / m.cx.x, 0} : Vec2f{0, v.y / m.cy.y};
@@ -95,7 +102,8 @@ inline Vec3f solve_mobility(const Mat3f& m, Vec3f v) {
 }
 inline float solve_mobility(float m, float v) { return m > 0 ? v / m : 0; }
 
-template <class D> auto point_mobility(const BodyPair<D>& pair, typename D::Vector arm_a, typename D::Vector arm_b) {
+template <class D>
+auto point_mobility(const BodyPair<D>& pair, typename D::Vector arm_a, typename D::Vector arm_b) {
   const float m = pair.inverse_mass_a + pair.inverse_mass_b;
   if constexpr (D::dimension == 2) {
     Mat2f k{{m, 0}, {0, m}};

@@ -9,10 +9,9 @@
 namespace carom::rigid::detail {
 
 struct Response {
-  float velocity = 1;   ///< share of the relative velocity that is removed
-  float position = 0;   ///< 1/s
-  float memory = 0;     ///< share of the last impulse that is given back
-  bool relax = true;    ///< solved again without the position term; springs are not
+  float velocity = 1;  ///< share of the relative velocity that is removed
+  float position = 0;  ///< 1/s
+  float memory = 0;    ///< share of the last impulse that is given back
 };
 
 /// The velocity is removed and nothing else: what the relaxing pass does to a rigid row.
@@ -24,7 +23,7 @@ inline Response implicit_response(float hertz, float damping_ratio, float h) {
   const float a1 = 2 * damping_ratio + h * omega;
   const float a2 = h * omega * a1;
   const float a3 = 1 / (1 + a2);
-  return {a2 * a3, h * omega * omega * a3, a3, true};
+  return {a2 * a3, h * omega * omega * a3, a3};
 }
 
 /// The spring whose discrete motion is the exact one. With x' = x + h v' and v' = α v − β x the map has determinant α
@@ -35,8 +34,8 @@ inline Response implicit_response(float hertz, float damping_ratio, float h) {
 inline Response spring_response(float hertz, float damping_ratio, float h) {
   const double omega = 2 * pi * double(hertz), zeta = double(damping_ratio), angle = omega * double(h);
   const Response implicit = implicit_response(hertz, damping_ratio, h);
-  if (!(angle > 0)) return {0, 0, 0, false};
-  if (angle >= 1.4) return {implicit.velocity, implicit.position, implicit.memory, false};
+  if (!(angle > 0)) return {0, 0, 0};
+  if (angle >= 1.4) return implicit;
   const double decay = math::exp(-zeta * angle);
   double trace;
   if (zeta <= 1) {
@@ -47,18 +46,18 @@ inline Response spring_response(float hertz, float damping_ratio, float h) {
   }
   const double determinant = decay * decay;
   // 1 + d − t is a difference of nearly equal numbers for soft springs; in double nine digits remain.
-  const Response exact{float(1 - determinant), float((1 + determinant - trace) / double(h)), float(determinant), false};
+  const Response exact{float(1 - determinant), float((1 + determinant - trace) / double(h)), float(determinant)};
   const float blend = clamp((float(angle) - 0.7f) / 0.7f, 0.0f, 1.0f);
   return {lerp(exact.velocity, implicit.velocity, blend), lerp(exact.position, implicit.position, blend),
-          lerp(exact.memory, implicit.memory, blend), false};
+          lerp(exact.memory, implicit.memory, blend)};
 }
 
 /// The same for a spring of stiffness k (N/m) and damping c (N·s/m) that moves `mass` (kg).
 inline Response spring_response_of(double stiffness, double damping, double mass, float h) {
-  if (!(mass > 0)) return {0, 0, 0, false};
+  if (!(mass > 0)) return {0, 0, 0};
   if (!(stiffness > 0)) {  // a damper alone: v' = v e^(−c h/m)
     const double d = math::exp(-damping * double(h) / mass);
-    return {float(1 - d), 0, float(d), false};
+    return {float(1 - d), 0, float(d)};
   }
   const double omega = math::sqrt(stiffness / mass);
   return spring_response(float(omega / (2 * pi)), float(damping / (2 * mass * omega)), h);

@@ -11,7 +11,8 @@
 namespace carom::rigid::detail {
 
 /// Impulses of the last substep, N·s and N·m·s: where the next one starts.
-template <class D> struct JointMemory {
+template <class D>
+struct JointMemory {
   struct Axis {
     float spring = 0, motor = 0, lower = 0, upper = 0;
   };
@@ -21,23 +22,26 @@ template <class D> struct JointMemory {
   Axis linear{}, twist{}, cone{};
 };
 
-template <class D> struct JointData {
+template <class D>
+struct JointData {
   AnyJointDef<D> definition{};  ///< body_a and body_b as the user gave them
   JointMemory<D> memory{};
-  typename D::Vector force{};    ///< N, on B, in the last substep
-  typename D::Angular torque{};  ///< N·m, on B
+  typename D::Vector force{};           ///< N, on B, in the last substep
+  typename D::Angular torque{};         ///< N·m, on B
+  typename D::Position world_anchor{};  ///< of A where A is the world; the target of a mouse joint
   std::uint64_t birth = 0;
   /// A spring–damper effector lives as a distance joint with these instead of a frequency; users do not see it.
   bool internal = false;
   double stiffness = 0, damping = 0;  ///< N/m, N·s/m
 };
 
-template <class D> struct JointStore {
+template <class D>
+struct JointStore {
   core::SlotPool<JointTag> slots;
   std::vector<JointHeader> headers;  ///< by slot
   std::vector<JointData<D>> data;    ///< by slot
   std::uint64_t births = 0;
-  int internal_count = 0;            ///< joints in `slots` that belong to effectors
+  int internal_count = 0;  ///< joints in `slots` that belong to effectors
 
   // Of the step, in the order of the graph: records of joint_record.h, one after another.
   std::vector<std::int32_t> order;        ///< slots

@@ -1,0 +1,129 @@
+// What may be said of a joint, and what not. Each check ends in a sentence "World::create_joint: … is …, expected …".
+#pragma once
+
+#include <string>
+
+#include "carom/core/result.h"
+#include "carom/core/string.h"
+#include "carom/rigid/state.h"
+
+namespace carom::rigid::detail {
+
+/// Gathers the first complaint about a call.
+class Complaint {
+ public:
+  explicit Complaint(std::string_view call) : call_(call) {}
+  bool none_yet() const { return message_.empty(); }
+  void say(const std::string& sentence) {
+    if (message_.empty()) message_ = core::text(call_, ": ", sentence);
+  }
+  void finite(std::string_view field, double x) {
+    if (!is_finite(x)) say(core::refused(field, x, "a finite number"));
+  }
+  void not_negative(std::string_view field, double x) {
+    if (!(is_finite(x) && x >= 0)) say(core::refused(field, x, "a finite number ≥ 0"));
+  }
+  void positive(std::string_view field, double x) {
+    if (!(is_finite(x) && x > 0)) say(core::refused(field, x, "a finite number > 0"));
+  }
+  template <class T>
+  void vector(std::string_view field, Vec2<T> v) {
+    finite(core::text(field, ".x"), v.x);
+    finite(core::text(field, ".y"), v.y);
+  }
+  template <class T>
+  void vector(std::string_view field, Vec3<T> v) {
+    finite(core::text(field, ".x"), v.x);
+    finite(core::text(field, ".y"), v.y);
+    finite(core::text(field, ".z"), v.z);
+  }
+  void rotation(std::string_view field, Rot2f q) { unit(field, math::sqrt(q.c * q.c + q.s * q.s)); }
+  void rotation(std::string_view field, const Quatf& q) { unit(field, math::length(q)); }
+  void status(const core::Status& s) {
+    if (!s.ok()) say(s.error().message);
+  }
+
+  void spring(std::string_view field, const JointSpring& s) {
+    not_negative(core::text(field, ".hertz"), s.hertz);
+    not_negative(core::text(field, ".damping_ratio"), s.damping_ratio);
+  }
+  void limit(std::string_view field, const JointLimit& l) {
+    finite(core::text(field, ".lower"), l.lower);
+    finite(core::text(field, ".upper"), l.upper);
+    if (none_yet() && l.lower > l.upper)
+      say(core::text(field, ".lower is ", l.lower, ", expected at most ", field, ".upper, which is ", l.upper));
+  }
+  void angle_limit(std::string_view field, const JointLimit& l) {
+    limit(field, l);
+    if (none_yet() && !(l.lower >= -2 * pi_f && l.upper <= 2 * pi_f && l.upper - l.lower <= 2 * pi_f))
+      say(core::text(field, " is ", l.lower, " … ", l.upper, " rad, expected a range of at most one turn within ±2π"));
+  }
+  void distance_limit(std::string_view field, const JointLimit& l) {
+    limit(field, l);
+    if (none_yet() && l.enabled && l.lower < 0) say(core::refused(core::text(field, ".lower"), l.lower, "≥ 0 m"));
+  }
+  void motor(std::string_view field, const JointMotor& m) {
+    finite(core::text(field, ".speed"), m.speed);
+    not_negative(core::text(field, ".max_force"), m.max_force);
+  }
+  core::Error error() const { return core::Error{message_}; }
+
+ private:
+  void unit(std::string_view field, float norm) {
+    if (!(norm > 0.99f && norm < 1.01f)) say(core::text(field, " has norm ", norm, ", expected a rotation (norm 1)"));
+  }
+  std::string_view call_;
+  std::string message_;
+};
+
+template <class D>
+void check_joint(Complaint& c, const DistanceJointDef<D>& d) {
+  c.not_negative("length", d.length);
+  c.spring("spring", d.spring);
+  c.distance_limit("limit", d.limit);
+  c.motor("motor", d.motor);
+}
+template <class D>
+void check_joint(Complaint& c, const BallJointDef<D>& d) {
+  c.spring("spring", d.spring);
+  c.finite("cone_angle", d.cone_angle);
+  if (d.cone_angle > pi_f) c.say(core::refused("cone_angle", d.cone_angle, "at most π rad"));
+  if (D::dimension == 2 && d.cone_angle >= 0)
+    c.say(core::refused("cone_angle", d.cone_angle, "none (−1) in the plane: use twist"));
+  c.angle_limit("twist", d.twist);
+  c.not_negative("friction_torque", d.friction_torque);
+}
+template <class D>
+void check_joint(Complaint& c, const HingeJointDef<D>& d) {
+  c.spring("spring", d.spring);
+  c.finite("target_angle", d.target_angle);
+  c.angle_limit("limit", d.limit);
+  c.motor("motor", d.motor);
+}
+template <class D>
+void check_joint(Complaint& c, const SliderJointDef<D>& d) {
+  c.spring("spring", d.spring);
+  c.finite("target_translation", d.target_translation);
+  c.limit("limit", d.limit);
+  c.motor("motor", d.motor);
+}
+template <class D>
+void check_joint(Complaint& c, const WeldJointDef<D>& d) {
+  c.spring("linear", d.linear);
+  c.spring("angular", d.angular);
+}
+template <class D>
+void check_joint(Complaint& c, const MotorJointDef<D>& d) {
+  c.spring("linear", d.linear);
+  c.spring("angular", d.angular);
+  c.not_negative("max_force", d.max_force);
+  c.not_negative("max_torque", d.max_torque);
+}
+template <class D>
+void check_joint(Complaint& c, const MouseJointDef<D>& d) {
+  c.vector("target", d.target);
+  c.spring("spring", d.spring);
+  c.not_negative("max_force", d.max_force);
+}
+
+}  // namespace carom::rigid::detail

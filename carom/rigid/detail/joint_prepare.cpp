@@ -1,0 +1,363 @@
+// From definitions to the records of a step, and back.
+#include "carom/rigid/detail/joint_record.h"
+#include "carom/rigid/detail/world_implementation.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+bool axis_is_used(const JointSpring& spring, const JointMotor& motor, const JointLimit& limit) {
+  return spring.hertz > 0 || motor.enabled || limit.enabled;
+}
+
+/// Where the two bodies and the joint's frames are when the step begins.
+template <class D>
+struct JointPlacement {
+  typename D::Vector arm_a{}, arm_b{}, offset{};
+  typename D::Rotation frame_a{}, frame_b{};
+};
+
+template <class D>
+JointPlacement<D> place_joint(const BodyStore<D>& bodies, const JointHeader& header, const JointData<D>& data) {
+  const JointFrames<D>& frames = frames_of(data.definition);
+  JointPlacement<D> at;
+  typename D::Position center_a{};
+  if (header.body[0] != none) {
+    const std::size_t a = std::size_t(header.body[0]);
+    const auto rotation = bodies.pose[a].rotation;
+    at.arm_a = rotate(rotation, frames.frame_a.p - bodies.motion[a].local_center);
+    at.frame_a = rotation * frames.frame_a.q;
+    center_a = bodies.motion[a].center;
+  } else {
+    center_a = data.world_anchor;
+    at.frame_a = frames.frame_a.q;
+  }
+  const std::size_t b = std::size_t(header.body[1]);
+  const auto rotation = bodies.pose[b].rotation;
+  at.arm_b = rotate(rotation, frames.frame_b.p - bodies.motion[b].local_center);
+  at.frame_b = rotation * frames.frame_b.q;
+  at.offset = typename D::Vector(bodies.motion[b].center - center_a);
+  return at;
+}
+
+template <class D>
+typename D::Vector axis_x(const typename D::Rotation& q) {
+  if constexpr (D::dimension == 2)
+    return rotate(q, Vec2f{1, 0});
+  else
+    return rotate(q, Vec3f{1, 0, 0});
+}
+
+void fill_limit(AxisLaw& law, const JointLimit& limit) {
+  if (!limit.enabled) return;
+  law.flags |= AxisLaw::lower | AxisLaw::upper;
+  law.low = limit.lower;
+  law.high = limit.upper;
+}
+void fill_motor(AxisLaw& law, const JointMotor& motor, float h) {
+  if (!motor.enabled) return;
+  law.flags |= AxisLaw::motor;
+  law.speed = motor.speed;
+  law.max_motor_impulse = motor.max_force * h;
+}
+void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, float h) {
+  if (!(spring.hertz > 0)) return;
+  law.flags |= AxisLaw::spring;
+  law.rest = rest;
+  law.response = spring_response(spring.hertz, spring.damping_ratio, h);
+}
+template <class Axis>
+void remember(AxisLaw& law, const Axis& memory) {
+  law.spring_impulse = law.has(AxisLaw::spring) ? memory.spring : 0;
+  law.motor_impulse = law.has(AxisLaw::motor) ? memory.motor : 0;
+  law.lower_impulse = law.has(AxisLaw::lower) ? memory.lower : 0;
+  law.upper_impulse = law.has(AxisLaw::upper) ? memory.upper : 0;
+}
+template <class Axis>
+void memorise(const AxisLaw& law, Axis& memory) {
+  memory.spring = law.spring_impulse;
+  memory.motor = law.motor_impulse;
+  memory.lower = law.lower_impulse;
+  memory.upper = law.upper_impulse;
+}
+
+template <class D>
+void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at,
+                 const JointRecord<D>& record, float h) {
+  block.arm_a = at.arm_a;
+  block.arm_b = at.arm_b;
+  block.offset = at.offset;
+  block.axis = axis_x<D>(at.frame_a);
+  AxisLaw& law = block.law;
+  if (const auto* slider = std::get_if<SliderJointDef<D>>(&data.definition)) {
+    block.between_anchors = false;
+    fill_spring(law, slider->spring, slider->target_translation, h);
+    fill_motor(law, slider->motor, h);
+    fill_limit(law, slider->limit);
+  } else if (const auto* distance = std::get_if<DistanceJointDef<D>>(&data.definition)) {
+    fill_spring(law, distance->spring, distance->length, h);
+    fill_motor(law, distance->motor, h);
+    fill_limit(law, distance->limit);
+    if (data.internal) {
+      BodyPair<D> pair;
+      pair.inverse_mass_a = record.inverse_mass_a;
+      pair.inverse_mass_b = record.inverse_mass_b;
+      pair.inverse_inertia_a = record.inverse_inertia_a;
+      pair.inverse_inertia_b = record.inverse_inertia_b;
+      const auto row = block.row(pair);
+      const double mobility = double(pair.row_inverse_mass(row.lever_a, row.lever_b));
+      law.flags |= AxisLaw::spring;
+      law.rest = distance->length;
+      law.response = spring_response_of(data.stiffness, data.damping, mobility > 0 ? 1 / mobility : 0, h);
+    } else if (distance->rope) {
+      law.flags |= AxisLaw::pull_only;
+      if (!(distance->spring.hertz > 0)) {
+        law.flags = std::uint8_t((law.flags | AxisLaw::upper) & ~AxisLaw::lower);
+        law.high = distance->limit.enabled ? distance->limit.upper : distance->length;
+      }
+    } else if (!axis_is_used(distance->spring, distance->motor, distance->limit)) {
+      law.flags |= AxisLaw::spring | AxisLaw::rigid;
+      law.rest = distance->length;
+    }
+  }
+  remember(law, data.memory.linear);
+}
+
+template <class D>
+void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
+  block.frame_a = at.frame_a;
+  block.frame_b = at.frame_b;
+  block.law.flags = AxisLaw::periodic;
+  if (const auto* hinge = std::get_if<HingeJointDef<D>>(&data.definition)) {
+    fill_spring(block.law, hinge->spring, hinge->target_angle, h);
+    fill_motor(block.law, hinge->motor, h);
+    fill_limit(block.law, hinge->limit);
+  } else if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition)) {
+    fill_limit(block.law, ball->twist);
+  }
+  remember(block.law, data.memory.twist);
+}
+
+template <class D>
+void fill_cone(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at) {
+  block.frame_a = at.frame_a;
+  block.frame_b = at.frame_b;
+  block.cone = true;
+  block.law.flags = AxisLaw::upper;
+  block.law.high = std::get<BallJointDef<D>>(data.definition).cone_angle;
+  remember(block.law, data.memory.cone);
+}
+
+template <class D>
+void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
+  block.frame_a = at.frame_a;
+  block.frame_b = at.frame_b;
+  block.impulse = data.memory.angular;
+  JointSpring spring{};
+  if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition))
+    spring = ball->spring;
+  else if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition))
+    spring = weld->angular;
+  else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
+    spring = motor->angular;
+    block.max_impulse = motor->max_torque * h;
+  }
+  block.rigid = !(spring.hertz > 0);
+  if (!block.rigid) block.response = spring_response(spring.hertz, spring.damping_ratio, h);
+}
+
+template <class D>
+void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
+  block.arm_a = at.arm_a;
+  block.arm_b = at.arm_b;
+  block.offset = at.offset;
+  block.impulse = data.memory.point;
+  JointSpring spring{};
+  if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition))
+    spring = weld->linear;
+  else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
+    spring = motor->linear;
+    block.max_impulse = motor->max_force * h;
+  } else if (const auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition)) {
+    spring = mouse->spring;
+    block.max_impulse = mouse->max_force * h;
+  }
+  block.rigid = !(spring.hertz > 0);
+  if (!block.rigid) block.response = spring_response(spring.hertz, spring.damping_ratio, h);
+}
+
+template <class D>
+void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, float h) {
+  const JointHeader& header = world.joints.headers[std::size_t(record.joint)];
+  const JointData<D>& data = world.joints.data[std::size_t(record.joint)];
+  record.body_a = header.body[0];
+  record.body_b = header.body[1];
+  if (record.body_a != none && world.bodies.is_dynamic(record.body_a)) {
+    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(record.body_a)];
+    record.dynamic_a = true;
+    record.inverse_mass_a = motion.inverse_mass;
+    record.inverse_inertia_a = motion.world_inverse_inertia;
+  } else if constexpr (D::dimension == 3) {
+    record.inverse_inertia_a = Mat3f::zero();
+  }
+  if (world.bodies.is_dynamic(record.body_b)) {
+    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(record.body_b)];
+    record.dynamic_b = true;
+    record.inverse_mass_b = motion.inverse_mass;
+    record.inverse_inertia_b = motion.world_inverse_inertia;
+  } else if constexpr (D::dimension == 3) {
+    record.inverse_inertia_b = Mat3f::zero();
+  }
+  const JointPlacement<D> at = place_joint(world.bodies, header, data);
+  const JointMemory<D>& memory = data.memory;
+  for_each_block(record, [&](JointPart part, auto& raw) {
+    using Block = std::remove_reference_t<decltype(raw)>;
+    Block& block = *::new (static_cast<void*>(&raw)) Block{};
+    if constexpr (std::is_same_v<Block, LinearAxis<D>>)
+      fill_linear(block, data, at, record, h);
+    else if constexpr (std::is_same_v<Block, PointBlock<D>>)
+      fill_point(block, data, at, h);
+    else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
+      if (part == part_cone)
+        fill_cone(block, data, at);
+      else
+        fill_twist(block, data, at, h);
+    } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
+      if (part == part_friction) {
+        block.friction = true;
+        block.rigid = false;
+        block.impulse = memory.friction;
+        block.max_impulse = std::get<BallJointDef<D>>(data.definition).friction_torque * h;
+      } else {
+        fill_angular(block, data, at, h);
+      }
+    } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
+      block.arm_a = at.arm_a;
+      block.arm_b = at.arm_b;
+      block.offset = at.offset;
+      for (int i = 0; i < Block::rows; ++i) block.impulse[i] = memory.slide[i];
+      if constexpr (D::dimension == 2) {
+        block.normal[0] = rotate(at.frame_a, Vec2f{0, 1});
+      } else {
+        block.normal[0] = rotate(at.frame_a, Vec3f{0, 1, 0});
+        block.normal[1] = rotate(at.frame_a, Vec3f{0, 0, 1});
+      }
+    } else {
+      block.x_a = rotate(at.frame_a, Vec3f{1, 0, 0});
+      block.y_a = rotate(at.frame_a, Vec3f{0, 1, 0});
+      block.z_b = rotate(at.frame_b, Vec3f{0, 0, 1});
+      block.impulse = memory.hinge;
+    }
+  });
+}
+
+}  // namespace
+
+template <class D>
+std::uint8_t parts_of(const JointData<D>& data) {
+  const auto parts = [](const auto& d) -> int {
+    using Def = std::remove_cvref_t<decltype(d)>;
+    if constexpr (std::is_same_v<Def, DistanceJointDef<D>>) {
+      return part_linear;
+    } else if constexpr (std::is_same_v<Def, BallJointDef<D>>) {
+      return part_point | (d.spring.hertz > 0 ? part_angular : 0) | (d.friction_torque > 0 ? part_friction : 0) |
+             (D::dimension == 3 && d.cone_angle >= 0 ? part_cone : 0) | (d.twist.enabled ? part_twist : 0);
+    } else if constexpr (std::is_same_v<Def, HingeJointDef<D>>) {
+      return part_point | (D::dimension == 3 ? part_hinge : 0) |
+             (axis_is_used(d.spring, d.motor, d.limit) ? part_twist : 0);
+    } else if constexpr (std::is_same_v<Def, SliderJointDef<D>>) {
+      return part_slide | part_angular | (axis_is_used(d.spring, d.motor, d.limit) ? part_linear : 0);
+    } else if constexpr (std::is_same_v<Def, MouseJointDef<D>>) {
+      return part_point;
+    } else {
+      return part_point | part_angular;
+    }
+  };
+  return std::uint8_t(std::visit(parts, data.definition));
+}
+
+template <class D>
+void prepare_joints(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  JointStore<D>& joints = world.joints;
+  joints.order.clear();
+  joints.offset.clear();
+  joints.color_begin.clear();
+  std::uint32_t units = 0;
+  for (const GraphColor& color : world.graph.colors) {
+    joints.color_begin.push_back(std::int32_t(joints.order.size()));
+    for (const std::int32_t joint : color.joints) {
+      joints.order.push_back(joint);
+      joints.offset.push_back(units);
+      units += record_units<D>(parts_of(joints.data[std::size_t(joint)]));
+    }
+  }
+  joints.color_begin.push_back(std::int32_t(joints.order.size()));
+  joints.offset.push_back(units);
+  if (joints.records.size() < units) joints.records.resize(units);
+  context.scheduler.parallel_for(int(joints.order.size()), 64, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      auto& record = *::new (static_cast<void*>(&joints.records[joints.offset[std::size_t(i)]])) JointRecord<D>{};
+      record.joint = joints.order[std::size_t(i)];
+      record.parts = parts_of(joints.data[std::size_t(record.joint)]);
+      fill_record(record, world, context.h);
+    }
+  });
+}
+
+/// Keeps the impulses for the next step, and what the joint exerted.
+template <class D>
+void store_joints(StepContext<D>& context) {
+  JointStore<D>& joints = context.world.joints;
+  context.scheduler.parallel_for(int(joints.order.size()), 64, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
+      JointData<D>& data = joints.data[std::size_t(record.joint)];
+      JointMemory<D>& memory = data.memory;
+      BodyPair<D> pair;
+      load_turns(pair, record, context.bodies);
+      typename D::Vector force{};
+      typename D::Angular torque{};
+      for_each_block(record, [&](JointPart part, auto& block) {
+        using Block = std::remove_cvref_t<decltype(block)>;
+        if constexpr (std::is_same_v<Block, LinearAxis<D>>) {
+          memorise(block.law, memory.linear);
+          force += block.law.total() * block.row(pair).n;
+        } else if constexpr (std::is_same_v<Block, PointBlock<D>>) {
+          memory.point = block.impulse;
+          force += block.impulse;
+        } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
+          memorise(block.law, part == part_cone ? memory.cone : memory.twist);
+          float unused;
+          torque += block.law.total() * block.row(pair, false, unused);
+        } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
+          (part == part_friction ? memory.friction : memory.angular) = block.impulse;
+          torque += block.impulse;
+        } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
+          typename Block::Row row[Block::rows];
+          block.directions(pair, row);
+          for (int k = 0; k < Block::rows; ++k) {
+            memory.slide[k] = block.impulse[k];
+            force += block.impulse[k] * row[k].n;
+          }
+        } else {
+          memory.hinge = block.impulse;
+          Vec3f u, v;
+          Vec2f error;
+          block.directions(pair, u, v, error);
+          torque += block.impulse.x * u + block.impulse.y * v;
+        }
+      });
+      data.force = force * context.inverse_h;
+      data.torque = torque * context.inverse_h;
+    }
+  });
+}
+
+template std::uint8_t parts_of(const JointData<Dim2>&);
+template std::uint8_t parts_of(const JointData<Dim3>&);
+template void prepare_joints(StepContext<Dim2>&);
+template void prepare_joints(StepContext<Dim3>&);
+template void store_joints(StepContext<Dim2>&);
+template void store_joints(StepContext<Dim3>&);
+
+}  // namespace carom::rigid::detail

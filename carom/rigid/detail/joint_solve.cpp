@@ -1,0 +1,97 @@
+// The joints' passes of a substep.
+#include "carom/rigid/detail/joint_record.h"
+#include "carom/rigid/detail/world_implementation.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+template <class D>
+void load_pair(BodyPair<D>& pair, const JointRecord<D>& record, const SolverBody<D>* bodies) {
+  load_turns(pair, record, bodies);
+  if (record.body_a != none) {
+    pair.velocity_a = bodies[record.body_a].linear_velocity;
+    pair.spin_a = bodies[record.body_a].angular_velocity;
+  }
+  pair.velocity_b = bodies[record.body_b].linear_velocity;
+  pair.spin_b = bodies[record.body_b].angular_velocity;
+  pair.inverse_mass_a = record.inverse_mass_a;
+  pair.inverse_mass_b = record.inverse_mass_b;
+  pair.inverse_inertia_a = record.inverse_inertia_a;
+  pair.inverse_inertia_b = record.inverse_inertia_b;
+}
+template <class D>
+void save_pair(const BodyPair<D>& pair, const JointRecord<D>& record, SolverBody<D>* bodies) {
+  if (record.dynamic_a) {
+    bodies[record.body_a].linear_velocity = pair.velocity_a;
+    bodies[record.body_a].angular_velocity = pair.spin_a;
+  }
+  if (record.dynamic_b) {
+    bodies[record.body_b].linear_velocity = pair.velocity_b;
+    bodies[record.body_b].angular_velocity = pair.spin_b;
+  }
+}
+
+/// Runs `act` on the records of a colour: side by side, but for the overflow one after the other.
+template <class D, class Act>
+void for_each_record(StepContext<D>& context, int color, const Act& act) {
+  JointStore<D>& joints = context.world.joints;
+  const int first = joints.color_begin[std::size_t(color)], last = joints.color_begin[std::size_t(color) + 1];
+  if (first == last) return;
+  const auto run = [&](int begin, int end, int) {
+    for (int i = first + begin; i < first + end; ++i) {
+      auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
+      BodyPair<D> pair;
+      load_pair(pair, record, context.bodies);
+      for_each_block(record, [&](JointPart, auto& block) { act(pair, block); });
+      save_pair(pair, record, context.bodies);
+    }
+  };
+  if (color == overflow_color || last - first < 64)
+    run(0, last - first, 0);
+  else
+    context.scheduler.parallel_for(last - first, 128, run);
+}
+
+}  // namespace
+
+template <class D>
+void warm_start_joints(StepContext<D>& context, int color) {
+  for_each_record(context, color, [](BodyPair<D>& pair, auto& block) { block.warm_start(pair); });
+}
+
+template <class D>
+void solve_joints(StepContext<D>& context, int color, bool use_bias) {
+  const Softness& soft = context.joint_softness;
+  const JointPass pass{
+      context.h, context.inverse_h, use_bias, {soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale}};
+  for_each_record(context, color, [&pass](BodyPair<D>& pair, auto& block) { block.solve(pair, pass); });
+}
+
+template <class D>
+void destroy_joints_of(WorldImplementation<D>& world, std::int32_t body) {
+  while (world.bodies.record[std::size_t(body)].first_joint != none) {
+    const std::int32_t joint = world.bodies.record[std::size_t(body)].first_joint / 2;
+    release_joint(world, joint);
+  }
+}
+
+template <class D>
+void release_joint(WorldImplementation<D>& world, std::int32_t joint) {
+  JointStore<D>& joints = world.joints;
+  detach_joint(world, joint);
+  if (joints.data[std::size_t(joint)].internal) --joints.internal_count;
+  joints.data[std::size_t(joint)] = {};
+  joints.headers[std::size_t(joint)] = {};
+  joints.slots.release(joints.slots.handle_at(joint));
+}
+
+template void warm_start_joints(StepContext<Dim2>&, int);
+template void warm_start_joints(StepContext<Dim3>&, int);
+template void solve_joints(StepContext<Dim2>&, int, bool);
+template void solve_joints(StepContext<Dim3>&, int, bool);
+template void destroy_joints_of(WorldImplementation<Dim2>&, std::int32_t);
+template void destroy_joints_of(WorldImplementation<Dim3>&, std::int32_t);
+template void release_joint(WorldImplementation<Dim2>&, std::int32_t);
+template void release_joint(WorldImplementation<Dim3>&, std::int32_t);
+
+}  // namespace carom::rigid::detail
