@@ -12,7 +12,6 @@ namespace carom::rigid::detail {
 template <class D>
 struct EffectorData {
   EffectorDef<D> definition{};
-  std::uint64_t birth = 0;
   std::int32_t joint = none;  ///< slot of the internal joint of a spring–damper
 };
 
@@ -20,13 +19,16 @@ template <class D>
 struct EffectorStore {
   core::SlotPool<EffectorTag> slots;
   std::vector<EffectorData<D>> data;   ///< by slot
-  std::vector<std::int32_t> in_order;  ///< slots by birth
-  std::uint64_t births = 0;
+  std::vector<std::int32_t> in_order;  ///< slots in order of creation: the order in which they act
+  // Triangles of a hull while its wet part is measured.
+  std::vector<Vec3d> vertices;
+  std::vector<std::uint32_t> indices;
 
   explicit EffectorStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size(); }
   std::size_t bytes() const {
-    return slots.bytes() + data.capacity() * sizeof(EffectorData<D>) + in_order.capacity() * 4;
+    return slots.bytes() + data.capacity() * sizeof(EffectorData<D>) + in_order.capacity() * 4 +
+           vertices.capacity() * sizeof(Vec3d) + indices.capacity() * 4;
   }
 };
 

@@ -1,0 +1,204 @@
+// What effectors do once a step. Fields and thrusters first, then everything that resists motion.
+#include "carom/rigid/detail/effector_act.h"
+
+#include "carom/environment/gravity.h"
+#include "carom/forces/drag.h"
+#include "carom/forces/fields.h"
+#include "carom/rigid/detail/joint_record.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+/// Calls act(EffectorBody) for the target, or for every awake dynamic body. Order does not matter: each body is alone.
+template <class D, class Act>
+void for_each_target(WorldImplementation<D>& world, BodyId target, double dt, const Act& act) {
+  const auto moves = [&](std::int32_t slot) {
+    const BodyRecord& record = world.bodies.record[std::size_t(slot)];
+    return record.type == BodyType::dynamic && record.awake() && record.enabled() &&
+           world.bodies.motion[std::size_t(slot)].inverse_mass > 0;
+  };
+  if (!target.is_null()) {
+    const std::int32_t slot = world.bodies.slots.slot(target);
+    if (moves(slot)) act(EffectorBody<D>(world, slot, dt));
+    return;
+  }
+  for (const std::int32_t slot : world.bodies.awake)
+    if (moves(slot)) act(EffectorBody<D>(world, slot, dt));
+}
+
+template <class D>
+struct FieldForces {
+  WorldImplementation<D>& world;
+  double dt;
+  using Position = typename D::Position;
+
+  void operator()(const SphericalGravity<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const double scale = world.bodies.motion[std::size_t(body.slot)].gravity_scale;
+      push(world, body,
+           environment::spherical_gravity(body.center - e.center, e.gm, e.minimum_radius) * (body.mass * scale));
+    });
+  }
+  void operator()(const RadialField<D>& e) const {
+    const forces::Radial field{e.strength, e.reference, e.exponent, e.range};
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      push(world, body, forces::radial_acceleration(field, body.center - e.center) * body.mass);
+    });
+  }
+  void operator()(const Thrust<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const auto& motion = world.bodies.motion[std::size_t(body.slot)];
+      push_at(world, body, Position(rotate(body.pose.rotation, e.force)),
+              Position(rotate(body.pose.rotation, e.point - motion.local_center)));
+    });
+  }
+  void operator()(const Buoyancy<D>& e) const {
+    for_each_target(world, e.body, dt,
+                    [&](const EffectorBody<D>& body) { float_body(world, e, body, world.time + 0.5 * dt); });
+  }
+  void operator()(const CustomEffector<D>& e) const {
+    if (!e.model) return;
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const std::size_t i = std::size_t(body.slot);
+      const SolverBody<D>& solver = world.bodies.solver[i];
+      BodyMotion<D>& motion = world.bodies.motion[i];
+      EffectorInput<D> input;
+      input.body = world.bodies.slots.handle_at(body.slot);
+      input.time = world.time;
+      input.state.pose = world.bodies.pose[i];
+      input.state.center_of_mass = motion.center;
+      input.state.linear_velocity = solver.linear_velocity;
+      input.state.angular_velocity = solver.angular_velocity;
+      input.state.mass = motion.mass;
+      input.state.user_data = world.bodies.record[i].user_data;
+      const Wrench<D> wrench = e.model(input);
+      motion.force += wrench.force;
+      motion.torque += wrench.torque;
+    });
+  }
+  template <class Other>
+  void operator()(const Other&) const {}
+};
+
+template <class D>
+struct Resistances {
+  WorldImplementation<D>& world;
+  double dt;
+  typename D::Position wind{};
+  using Position = typename D::Position;
+
+  /// −c ω averaged over the step, for the most agile axis: stable for any c.
+  void slow_spin(const EffectorBody<D>& body, double c) const {
+    BodyMotion<D>& motion = world.bodies.motion[std::size_t(body.slot)];
+    double mobility;
+    if constexpr (D::dimension == 2)
+      mobility = double(motion.world_inverse_inertia);
+    else
+      mobility = double(trace(motion.world_inverse_inertia));
+    motion.torque += typename D::Angular(body.spin * (-c * mean_decay(c * mobility * dt)));
+  }
+
+  void operator()(const LinearDrag<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      if (e.coefficient > 0)
+        push(world, body, resist(world, body, e.coefficient * body.inverse_mass, body.velocity - wind));
+      if (e.angular_coefficient > 0) slow_spin(body, e.angular_coefficient);
+    });
+  }
+  void operator()(const QuadraticDrag<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const auto& motion = world.bodies.motion[std::size_t(body.slot)];
+      const Position arm(rotate(body.pose.rotation, e.point - motion.local_center));
+      const Position v = forces::relative_velocity(body.velocity, body.spin, arm, wind);
+      // |v| of mid-step, by one more evaluation: second order in dt.
+      const double c = 0.5 * e.density * e.drag_coefficient * e.area * body.inverse_mass;
+      const double rate = c * math::length(v);
+      const Position middle =
+          v + (other_acceleration(world, body) - rate * v) * (0.5 * dt * mean_decay(0.5 * rate * dt));
+      push_at(world, body, resist(world, body, c * math::length(middle), v), arm);
+      if (e.angular_coefficient > 0) {
+        double speed;
+        if constexpr (D::dimension == 2)
+          speed = math::abs(body.spin);
+        else
+          speed = math::length(body.spin);
+        slow_spin(body, e.angular_coefficient * speed);
+      }
+    });
+  }
+  void operator()(const VortexField<D>& e) const {
+    const forces::Vortex vortex{e.circulation, e.core_radius};
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      Position medium{};
+      if constexpr (D::dimension == 2) {
+        medium = forces::vortex_velocity(vortex, body.center - e.center);
+      } else {
+        medium = forces::vortex_velocity(vortex, normalize(Vec3d(e.axis)), body.center - e.center);
+      }
+      push(world, body, resist(world, body, e.rate, body.velocity - medium));
+    });
+  }
+  template <class Other>
+  void operator()(const Other&) const {}
+};
+
+}  // namespace
+
+template <class D>
+void apply_effectors(WorldImplementation<D>& world, float dt) {
+  const EffectorStore<D>& store = world.effectors;
+  if (store.in_order.empty()) return;
+  Resistances<D> resistances{world, double(dt), {}};
+  const FieldForces<D> fields{world, double(dt)};
+  for (const std::int32_t slot : store.in_order) {
+    const EffectorDef<D>& definition = store.data[std::size_t(slot)].definition;
+    if (const auto* wind = std::get_if<Wind<D>>(&definition))
+      resistances.wind += typename D::Position(wind->velocity);
+    else
+      std::visit(fields, definition);
+  }
+  for (const std::int32_t slot : store.in_order) std::visit(resistances, store.data[std::size_t(slot)].definition);
+}
+
+template <class D>
+void release_effector(WorldImplementation<D>& world, std::int32_t slot) {
+  EffectorStore<D>& store = world.effectors;
+  EffectorData<D>& data = store.data[std::size_t(slot)];
+  if (data.joint != none) release_joint(world, data.joint);
+  data = {};
+  store.slots.release(store.slots.handle_at(slot));
+  std::erase(store.in_order, slot);
+}
+
+template <class D>
+void forget_body_in_effectors(WorldImplementation<D>& world, BodyId body) {
+  EffectorStore<D>& store = world.effectors;
+  for (std::size_t i = store.in_order.size(); i-- > 0;) {
+    const std::int32_t slot = store.in_order[i];
+    EffectorData<D>& data = store.data[std::size_t(slot)];
+    const bool bound = std::visit(
+        [body](const auto& e) {
+          if constexpr (requires { e.body_a; })
+            return e.body_a == body || e.body_b == body;
+          else if constexpr (requires { e.body; })
+            return e.body == body;
+          else
+            return false;
+        },
+        data.definition);
+    if (!bound) continue;
+    if (data.joint != none &&
+        !(world.joints.slots.in_use(data.joint) && world.joints.data[std::size_t(data.joint)].internal))
+      data.joint = none;  // went with the body's other joints
+    release_effector(world, slot);
+  }
+}
+
+template void apply_effectors(WorldImplementation<Dim2>&, float);
+template void apply_effectors(WorldImplementation<Dim3>&, float);
+template void release_effector(WorldImplementation<Dim2>&, std::int32_t);
+template void release_effector(WorldImplementation<Dim3>&, std::int32_t);
+template void forget_body_in_effectors(WorldImplementation<Dim2>&, BodyId);
+template void forget_body_in_effectors(WorldImplementation<Dim3>&, BodyId);
+
+}  // namespace carom::rigid::detail
