@@ -1,0 +1,93 @@
+// What a demo says about itself, once: the page's sliders, plots and keys, the command line and the sweep all read it.
+// SI units everywhere; `display_unit` is what a person sees.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carom/math/vec.h"
+
+namespace carom::host {
+
+using math::Vec2d;
+using math::Vec3d;
+
+struct Parameter {
+  std::string name;  ///< identifier, as `--set name=value` takes it
+  std::string label;
+  std::string unit;          ///< of the SI value
+  std::string display_unit;  ///< empty: the same
+  std::string description;
+  double minimum = 0, maximum = 1;
+  double step = 0;  ///< 0: continuous
+  double value = 0;
+  bool live = false;  ///< acts at once; the others restart the demo
+};
+
+struct Axis {
+  std::string label, unit;
+};
+
+struct Series {
+  enum class Style { line, points };
+  std::string name;
+  Style style = Style::line;
+  std::vector<Vec2d> points{};  ///< a fixed curve (analytic or published); empty: fed while the demo runs
+};
+
+struct Plot {
+  std::string title;
+  Axis x, y;
+  std::vector<Series> series;
+};
+
+struct Camera {
+  Vec3d position{0, 4, 12}, target{};
+  double field_of_view = 0.75;  ///< rad, vertical (3D)
+  double height = 10;           ///< m from bottom to top (2D)
+  int follow = -1;              ///< the id of a body, or −1
+};
+
+struct Input {
+  std::string action, label;
+  std::vector<std::string> keys;  ///< KeyboardEvent.code
+  bool press = false;             ///< once a press, or as long as held
+  double value = 1;
+};
+
+struct Declaration {
+  std::string id, title, summary, group, chapter;
+  int dimension = 3;
+  std::string text;  ///< paragraphs apart by an empty line; a paragraph indented by two spaces is a formula
+  double dt = 1.0 / 60;
+  double duration = 10;  ///< s, what `carom run` simulates unless told otherwise
+  Camera camera;
+  std::optional<double> ground;  ///< m, height of a floor to draw
+  std::vector<Parameter> parameters;
+  std::vector<Plot> plots;
+  std::vector<Input> inputs;
+};
+
+/// A number that must come out, and where it is published.
+struct Expectation {
+  std::string name, unit, source;
+  double found = 0, expected = 0, tolerance = 0;  ///< absolute
+  bool passed() const {
+    const double error = found - expected;
+    return math::is_finite(found) && (error < 0 ? -error : error) <= tolerance;
+  }
+};
+
+struct Sample {
+  int plot = 0, series = 0;
+  double x = 0, y = 0;
+};
+
+struct Line {
+  Vec3d a, b;
+  std::uint32_t rgba = 0xffffffff;
+};
+
+}  // namespace carom::host

@@ -1,0 +1,39 @@
+// One function a demo; each lives in its own file beside this one.
+#pragma once
+
+#include <memory>
+
+#include "apps/host/demo.h"
+
+namespace carom::host::demo {
+
+using namespace math;
+
+std::unique_ptr<Demo> make_wrecking_ball();
+std::unique_ptr<Demo> make_pyramids();
+std::unique_ptr<Demo> make_collision_lab2();
+std::unique_ptr<Demo> make_collision_lab3();
+std::unique_ptr<Demo> make_hovercraft();
+std::unique_ptr<Demo> make_target();
+std::unique_ptr<Demo> make_mass_properties();
+std::unique_ptr<Demo> make_race_ship();
+std::unique_ptr<Demo> make_race_spring();
+std::unique_ptr<Demo> make_race_orbit();
+std::unique_ptr<Demo> make_tumbling_brick();
+std::unique_ptr<Demo> make_intermediate_axis();
+
+/// What `again()` of every demo is: another one like it.
+template <class DemoType, class Base>
+class Repeatable : public Base {
+ public:
+  std::unique_ptr<Demo> again() const override { return std::make_unique<DemoType>(); }
+};
+
+// One palette, chosen to stay apart in shade for the colour-blind.
+inline constexpr std::uint32_t blue = 0x3b7dd8, orange = 0xe8833a, green = 0x3fa66b, red = 0xd1495b, gold = 0xe2b93b,
+                               violet = 0x8a63c9, teal = 0x2f9c95, steel = 0x8d99a6, dark = 0x4a5560, sand = 0xcbb994;
+constexpr std::uint32_t pen(std::uint32_t color, std::uint32_t alpha = 0xff) { return color << 8 | alpha; }
+
+std::string format(const char* pattern, double a, double b = 0, double c = 0, double d = 0, double e = 0, double f = 0);
+
+}  // namespace carom::host::demo

@@ -1,0 +1,92 @@
+// One session between a page and the engine (docs/protocol.md): messages in, messages out, time from the carrier.
+// No threads, sockets, files or clocks of its own: the same object serves a WebSocket, a Worker and a test.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/host/messages.h"
+#include "apps/host/simulation.h"
+#include "carom/ode/clock.h"
+
+namespace carom::host {
+
+struct Message {
+  bool text = true;
+  std::string data;
+};
+
+/// A scene in the menu beside the demos; its file is read when somebody opens it.
+struct MenuScene {
+  Declaration summary;  ///< id, title, summary, group, chapter, dimension
+  std::function<core::Result<std::unique_ptr<Demo>>()> load;
+};
+
+struct HostOptions {
+  int threads = 1;                    ///< of every world
+  double key_interval = 2;            ///< s between key frames
+  double stats_interval = 0.25;       ///< s between stats blocks
+  std::size_t max_message = 4 << 20;  ///< bytes of one message from the page
+  std::size_t max_outbox = 64 << 20;  ///< bytes waiting for the carrier; beyond it answers are dropped
+  std::vector<MenuScene> scenes;
+  /// Reads a scene's text for `open_scene`; empty: refused.
+  std::function<core::Result<std::unique_ptr<Demo>>(std::string_view name, std::string_view text)> parse_scene;
+};
+
+class SimulationHost {
+ public:
+  explicit SimulationHost(HostOptions options = {});
+  ~SimulationHost();
+  SimulationHost(const SimulationHost&) = delete;
+  SimulationHost& operator=(const SimulationHost&) = delete;
+
+  /// A text message of the page. Whatever it holds, the host answers or says what was wrong.
+  void receive(std::string_view text);
+  /// Pages send no binary messages; this only says so.
+  void receive_binary();
+  /// `real_seconds` have passed since the last call: steps, and puts a frame into the outbox where one is due.
+  void advance(double real_seconds);
+  /// The oldest waiting message; false where there is none.
+  bool take(Message& message);
+  /// Lets a carrier refuse a message itself (too long, wrong kind).
+  void complain(std::string_view message);
+
+  const Simulation* simulation() const { return simulation_.get(); }
+  bool running() const { return running_; }
+
+ private:
+  struct Handlers;
+  friend struct Handlers;
+
+  core::Status open(core::Result<std::unique_ptr<Simulation>> opened);
+  void begin();
+  void restart();
+  void send(std::string text);
+  void send_binary(std::string bytes);
+  void send_status();
+  void send_meshes();
+  bool step_once();
+  void send_changes();
+  void frame(bool key);
+
+  HostOptions options_;
+  std::unique_ptr<Simulation> simulation_;
+  ode::FixedClock clock_;
+  std::deque<Message> outbox_;
+  std::size_t outbox_bytes_ = 0;
+  std::vector<BodyPlace> sent_, now_, moved_;
+  std::vector<Sample> samples_;
+  bool running_ = false, restart_wanted_ = false, key_wanted_ = false, frame_wanted_ = false;
+  bool greeted_ = false;
+  double speed_ = 1;
+  std::uint32_t sequence_ = 0, acknowledged_ = 0;
+  std::size_t meshes_sent_ = 0;
+  double since_key_ = 0, since_stats_ = 0;
+  double real_window_ = 0, simulated_window_ = 0, real_time_factor_ = 1;
+};
+
+}  // namespace carom::host

@@ -1,0 +1,313 @@
+#include "apps/host/messages.h"
+
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "carom/carom.h"
+
+namespace carom::host {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string text_of(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+Json vector_json(math::Vec3d v) { return Json::array({v.x, v.y, v.z}); }
+Json points_json(const std::vector<math::Vec2f>& points) {
+  Json out = Json::array();
+  for (const math::Vec2f p : points) out.push_back({p.x, p.y});
+  return out;
+}
+
+Json summary_json(const Declaration& d) {
+  return {{"id", d.id},       {"title", d.title},     {"summary", d.summary},
+          {"group", d.group}, {"chapter", d.chapter}, {"dimension", d.dimension}};
+}
+
+Json parameter_json(const Parameter& p) {
+  return {{"name", p.name},
+          {"label", p.label},
+          {"unit", p.unit},
+          {"display_unit", p.display_unit.empty() ? p.unit : p.display_unit},
+          {"description", p.description},
+          {"minimum", p.minimum},
+          {"maximum", p.maximum},
+          {"step", p.step},
+          {"value", p.value},
+          {"live", p.live}};
+}
+
+Json plot_json(const Plot& plot) {
+  Json series = Json::array();
+  for (const Series& s : plot.series) {
+    Json entry = {{"name", s.name}, {"style", s.style == Series::Style::line ? "line" : "points"}};
+    if (!s.points.empty()) {
+      Json points = Json::array();
+      for (const Vec2d p : s.points) points.push_back({p.x, p.y});
+      entry["points"] = std::move(points);
+    }
+    series.push_back(std::move(entry));
+  }
+  return {{"title", plot.title},
+          {"x", {{"label", plot.x.label}, {"unit", plot.x.unit}}},
+          {"y", {{"label", plot.y.label}, {"unit", plot.y.unit}}},
+          {"series", std::move(series)}};
+}
+
+Json declaration_fields(const Declaration& d) {
+  Json camera = {{"position", vector_json(d.camera.position)}, {"target", vector_json(d.camera.target)}};
+  if (d.dimension == 2)
+    camera["height"] = d.camera.height;
+  else
+    camera["field_of_view"] = d.camera.field_of_view;
+  if (d.camera.follow >= 0) camera["follow"] = d.camera.follow;
+  Json parameters = Json::array(), plots = Json::array(), inputs = Json::array();
+  for (const Parameter& p : d.parameters) parameters.push_back(parameter_json(p));
+  for (const Plot& p : d.plots) plots.push_back(plot_json(p));
+  for (const Input& i : d.inputs)
+    inputs.push_back({{"action", i.action},
+                      {"label", i.label},
+                      {"keys", i.keys},
+                      {"kind", i.press ? "press" : "hold"},
+                      {"value", i.value}});
+  return {{"demo", d.id},
+          {"title", d.title},
+          {"summary", d.summary},
+          {"group", d.group},
+          {"chapter", d.chapter},
+          {"text", d.text},
+          {"dimension", d.dimension},
+          {"dt", d.dt},
+          {"camera", std::move(camera)},
+          {"parameters", std::move(parameters)},
+          {"plots", std::move(plots)},
+          {"inputs", std::move(inputs)}};
+}
+
+std::string color_text(std::uint32_t rgb) {
+  char text[8];
+  std::snprintf(text, sizeof text, "#%06x", unsigned(rgb & 0xffffff));
+  return text;
+}
+
+Json shape_json(const ShapeView& s) {
+  const math::Transform3f& t = s.local;
+  Json out = {{"kind", name_of(s.kind)}, {"local", {t.p.x, t.p.y, t.p.z, t.q.x, t.q.y, t.q.z, t.q.w}}};
+  if (s.sensor) out["sensor"] = true;
+  if (s.look) {
+    out["color"] = color_text(s.look);
+    out["opacity"] = float(s.look >> 24) / 255.0f;
+  }
+  switch (s.kind) {
+    case ShapeKind::sphere:
+    case ShapeKind::circle:
+      out["radius"] = s.radius;
+      break;
+    case ShapeKind::capsule:
+      out["radius"] = s.radius;
+      out["half_length"] = s.size.y;
+      break;
+    case ShapeKind::box:
+      out["half_extents"] = {s.size.x, s.size.y, s.size.z};
+      out["radius"] = s.radius;
+      break;
+    case ShapeKind::cylinder:
+    case ShapeKind::cone:
+      out["radius"] = s.radius;
+      out["half_height"] = s.size.y;
+      break;
+    case ShapeKind::plane:
+      out["normal"] = {s.size.x, s.size.y, s.size.z};
+      break;
+    case ShapeKind::mesh:
+      out["mesh"] = s.mesh;
+      break;
+    case ShapeKind::polygon:
+      out["points"] = points_json(s.points);
+      out["radius"] = s.radius;
+      break;
+    case ShapeKind::segment:
+      out["points"] = points_json(s.points);
+      break;
+    case ShapeKind::chain:
+      out["points"] = points_json(s.points);
+      out["loop"] = s.loop;
+      break;
+  }
+  return out;
+}
+
+Json body_json(const BodyView& body) {
+  constexpr const char* types[] = {"fixed", "kinematic", "dynamic"};
+  Json shapes = Json::array();
+  for (const ShapeView& shape : body.shapes) shapes.push_back(shape_json(shape));
+  Json out = {{"id", body.id},
+              {"name", body.name},
+              {"type", types[int(body.type)]},
+              {"position", vector_json(body.position)},
+              {"rotation", {body.rotation.w, body.rotation.x, body.rotation.y, body.rotation.z}},
+              {"shapes", std::move(shapes)}};
+  if (body.color) out["color"] = color_text(body.color);
+  return out;
+}
+
+Json bodies_json(std::span<const BodyView> bodies) {
+  Json out = Json::array();
+  for (const BodyView& body : bodies) out.push_back(body_json(body));
+  return out;
+}
+
+/// Little-endian numbers one after another.
+class Writer {
+ public:
+  explicit Writer(std::size_t size) { bytes_.reserve(size); }
+  template <class T>
+  void put(T value) {
+    static_assert(std::endian::native == std::endian::little, "Carom runs on little-endian machines");
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes_.append(raw, sizeof value);
+  }
+  void put(math::Vec3f v) {
+    put(v.x);
+    put(v.y);
+    put(v.z);
+  }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+std::int16_t quantised(float x) {
+  const float scaled = math::clamp(x, -1.0f, 1.0f) * 32767.0f;
+  return std::int16_t(scaled < 0 ? scaled - 0.5f : scaled + 0.5f);
+}
+
+}  // namespace
+
+std::string welcome_message(const char* engine, std::span<const Declaration> demos) {
+  Json list = Json::array();
+  for (const Declaration& demo : demos) list.push_back(summary_json(demo));
+  return text_of({{"type", "welcome"},
+                  {"protocol", protocol_version},
+                  {"version", CAROM_VERSION_STRING},
+                  {"engine", engine},
+                  {"demos", std::move(list)}});
+}
+
+std::string opened_message(const Declaration& declaration) {
+  Json out = declaration_fields(declaration);
+  out["type"] = "opened";
+  return text_of(out);
+}
+
+std::string declaration_json(const Declaration& declaration, int indent) {
+  Json out = declaration_fields(declaration);
+  out["duration"] = declaration.duration;
+  return text_of(out, indent);
+}
+
+std::string scene_message(const Declaration& declaration, std::span<const BodyView> bodies) {
+  Json out = {{"type", "scene"}, {"bodies", bodies_json(bodies)}};
+  if (declaration.ground) out["ground"] = {{"level", *declaration.ground}};
+  return text_of(out);
+}
+
+std::string bodies_message(std::span<const BodyView> added, std::span<const std::uint32_t> removed) {
+  return text_of({{"type", "bodies"},
+                  {"add", bodies_json(added)},
+                  {"remove", std::vector<std::uint32_t>(removed.begin(), removed.end())}});
+}
+
+std::string grabbed_message(std::int64_t pointer, const GrabAnswer& answer) {
+  return text_of(
+      {{"type", "grabbed"}, {"pointer", pointer}, {"body", answer.body}, {"point", vector_json(answer.point)}});
+}
+
+std::string values_message(const Declaration& declaration, std::span<const double> values) {
+  Json list = Json::object();
+  for (std::size_t i = 0; i < declaration.parameters.size() && i < values.size(); ++i)
+    list[declaration.parameters[i].name] = values[i];
+  return text_of({{"type", "values"}, {"values", std::move(list)}});
+}
+
+std::string error_message(std::string_view message) {
+  return text_of({{"type", "error"}, {"message", std::string(message)}});
+}
+
+std::string status_message(const StatusFields& fields) {
+  Json out = {{"type", "status"},
+              {"running", fields.running},
+              {"speed", fields.speed},
+              {"time", fields.time},
+              {"step", fields.step}};
+  if (!fields.message.empty()) out["message"] = std::string(fields.message);
+  return text_of(out);
+}
+
+std::string frame_message(const FrameFields& f) {
+  Writer out(56 + 24 * f.bodies.size() + 20 * f.samples.size() + 28 * f.lines.size() + 64);
+  out.put(std::uint8_t{2});
+  out.put(std::uint8_t((f.key ? 1 : 0) | (f.stats ? 2 : 0)));
+  out.put(std::uint16_t(f.dimension));
+  out.put(f.sequence);
+  out.put(f.step);
+  out.put(std::uint32_t(f.bodies.size()));
+  out.put(std::uint32_t(f.samples.size()));
+  out.put(std::uint32_t(f.lines.size()));
+  out.put(f.time);
+  out.put(f.origin.x);
+  out.put(f.origin.y);
+  out.put(f.origin.z);
+  for (const BodyPlace& body : f.bodies) {
+    out.put(body.id | (body.awake ? 0u : 0x80000000u));
+    out.put(math::Vec3f(body.position - f.origin));
+    out.put(quantised(body.rotation.x));
+    out.put(quantised(body.rotation.y));
+    out.put(quantised(body.rotation.z));
+    out.put(quantised(body.rotation.w));
+  }
+  for (const Sample& sample : f.samples) {
+    out.put(std::uint16_t(sample.plot));
+    out.put(std::uint16_t(sample.series));
+    out.put(sample.x);
+    out.put(sample.y);
+  }
+  for (const Line& line : f.lines) {
+    out.put(math::Vec3f(line.a - f.origin));
+    out.put(math::Vec3f(line.b - f.origin));
+    out.put(line.rgba);
+  }
+  if (f.stats) {
+    const FrameStats& s = *f.stats;
+    for (const std::uint32_t n : {s.bodies, s.awake, s.contacts, s.joints, s.islands, s.threads}) out.put(n);
+    out.put(s.step_ms);
+    out.put(s.real_time_factor);
+    out.put(s.kinetic);
+    out.put(s.potential);
+    out.put(s.hash);
+    out.put(s.worst_penetration);
+  }
+  return out.take();
+}
+
+std::string mesh_message(std::uint32_t id, const Mesh& mesh) {
+  Writer out(16 + 12 * mesh.vertices.size() + 4 * mesh.indices.size());
+  out.put(std::uint8_t{1});
+  out.put(std::uint8_t{0});
+  out.put(std::uint16_t{0});
+  out.put(id);
+  out.put(std::uint32_t(mesh.vertices.size()));
+  out.put(std::uint32_t(mesh.indices.size()));
+  for (const math::Vec3f v : mesh.vertices) out.put(v);
+  for (const std::uint32_t i : mesh.indices) out.put(i);
+  return out.take();
+}
+
+}  // namespace carom::host

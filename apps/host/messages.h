@@ -1,0 +1,53 @@
+// The two sides of docs/protocol.md: declarations and bodies as JSON, motion as binary frames.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/host/simulation.h"
+
+namespace carom::host {
+
+inline constexpr int protocol_version = 1;
+
+/// JSON text, always valid UTF-8.
+std::string welcome_message(const char* engine, std::span<const Declaration> demos);
+std::string opened_message(const Declaration& declaration);
+std::string scene_message(const Declaration& declaration, std::span<const BodyView> bodies);
+std::string bodies_message(std::span<const BodyView> added, std::span<const std::uint32_t> removed);
+std::string grabbed_message(std::int64_t pointer, const GrabAnswer& answer);
+std::string values_message(const Declaration& declaration, std::span<const double> values);
+std::string error_message(std::string_view message);
+struct StatusFields {
+  bool running = false;
+  double speed = 1, time = 0;
+  std::uint64_t step = 0;
+  std::string_view message;
+};
+std::string status_message(const StatusFields& fields);
+/// The declaration as `carom list --json` prints it.
+std::string declaration_json(const Declaration& declaration, int indent);
+
+struct FrameStats {
+  std::uint32_t bodies = 0, awake = 0, contacts = 0, joints = 0, islands = 0, threads = 1;
+  float step_ms = 0, real_time_factor = 0;
+  double kinetic = 0, potential = 0;
+  std::uint64_t hash = 0;
+  double worst_penetration = 0;
+};
+struct FrameFields {
+  bool key = false;
+  const FrameStats* stats = nullptr;
+  int dimension = 3;
+  std::uint32_t sequence = 0, step = 0;
+  double time = 0;
+  math::Vec3d origin{};
+  std::span<const BodyPlace> bodies;
+  std::span<const Sample> samples;
+  std::span<const Line> lines;
+};
+std::string frame_message(const FrameFields& fields);
+std::string mesh_message(std::uint32_t id, const Mesh& mesh);
+
+}  // namespace carom::host

@@ -1,0 +1,25 @@
+#include "apps/host/registry.h"
+
+#include "apps/host/demos/demos.h"
+
+namespace carom::host {
+
+namespace {
+constexpr DemoFactory factories[] = {
+    demo::make_wrecking_ball, demo::make_pyramids,  demo::make_collision_lab3,  demo::make_collision_lab2,
+    demo::make_hovercraft,    demo::make_target,    demo::make_mass_properties, demo::make_race_orbit,
+    demo::make_race_spring,   demo::make_race_ship, demo::make_tumbling_brick,  demo::make_intermediate_axis,
+};
+}  // namespace
+
+std::span<const DemoFactory> demos() { return factories; }
+
+std::unique_ptr<Demo> make_demo(std::string_view id) {
+  for (const DemoFactory make : factories) {
+    std::unique_ptr<Demo> demo = make();
+    if (demo->declaration().id == id) return demo;
+  }
+  return nullptr;
+}
+
+}  // namespace carom::host

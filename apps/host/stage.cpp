@@ -1,0 +1,171 @@
+#include "apps/host/stage.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace carom::host {
+
+StageBase::StageBase(const Declaration& declaration, int threads) : declaration_(declaration), threads_(threads) {
+  for (const Parameter& parameter : declaration.parameters) state.values.push_back(parameter.value);
+  state.inputs.resize(declaration.inputs.size());
+  state.presses.resize(declaration.inputs.size());
+}
+
+double StageBase::value(std::string_view name) {
+  for (std::size_t i = 0; i < declaration_.parameters.size(); ++i)
+    if (declaration_.parameters[i].name == name) return state.values[i];
+  fail({"demo " + declaration_.id + " asks for a parameter it does not declare: " + std::string(name)});
+  return 0;
+}
+
+void StageBase::set_value(std::string_view name, double value) {
+  for (std::size_t i = 0; i < declaration_.parameters.size(); ++i) {
+    if (declaration_.parameters[i].name != name) continue;
+    state.values_changed = state.values_changed || state.values[i] != value;
+    state.values[i] = value;
+  }
+}
+
+double StageBase::input(std::string_view action) const {
+  for (std::size_t i = 0; i < declaration_.inputs.size(); ++i)
+    if (declaration_.inputs[i].action == action) return state.inputs[i];
+  return 0;
+}
+
+int StageBase::presses(std::string_view action) {
+  for (std::size_t i = 0; i < declaration_.inputs.size(); ++i)
+    if (declaration_.inputs[i].action == action) return std::exchange(state.presses[i], 0);
+  return 0;
+}
+
+void StageBase::sample(int plot, int series, double x, double y) {
+  if (!math::is_finite(x) || !math::is_finite(y)) return;
+  if (state.samples.size() >= max_samples) {
+    // Nobody collects: thin what waits instead of growing.
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < state.samples.size(); i += 2) state.samples[kept++] = state.samples[i];
+    state.samples.resize(kept);
+  }
+  state.samples.push_back({plot, series, x, y});
+}
+
+void StageBase::line(math::Vec3d a, math::Vec3d b, std::uint32_t rgba) {
+  if (state.lines.size() < max_lines && math::is_finite(a) && math::is_finite(b)) state.lines.push_back({a, b, rgba});
+}
+
+void StageBase::say(std::string message) {
+  if (message == state.message) return;
+  state.message = std::move(message);
+  state.message_changed = true;
+}
+
+void StageBase::fail(const core::Error& error) {
+  if (state.status.ok()) state.status = error;
+}
+
+template <class D>
+void Stage<D>::start(rigid::WorldDef<D> definition) {
+  if (!definition.scheduler) definition.threads = threads_;
+  check(rigid::World<D>::check(definition));
+  for (const Actor& actor : actors_) removed_.push_back(actor.id);
+  actors_.clear();
+  own_ = rigid::World<D>(definition);
+  world_ = &own_;
+}
+
+template <class D>
+void Stage<D>::use(rigid::World<D>& world) {
+  world_ = &world;
+  adopt_all(false);
+}
+
+template <class D>
+rigid::BodyId Stage<D>::add(const rigid::BodyDef<D>& definition, std::initializer_list<Part> parts,
+                            std::uint32_t color) {
+  const BodyId body = keep(world_->create_body(definition));
+  if (!body) return body;
+  for (const Part& part : parts) keep(world_->add_shape(body, part.shape, part.definition));
+  actors_.push_back({body, next_id_++, color});
+  added_.push_back(actors_.back().id);
+  return body;
+}
+
+template <class D>
+rigid::BodyId Stage<D>::add(const rigid::BodyDef<D>& definition, const typename D::Shape& shape,
+                            const rigid::ShapeDef<D>& shape_definition, std::uint32_t color) {
+  return add(definition, {{shape, shape_definition}}, color);
+}
+
+template <class D>
+void Stage<D>::remove(BodyId body) {
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    if (!(actors_[i].body == body)) continue;
+    const auto waiting = std::find(added_.begin(), added_.end(), actors_[i].id);
+    if (waiting != added_.end())
+      added_.erase(waiting);
+    else
+      removed_.push_back(actors_[i].id);
+    actors_.erase(actors_.begin() + std::ptrdiff_t(i));
+    break;
+  }
+  check(world_->destroy_body(body));
+}
+
+template <class D>
+void Stage<D>::adopt_all(bool keep_known) {
+  if (!keep_known) {
+    for (const Actor& actor : actors_) removed_.push_back(actor.id);
+    actors_.clear();
+  }
+  std::vector<BodyId> all;
+  world_->bodies(all);
+  for (const BodyId body : all) {
+    bool known = false;
+    for (const Actor& actor : actors_) known = known || actor.body == body;
+    if (known) continue;
+    actors_.push_back({body, next_id_++, 0});
+    added_.push_back(actors_.back().id);
+  }
+}
+
+template <class D>
+void Stage<D>::set_color(BodyId body, std::uint32_t color) {
+  for (Actor& actor : actors_)
+    if (actor.body == body) actor.color = color;
+}
+
+template <class D>
+rigid::BodyId Stage<D>::floor(double level, const rigid::Material& material) {
+  rigid::BodyDef<D> definition;
+  definition.type = rigid::BodyType::fixed;
+  definition.position.y = level;
+  definition.name = "ground";
+  rigid::ShapeDef<D> shape;
+  shape.material = material;
+  if constexpr (D::dimension == 2) {
+    shape.local.p.y = -1;
+    return add(definition, geometry::make_box2({200, 1}), shape);
+  } else {
+    return add(definition, geometry::Plane{}, shape);
+  }
+}
+
+template class Stage<rigid::Dim2>;
+template class Stage<rigid::Dim3>;
+
+void Trail::add(math::Vec3d p) {
+  if (!points_.empty() && math::distance_squared(points_.back(), p) < spacing_ * spacing_) return;
+  if (points_.size() >= limit_) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points_.size(); i += 2) points_[kept++] = points_[i];
+    points_.resize(kept);
+    spacing_ *= 2;
+  }
+  points_.push_back(p);
+}
+
+void Trail::draw(StageBase& stage, std::uint32_t rgba) const {
+  for (std::size_t i = 1; i < points_.size(); ++i) stage.line(points_[i - 1], points_[i], rgba);
+}
+
+}  // namespace carom::host
