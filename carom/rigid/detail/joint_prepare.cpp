@@ -196,6 +196,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
     record.dynamic_a = true;
     record.inverse_mass_a = motion.inverse_mass;
     record.inverse_inertia_a = motion.world_inverse_inertia;
+    record.turning_inertia |= motion.gyroscopic;
   } else if constexpr (D::dimension == 3) {
     record.inverse_inertia_a = Mat3f::zero();
   }
@@ -204,6 +205,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
     record.dynamic_b = true;
     record.inverse_mass_b = motion.inverse_mass;
     record.inverse_inertia_b = motion.world_inverse_inertia;
+    record.turning_inertia |= motion.gyroscopic;
   } else if constexpr (D::dimension == 3) {
     record.inverse_inertia_b = Mat3f::zero();
   }

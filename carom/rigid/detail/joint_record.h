@@ -27,6 +27,7 @@ struct JointRecord {
   std::int32_t joint = none;                  ///< slot
   std::uint8_t parts = 0;
   bool dynamic_a = false, dynamic_b = false;  ///< only dynamic bodies are written to
+  bool turning_inertia = false;               ///< a body's inertia depends on where it has turned within the step
   float inverse_mass_a = 0, inverse_mass_b = 0;
   typename D::Inertia inverse_inertia_a{}, inverse_inertia_b{};
 };

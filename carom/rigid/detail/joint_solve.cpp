@@ -31,8 +31,24 @@ void save_pair(const BodyPair<D>& pair, const JointRecord<D>& record, SolverBody
   }
 }
 
+inline void turn_inertia(Mat3f& inverse_inertia, const BodyMotion<Dim3>& motion, const Quatf& turn) {
+  if (!motion.gyroscopic || turn.w > 0.99999f) return;  // less than half a degree
+  const Mat3f r = to_matrix(turn);
+  inverse_inertia = r * motion.world_inverse_inertia * transpose(r);
+}
+/// Space only: brings the record's tensors to the attitude of this substep.
+inline void turn_inertias(JointRecord<Dim3>& record, const StepContext<Dim3>& context) {
+  const auto& motion = context.world.bodies.motion;
+  if (record.dynamic_a)
+    turn_inertia(record.inverse_inertia_a, motion[std::size_t(record.body_a)],
+                 context.bodies[record.body_a].delta_rotation);
+  if (record.dynamic_b)
+    turn_inertia(record.inverse_inertia_b, motion[std::size_t(record.body_b)],
+                 context.bodies[record.body_b].delta_rotation);
+}
+
 /// Runs `act` on the records of a colour: side by side, but for the overflow one after the other.
-template <class D, class Act>
+template <bool first_of_substep, class D, class Act>
 void for_each_record(StepContext<D>& context, int color, const Act& act) {
   JointStore<D>& joints = context.world.joints;
   const int first = joints.color_begin[std::size_t(color)], last = joints.color_begin[std::size_t(color) + 1];
@@ -40,6 +56,9 @@ void for_each_record(StepContext<D>& context, int color, const Act& act) {
   const auto run = [&](int begin, int end, int) {
     for (int i = first + begin; i < first + end; ++i) {
       auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
+      if constexpr (first_of_substep && D::dimension == 3) {
+        if (record.turning_inertia) turn_inertias(record, context);
+      }
       BodyPair<D> pair;
       load_pair(pair, record, context.bodies);
       for_each_block(record, [&](JointPart, auto& block) { act(pair, block); });
@@ -56,7 +75,7 @@ void for_each_record(StepContext<D>& context, int color, const Act& act) {
 
 template <class D>
 void warm_start_joints(StepContext<D>& context, int color) {
-  for_each_record(context, color, [](BodyPair<D>& pair, auto& block) { block.warm_start(pair); });
+  for_each_record<true>(context, color, [](BodyPair<D>& pair, auto& block) { block.warm_start(pair); });
 }
 
 template <class D>
@@ -64,7 +83,7 @@ void solve_joints(StepContext<D>& context, int color, bool use_bias) {
   const Softness& soft = context.joint_softness;
   const JointPass pass{
       context.h, context.inverse_h, use_bias, {soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale}};
-  for_each_record(context, color, [&pass](BodyPair<D>& pair, auto& block) { block.solve(pair, pass); });
+  for_each_record<false>(context, color, [&pass](BodyPair<D>& pair, auto& block) { block.solve(pair, pass); });
 }
 
 template <class D>
