@@ -216,6 +216,7 @@ FlightRow make_row(const FlightCase& flight, const FreeBody& body, double time, 
   row.density = a.state.density;
   row.mach = math::length(a.velocity) / a.state.speed_of_sound;
   row.drag = math::length(a.drag);
+  row.drag_body = math::inverse_rotate(state.attitude, a.drag);
   row.gravity = math::length(s.gravitation);
   row.twice_rotational_energy = twice_rotational_energy(body, state);
   row.angular_momentum = math::length(angular_momentum(body, state));

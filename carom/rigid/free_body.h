@@ -113,6 +113,7 @@ struct FlightRow {
   double density = 0;                  ///< kg/m³
   double mach = 0;
   double drag = 0;                     ///< N
+  math::Vec3d drag_body{};             ///< N, body axes
   double gravity = 0;                  ///< m/s², gravitation without the centrifugal part
   double twice_rotational_energy = 0;  ///< J·2
   double angular_momentum = 0;         ///< kg·m²/s
