@@ -23,6 +23,7 @@ struct GraphPlace {
 struct GraphColor {
   std::vector<std::int32_t> manifolds;  ///< indices into the manifold store
   std::vector<std::int32_t> joints;     ///< slots of joints
+  int extra = 0;                        ///< manifolds that bounce or roll with resistance
 };
 
 /// Persistent greedy colouring, first fit. Constraints between two dynamic bodies take colours from below, those with

@@ -59,11 +59,27 @@ void fill_motor(AxisLaw& law, const JointMotor& motor, float h) {
   law.speed = motor.speed;
   law.max_motor_impulse = motor.max_force * h;
 }
-void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, float h) {
+/// `stiffer`: √(mass that moves with the coordinate once the rest of the joint holds / mass of the row alone). A user's
+/// frequency is that of the whole joint: a rod on a hinge swings about the hinge, not about its own centre.
+void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, float h, float stiffer = 1) {
   if (!(spring.hertz > 0)) return;
   law.flags |= AxisLaw::spring;
   law.rest = rest;
-  law.response = spring_response(spring.hertz, spring.damping_ratio, h);
+  law.response = spring_response(stiffer * spring.hertz, stiffer * spring.damping_ratio, h);
+}
+float mass_ratio_root(float row_mobility, float held_mobility) {
+  if (!(row_mobility > 0)) return 1;
+  return math::sqrt(row_mobility / max(held_mobility, 0.01f * row_mobility));
+}
+/// A pair at rest with the record's masses.
+template <class D>
+BodyPair<D> pair_of(const JointRecord<D>& record) {
+  BodyPair<D> pair;
+  pair.inverse_mass_a = record.inverse_mass_a;
+  pair.inverse_mass_b = record.inverse_mass_b;
+  pair.inverse_inertia_a = record.inverse_inertia_a;
+  pair.inverse_inertia_b = record.inverse_inertia_b;
+  return pair;
 }
 template <class Axis>
 void remember(AxisLaw& law, const Axis& memory) {
@@ -90,7 +106,16 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
   AxisLaw& law = block.law;
   if (const auto* slider = std::get_if<SliderJointDef<D>>(&data.definition)) {
     block.between_anchors = false;
-    fill_spring(law, slider->spring, slider->target_translation, h);
+    float stiffer = 1;
+    if (slider->spring.hertz > 0) {
+      const BodyPair<D> pair = pair_of(record);
+      const auto row = block.row(pair);
+      const auto turns = pair.inverse_inertia_a * row.lever_a + pair.inverse_inertia_b * row.lever_b;
+      const float mobility = pair.row_inverse_mass(row.lever_a, row.lever_b);
+      const auto locked = pair.inverse_inertia_a + pair.inverse_inertia_b;
+      stiffer = mass_ratio_root(mobility, mobility - inner(turns, solve_mobility(locked, turns)));
+    }
+    fill_spring(law, slider->spring, slider->target_translation, h, stiffer);
     fill_motor(law, slider->motor, h);
     fill_limit(law, slider->limit);
   } else if (const auto* distance = std::get_if<DistanceJointDef<D>>(&data.definition)) {
@@ -98,11 +123,7 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
     fill_motor(law, distance->motor, h);
     fill_limit(law, distance->limit);
     if (data.internal) {
-      BodyPair<D> pair;
-      pair.inverse_mass_a = record.inverse_mass_a;
-      pair.inverse_mass_b = record.inverse_mass_b;
-      pair.inverse_inertia_a = record.inverse_inertia_a;
-      pair.inverse_inertia_b = record.inverse_inertia_b;
+      const BodyPair<D> pair = pair_of(record);
       const auto row = block.row(pair);
       const double mobility = double(pair.row_inverse_mass(row.lever_a, row.lever_b));
       law.flags |= AxisLaw::spring;
@@ -123,12 +144,24 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
 }
 
 template <class D>
-void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
+void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at,
+                const JointRecord<D>& record, float h) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
   block.law.flags = AxisLaw::periodic;
   if (const auto* hinge = std::get_if<HingeJointDef<D>>(&data.definition)) {
-    fill_spring(block.law, hinge->spring, hinge->target_angle, h);
+    float stiffer = 1;
+    if (hinge->spring.hertz > 0) {
+      const BodyPair<D> pair = pair_of(record);
+      float unused;
+      const auto n = block.row(pair, false, unused);
+      const auto turn_a = pair.inverse_inertia_a * n, turn_b = pair.inverse_inertia_b * n;
+      const float mobility = inner(n, turn_a) + inner(n, turn_b);
+      const auto anchors = cross(turn_b, at.arm_b) + cross(turn_a, at.arm_a);
+      const auto held = solve_mobility(point_mobility(pair, at.arm_a, at.arm_b), anchors);
+      stiffer = mass_ratio_root(mobility, mobility - dot(anchors, held));
+    }
+    fill_spring(block.law, hinge->spring, hinge->target_angle, h, stiffer);
     fill_motor(block.law, hinge->motor, h);
     fill_limit(block.law, hinge->limit);
   } else if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition)) {
@@ -222,7 +255,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
       if (part == part_cone)
         fill_cone(block, data, at);
       else
-        fill_twist(block, data, at, h);
+        fill_twist(block, data, at, record, h);
     } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
       if (part == part_friction) {
         block.friction = true;

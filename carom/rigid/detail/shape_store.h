@@ -16,6 +16,7 @@ enum ShapeFlag : std::uint8_t {
   shape_many = 8,        ///< collides with several manifolds
   shape_moved = 16,      ///< its fat bounds changed: look for new pairs
   shape_round = 32,      ///< a sphere or circle
+  shape_outgrown = 64,   ///< left its fat bounds in this step
 };
 
 /// The tree in which a shape is: after its body's type.
@@ -30,7 +31,8 @@ template <class D> struct ShapeRecord {
   std::int8_t tree = tree_none;          ///< TreeIndex
   std::uint8_t flags = 0;                ///< ShapeFlag
   bool at_origin = true;                 ///< local is the identity
-  float outer_extent = 0;                ///< m: farthest point from the body's centre of mass
+  float outer_extent = 0;                ///< m: farthest point from the origin of its own frame
+  float inner_extent = 0;                ///< m: half its smallest thickness
   float margin = 0;                      ///< m by which fat bounds exceed the tight ones
   float density = 0;                     ///< kg/m³ or kg/m²
   Material material{};

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "carom/core/hash.h"
+#include "carom/rigid/detail/contact_block.h"
 #include "carom/rigid/detail/contact_store.h"
 #include "carom/rigid/detail/effector_store.h"
 #include "carom/rigid/detail/joint_store.h"
@@ -35,7 +36,9 @@ template <class D> struct WorldImplementation {
   core::TaskScheduler* scheduler = nullptr;
   core::Arena arena;
   StepScratch<D> scratch;
+  ContactKernels<D> kernels;
 
+  int hit_event_shapes = 0;    ///< shapes that want hit events
   std::uint64_t step_count = 0, births = 0;
   double time = 0;
   float last_dt = 0;

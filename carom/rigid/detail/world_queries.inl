@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "carom/geometry/query.h"
+#include "carom/rigid/detail/contacts.h"
 #include "carom/rigid/detail/joint_check.h"
 #include "carom/rigid/detail/world_implementation.h"
 
@@ -15,11 +16,6 @@ template <class D>
 bool query_sees(const ShapeRecord<D>& shape, const QueryFilter& filter) {
   return (shape.flags & shape_sensor) == 0 && (shape.filter.category & filter.mask) != 0 &&
          (filter.category & shape.filter.mask) != 0;
-}
-template <class D>
-typename D::Pose shape_pose(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
-  const typename D::Pose& body = world.bodies.pose[std::size_t(shape.body)];
-  return shape.at_origin ? body : body * shape.local;
 }
 template <class D>
 typename D::Bounds world_bounds(const typename D::Shape& shape, const typename D::Pose& pose) {

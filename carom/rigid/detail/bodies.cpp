@@ -1,0 +1,338 @@
+#include "carom/rigid/detail/bodies.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+template <class D> bool moves(const WorldImplementation<D>& world, std::int32_t body) {
+  return body != none && world.bodies.record[std::size_t(body)].awake_index != none;
+}
+
+template <class D> void joint_to_graph(WorldImplementation<D>& world, std::int32_t joint) {
+  JointHeader& j = world.joints.headers[std::size_t(joint)];
+  if (j.place.color >= 0) return;
+  j.place = world.graph.add(ConstraintKind::joint, joint, j.body[0], j.body[1], world.bodies);
+}
+template <class D> void joint_from_graph(WorldImplementation<D>& world, std::int32_t joint) {
+  JointHeader& j = world.joints.headers[std::size_t(joint)];
+  if (j.place.color < 0) return;
+  const std::int32_t moved = world.graph.remove(ConstraintKind::joint, j.place, j.body[0], j.body[1], world.bodies);
+  if (moved != none) world.joints.headers[std::size_t(moved)].place = j.place;
+  j.place = {};
+}
+
+Mat3f world_inverse(const BodyMotion<Dim3>& m, const Quatf& q, std::uint8_t locks) {
+  if (m.inverse_inertia == Mat3f::zero()) return Mat3f::zero();
+  const Mat3f r = to_matrix(q);
+  const int locked = locks >> 3 & 7;
+  if (locked == 7) return Mat3f::zero();
+  if (locked == 0) {
+    const Mat3f i = r * m.inverse_inertia * transpose(r);
+    // Symmetric to the last bit, so that both bodies of a pair see the same.
+    const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
+    return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
+  }
+  // Only the free axes turn: the inverse of that part of the tensor.
+  Mat3f i = r * m.inertia * transpose(r);
+  for (int k = 0; k < 3; ++k)
+    if (locked >> k & 1)
+      for (int l = 0; l < 3; ++l) {
+        i.column(k)[l] = k == l ? 1.0f : 0.0f;
+        i.column(l)[k] = k == l ? 1.0f : 0.0f;
+      }
+  i = inverse(i);
+  for (int k = 0; k < 3; ++k)
+    if (locked >> k & 1) i.column(k)[k] = 0;
+  const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
+  return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
+}
+float world_inverse(const BodyMotion<Dim2>& m, const Rot2f&, std::uint8_t) { return m.inverse_inertia; }
+
+void set_inertia(BodyMotion<Dim2>& m, double inertia, std::uint8_t locks) {
+  m.inertia = float(inertia);
+  m.inverse_inertia = inertia > 0 && (locks & 32) == 0 ? float(1 / inertia) : 0;
+}
+void set_inertia(BodyMotion<Dim3>& m, const Mat3d& inertia, std::uint8_t) {
+  m.inertia = Mat3f(inertia);
+  const double scale = (inertia.cx.x + inertia.cy.y + inertia.cz.z) / 3;
+  m.inverse_inertia = scale > 0 ? Mat3f(inverse(inertia / scale) / scale) : Mat3f::zero();
+  const auto off = [&](double x) { return math::abs(x) > 1e-4 * scale; };
+  m.gyroscopic = off(inertia.cx.y) || off(inertia.cx.z) || off(inertia.cy.z) || off(inertia.cx.x - scale) ||
+                 off(inertia.cy.y - scale) || off(inertia.cz.z - scale);
+}
+
+typename Dim2::Bounds placed(const Dim2::Shape& shape, const Pose2& pose) {
+  const geometry::Bounds2f b = geometry::bounds(shape, Transform2f{{}, pose.rotation});
+  return {pose.position + Vec2d(b.low), pose.position + Vec2d(b.high)};
+}
+typename Dim3::Bounds placed(const Dim3::Shape& shape, const Pose3& pose) {
+  const geometry::Bounds3f b = geometry::bounds(shape, Transform3f{{}, pose.rotation});
+  return {pose.position + Vec3d(b.low), pose.position + Vec3d(b.high)};
+}
+
+}  // namespace
+
+template <class D> void activate_body(WorldImplementation<D>& world, std::int32_t body) {
+  BodyRecord& record = world.bodies.record[std::size_t(body)];
+  if (record.awake_index != none || record.type == BodyType::fixed || !record.enabled() ||
+      (record.flags & body_quarantined) != 0)
+    return;
+  record.flags |= body_awake;
+  record.awake_index = std::int32_t(world.bodies.awake.size());
+  world.bodies.awake.push_back(body);
+  update_world_inertia(world, body);
+  for (std::int32_t key = record.first_contact; key != none; key = world.contacts.at(key >> 1).next[key & 1])
+    activate_contact(world, key >> 1);
+  for (std::int32_t key = record.first_joint; key != none; key = world.joints.headers[std::size_t(key >> 1)].next[key & 1])
+    joint_to_graph(world, key >> 1);
+}
+
+template <class D> void deactivate_body(WorldImplementation<D>& world, std::int32_t body) {
+  BodyRecord& record = world.bodies.record[std::size_t(body)];
+  if (record.awake_index == none) return;
+  const std::int32_t last = world.bodies.awake.back();
+  world.bodies.awake[std::size_t(record.awake_index)] = last;
+  world.bodies.record[std::size_t(last)].awake_index = record.awake_index;
+  world.bodies.awake.pop_back();
+  record.awake_index = none;
+  record.flags &= std::uint16_t(~body_awake);
+  for (std::int32_t key = record.first_contact; key != none; key = world.contacts.at(key >> 1).next[key & 1])
+    if (!moves(world, world.contacts.at(key >> 1).body[1 - (key & 1)])) deactivate_contact(world, key >> 1);
+  for (std::int32_t key = record.first_joint; key != none;) {
+    const JointHeader& j = world.joints.headers[std::size_t(key >> 1)];
+    const std::int32_t next = j.next[key & 1];
+    if (!moves(world, j.body[1 - (key & 1)])) joint_from_graph(world, key >> 1);
+    key = next;
+  }
+}
+
+template <class D> void wake_body(WorldImplementation<D>& world, std::int32_t body) {
+  BodyRecord& record = world.bodies.record[std::size_t(body)];
+  record.sleep_timer = 0;
+  if (record.awake_index != none || record.type == BodyType::fixed) return;
+  if (!record.enabled()) return;
+  if (record.sleeping_island == none) {
+    activate_body(world, body);
+    return;
+  }
+  const std::int32_t island = record.sleeping_island;
+  SleepingIslands& sleeping = world.sleeping;
+  // The order in which they fell asleep, so that the same history always gives the same world.
+  std::vector<std::int32_t>& members = sleeping.islands[std::size_t(island)].bodies;
+  for (const std::int32_t member : members) {
+    BodyRecord& other = world.bodies.record[std::size_t(member)];
+    other.sleeping_island = none;
+    other.sleep_timer = 0;
+    activate_body(world, member);
+  }
+  members.clear();
+  members.shrink_to_fit();
+  sleeping.free.push_back(island);
+}
+
+template <class D> void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies) {
+  SleepingIslands& sleeping = world.sleeping;
+  std::int32_t island;
+  if (!sleeping.free.empty()) {
+    island = sleeping.free.back();
+    sleeping.free.pop_back();
+  } else {
+    island = std::int32_t(sleeping.islands.size());
+    sleeping.islands.emplace_back();
+  }
+  sleeping.islands[std::size_t(island)].bodies.assign(bodies.begin(), bodies.end());
+  for (const std::int32_t body : bodies) {
+    deactivate_body(world, body);
+    world.bodies.record[std::size_t(body)].sleeping_island = island;
+    SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+    s.linear_velocity = {};
+    s.angular_velocity = {};
+  }
+}
+
+template <class D> void wake_touching(WorldImplementation<D>& world, std::int32_t body) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    const std::int32_t next = c.next[key & 1];
+    if (c.first_manifold != none) wake_body(world, c.body[1 - (key & 1)]);
+    key = next;
+  }
+}
+
+template <class D> void update_world_inertia(WorldImplementation<D>& world, std::int32_t body) {
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  m.world_inverse_inertia = world_inverse(m, world.bodies.pose[std::size_t(body)].rotation,
+                                          world.bodies.record[std::size_t(body)].locks);
+}
+
+template <class D> void pose_from_center(WorldImplementation<D>& world, std::int32_t body) {
+  const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
+  pose.position = m.center - typename D::Position(rotate(pose.rotation, m.local_center));
+}
+template <class D> void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  m.center = world_point(world.bodies.pose[std::size_t(body)], m.local_center);
+}
+
+template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t body) {
+  BodyRecord& record = world.bodies.record[std::size_t(body)];
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  const typename D::Vector old_center = m.local_center;
+  m.inner_extent = 0;
+  m.outer_extent = 0;
+  typename D::MassProperties sum{};
+  bool first = true;
+  for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
+    const ShapeRecord<D>& shape = world.shapes.at(s);
+    if (first || shape.inner_extent < m.inner_extent) m.inner_extent = shape.inner_extent;
+    first = false;
+    if (shape.density > 0 && record.type == BodyType::dynamic) {
+      typename D::MassProperties p = geometry::mass_properties(shape.geometry, double(shape.density));
+      if (!shape.at_origin) {
+        using T = std::conditional_t<D::dimension == 2, Transform2d, Transform3d>;
+        using Q = decltype(T{}.q);
+        p = geometry::transform(p, T{typename D::Position(shape.local.p), Q(shape.local.q)});
+      }
+      if (p.mass > 0) sum = sum.mass > 0 ? geometry::combine(sum, p) : p;
+    }
+  }
+  if ((record.flags & body_mass_given) == 0) {
+    m.mass = record.type == BodyType::dynamic ? float(sum.mass) : 0;
+    m.local_center = typename D::Vector(sum.center);
+    set_inertia(m, sum.inertia, record.locks);
+  } else {
+    using InertiaD = decltype(sum.inertia);
+    set_inertia(m, InertiaD(m.inertia), record.locks);
+  }
+  const bool translates = (record.locks & (D::dimension == 2 ? 3 : 7)) != (D::dimension == 2 ? 3 : 7);
+  m.inverse_mass = record.type == BodyType::dynamic && m.mass > 0 && translates ? 1 / m.mass : 0;
+  if (record.type != BodyType::dynamic) m.inverse_inertia = typename D::Inertia(decltype(sum.inertia){});
+  for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
+    const ShapeRecord<D>& shape = world.shapes.at(s);
+    m.outer_extent = max(m.outer_extent, math::length(shape.local.p - m.local_center) + shape.outer_extent);
+  }
+  center_from_pose(world, body);
+  SolverBody<D>& solver = world.bodies.solver[std::size_t(body)];
+  const typename D::Vector shift = rotate(world.bodies.pose[std::size_t(body)].rotation, m.local_center - old_center);
+  solver.linear_velocity = solver.linear_velocity + cross(solver.angular_velocity, shift);
+  update_world_inertia(world, body);
+}
+
+template <class D> typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  return placed(shape.geometry, shape_pose(world, shape));
+}
+
+template <class D> typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  typename D::Bounds box = geometry::grow(shape_bounds(world, shape), double(shape.margin));
+  using P = typename D::Position;
+  const P ahead = P(world.bodies.solver[std::size_t(shape.body)].linear_velocity) * double(world.last_dt);
+  return {box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
+}
+
+template <class D> void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
+  ShapeRecord<D>& shape = world.shapes.at(s);
+  const BodyRecord& record = world.bodies.record[std::size_t(shape.body)];
+  if (shape.leaf != none || !record.enabled()) return;
+  shape.tree = record.type == BodyType::fixed ? tree_fixed
+                                              : (record.type == BodyType::kinematic ? tree_kinematic : tree_dynamic);
+  shape.leaf = world.shapes.trees[shape.tree].insert(fat_bounds(world, shape), std::uint32_t(s));
+  if ((shape.flags & shape_moved) == 0) {
+    shape.flags |= shape_moved;
+    world.scratch.moved.push_back(s);
+  }
+}
+
+template <class D> void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
+  ShapeRecord<D>& shape = world.shapes.at(s);
+  if (shape.leaf == none) return;
+  world.shapes.trees[shape.tree].remove(shape.leaf);
+  shape.leaf = none;
+  shape.tree = tree_none;
+}
+
+template <class D> void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
+    ShapeRecord<D>& shape = world.shapes.at(s);
+    if (shape.leaf == none) continue;
+    world.shapes.trees[shape.tree].update(shape.leaf, fat_bounds(world, shape));
+    if ((shape.flags & shape_moved) == 0) {
+      shape.flags |= shape_moved;
+      world.scratch.moved.push_back(s);
+    }
+  }
+}
+
+template <class D> void attach_joint(WorldImplementation<D>& world, std::int32_t joint) {
+  JointHeader& j = world.joints.headers[std::size_t(joint)];
+  for (int side = 0; side < 2; ++side) {
+    if (j.body[side] == none) continue;
+    BodyRecord& body = world.bodies.record[std::size_t(j.body[side])];
+    const std::int32_t key = 2 * joint + side;
+    j.previous[side] = none;
+    j.next[side] = body.first_joint;
+    if (body.first_joint != none) world.joints.headers[std::size_t(body.first_joint >> 1)].previous[body.first_joint & 1] = key;
+    body.first_joint = key;
+    ++body.joint_count;
+  }
+  j.place = {};
+  for (int side = 0; side < 2; ++side)
+    if (j.body[side] != none) wake_body(world, j.body[side]);
+  if (moves(world, j.body[0]) || moves(world, j.body[1])) joint_to_graph(world, joint);
+  if (!j.collide_connected && j.body[0] != none && j.body[1] != none)
+    destroy_contacts_between(world, j.body[0], j.body[1]);
+}
+
+template <class D> void detach_joint(WorldImplementation<D>& world, std::int32_t joint) {
+  joint_from_graph(world, joint);
+  JointHeader& j = world.joints.headers[std::size_t(joint)];
+  for (int side = 0; side < 2; ++side) {
+    if (j.body[side] == none) continue;
+    BodyRecord& body = world.bodies.record[std::size_t(j.body[side])];
+    const std::int32_t previous = j.previous[side], next = j.next[side];
+    if (previous != none) world.joints.headers[std::size_t(previous >> 1)].next[previous & 1] = next;
+    else body.first_joint = next;
+    if (next != none) world.joints.headers[std::size_t(next >> 1)].previous[next & 1] = previous;
+    --body.joint_count;
+  }
+  for (int side = 0; side < 2; ++side)
+    if (j.body[side] != none) {
+      wake_body(world, j.body[side]);
+      if (!j.collide_connected) find_pairs_again(world, j.body[side]);
+    }
+}
+
+template <class D> bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
+  const BodyRecord &ra = world.bodies.record[std::size_t(a)], &rb = world.bodies.record[std::size_t(b)];
+  const bool use_a = ra.joint_count <= rb.joint_count;
+  const std::int32_t other = use_a ? b : a;
+  for (std::int32_t key = use_a ? ra.first_joint : rb.first_joint; key != none;) {
+    const JointHeader& j = world.joints.headers[std::size_t(key >> 1)];
+    if (!j.collide_connected && j.body[1 - (key & 1)] == other) return true;
+    key = j.next[key & 1];
+  }
+  return false;
+}
+
+#define CAROM_INSTANTIATE(D)                                                                           \
+  template void activate_body<D>(WorldImplementation<D>&, std::int32_t);                               \
+  template void deactivate_body<D>(WorldImplementation<D>&, std::int32_t);                             \
+  template void wake_body<D>(WorldImplementation<D>&, std::int32_t);                                   \
+  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<const std::int32_t>);               \
+  template void wake_touching<D>(WorldImplementation<D>&, std::int32_t);                               \
+  template void update_world_inertia<D>(WorldImplementation<D>&, std::int32_t);                        \
+  template void pose_from_center<D>(WorldImplementation<D>&, std::int32_t);                            \
+  template void center_from_pose<D>(WorldImplementation<D>&, std::int32_t);                            \
+  template void update_mass<D>(WorldImplementation<D>&, std::int32_t);                                 \
+  template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);            \
+  template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);              \
+  template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                            \
+  template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                            \
+  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t);                              \
+  template void attach_joint<D>(WorldImplementation<D>&, std::int32_t);                                \
+  template void detach_joint<D>(WorldImplementation<D>&, std::int32_t);                                \
+  template bool joints_forbid_collision<D>(const WorldImplementation<D>&, std::int32_t, std::int32_t);
+CAROM_INSTANTIATE(Dim2)
+CAROM_INSTANTIATE(Dim3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom::rigid::detail

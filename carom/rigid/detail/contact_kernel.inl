@@ -1,0 +1,480 @@
+// The contact solver's inner loops, written once over the width. Included by contact_solver_{baseline,avx2,avx512}.cpp,
+// each of which defines CAROM_CONTACT_NAMESPACE. See math/simd.h for the rules a kernel obeys.
+//
+// Soft contacts with a relaxing pass (Catto, "Solver2D", 2024): the biased pass pushes overlaps apart like a damped
+// spring, the relaxing pass takes the velocity of that push out again. Friction and twist act on the whole patch at its
+// pressure centre, both tangents together, so that the cone is a circle and no direction is preferred.
+
+namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
+
+using namespace math;
+
+template <int W> struct WideVec2 {
+  WideFloat<W> x, y;
+};
+template <int W> struct WideVec3 {
+  WideFloat<W> x, y, z;
+};
+template <int W> CAROM_SIMD_INLINE WideVec2<W> load2(const float (&p)[2][W]) {
+  return {WideFloat<W>::load(p[0]), WideFloat<W>::load(p[1])};
+}
+template <int W> CAROM_SIMD_INLINE WideVec3<W> load3(const float (&p)[3][W]) {
+  return {WideFloat<W>::load(p[0]), WideFloat<W>::load(p[1]), WideFloat<W>::load(p[2])};
+}
+template <int W> CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec2<W>& a, const WideVec2<W>& b) {
+  return a.x * b.x + a.y * b.y;
+}
+template <int W> CAROM_SIMD_INLINE WideFloat<W> cross(const WideVec2<W>& a, const WideVec2<W>& b) {
+  return a.x * b.y - a.y * b.x;
+}
+template <int W> CAROM_SIMD_INLINE WideVec2<W> add(const WideVec2<W>& a, const WideVec2<W>& b) {
+  return {a.x + b.x, a.y + b.y};
+}
+template <int W> CAROM_SIMD_INLINE WideVec2<W> subtract(const WideVec2<W>& a, const WideVec2<W>& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+template <int W> CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec3<W>& a, const WideVec3<W>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <int W> CAROM_SIMD_INLINE WideVec3<W> cross(const WideVec3<W>& a, const WideVec3<W>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <int W> CAROM_SIMD_INLINE WideVec3<W> add(const WideVec3<W>& a, const WideVec3<W>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <int W> CAROM_SIMD_INLINE WideVec3<W> subtract(const WideVec3<W>& a, const WideVec3<W>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <int W> CAROM_SIMD_INLINE WideVec3<W> multiply(const WideVec3<W>& a, WideFloat<W> s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+/// Symmetric matrix, xx, yy, zz, xy, xz, yz.
+template <int W> struct WideSymmetric {
+  WideFloat<W> xx, yy, zz, xy, xz, yz;
+};
+template <int W> CAROM_SIMD_INLINE WideSymmetric<W> load_symmetric(const float (&p)[6][W]) {
+  return {WideFloat<W>::load(p[0]), WideFloat<W>::load(p[1]), WideFloat<W>::load(p[2]),
+          WideFloat<W>::load(p[3]), WideFloat<W>::load(p[4]), WideFloat<W>::load(p[5])};
+}
+template <int W> CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3<W>& v) {
+  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+          m.xz * v.x + m.yz * v.y + m.zz * v.z};
+}
+
+template <int W, int Columns, class Body>
+CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int offset,
+                              WideFloat<W> (&columns)[Columns]) {
+  const float* rows[W];
+  for (int i = 0; i < W; ++i) rows[i] = reinterpret_cast<const float*>(bodies + index[i]) + offset;
+  gather_rows<Columns, W>(rows, columns);
+}
+
+// 2D -----------------------------------------------------------------------------------------------------------------
+template <int W> struct Velocity2 {
+  WideVec2<W> v;
+  WideFloat<W> w;
+};
+template <int W> CAROM_SIMD_INLINE Velocity2<W> read_velocity(const SolverBody<Dim2>* bodies, const std::int32_t* index) {
+  WideFloat<W> c[4];
+  gather<W>(bodies, index, 0, c);
+  return {{c[0], c[1]}, c[2]};
+}
+template <int W>
+CAROM_SIMD_INLINE void write_velocity(SolverBody<Dim2>* bodies, const std::int32_t* index, const Velocity2<W>& a) {
+  const WideFloat<W> c[4] = {a.v.x, a.v.y, a.w, WideFloat<W>::splat(0)};
+  scatter_rows<8, 4, W>(reinterpret_cast<float*>(bodies), index, c);
+}
+/// The impulse (x, y) at r on a body, `s` its sign times the inverse masses.
+template <int W>
+CAROM_SIMD_INLINE void push(Velocity2<W>& a, WideFloat<W> m, WideFloat<W> i, const WideVec2<W>& p, WideFloat<W> turn) {
+  a.v.x += m * p.x;
+  a.v.y += m * p.y;
+  a.w += i * turn;
+}
+template <int W>
+CAROM_SIMD_INLINE void push_back(Velocity2<W>& a, WideFloat<W> m, WideFloat<W> i, const WideVec2<W>& p,
+                                 WideFloat<W> turn) {
+  a.v.x -= m * p.x;
+  a.v.y -= m * p.y;
+  a.w -= i * turn;
+}
+
+template <int W>
+void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    const ContactBlock<Dim2, W>& c = static_cast<const ContactBlock<Dim2, W>*>(blocks)[k];
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
+    const WideVec2<W> t = {F::splat(0) - n.y, n.x};
+    WideFloat<W> sum = F::splat(0), turn_a = F::splat(0);
+    for (int i = 0; i < 2; ++i) {
+      const F lambda = F::load(c.point[i].impulse);
+      sum += lambda;
+      turn_a += lambda * cross(load2<W>(c.point[i].r_a), n);
+    }
+    const F friction = F::load(c.tangent_impulse);
+    const WideVec2<W> p = {sum * n.x + friction * t.x, sum * n.y + friction * t.y};
+    turn_a += friction * cross(load2<W>(c.patch_r_a), t);
+    F turn_b = turn_a + cross(offset, p);
+    if (extra != nullptr) {
+      const F rolling = F::load(static_cast<const ContactExtra<Dim2, W>*>(extra)[k].rolling_impulse[0]);
+      turn_a += rolling;
+      turn_b += rolling;
+    }
+    push_back(a, F::load(c.inverse_mass_a), F::load(c.inverse_inertia_a), p, turn_a);
+    push(b, F::load(c.inverse_mass_b), F::load(c.inverse_inertia_b), p, turn_b);
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W, bool UseBias>
+CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
+                                      Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
+                                      WideFloat<W> push_speed) {
+  using F = WideFloat<W>;
+  const F zero = F::splat(0), one = F::splat(1);
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+  const WideVec2<W> offset = load2<W>(c.center_offset);
+  const F offset_turn = cross(offset, n);
+  F pa[4], pb[4];
+  gather<W>(bodies, c.read_a, 4, pa);
+  gather<W>(bodies, c.read_b, 4, pb);
+  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
+  // n·(R r) − n·r = (Rᵀn − n)·r: the change only, so that no precision is lost for large r.
+  const WideVec2<W> na = {pa[2] * n.x + pa[3] * n.y - n.x, pa[2] * n.y - pa[3] * n.x - n.y};
+  const WideVec2<W> nb = {pb[2] * n.x + pb[3] * n.y - n.x, pb[2] * n.y - pb[3] * n.x - n.y};
+  for (int i = 0; i < 2; ++i) {
+    auto& point = c.point[i];
+    const WideVec2<W> ra = load2<W>(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    const F turn_a = cross(ra, n), turn_b = turn_a + offset_turn;
+    const F old = F::load(point.impulse);
+    F bias, mass_scale = one, impulse_scale = zero;
+    const auto apart = s > zero;
+    if constexpr (UseBias) {
+      bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
+      mass_scale = select(apart, one, F::load(c.mass_scale));
+      impulse_scale = select(apart, zero, F::load(c.impulse_scale));
+    } else {
+      bias = keep(apart, s * inverse_h);
+    }
+    const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
+    const F mass = F::load(point.normal_mass);
+    const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
+    const F delta = lambda - old;
+    lambda.store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + lambda).store(point.total);
+    const WideVec2<W> p = {delta * n.x, delta * n.y};
+    push_back(a, ma, ia, p, delta * turn_a);
+    push(b, mb, ib, p, delta * turn_b);
+  }
+}
+
+template <int W>
+void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+    const WideVec2<W> n = load2<W>(c.normal);
+    const WideVec2<W> t = {F::splat(0) - n.y, n.x};
+    const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
+    if (extra != nullptr) {
+      ContactExtra<Dim2, W>& e = static_cast<ContactExtra<Dim2, W>*>(extra)[k];
+      const F old = F::load(e.rolling_impulse[0]), limit = F::load(e.rolling_lever) * load;
+      const F lambda = clamp(old - F::load(e.rolling_mass[0]) * (b.w - a.w), F::splat(0) - limit, limit);
+      lambda.store(e.rolling_impulse[0]);
+      a.w -= ia * (lambda - old);
+      b.w += ib * (lambda - old);
+    }
+    {
+      const WideVec2<W> ra = load2<W>(c.patch_r_a), rb = add(ra, load2<W>(c.center_offset));
+      const F turn_a = cross(ra, t), turn_b = cross(rb, t);
+      const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
+      const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
+      const F lambda = clamp(old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target)), F::splat(0) - limit, limit);
+      const F delta = lambda - old;
+      lambda.store(c.tangent_impulse);
+      (F::load(c.tangent_total) + lambda).store(c.tangent_total);
+      const WideVec2<W> p = {delta * t.x, delta * t.y};
+      push_back(a, ma, ia, p, delta * turn_a);
+      push(b, mb, ib, p, delta * turn_b);
+    }
+    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    const ContactExtra<Dim2, W>& e = static_cast<const ContactExtra<Dim2, W>*>(extra)[k];
+    const F zero = F::splat(0);
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+    const WideVec2<W> n = load2<W>(c.normal);
+    const F offset_turn = cross(load2<W>(c.center_offset), n);
+    for (int i = 0; i < 2; ++i) {
+      auto& point = c.point[i];
+      const F speed = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
+      const F turn_a = cross(load2<W>(point.r_a), n), turn_b = turn_a + offset_turn;
+      const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
+      const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
+      const F delta = keep((speed > zero) & (total > zero), lambda - old);
+      (old + delta).store(point.impulse);
+      (total + delta).store(point.total);
+      const WideVec2<W> p = {delta * n.x, delta * n.y};
+      push_back(a, ma, ia, p, delta * turn_a);
+      push(b, mb, ib, p, delta * turn_b);
+    }
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+// 3D -----------------------------------------------------------------------------------------------------------------
+template <int W> struct Velocity3 {
+  WideVec3<W> v, w;
+};
+template <int W> CAROM_SIMD_INLINE Velocity3<W> read_velocity(const SolverBody<Dim3>* bodies, const std::int32_t* index) {
+  WideFloat<W> c[8];
+  gather<W>(bodies, index, 0, c);
+  return {{c[0], c[1], c[2]}, {c[4], c[5], c[6]}};
+}
+template <int W>
+CAROM_SIMD_INLINE void write_velocity(SolverBody<Dim3>* bodies, const std::int32_t* index, const Velocity3<W>& a) {
+  const WideFloat<W> zero = WideFloat<W>::splat(0);
+  const WideFloat<W> c[8] = {a.v.x, a.v.y, a.v.z, zero, a.w.x, a.w.y, a.w.z, zero};
+  scatter_rows<16, 8, W>(reinterpret_cast<float*>(bodies), index, c);
+}
+template <int W>
+CAROM_SIMD_INLINE void push(Velocity3<W>& a, WideFloat<W> m, const WideSymmetric<W>& i, const WideVec3<W>& p,
+                            const WideVec3<W>& turn) {
+  a.v = add(a.v, multiply(p, m));
+  a.w = add(a.w, multiply(i, turn));
+}
+template <int W>
+CAROM_SIMD_INLINE void push_back(Velocity3<W>& a, WideFloat<W> m, const WideSymmetric<W>& i, const WideVec3<W>& p,
+                                 const WideVec3<W>& turn) {
+  a.v = subtract(a.v, multiply(p, m));
+  a.w = subtract(a.w, multiply(i, turn));
+}
+
+template <int W>
+void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    const ContactBlock<Dim3, W>& c = static_cast<const ContactBlock<Dim3, W>*>(blocks)[k];
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const WideVec3<W> n = load3<W>(c.normal), t = load3<W>(c.tangent), u = cross(n, t);
+    const F f1 = F::load(c.tangent_impulse[0]), f2 = F::load(c.tangent_impulse[1]);
+    WideVec3<W> lever = {F::splat(0), F::splat(0), F::splat(0)};
+    F sum = F::splat(0);
+    for (int i = 0; i < 4; ++i) {
+      const F lambda = F::load(c.point[i].impulse);
+      sum += lambda;
+      lever = add(lever, multiply(load3<W>(c.point[i].r_a), lambda));
+    }
+    const WideVec3<W> f = add(multiply(t, f1), multiply(u, f2)), p = add(multiply(n, sum), f);
+    const F twist = F::load(c.twist_impulse);
+    WideVec3<W> turn_a = add(add(cross(lever, n), cross(load3<W>(c.patch_r_a), f)), multiply(n, twist));
+    WideVec3<W> turn_b = add(turn_a, cross(load3<W>(c.center_offset), p));
+    if (extra != nullptr) {
+      const WideVec3<W> rolling = load3<W>(static_cast<const ContactExtra<Dim3, W>*>(extra)[k].rolling_impulse);
+      turn_a = add(turn_a, rolling);
+      turn_b = add(turn_b, rolling);
+    }
+    push_back(a, F::load(c.inverse_mass_a), load_symmetric<W>(c.inverse_inertia_a), p, turn_a);
+    push(b, F::load(c.inverse_mass_b), load_symmetric<W>(c.inverse_inertia_b), p, turn_b);
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+/// Rᵀn − n of the unit quaternion (w, x, y, z).
+template <int W> CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], const WideVec3<W>& n) {
+  using F = WideFloat<W>;
+  const WideVec3<W> u = {F::splat(0) - q[5], F::splat(0) - q[6], F::splat(0) - q[7]};
+  const WideVec3<W> x = cross(u, n), t = add(x, x);
+  return add(multiply(t, q[4]), cross(u, t));
+}
+
+template <int W, bool UseBias>
+CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
+                                      Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
+                                      const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed) {
+  using F = WideFloat<W>;
+  const F zero = F::splat(0), one = F::splat(1);
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const WideVec3<W> offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
+  F pa[8], pb[8];
+  gather<W>(bodies, c.read_a, 8, pa);
+  gather<W>(bodies, c.read_b, 8, pb);
+  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
+  const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+  for (int i = 0; i < 4; ++i) {
+    auto& point = c.point[i];
+    const WideVec3<W> ra = load3<W>(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    const WideVec3<W> turn_a = cross(ra, n), turn_b = add(turn_a, offset_turn);
+    const F old = F::load(point.impulse);
+    F bias, mass_scale = one, impulse_scale = zero;
+    const auto apart = s > zero;
+    if constexpr (UseBias) {
+      bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
+      mass_scale = select(apart, one, F::load(c.mass_scale));
+      impulse_scale = select(apart, zero, F::load(c.impulse_scale));
+    } else {
+      bias = keep(apart, s * inverse_h);
+    }
+    const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
+    const F mass = F::load(point.normal_mass);
+    const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
+    const F delta = lambda - old;
+    lambda.store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + lambda).store(point.total);
+    const WideVec3<W> p = multiply(n, delta);
+    push_back(a, ma, ia, p, multiply(turn_a, delta));
+    push(b, mb, ib, p, multiply(turn_b, delta));
+  }
+}
+
+template <int W>
+void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
+                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a, Velocity3<W>& b, WideFloat<W> load,
+                                      const WideSymmetric<W>& ia, const WideSymmetric<W>& ib) {
+  using F = WideFloat<W>;
+  const WideVec3<W> old = load3<W>(e.rolling_impulse);
+  const WideVec3<W> step = multiply(load_symmetric<W>(e.rolling_mass), subtract(b.w, a.w));
+  WideVec3<W> lambda = subtract(old, step);
+  const F limit = F::load(e.rolling_lever) * load, size = sqrt(dot(lambda, lambda));
+  const F scale = select(size > limit, limit / max(size, F::splat(1e-30f)), F::splat(1));
+  lambda = multiply(lambda, scale);
+  lambda.x.store(e.rolling_impulse[0]);
+  lambda.y.store(e.rolling_impulse[1]);
+  lambda.z.store(e.rolling_impulse[2]);
+  const WideVec3<W> delta = subtract(lambda, old);
+  a.w = subtract(a.w, multiply(ia, delta));
+  b.w = add(b.w, multiply(ib, delta));
+}
+
+template <int W>
+void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
+    const WideVec3<W> n = load3<W>(c.normal);
+    const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse) + F::load(c.point[2].impulse) +
+                   F::load(c.point[3].impulse);
+    if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, ia, ib);
+    const F cone = F::load(c.friction) * load;
+    {
+      const F old = F::load(c.twist_impulse), limit = cone * F::load(c.twist_radius);
+      const F lambda =
+          clamp(old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n), F::splat(0) - limit, limit);
+      lambda.store(c.twist_impulse);
+      const WideVec3<W> turn = multiply(n, lambda - old);
+      a.w = subtract(a.w, multiply(ia, turn));
+      b.w = add(b.w, multiply(ib, turn));
+    }
+    {
+      const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t);
+      const WideVec3<W> ra = load3<W>(c.patch_r_a), rb = add(ra, load3<W>(c.center_offset));
+      const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
+      const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
+      const F m11 = F::load(c.tangent_mass[0]), m22 = F::load(c.tangent_mass[1]), m12 = F::load(c.tangent_mass[2]);
+      const F old1 = F::load(c.tangent_impulse[0]), old2 = F::load(c.tangent_impulse[1]);
+      F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
+      const F size = sqrt(l1 * l1 + l2 * l2);
+      const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
+      l1 *= scale;
+      l2 *= scale;
+      l1.store(c.tangent_impulse[0]);
+      l2.store(c.tangent_impulse[1]);
+      (F::load(c.tangent_total[0]) + l1).store(c.tangent_total[0]);
+      (F::load(c.tangent_total[1]) + l2).store(c.tangent_total[1]);
+      const WideVec3<W> p = add(multiply(t, l1 - old1), multiply(u, l2 - old2));
+      push_back(a, ma, ia, p, cross(ra, p));
+      push(b, mb, ib, p, cross(rb, p));
+    }
+    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    const ContactExtra<Dim3, W>& e = static_cast<const ContactExtra<Dim3, W>*>(extra)[k];
+    const F zero = F::splat(0);
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
+    const WideVec3<W> n = load3<W>(c.normal), offset_turn = cross(load3<W>(c.center_offset), n);
+    for (int i = 0; i < 4; ++i) {
+      auto& point = c.point[i];
+      const F speed = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
+      const WideVec3<W> turn_a = cross(load3<W>(point.r_a), n), turn_b = add(turn_a, offset_turn);
+      const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
+      const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
+      const F delta = keep((speed > zero) & (total > zero), lambda - old);
+      (old + delta).store(point.impulse);
+      (total + delta).store(point.total);
+      const WideVec3<W> p = multiply(n, delta);
+      push_back(a, ma, ia, p, multiply(turn_a, delta));
+      push(b, mb, ib, p, multiply(turn_b, delta));
+    }
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+ContactKernels<Dim2> kernels2() {
+  constexpr int W = CAROM_CONTACT_WIDTH;
+  return {W, warm_start2<W>, solve2<W>, relax2<W>, restitute2<W>};
+}
+ContactKernels<Dim3> kernels3() {
+  constexpr int W = CAROM_CONTACT_WIDTH;
+  return {W, warm_start3<W>, solve3<W>, relax3<W>, restitute3<W>};
+}
+
+}  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -1,0 +1,9 @@
+// The contact kernels for 16 lanes.
+#include "carom/math/simd.h"
+#include "carom/rigid/detail/contact_block.h"
+
+#define CAROM_CONTACT_NAMESPACE contact_kernels_avx512
+#define CAROM_CONTACT_WIDTH 16
+#include "carom/rigid/detail/contact_kernel.inl"
+#undef CAROM_CONTACT_NAMESPACE
+#undef CAROM_CONTACT_WIDTH

@@ -1,0 +1,284 @@
+#include "carom/rigid/detail/contacts.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+template <class D> void link_contact(WorldImplementation<D>& world, std::int32_t contact, int side) {
+  ContactRecord<D>& c = world.contacts.at(contact);
+  BodyRecord& body = world.bodies.record[std::size_t(c.body[side])];
+  const std::int32_t key = 2 * contact + side;
+  c.previous[side] = none;
+  c.next[side] = body.first_contact;
+  if (body.first_contact != none) world.contacts.at(body.first_contact >> 1).previous[body.first_contact & 1] = key;
+  body.first_contact = key;
+  ++body.contact_count;
+}
+
+template <class D> void unlink_contact(WorldImplementation<D>& world, std::int32_t contact, int side) {
+  ContactRecord<D>& c = world.contacts.at(contact);
+  BodyRecord& body = world.bodies.record[std::size_t(c.body[side])];
+  const std::int32_t previous = c.previous[side], next = c.next[side];
+  if (previous != none) world.contacts.at(previous >> 1).next[previous & 1] = next;
+  else body.first_contact = next;
+  if (next != none) world.contacts.at(next >> 1).previous[next & 1] = previous;
+  --body.contact_count;
+}
+
+template <class D> bool is_awake(const WorldImplementation<D>& world, std::int32_t body) {
+  const BodyRecord& record = world.bodies.record[std::size_t(body)];
+  return record.awake_index != none && record.type != BodyType::fixed;
+}
+
+template <class D> bool needs_extra(const ManifoldRecord<D>& m) { return m.restitution > 0 || m.rolling_lever > 0; }
+
+template <class D> void enter_graph(WorldImplementation<D>& world, std::int32_t manifold) {
+  ManifoldRecord<D>& m = world.contacts.manifold(manifold);
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  if (m.place.color >= 0) return;
+  m.place = world.graph.add(ConstraintKind::manifold, manifold, c.body[0], c.body[1], world.bodies);
+  if (needs_extra(m)) ++world.graph.colors[m.place.color].extra;
+}
+
+template <class D> void leave_graph(WorldImplementation<D>& world, std::int32_t manifold) {
+  ManifoldRecord<D>& m = world.contacts.manifold(manifold);
+  if (m.place.color < 0) return;
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const std::int32_t moved =
+      world.graph.remove(ConstraintKind::manifold, m.place, c.body[0], c.body[1], world.bodies);
+  if (moved != none) world.contacts.manifold(moved).place = m.place;
+  if (needs_extra(m)) --world.graph.colors[m.place.color].extra;
+  m.place = {};
+}
+
+float round_radius(const geometry::Shape2& s) {
+  switch (s.type) {
+    case geometry::ShapeType2::circle: return s.circle.radius;
+    case geometry::ShapeType2::capsule: return s.capsule.radius;
+    case geometry::ShapeType2::polygon: return s.polygon.radius;
+    default: return 0;
+  }
+}
+float round_radius(const geometry::Shape3& s) {
+  switch (s.type) {
+    case geometry::ShapeType3::sphere: return s.sphere.radius;
+    case geometry::ShapeType3::capsule: return s.capsule.radius;
+    case geometry::ShapeType3::cylinder: return s.cylinder.radius;
+    case geometry::ShapeType3::cone: return s.cone.radius;
+    case geometry::ShapeType3::box: return s.box.radius;
+    default: return 0;
+  }
+}
+bool has_round_base(const geometry::Shape2&) { return false; }
+bool has_round_base(const geometry::Shape3& s) {
+  return s.type == geometry::ShapeType3::cylinder || s.type == geometry::ShapeType3::cone;
+}
+
+}  // namespace
+
+template <class D>
+bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, const ShapeRecord<D>& b) {
+  if (a.body == b.body) return false;
+  const bool sensor_a = (a.flags & shape_sensor) != 0, sensor_b = (b.flags & shape_sensor) != 0;
+  if (sensor_a && sensor_b) return false;
+  const BodyType type_a = world.bodies.record[std::size_t(a.body)].type;
+  const BodyType type_b = world.bodies.record[std::size_t(b.body)].type;
+  if (type_a != BodyType::dynamic && type_b != BodyType::dynamic) {
+    // Only sensors report bodies that forces do not move, and only moving ones.
+    if (!sensor_a && !sensor_b) return false;
+    if (type_a == BodyType::fixed && type_b == BodyType::fixed) return false;
+  }
+  if (a.filter.group != 0 && a.filter.group == b.filter.group) return a.filter.group > 0;
+  return (a.filter.category & b.filter.mask) != 0 && (b.filter.category & a.filter.mask) != 0;
+}
+
+template <class D> void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b) {
+  const ShapeRecord<D>*a = &world.shapes.at(shape_a), *b = &world.shapes.at(shape_b);
+  // A is the one in whose frame little changes: the surface of many parts, then the fixed body, then the larger shape.
+  const auto rank = [&](const ShapeRecord<D>& s) {
+    return ((s.flags & shape_many) != 0 ? 2 : 0) + (world.bodies.is_fixed(s.body) ? 1 : 0);
+  };
+  if (rank(*b) > rank(*a) || (rank(*b) == rank(*a) && b->outer_extent > a->outer_extent)) {
+    std::swap(a, b);
+    std::swap(shape_a, shape_b);
+  }
+  ContactStore<D>& store = world.contacts;
+  std::int32_t index;
+  if (!store.free_contacts.empty()) {
+    index = store.free_contacts.back();
+    store.free_contacts.pop_back();
+    store.at(index) = {};
+  } else {
+    index = std::int32_t(store.contacts.size());
+    store.contacts.emplace_back();
+  }
+  ContactRecord<D>& c = store.at(index);
+  c.shape[0] = shape_a;
+  c.shape[1] = shape_b;
+  c.body[0] = a->body;
+  c.body[1] = b->body;
+  c.flags = contact_in_use;
+  const std::uint8_t flags = a->flags | b->flags;
+  if (flags & shape_sensor) c.flags |= contact_sensor;
+  if (flags & shape_many) c.flags |= contact_many;
+  if (flags & shape_contact_events) c.flags |= contact_events;
+  if (flags & shape_hit_events) c.flags |= contact_hit_events;
+  if (flags & shape_round) c.flags |= contact_round;
+  if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
+  if (max(a->material.restitution, b->material.restitution) > 0) c.flags |= contact_bouncy;
+  c.extent = b->outer_extent;
+  const float inner = min(a->inner_extent, b->inner_extent);
+  c.margin = clamp(0.25f * inner, 0.001f, 0.02f);
+  world.pairs.insert(PairSet::key(shape_a, shape_b));
+  ++store.count;
+  link_contact(world, index, 0);
+  link_contact(world, index, 1);
+  if (is_awake(world, c.body[0]) || is_awake(world, c.body[1])) activate_contact(world, index);
+}
+
+template <class D> void destroy_contact(WorldImplementation<D>& world, std::int32_t contact, bool wake) {
+  ContactStore<D>& store = world.contacts;
+  if ((store.at(contact).flags & contact_touching) != 0) {
+    const ContactRecord<D>& c = store.at(contact);
+    const ShapeId a = world.shapes.slots.handle_at(c.shape[0]), b = world.shapes.slots.handle_at(c.shape[1]);
+    if (c.flags & contact_sensor) {
+      const bool first = (world.shapes.at(c.shape[0]).flags & shape_sensor) != 0;
+      world.scratch.pending_sensor_end.push_back(first ? SensorEvent{a, b} : SensorEvent{b, a});
+    } else if (c.flags & contact_events) {
+      world.scratch.pending_contact_end.push_back({a, b});
+    }
+  }
+  const bool touched = store.at(contact).first_manifold != none;
+  while (store.at(contact).first_manifold != none) remove_manifold(world, store.at(contact).first_manifold);
+  deactivate_contact(world, contact);
+  unlink_contact(world, contact, 0);
+  unlink_contact(world, contact, 1);
+  ContactRecord<D>& c = store.at(contact);
+  world.pairs.erase(PairSet::key(c.shape[0], c.shape[1]));
+  const std::int32_t a = c.body[0], b = c.body[1];
+  c.flags = 0;
+  store.free_contacts.push_back(contact);
+  --store.count;
+  if (wake && touched) {
+    wake_body(world, a);
+    wake_body(world, b);
+  }
+}
+
+template <class D> void destroy_contacts_of_shape(WorldImplementation<D>& world, std::int32_t shape) {
+  const std::int32_t body = world.shapes.at(shape).body;
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    const std::int32_t next = c.next[key & 1];
+    if (c.shape[key & 1] == shape) destroy_contact(world, key >> 1, true);
+    key = next;
+  }
+}
+
+template <class D> void destroy_contacts_between(WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
+  for (std::int32_t key = world.bodies.record[std::size_t(a)].first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    const std::int32_t next = c.next[key & 1];
+    if (c.body[1 - (key & 1)] == b) destroy_contact(world, key >> 1, true);
+    key = next;
+  }
+}
+
+template <class D> void find_pairs_again(WorldImplementation<D>& world, std::int32_t body) {
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
+    ShapeRecord<D>& shape = world.shapes.at(s);
+    if (shape.leaf == none || (shape.flags & shape_moved) != 0) continue;
+    shape.flags |= shape_moved;
+    world.scratch.moved.push_back(s);
+  }
+}
+
+template <class D> void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
+  ManifoldRecord<D>& m = world.contacts.manifold(manifold);
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  if (m.place.color >= 0 && needs_extra(m)) --world.graph.colors[m.place.color].extra;
+  m.friction = math::sqrt(a.material.friction * b.material.friction);
+  m.restitution = max(a.material.restitution, b.material.restitution);
+  const float radius = max(round_radius(a.geometry), round_radius(b.geometry));
+  m.rolling_lever = max(a.material.rolling_resistance, b.material.rolling_resistance) * radius;
+  m.tangent_speed = a.material.tangent_speed + b.material.tangent_speed;
+  if (m.place.color >= 0 && needs_extra(m)) ++world.graph.colors[m.place.color].extra;
+  // Uniform pressure: a disc turns on 2/3 of its radius, rectangles from square to thin line on .54 … .5 of the
+  // distance of their corners.
+  m.patch_factor = has_round_base(a.geometry) || has_round_base(b.geometry) ? 2.0f / 3.0f : 0.53f;
+}
+
+template <class D>
+void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typename D::Manifold& manifold,
+                  std::uint32_t child) {
+  ContactStore<D>& store = world.contacts;
+  std::int32_t index;
+  if (!store.free_manifolds.empty()) {
+    index = store.free_manifolds.back();
+    store.free_manifolds.pop_back();
+    store.manifold(index) = {};
+  } else {
+    index = std::int32_t(store.manifolds.size());
+    store.manifolds.emplace_back();
+  }
+  ManifoldRecord<D>& m = store.manifold(index);
+  ContactRecord<D>& c = store.at(contact);
+  m.contact = contact;
+  m.child = child;
+  m.manifold = manifold;
+  m.next = c.first_manifold;
+  c.first_manifold = index;
+  ++c.manifold_count;
+  mix_materials(world, index);
+  if (c.awake_index != none) enter_graph(world, index);
+}
+
+template <class D> void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold) {
+  leave_graph(world, manifold);
+  ContactStore<D>& store = world.contacts;
+  ContactRecord<D>& c = store.at(store.manifold(manifold).contact);
+  std::int32_t* link = &c.first_manifold;
+  while (*link != manifold) link = &store.manifold(*link).next;
+  *link = store.manifold(manifold).next;
+  --c.manifold_count;
+  store.manifold(manifold).contact = none;
+  store.free_manifolds.push_back(manifold);
+}
+
+template <class D> void activate_contact(WorldImplementation<D>& world, std::int32_t contact) {
+  ContactRecord<D>& c = world.contacts.at(contact);
+  if (c.awake_index != none) return;
+  c.awake_index = std::int32_t(world.contacts.awake.size());
+  world.contacts.awake.push_back(contact);
+  for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) enter_graph(world, m);
+}
+
+template <class D> void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
+  ContactRecord<D>& c = world.contacts.at(contact);
+  if (c.awake_index == none) return;
+  for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) leave_graph(world, m);
+  std::vector<std::int32_t>& awake = world.contacts.awake;
+  const std::int32_t last = awake.back();
+  awake[std::size_t(c.awake_index)] = last;
+  world.contacts.at(last).awake_index = c.awake_index;
+  awake.pop_back();
+  c.awake_index = none;
+}
+
+#define CAROM_INSTANTIATE(D)                                                                                      \
+  template bool may_collide<D>(const WorldImplementation<D>&, const ShapeRecord<D>&, const ShapeRecord<D>&);      \
+  template void create_contact<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);                           \
+  template void destroy_contact<D>(WorldImplementation<D>&, std::int32_t, bool);                                  \
+  template void destroy_contacts_of_shape<D>(WorldImplementation<D>&, std::int32_t);                              \
+  template void destroy_contacts_between<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);                 \
+  template void find_pairs_again<D>(WorldImplementation<D>&, std::int32_t);                                       \
+  template void mix_materials<D>(WorldImplementation<D>&, std::int32_t);                                          \
+  template void add_manifold<D>(WorldImplementation<D>&, std::int32_t, const D::Manifold&, std::uint32_t);        \
+  template void remove_manifold<D>(WorldImplementation<D>&, std::int32_t);                                        \
+  template void activate_contact<D>(WorldImplementation<D>&, std::int32_t);                                       \
+  template void deactivate_contact<D>(WorldImplementation<D>&, std::int32_t);
+CAROM_INSTANTIATE(Dim2)
+CAROM_INSTANTIATE(Dim3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom::rigid::detail

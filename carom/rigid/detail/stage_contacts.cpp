@@ -1,0 +1,361 @@
+// From manifolds to the blocks of the wide solver, and from the solved blocks back.
+#include "carom/rigid/detail/stages.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+constexpr int block_grain = 8;
+constexpr float anchor_rate = 0.2f;  ///< part of the slip that sticking friction takes back in a step
+
+inline float angular_dot(float a, float b) { return a * b; }
+inline float angular_dot(const Vec3f& a, const Vec3f& b) { return dot(a, b); }
+
+template <int W> void put(float (&to)[2][W], int lane, const Vec2f& v) {
+  to[0][lane] = v.x;
+  to[1][lane] = v.y;
+}
+template <int W> void put(float (&to)[3][W], int lane, const Vec3f& v) {
+  to[0][lane] = v.x;
+  to[1][lane] = v.y;
+  to[2][lane] = v.z;
+}
+template <int W> void put(float (&to)[6][W], int lane, const Mat3f& m) {
+  to[0][lane] = m.cx.x;
+  to[1][lane] = m.cy.y;
+  to[2][lane] = m.cz.z;
+  to[3][lane] = m.cy.x;
+  to[4][lane] = m.cz.x;
+  to[5][lane] = m.cz.y;
+}
+template <int W> void put(float (&to)[W], int lane, float v) { to[lane] = v; }
+
+/// A contact as it stands now: in the shape frame of A.
+template <class D> struct Geometry {
+  typename D::Vector point[D::max_points];
+  float separation[D::max_points];
+};
+template <class D>
+void current_geometry(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m,
+                      Geometry<D>& g) {
+  if ((c.flags & contact_recycled) == 0) {
+    for (int i = 0; i < m.count; ++i) {
+      g.point[i] = m.points[i].point;
+      g.separation[i] = m.points[i].separation;
+    }
+    return;
+  }
+  typename D::Transform now;
+  if (c.flags & contact_at_origin)
+    now = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
+  else
+    now = relative(shape_pose(world, world.shapes.at(c.shape[0])), shape_pose(world, world.shapes.at(c.shape[1])));
+  const typename D::Transform motion = now * inverse(c.base);
+  for (int i = 0; i < m.count; ++i) {
+    const typename D::Vector half = (0.5f * m.points[i].separation) * m.normal;
+    const typename D::Vector on_a = m.points[i].point - half;
+    const typename D::Vector on_b = transform_point(motion, m.points[i].point + half);
+    g.separation[i] = dot(on_b - on_a, m.normal);
+    g.point[i] = 0.5f * (on_a + on_b);
+  }
+}
+
+template <class D> typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t body) {
+  if (!context.world.bodies.is_dynamic(body)) return {};
+  const BodyMotion<D>& m = context.world.bodies.motion[std::size_t(body)];
+  return context.world.definition.gravity * m.gravity_scale + m.force * m.inverse_mass;
+}
+
+/// Where friction sticks: remembered on both bodies, so that a body at rest on a slope stays where it is for good.
+template <class D>
+typename D::Vector slip_of(const StepContext<D>& context, const ContactRecord<D>& c, ManifoldRecord<D>& m,
+                           const typename D::Vector& r_a, const typename D::Vector& r_b) {
+  const auto& bodies = context.world.bodies;
+  const typename D::Rotation qa = bodies.pose[std::size_t(c.body[0])].rotation;
+  const typename D::Rotation qb = bodies.pose[std::size_t(c.body[1])].rotation;
+  if (m.anchored) {
+    const typename D::Vector a = rotate(qa, m.anchor_a), b = rotate(qb, m.anchor_b);
+    const float reach = 0.05f * min(math::length(r_b), math::length(r_a)) + 0.01f;
+    if (math::length_squared(b - r_b) < reach * reach) return (b - r_b) - (a - r_a);
+  }
+  m.anchored = true;
+  m.anchor_a = inverse_rotate(qa, r_a);
+  m.anchor_b = inverse_rotate(qb, r_b);
+  return {};
+}
+
+template <class D, int W>
+void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block,
+                  ContactExtra<D, W>* extra, int lane) {
+  using V = typename D::Vector;
+  WorldImplementation<D>& world = context.world;
+  ManifoldRecord<D>& m = world.contacts.manifold(index);
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const std::int32_t a = c.body[0], b = c.body[1];
+  const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
+  const SolverBody<D>&sa = context.bodies[a], &sb = context.bodies[b];
+  typename D::Rotation q = world.bodies.pose[std::size_t(a)].rotation;
+  V to_shape = rotate(q, -ma.local_center);
+  if ((c.flags & contact_at_origin) == 0) {
+    const ShapeRecord<D>& shape = world.shapes.at(c.shape[0]);
+    to_shape = rotate(q, shape.local.p - ma.local_center);
+    q = q * shape.local.q;
+  }
+  Geometry<D> g;
+  current_geometry(world, c, m.manifold, g);
+
+  const bool dynamic_a = world.bodies.is_dynamic(a), dynamic_b = world.bodies.is_dynamic(b);
+  block.read_a[lane] = a;
+  block.read_b[lane] = b;
+  block.write_a[lane] = dynamic_a ? a : none;
+  block.write_b[lane] = dynamic_b ? b : none;
+  const V n = rotate(q, m.manifold.normal);
+  put(block.normal, lane, n);
+  block.inverse_mass_a[lane] = ma.inverse_mass;
+  block.inverse_mass_b[lane] = mb.inverse_mass;
+  put(block.inverse_inertia_a, lane, ma.world_inverse_inertia);
+  put(block.inverse_inertia_b, lane, mb.world_inverse_inertia);
+  const Softness& soft = dynamic_a && dynamic_b ? context.contact_softness : context.fixed_contact_softness;
+  block.bias_rate[lane] = soft.bias_rate;
+  block.mass_scale[lane] = soft.mass_scale;
+  block.impulse_scale[lane] = soft.impulse_scale;
+  const V offset = V(ma.center - mb.center);
+  put(block.center_offset, lane, offset);
+
+  const float mass_sum = ma.inverse_mass + mb.inverse_mass;
+  const auto response = [&](const V& ra, const V& rb, const V& direction) {
+    const auto ta = cross(ra, direction), tb = cross(rb, direction);
+    const float k = mass_sum + angular_dot(ta, ma.world_inverse_inertia * ta) +
+                    angular_dot(tb, mb.world_inverse_inertia * tb);
+    return k;
+  };
+  const V closing_acceleration = m.restitution > 0 ? acceleration_of(context, a) - acceleration_of(context, b) : V{};
+  float weight = 0, approach = 0;
+  V center{}, equal_center{};
+  for (int i = 0; i < D::max_points; ++i) {
+    auto& point = block.point[i];
+    if (i >= m.manifold.count) {
+      put(point.r_a, lane, V{});
+      point.separation[lane] = 1e3f;
+      point.normal_mass[lane] = point.impulse[lane] = point.total[lane] = 0;
+      if (extra != nullptr) extra->bounce_speed[i][lane] = 0;
+      continue;
+    }
+    const V ra = rotate(q, g.point[i]) + to_shape, rb = ra + offset;
+    put(point.r_a, lane, ra);
+    point.separation[lane] = g.separation[i];
+    const float k = response(ra, rb, n);
+    point.normal_mass[lane] = k > 0 ? 1 / k : 0;
+    point.impulse[lane] = m.impulses.normal[i];
+    point.total[lane] = 0;
+    weight += m.impulses.normal[i];
+    center += ra * m.impulses.normal[i];
+    equal_center += ra;
+    const float vn = dot(n, sb.linear_velocity + cross(sb.angular_velocity, rb) - sa.linear_velocity -
+                                cross(sa.angular_velocity, ra));
+    approach = max(approach, -vn);
+    if (extra != nullptr) {
+      // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
+      float speed = 0;
+      if (m.restitution > 0 && vn < 0) {
+        const float fall = 2 * max(dot(n, closing_acceleration), 0.0f) * max(g.separation[i], 0.0f);
+        const float impact = math::sqrt(vn * vn + fall);
+        if (impact > world.definition.restitution_threshold) speed = m.restitution * impact;
+      }
+      extra->bounce_speed[i][lane] = speed;
+    }
+  }
+  m.approach_speed = approach;
+  center = weight > 0 ? center * (1 / weight) : equal_center * (1.0f / float(m.manifold.count));
+
+  block.friction[lane] = m.friction;
+  put(block.patch_r_a, lane, center);
+  const V center_b = center + offset;
+  V slip{};
+  if (m.tangent_speed == 0 && (c.flags & contact_round) == 0) slip = slip_of(context, c, m, center, center_b);
+  const float rate = -anchor_rate * context.inverse_dt;
+  if constexpr (D::dimension == 2) {
+    const Vec2f t{-n.y, n.x};
+    const float k = response(center, center_b, t);
+    block.tangent_mass[lane] = k > 0 ? 1 / k : 0;
+    block.tangent_impulse[lane] = dot(m.impulses.friction, t);
+    block.tangent_target[lane] = m.tangent_speed + rate * dot(slip, t);
+    block.tangent_total[lane] = 0;
+  } else {
+    const Vec3f t = perpendicular(n), u = cross(n, t);
+    put(block.tangent, lane, t);
+    const float k11 = response(center, center_b, t), k22 = response(center, center_b, u);
+    const Vec3f ta = cross(center, t), tb = cross(center_b, t), ua = cross(center, u), ub = cross(center_b, u);
+    const float k12 = dot(ta, ma.world_inverse_inertia * ua) + dot(tb, mb.world_inverse_inertia * ub);
+    const float d = k11 * k22 - k12 * k12;
+    const float s = d > 0 ? 1 / d : 0;
+    block.tangent_mass[0][lane] = k22 * s;
+    block.tangent_mass[1][lane] = k11 * s;
+    block.tangent_mass[2][lane] = -k12 * s;
+    block.tangent_impulse[0][lane] = dot(m.impulses.friction, t);
+    block.tangent_impulse[1][lane] = dot(m.impulses.friction, u);
+    block.tangent_target[0][lane] = m.tangent_speed + rate * dot(slip, t);
+    block.tangent_target[1][lane] = rate * dot(slip, u);
+    block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
+    float radius = 0;
+    if (m.manifold.count > 1) {
+      for (int i = 0; i < m.manifold.count; ++i) {
+        const Vec3f r{block.point[i].r_a[0][lane], block.point[i].r_a[1][lane], block.point[i].r_a[2][lane]};
+        radius += math::length(r - center) * (weight > 0 ? m.impulses.normal[i] : 1);
+      }
+      radius *= m.patch_factor / (weight > 0 ? weight : float(m.manifold.count));
+    }
+    const float k = dot(n, (ma.world_inverse_inertia + mb.world_inverse_inertia) * n);
+    block.twist_mass[lane] = k > 0 ? 1 / k : 0;
+    block.twist_radius[lane] = radius;
+    block.twist_impulse[lane] = radius > 0 ? m.impulses.twist : 0;
+  }
+  if (extra != nullptr) {
+    extra->rolling_lever[lane] = m.rolling_lever;
+    if constexpr (D::dimension == 2) {
+      const float k = ma.inverse_inertia + mb.inverse_inertia;
+      extra->rolling_mass[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
+      extra->rolling_impulse[0][lane] = m.rolling_lever > 0 ? m.impulses.rolling : 0;
+    } else {
+      const Mat3f k = inverse(ma.world_inverse_inertia + mb.world_inverse_inertia);
+      put(extra->rolling_mass, lane, m.rolling_lever > 0 ? k : Mat3f::zero());
+      put(extra->rolling_impulse, lane, m.rolling_lever > 0 ? m.impulses.rolling : Vec3f{});
+    }
+  }
+}
+
+/// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
+template <class D, int W> void clear_lane(ContactBlock<D, W>& block, ContactExtra<D, W>* extra, int lane) {
+  for (std::size_t i = 0; i < sizeof(block) / (4 * W); ++i) reinterpret_cast<float*>(&block)[i * W + std::size_t(lane)] = 0;
+  block.read_a[lane] = block.read_a[0];
+  block.read_b[lane] = block.read_b[0];
+  block.write_a[lane] = block.write_b[lane] = none;
+  if (extra != nullptr)
+    for (std::size_t i = 0; i < sizeof(*extra) / (4 * W); ++i)
+      reinterpret_cast<float*>(extra)[i * W + std::size_t(lane)] = 0;
+}
+
+template <class D, int W> void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
+                                          const ContactExtra<D, W>* extra, int lane) {
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  float load = 0;
+  for (int i = 0; i < m.manifold.count; ++i) {
+    m.impulses.normal[i] = block.point[i].impulse[lane];
+    m.impulses.total[i] = block.point[i].total[lane];
+    load += block.point[i].impulse[lane];
+  }
+  const float limit = 0.999f * m.friction * load;
+  if constexpr (D::dimension == 2) {
+    const Vec2f t{-block.normal[1][lane], block.normal[0][lane]};
+    m.impulses.friction = t * block.tangent_impulse[lane];
+    m.impulses.friction_total = t * block.tangent_total[lane];
+    if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
+  } else {
+    const Vec3f n{block.normal[0][lane], block.normal[1][lane], block.normal[2][lane]};
+    const Vec3f t{block.tangent[0][lane], block.tangent[1][lane], block.tangent[2][lane]}, u = cross(n, t);
+    m.impulses.friction = t * block.tangent_impulse[0][lane] + u * block.tangent_impulse[1][lane];
+    m.impulses.friction_total = t * block.tangent_total[0][lane] + u * block.tangent_total[1][lane];
+    m.impulses.twist = block.twist_impulse[lane];
+    if (extra != nullptr)
+      m.impulses.rolling = {extra->rolling_impulse[0][lane], extra->rolling_impulse[1][lane],
+                            extra->rolling_impulse[2][lane]};
+  }
+  // What slides, or lies loosely, lets go of its anchor.
+  if (math::length_squared(m.impulses.friction) >= limit * limit) m.anchored = false;
+}
+
+/// Calls f(first manifold, lanes, block) for the blocks of every colour, in parallel.
+template <class D, int W, class F> void for_blocks(StepContext<D>& context, F&& f) {
+  WorldImplementation<D>& world = context.world;
+  for (int color = 0; color <= overflow_color; ++color) {
+    const std::vector<std::int32_t>& manifolds = world.graph.colors[color].manifolds;
+    if (manifolds.empty()) continue;
+    const ColorBlocks& blocks = world.scratch.blocks[color];
+    const int lanes = color == overflow_color ? 1 : W;
+    const auto run = [&](int begin, int end, int) {
+      for (int k = begin; k < end; ++k) {
+        const int first = k * lanes;
+        f(std::span(manifolds).subspan(std::size_t(first), std::size_t(min(lanes, int(manifolds.size()) - first))),
+          static_cast<ContactBlock<D, W>*>(blocks.blocks)[k],
+          blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k);
+      }
+    };
+    if (blocks.count <= block_grain) run(0, blocks.count, 0);
+    else context.scheduler.parallel_for(blocks.count, block_grain, run);
+  }
+}
+
+template <class D, int W> void prepare_blocks(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  for (int color = 0; color <= overflow_color; ++color) {
+    const GraphColor& c = world.graph.colors[color];
+    ColorBlocks& blocks = world.scratch.blocks[color];
+    const int lanes = color == overflow_color ? 1 : W;
+    blocks = {};
+    blocks.count = (int(c.manifolds.size()) + lanes - 1) / lanes;
+    if (blocks.count == 0) continue;
+    blocks.blocks = context.arena.template allocate<ContactBlock<D, W>>(std::size_t(blocks.count)).data();
+    if (c.extra > 0) blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
+    blocks.bounces = c.extra > 0;
+  }
+  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, ContactBlock<D, W>& block,
+                                ContactExtra<D, W>* extra) {
+    for (int lane = 0; lane < W; ++lane) {
+      if (lane < int(manifolds.size())) prepare_lane<D, W>(context, manifolds[std::size_t(lane)], block, extra, lane);
+      else clear_lane<D, W>(block, extra, lane);
+    }
+  });
+}
+
+template <class D, int W> void store_blocks(StepContext<D>& context) {
+  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, ContactBlock<D, W>& block,
+                                ContactExtra<D, W>* extra) {
+    for (int lane = 0; lane < int(manifolds.size()); ++lane)
+      store_lane<D, W>(context, manifolds[std::size_t(lane)], block, extra, lane);
+  });
+}
+
+}  // namespace
+
+template <class D> void prepare_contacts(StepContext<D>& context) {
+  switch (context.world.kernels.width) {
+    case 16: return prepare_blocks<D, 16>(context);
+    case 8: return prepare_blocks<D, 8>(context);
+    default: return prepare_blocks<D, 4>(context);
+  }
+}
+template <class D> void store_contacts(StepContext<D>& context) {
+  switch (context.world.kernels.width) {
+    case 16: return store_blocks<D, 16>(context);
+    case 8: return store_blocks<D, 8>(context);
+    default: return store_blocks<D, 4>(context);
+  }
+}
+
+template <class D>
+void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecord<D>& m,
+                        typename D::Position (&points)[D::max_points], float (&separations)[D::max_points],
+                        typename D::Vector& normal) {
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  // After a step the bodies have moved on from where the manifold was made: follow them as recycling does.
+  ContactRecord<D> moved = c;
+  moved.flags |= contact_recycled;
+  Geometry<D> g;
+  current_geometry(world, moved, m.manifold, g);
+  const typename D::Pose pose = shape_pose(world, world.shapes.at(c.shape[0]));
+  normal = rotate(pose.rotation, m.manifold.normal);
+  for (int i = 0; i < m.manifold.count; ++i) {
+    points[i] = world_point(pose, g.point[i]);
+    separations[i] = g.separation[i];
+  }
+}
+
+template void prepare_contacts<Dim2>(StepContext<Dim2>&);
+template void prepare_contacts<Dim3>(StepContext<Dim3>&);
+template void store_contacts<Dim2>(StepContext<Dim2>&);
+template void store_contacts<Dim3>(StepContext<Dim3>&);
+template void contact_points_now<Dim2>(const WorldImplementation<Dim2>&, const ManifoldRecord<Dim2>&, Vec2d (&)[2],
+                                       float (&)[2], Vec2f&);
+template void contact_points_now<Dim3>(const WorldImplementation<Dim3>&, const ManifoldRecord<Dim3>&, Vec3d (&)[4],
+                                       float (&)[4], Vec3f&);
+
+}  // namespace carom::rigid::detail

@@ -1,0 +1,152 @@
+#include "carom/rigid/detail/stages.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+constexpr int finalize_grain = 128;
+
+float spin_of(float w) { return math::abs(w); }
+float spin_of(const Vec3f& w) { return math::length(w); }
+float turn_of(const Rot2f& q) { return math::abs(q.s) + max(0.0f, -2 * q.c); }
+float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
+
+template <class D> void reset_delta(SolverBody<D>& s) {
+  s.delta_position = {};
+  s.delta_rotation = {};
+}
+
+/// Puts the body back where the step began, at rest and for good: one broken number must not spread.
+template <class D> void quarantine(WorldImplementation<D>& world, std::int32_t body) {
+  SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+  s = {};
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  m.force = {};
+  m.torque = {};
+  world.bodies.record[std::size_t(body)].flags |= body_quarantined;
+}
+
+}  // namespace
+
+template <class D> bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
+  bool any = false;
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
+    ShapeRecord<D>& shape = world.shapes.at(s);
+    if (shape.leaf == none) continue;
+    if (geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), shape_bounds(world, shape))) continue;
+    shape.flags |= shape_outgrown;
+    any = true;
+  }
+  return any;
+}
+
+template <class D> void finalize_bodies(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  StepScratch<D>& scratch = world.scratch;
+  const std::size_t count = world.bodies.awake.size();
+  scratch.body_changes.resize(count);
+  scratch.swept.resize(count);
+  context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const std::int32_t body = world.bodies.awake[std::size_t(i)];
+      BodyRecord& record = world.bodies.record[std::size_t(body)];
+      BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+      SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+      typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
+      scratch.body_changes[std::size_t(i)] = 0;
+      record.flags &= std::uint16_t(~body_fast);
+      if (!(is_finite(s.linear_velocity) && is_finite(s.angular_velocity) && is_finite(s.delta_position) &&
+            is_finite(s.delta_rotation))) {
+        quarantine(world, body);
+        scratch.body_changes[std::size_t(i)] = body_broke;
+        continue;
+      }
+      const float travel = math::length(s.delta_position), turned = turn_of(s.delta_rotation);
+      const bool bullet = (record.flags & body_bullet) != 0;
+      if (context.world.definition.continuous && record.type == BodyType::dynamic &&
+          (record.flags & body_has_collider) != 0 && travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
+        record.flags |= body_fast;
+      }
+      scratch.swept[std::size_t(i)] = {pose.rotation, m.center};
+      pose.rotation = normalize(s.delta_rotation * pose.rotation);
+      m.center = m.center + typename D::Position(s.delta_position);
+      m.force = {};
+      m.torque = {};
+      pose_from_center(world, body);
+      const float speed =
+          max(math::length(s.linear_velocity), spin_of(s.angular_velocity) * max(m.outer_extent, 0.01f));
+      if (record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0 && speed < record.sleep_speed &&
+          travel * context.inverse_dt < 2 * record.sleep_speed)
+        record.sleep_timer += context.dt;
+      else
+        record.sleep_timer = 0;
+      reset_delta(s);
+      if (record.flags & body_fast) continue;  // its bounds wait for the end of its way
+      update_world_inertia(world, body);
+      if (leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
+    }
+  });
+  for (std::size_t i = 0; i < count; ++i)
+    if (scratch.body_changes[i] == body_broke) {
+      const std::int32_t body = world.bodies.awake[i];
+      scratch.quarantined.push_back({world.bodies.slots.handle_at(body)});
+      scratch.broken.push_back(body);
+    }
+}
+
+template <class D> void release_broken_bodies(WorldImplementation<D>& world) {
+  for (const std::int32_t body : world.scratch.broken) {
+    deactivate_body(world, body);
+    for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+      const std::int32_t next = world.contacts.at(key >> 1).next[key & 1];
+      destroy_contact(world, key >> 1, false);
+      key = next;
+    }
+    for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
+      world.shapes.at(s).flags &= std::uint8_t(~shape_outgrown);
+      remove_from_tree(world, s);
+    }
+  }
+  world.scratch.broken.clear();
+}
+
+template <class D> void gather_hit_events(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  if (world.hit_event_shapes == 0) return;
+  for (const std::int32_t contact : world.contacts.awake) {
+    const ContactRecord<D>& c = world.contacts.at(contact);
+    if ((c.flags & contact_hit_events) == 0) continue;
+    ContactHitEvent<D> event{};
+    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+      const ManifoldRecord<D>& record = world.contacts.manifold(m);
+      float impulse = 0;
+      for (int i = 0; i < record.manifold.count; ++i) impulse += record.impulses.total[i];
+      if (record.approach_speed < world.definition.restitution_threshold || impulse <= 0) continue;
+      if (record.approach_speed > event.approach_speed) {
+        typename D::Position points[D::max_points];
+        float separations[D::max_points];
+        contact_points_now(world, record, points, separations, event.normal);
+        int strongest = 0;
+        for (int i = 1; i < record.manifold.count; ++i)
+          if (record.impulses.total[i] > record.impulses.total[strongest]) strongest = i;
+        event.point = points[strongest];
+        event.approach_speed = record.approach_speed;
+      }
+      event.impulse += impulse;
+    }
+    if (event.impulse <= 0) continue;
+    event.shape_a = world.shapes.slots.handle_at(c.shape[0]);
+    event.shape_b = world.shapes.slots.handle_at(c.shape[1]);
+    world.scratch.contact_hit.push_back(event);
+  }
+}
+
+#define CAROM_INSTANTIATE(D)                                        \
+  template void finalize_bodies<D>(StepContext<D>&);                \
+  template void release_broken_bodies<D>(WorldImplementation<D>&);  \
+  template void gather_hit_events<D>(StepContext<D>&);              \
+  template bool leave_bounds<D>(WorldImplementation<D>&, std::int32_t);
+CAROM_INSTANTIATE(Dim2)
+CAROM_INSTANTIATE(Dim3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom::rigid::detail

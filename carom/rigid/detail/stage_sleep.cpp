@@ -1,0 +1,116 @@
+#include <algorithm>
+
+#include "carom/rigid/detail/stages.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+constexpr std::uint64_t sleep_interval = 4;  ///< steps between looks at the islands
+
+/// Union-find over places in the list of awake bodies; roots are the lowest place of their set.
+std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t i) {
+  while (parent[std::size_t(i)] != i) {
+    parent[std::size_t(i)] = parent[std::size_t(parent[std::size_t(i)])];
+    i = parent[std::size_t(i)];
+  }
+  return i;
+}
+void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  a = find_root(parent, a);
+  b = find_root(parent, b);
+  if (a < b) parent[std::size_t(b)] = a;
+  else if (b < a) parent[std::size_t(a)] = b;
+}
+
+template <class D> std::int32_t dynamic_place(const WorldImplementation<D>& world, std::int32_t body) {
+  if (body == none || !world.bodies.is_dynamic(body)) return none;
+  return world.bodies.record[std::size_t(body)].awake_index;
+}
+
+/// Joins what constraints of the graph join. Calls restless(place) for bodies touched by a moving kinematic one.
+template <class D, class F>
+void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t>& parent, F&& restless) {
+  parent.resize(world.bodies.awake.size());
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = std::int32_t(i);
+  const auto join = [&](std::int32_t a, std::int32_t b) {
+    const std::int32_t pa = dynamic_place(world, a), pb = dynamic_place(world, b);
+    if (pa != none && pb != none) return unite(parent, pa, pb);
+    const std::int32_t other = pa != none ? b : a, place = pa != none ? pa : pb;
+    if (place == none || other == none) return;
+    const BodyRecord& record = world.bodies.record[std::size_t(other)];
+    if (record.type == BodyType::kinematic && record.awake_index != none && record.sleep_timer == 0) restless(place);
+  };
+  for (const GraphColor& color : world.graph.colors) {
+    for (const std::int32_t m : color.manifolds) {
+      const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(m).contact);
+      if (c.flags & contact_touching) join(c.body[0], c.body[1]);
+    }
+    for (const std::int32_t j : color.joints) {
+      const JointHeader& header = world.joints.headers[std::size_t(j)];
+      join(header.body[0], header.body[1]);
+    }
+  }
+}
+
+}  // namespace
+
+template <class D> void sleep_islands(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  if (!world.definition.allow_sleep || world.step_count % sleep_interval != 0) return;
+  StepScratch<D>& scratch = world.scratch;
+  const auto tired = [&](std::size_t place) {
+    return world.bodies.record[std::size_t(world.bodies.awake[place])].sleep_timer >= world.definition.sleep_time;
+  };
+  const std::size_t count = world.bodies.awake.size();
+  bool any = false;
+  for (std::size_t i = 0; i < count && !any; ++i) any = tired(i);
+  if (!any) return;
+
+  std::vector<std::int32_t>& parent = scratch.island_parent;
+  std::vector<std::uint8_t>& restless = scratch.island_restless;
+  restless.assign(count, 0);
+  for (std::size_t i = 0; i < count; ++i) restless[i] = tired(i) ? 0 : 1;
+  unite_islands(world, parent, [&](std::int32_t place) { restless[std::size_t(place)] = 1; });
+  for (std::size_t i = 0; i < count; ++i)
+    if (restless[i] != 0) restless[std::size_t(find_root(parent, std::int32_t(i)))] = 1;
+  scratch.island_list.clear();
+  for (std::size_t i = 0; i < count; ++i)
+    if (restless[std::size_t(find_root(parent, std::int32_t(i)))] == 0) scratch.island_list.push_back(std::int32_t(i));
+  if (scratch.island_list.empty()) return;
+  std::sort(scratch.island_list.begin(), scratch.island_list.end(), [&](std::int32_t a, std::int32_t b) {
+    const std::int32_t ra = find_root(parent, a), rb = find_root(parent, b);
+    return ra != rb ? ra < rb : a < b;
+  });
+  // Slots before anything moves in the list of awake bodies.
+  scratch.island_bodies.clear();
+  scratch.island_ends.clear();
+  for (std::size_t i = 0; i < scratch.island_list.size(); ++i) {
+    if (i > 0 && find_root(parent, scratch.island_list[i]) != find_root(parent, scratch.island_list[i - 1]))
+      scratch.island_ends.push_back(std::int32_t(i));
+    const std::int32_t body = world.bodies.awake[std::size_t(scratch.island_list[i])];
+    scratch.island_bodies.push_back(body);
+    scratch.fell_asleep.push_back({world.bodies.slots.handle_at(body)});
+  }
+  scratch.island_ends.push_back(std::int32_t(scratch.island_list.size()));
+  std::int32_t begin = 0;
+  for (const std::int32_t end : scratch.island_ends) {
+    put_to_sleep<D>(world, std::span<const std::int32_t>(scratch.island_bodies).subspan(std::size_t(begin), std::size_t(end - begin)));
+    begin = end;
+  }
+}
+
+template <class D> int count_islands(const WorldImplementation<D>& world) {
+  std::vector<std::int32_t> parent;
+  unite_islands(world, parent, [](std::int32_t) {});
+  int count = world.sleeping.count();
+  for (std::size_t i = 0; i < parent.size(); ++i)
+    if (parent[i] == std::int32_t(i) && world.bodies.is_dynamic(world.bodies.awake[i])) ++count;
+  return count;
+}
+
+template void sleep_islands<Dim2>(StepContext<Dim2>&);
+template void sleep_islands<Dim3>(StepContext<Dim3>&);
+template int count_islands<Dim2>(const WorldImplementation<Dim2>&);
+template int count_islands<Dim3>(const WorldImplementation<Dim3>&);
+
+}  // namespace carom::rigid::detail

@@ -1,0 +1,188 @@
+// The step as a named sequence of stages.
+#include <atomic>
+#include <chrono>
+
+#include "carom/math/cpu.h"
+#include "carom/rigid/detail/joint_check.h"
+#include "carom/rigid/detail/stages.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+/// Measures; nothing in a world depends on it.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+template <class D> ContactKernels<D> kernels_of(math::InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == math::InstructionSet::avx512) {
+    if constexpr (D::dimension == 2) return contact_kernels_avx512::kernels2();
+    else return contact_kernels_avx512::kernels3();
+  }
+  if (set == math::InstructionSet::avx2) {
+    if constexpr (D::dimension == 2) return contact_kernels_avx2::kernels2();
+    else return contact_kernels_avx2::kernels3();
+  }
+#else
+  (void)set;
+#endif
+  if constexpr (D::dimension == 2) return contact_kernels_baseline::kernels2();
+  else return contact_kernels_baseline::kernels3();
+}
+
+/// Tells handles of different worlds apart. The only thing that worlds share; no result depends on it.
+std::uint16_t next_world_number() {
+  static std::atomic<std::uint32_t> last{0};
+  return std::uint16_t(last.fetch_add(1, std::memory_order_relaxed) % 0xFFFF + 1);
+}
+
+template <class D> void begin_events(WorldImplementation<D>& world) {
+  StepScratch<D>& s = world.scratch;
+  s.contact_begin.clear();
+  s.contact_hit.clear();
+  s.sensor_begin.clear();
+  s.fell_asleep.clear();
+  s.quarantined.clear();
+  // What ended by calls between the steps is told with this one.
+  s.contact_end.swap(s.pending_contact_end);
+  s.sensor_end.swap(s.pending_sensor_end);
+  s.pending_contact_end.clear();
+  s.pending_sensor_end.clear();
+}
+/// What ended while the stages ran (contacts whose bounds parted) belongs to this step too.
+template <class D> void end_events(WorldImplementation<D>& world) {
+  StepScratch<D>& s = world.scratch;
+  s.contact_end.insert(s.contact_end.end(), s.pending_contact_end.begin(), s.pending_contact_end.end());
+  s.sensor_end.insert(s.sensor_end.end(), s.pending_sensor_end.begin(), s.pending_sensor_end.end());
+  s.pending_contact_end.clear();
+  s.pending_sensor_end.clear();
+}
+
+template <class D> StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
+  StepContext<D> context{world, *world.scheduler, world.arena};
+  const WorldDef<D>& definition = world.definition;
+  context.dt = dt;
+  context.inverse_dt = 1 / dt;
+  context.substeps = definition.substeps;
+  context.h = dt / float(definition.substeps);
+  context.inverse_h = float(definition.substeps) * context.inverse_dt;
+  const float contact_hertz = min(definition.contact_hertz, 0.125f * context.inverse_h);
+  context.contact_softness = make_softness(contact_hertz, definition.contact_damping_ratio, context.h);
+  context.fixed_contact_softness = make_softness(2 * contact_hertz, definition.contact_damping_ratio, context.h);
+  context.joint_softness =
+      make_softness(min(definition.joint_hertz, 0.25f * context.inverse_h), definition.joint_damping_ratio, context.h);
+  context.push_speed = definition.contact_push_speed;
+  context.bodies = world.bodies.solver.data();
+  return context;
+}
+
+}  // namespace
+
+template <class D>
+WorldImplementation<D>::WorldImplementation(const WorldDef<D>& d)
+    : definition(d),
+      world_number(next_world_number()),
+      bodies(world_number),
+      shapes(world_number),
+      joints(world_number),
+      effectors(world_number),
+      kernels(kernels_of<D>(d.simd_width == 0
+                                ? math::detect_instruction_set()
+                                : math::choose_instruction_set(math::instruction_set_of_width(d.simd_width)))) {
+  scheduler = d.scheduler;
+  if (scheduler == nullptr) {
+    own_scheduler = core::make_thread_pool(d.threads);
+    scheduler = own_scheduler.get();
+  }
+  scratch.found_pairs.resize(std::size_t(scheduler->thread_count()));
+  scratch.found_manifolds.resize(std::size_t(scheduler->thread_count()));
+}
+
+template <class D> Status check_definition(std::string_view call, const WorldDef<D>& d) {
+  Complaint c(call);
+  c.vector("gravity", d.gravity);
+  const auto range = [&](std::string_view field, double x, double low, double high) {
+    if (!(x >= low && x <= high)) c.say(core::refused(field, x, core::text("a number from ", low, " to ", high)));
+  };
+  range("|gravity|", double(math::length(d.gravity)), 0, 1e6);
+  range("substeps", d.substeps, 1, 64);
+  range("threads", d.threads, 1, 64);
+  if (d.simd_width != 0 && d.simd_width != 4 && d.simd_width != 8 && d.simd_width != 16)
+    c.say(core::text("simd_width is ", d.simd_width, ", expected 0, 4, 8 or 16"));
+  range("restitution_threshold", d.restitution_threshold, 0, 1e6);
+  range("contact_hertz", d.contact_hertz, 0, 1e6);
+  range("contact_damping_ratio", d.contact_damping_ratio, 0, 1e6);
+  range("contact_push_speed", d.contact_push_speed, 0, 1e6);
+  range("joint_hertz", d.joint_hertz, 0, 1e6);
+  range("joint_damping_ratio", d.joint_damping_ratio, 0, 1e6);
+  range("maximum_linear_speed", d.maximum_linear_speed, 1e-3, 1e6);
+  range("sleep_time", d.sleep_time, 0, 1e6);
+  if (c.none_yet()) return {};
+  return c.error();
+}
+
+template <class D> Status step_world(WorldImplementation<D>& world, float dt) {
+  if (!(dt > 0 && dt <= 1)) return core::Error{core::text("World::step: ", core::refused("dt", dt, "a time above 0 and at most 1 s"))};
+  if (world.step_count == 0) {
+    const Status status = check_definition<D>("World::step: definition", world.definition);
+    if (!status.ok()) return status.error();
+  }
+  Stopwatch watch, whole;
+  StepProfile profile;
+  begin_events(world);
+  world.arena.reset();
+  world.last_dt = dt;
+
+  apply_effectors(world, dt);
+  profile.effectors = watch.lap();
+  find_pairs(world);
+  profile.broad_phase = watch.lap();
+  update_contacts(world);
+  profile.narrow_phase = watch.lap();
+
+  StepContext<D> context = make_context(world, dt);
+  prepare_joints(context);
+  prepare_contacts(context);
+  profile.prepare = watch.lap();
+  solve_constraints(context);
+  profile.solve = watch.lap();
+  restitute_contacts(context);
+  profile.restitution = watch.lap();
+  store_joints(context);
+  store_contacts(context);
+  finalize_bodies(context);
+  gather_hit_events(context);
+  profile.finalize = watch.lap();
+  stop_fast_bodies(context);
+  profile.continuous = watch.lap();
+  update_trees(world);
+  release_broken_bodies(world);
+  profile.broad_phase += watch.lap();
+  ++world.step_count;
+  world.time += double(dt);
+  sleep_islands(context);
+  end_events(world);
+  profile.sleep = watch.lap();
+  profile.total = whole.lap();
+  world.profile = profile;
+  return {};
+}
+
+template struct WorldImplementation<Dim2>;
+template struct WorldImplementation<Dim3>;
+template Status check_definition<Dim2>(std::string_view, const WorldDef<Dim2>&);
+template Status check_definition<Dim3>(std::string_view, const WorldDef<Dim3>&);
+template Status step_world<Dim2>(WorldImplementation<Dim2>&, float);
+template Status step_world<Dim3>(WorldImplementation<Dim3>&, float);
+
+}  // namespace carom::rigid::detail

@@ -1,0 +1,397 @@
+// World's members about bodies.
+#pragma once
+
+#include "carom/rigid/detail/bodies.h"
+#include "carom/rigid/detail/check.h"
+
+namespace carom::rigid {
+namespace detail {
+
+/// Slot of a valid body, or the complaint `World::call: body: …`.
+template <class D>
+Result<std::int32_t> slot_of(const WorldImplementation<D>& world, std::string_view call, BodyId body) {
+  const Status status = world.bodies.slots.check(body, "body");
+  if (!status.ok()) return core::Error{core::text("World::", call, ": ", status.error().message)};
+  return std::int32_t(world.bodies.slots.slot(body));
+}
+template <class D> void check_body(Complaint& c, const BodyDef<D>& d) {
+  check_size(c, "position", d.position, max_coordinate);
+  c.rotation("rotation", d.rotation);
+  check_size(c, "linear_velocity", d.linear_velocity, max_velocity);
+  check_size(c, "angular_velocity", d.angular_velocity, max_velocity);
+  check_range(c, "linear_damping", d.linear_damping, 0, 1e6);
+  check_range(c, "angular_damping", d.angular_damping, 0, 1e6);
+  check_range(c, "gravity_scale", d.gravity_scale, -1e6, 1e6);
+  check_range(c, "sleep_speed", d.sleep_speed, 0, 1e6);
+  if (d.type != BodyType::fixed && d.type != BodyType::kinematic && d.type != BodyType::dynamic)
+    c.say(core::text("type is ", int(d.type), ", expected fixed, kinematic or dynamic"));
+}
+template <class D> void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
+  r.flags = std::uint16_t(on ? r.flags | flag : r.flags & ~flag);
+}
+
+/// Takes the body out of trees, contacts and the set of movers, or puts it back.
+template <class D> void take_out(WorldImplementation<D>& world, std::int32_t body) {
+  wake_body(world, body);
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+    const std::int32_t next = world.contacts.at(key >> 1).next[key & 1];
+    destroy_contact(world, key >> 1, true);
+    key = next;
+  }
+  deactivate_body(world, body);
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
+    remove_from_tree(world, s);
+}
+template <class D> void put_back(WorldImplementation<D>& world, std::int32_t body) {
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
+    insert_into_tree(world, s);
+  activate_body(world, body);
+}
+/// Detaches the joints of a body while `change` alters what the graph depends on.
+template <class D, class F> void with_joints_detached(WorldImplementation<D>& world, std::int32_t body, F&& change) {
+  std::vector<std::int32_t> joints;
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none;
+       key = world.joints.headers[std::size_t(key >> 1)].next[key & 1])
+    joints.push_back(key >> 1);
+  for (const std::int32_t joint : joints) detach_joint(world, joint);
+  change();
+  for (std::size_t i = joints.size(); i-- > 0;) attach_joint(world, joints[i]);
+}
+
+}  // namespace detail
+
+template <class D> Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
+  using namespace detail;
+  Complaint complaint("World::create_body");
+  check_body(complaint, d);
+  if (!complaint.none_yet()) return complaint.error();
+  BodyStore<D>& bodies = self_->bodies;
+  const BodyId id = bodies.slots.allocate();
+  const std::size_t slot = std::size_t(bodies.slots.slot(id));
+  if (slot == bodies.record.size()) {
+    bodies.solver.emplace_back();
+    bodies.pose.emplace_back();
+    bodies.motion.emplace_back();
+    bodies.record.emplace_back();
+    bodies.birth.emplace_back();
+  }
+  bodies.solver[slot] = {};
+  bodies.motion[slot] = {};
+  bodies.record[slot] = {};
+  bodies.birth[slot] = self_->births++;
+  bodies.pose[slot] = {d.position, normalize(d.rotation)};
+  BodyMotion<D>& m = bodies.motion[slot];
+  m.center = d.position;
+  m.linear_damping = d.linear_damping;
+  m.angular_damping = d.angular_damping;
+  m.gravity_scale = d.gravity_scale;
+  BodyRecord& r = bodies.record[slot];
+  r.type = d.type;
+  r.locks = lock_bits(d.locks);
+  r.sleep_speed = d.sleep_speed;
+  r.user_data = d.user_data;
+  set_flag<D>(r, body_enabled, d.enabled);
+  set_flag<D>(r, body_bullet, d.bullet);
+  set_flag<D>(r, body_allow_sleep, d.allow_sleep);
+  if (!d.name.empty() || !bodies.names.empty()) {
+    if (bodies.names.size() < bodies.record.size()) bodies.names.resize(bodies.record.size());
+    bodies.names[slot] = std::string(d.name);
+  }
+  if (d.type != BodyType::fixed) {
+    bodies.solver[slot].linear_velocity = d.linear_velocity;
+    bodies.solver[slot].angular_velocity = d.angular_velocity;
+    if (d.awake) activate_body(*self_, std::int32_t(slot));
+  }
+  return id;
+}
+
+template <class D> Status World<D>::destroy_body(BodyId body) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "destroy_body", body);
+  if (!slot.ok()) return slot.error();
+  forget_body_in_effectors(*self_, body);
+  destroy_joints_of(*self_, *slot);
+  take_out(*self_, *slot);
+  for (std::int32_t s = self_->bodies.record[std::size_t(*slot)].first_shape; s != none;) {
+    ShapeRecord<D>& shape = self_->shapes.at(s);
+    const std::int32_t next = shape.next;
+    if (shape.flags & shape_hit_events) --self_->hit_event_shapes;
+    self_->shapes.slots.release(self_->shapes.slots.handle_at(s));
+    // A slot in `moved` stays there until the next step; without a leaf it is passed over.
+    const std::uint8_t moved = shape.flags & shape_moved;
+    shape = {};
+    shape.flags = moved;
+    s = next;
+  }
+  if (!self_->bodies.names.empty() && std::size_t(*slot) < self_->bodies.names.size())
+    self_->bodies.names[std::size_t(*slot)].clear();
+  self_->bodies.solver[std::size_t(*slot)] = {};
+  self_->bodies.record[std::size_t(*slot)] = {};
+  self_->bodies.slots.release(body);
+  return {};
+}
+
+template <class D> bool World<D>::contains(BodyId body) const { return self_->bodies.slots.contains(body); }
+
+template <class D> Result<BodyState<D>> World<D>::state(BodyId body) const {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "state", body);
+  if (!slot.ok()) return slot.error();
+  const std::size_t i = std::size_t(*slot);
+  const BodyRecord& r = self_->bodies.record[i];
+  BodyState<D> s;
+  s.pose = self_->bodies.pose[i];
+  s.center_of_mass = self_->bodies.motion[i].center;
+  s.linear_velocity = self_->bodies.solver[i].linear_velocity;
+  s.angular_velocity = self_->bodies.solver[i].angular_velocity;
+  s.mass = self_->bodies.motion[i].mass;
+  s.type = r.type;
+  s.awake = r.awake_index != none;
+  s.enabled = r.enabled();
+  s.user_data = r.user_data;
+  return s;
+}
+
+template <class D> Result<BodyDef<D>> World<D>::body_definition(BodyId body) const {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "body_definition", body);
+  if (!slot.ok()) return slot.error();
+  const std::size_t i = std::size_t(*slot);
+  const BodyRecord& r = self_->bodies.record[i];
+  const BodyMotion<D>& m = self_->bodies.motion[i];
+  BodyDef<D> d;
+  d.type = r.type;
+  d.position = self_->bodies.pose[i].position;
+  d.rotation = self_->bodies.pose[i].rotation;
+  d.linear_velocity = self_->bodies.solver[i].linear_velocity;
+  d.angular_velocity = self_->bodies.solver[i].angular_velocity;
+  d.linear_damping = m.linear_damping;
+  d.angular_damping = m.angular_damping;
+  d.gravity_scale = m.gravity_scale;
+  d.sleep_speed = r.sleep_speed;
+  d.locks = locks_of(r.locks);
+  d.awake = r.awake_index != none;
+  d.allow_sleep = (r.flags & body_allow_sleep) != 0;
+  d.bullet = (r.flags & body_bullet) != 0;
+  d.enabled = r.enabled();
+  d.user_data = r.user_data;
+  if (i < self_->bodies.names.size()) d.name = self_->bodies.names[i];
+  return d;
+}
+
+namespace detail {
+template <class D> typename D::MassProperties mass_of(const WorldImplementation<D>& world, std::int32_t body) {
+  const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  typename D::MassProperties p;
+  p.mass = m.mass;
+  p.center = typename D::Position(m.local_center);
+  p.inertia = decltype(p.inertia)(m.inertia);
+  return p;
+}
+inline bool sound_inertia(double i) { return is_finite(i) && i >= 0 && i <= 1e30; }
+inline bool sound_inertia(const Mat3d& i) {
+  const double scale = i.cx.x + i.cy.y + i.cz.z;
+  if (!is_finite(i.cx) || !is_finite(i.cy) || !is_finite(i.cz) || !(scale >= 0 && scale <= 1e30)) return false;
+  const double t = 1e-6 * scale;
+  if (math::abs(i.cx.y - i.cy.x) > t || math::abs(i.cx.z - i.cz.x) > t || math::abs(i.cy.z - i.cz.y) > t) return false;
+  // Positive definite (Sylvester), or all zero: a body that does not turn.
+  return scale == 0 || (i.cx.x > 0 && i.cx.x * i.cy.y - i.cx.y * i.cy.x > 0 && determinant(i) > 0);
+}
+}  // namespace detail
+
+template <class D>
+Result<geometry::MassProperties2> World<D>::mass_properties2(BodyId body) const requires(D::dimension == 2) {
+  const Result<std::int32_t> slot = detail::slot_of(*self_, "mass_properties2", body);
+  if (!slot.ok()) return slot.error();
+  return detail::mass_of(*self_, *slot);
+}
+template <class D>
+Result<geometry::MassProperties3> World<D>::mass_properties3(BodyId body) const requires(D::dimension == 3) {
+  const Result<std::int32_t> slot = detail::slot_of(*self_, "mass_properties3", body);
+  if (!slot.ok()) return slot.error();
+  return detail::mass_of(*self_, *slot);
+}
+
+template <class D>
+Status World<D>::set_mass_properties(BodyId body, const typename D::MassProperties& p) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_mass_properties", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_mass_properties");
+  check_range(complaint, "mass", p.mass, 1e-12, max_body_mass);
+  check_size(complaint, "center", p.center, max_size);
+  if (!sound_inertia(p.inertia))
+    complaint.say("inertia is not a symmetric positive tensor (or zero) with elements up to 1e30 kg·m², expected one");
+  if (!complaint.none_yet()) return complaint.error();
+  if (self_->bodies.record[std::size_t(*slot)].type != BodyType::dynamic)
+    return core::Error{"World::set_mass_properties: the body is not dynamic, expected a dynamic body"};
+  wake_body(*self_, *slot);
+  BodyMotion<D>& m = self_->bodies.motion[std::size_t(*slot)];
+  self_->bodies.record[std::size_t(*slot)].flags |= body_mass_given;
+  m.mass = float(p.mass);
+  const Vector old_center = m.local_center;
+  m.local_center = Vector(p.center);
+  m.inertia = typename D::Inertia(p.inertia);
+  SolverBody<D>& s = self_->bodies.solver[std::size_t(*slot)];
+  s.linear_velocity += cross(s.angular_velocity,
+                             rotate(self_->bodies.pose[std::size_t(*slot)].rotation, m.local_center - old_center));
+  update_mass(*self_, *slot);
+  return {};
+}
+
+template <class D> Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_pose", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_pose");
+  check_size(complaint, "position", position, max_coordinate);
+  complaint.rotation("rotation", rotation);
+  if (!complaint.none_yet()) return complaint.error();
+  wake_body(*self_, *slot);
+  wake_touching(*self_, *slot);
+  self_->bodies.pose[std::size_t(*slot)] = {position, normalize(rotation)};
+  center_from_pose(*self_, *slot);
+  update_world_inertia(*self_, *slot);
+  refresh_bounds(*self_, *slot);
+  return {};
+}
+
+template <class D> Status World<D>::set_velocity(BodyId body, Vector linear, Angular angular) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_velocity", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_velocity");
+  check_size(complaint, "linear", linear, max_velocity);
+  check_size(complaint, "angular", angular, max_velocity);
+  if (!complaint.none_yet()) return complaint.error();
+  if (self_->bodies.is_fixed(*slot)) return core::Error{"World::set_velocity: the body is fixed, expected one that moves"};
+  if (!(linear == Vector{} && angular == Angular{})) wake_body(*self_, *slot);
+  self_->bodies.solver[std::size_t(*slot)].linear_velocity = linear;
+  self_->bodies.solver[std::size_t(*slot)].angular_velocity = angular;
+  return {};
+}
+
+namespace detail {
+inline float turn_between(const Rot2f& from, const Rot2f& to) {
+  const Rot2f d = to * conjugate(from);
+  return math::atan2(d.s, d.c);
+}
+inline Vec3f turn_between(const Quatf& from, const Quatf& to) {
+  Quatf d = to * conjugate(from);
+  if (d.w < 0) d = -d;
+  const float s = math::length(d.vector());
+  return s < 1e-12f ? 2.0f * d.vector() : d.vector() * (2 * math::atan2(s, d.w) / s);
+}
+}  // namespace detail
+
+template <class D>
+Status World<D>::set_target_pose(BodyId body, Position position, Rotation rotation, float dt) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_target_pose", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_target_pose");
+  check_size(complaint, "position", position, max_coordinate);
+  complaint.rotation("rotation", rotation);
+  if (!(dt > 0 && dt <= 1e6f)) complaint.say(core::refused("dt", dt, "a time above 0 and at most 1e6 s"));
+  if (!complaint.none_yet()) return complaint.error();
+  if (self_->bodies.record[std::size_t(*slot)].type != BodyType::kinematic)
+    return core::Error{"World::set_target_pose: the body is not kinematic, expected a kinematic body"};
+  const Pose& now = self_->bodies.pose[std::size_t(*slot)];
+  const BodyMotion<D>& m = self_->bodies.motion[std::size_t(*slot)];
+  const Rotation q = normalize(rotation);
+  const Position center = position + Position(rotate(q, m.local_center));
+  const Vector linear = Vector((center - m.center) / double(dt));
+  const Angular angular = turn_between(now.rotation, q) * (1 / dt);
+  check_size(complaint, "speed to the target", linear, max_velocity);
+  if (!complaint.none_yet()) return complaint.error();
+  return set_velocity(body, linear, angular);
+}
+
+template <class D> Status World<D>::set_type(BodyId body, BodyType type) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_type", body);
+  if (!slot.ok()) return slot.error();
+  if (type != BodyType::fixed && type != BodyType::kinematic && type != BodyType::dynamic)
+    return core::Error{core::text("World::set_type: type is ", int(type), ", expected fixed, kinematic or dynamic")};
+  BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
+  if (r.type == type) return {};
+  if (type != BodyType::fixed || r.first_shape != none)
+    for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next)
+      if (type == BodyType::dynamic && surface_only(self_->shapes.at(s).geometry))
+        return core::Error{"World::set_type: the body has a plane, mesh or height field, expected only shapes that can be dynamic"};
+  with_joints_detached(*self_, *slot, [&] {
+    take_out(*self_, *slot);
+    self_->bodies.record[std::size_t(*slot)].type = type;
+    if (type == BodyType::fixed) self_->bodies.solver[std::size_t(*slot)] = {};
+    update_mass(*self_, *slot);
+    put_back(*self_, *slot);
+  });
+  return {};
+}
+
+template <class D> Status World<D>::set_awake(BodyId body, bool awake) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_awake", body);
+  if (!slot.ok()) return slot.error();
+  const BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
+  if (awake) wake_body(*self_, *slot);
+  else if (r.awake_index != none) put_to_sleep<D>(*self_, std::span<const std::int32_t>(&*slot, 1));
+  return {};
+}
+
+template <class D> Status World<D>::set_enabled(BodyId body, bool enabled) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_enabled", body);
+  if (!slot.ok()) return slot.error();
+  if (self_->bodies.record[std::size_t(*slot)].enabled() == enabled) return {};
+  with_joints_detached(*self_, *slot, [&] {
+    if (!enabled) take_out(*self_, *slot);
+    set_flag<D>(self_->bodies.record[std::size_t(*slot)], body_enabled, enabled);
+    if (enabled) put_back(*self_, *slot);
+  });
+  return {};
+}
+
+template <class D> Status World<D>::set_locks(BodyId body, MotionLocks locks) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_locks", body);
+  if (!slot.ok()) return slot.error();
+  wake_body(*self_, *slot);
+  self_->bodies.record[std::size_t(*slot)].locks = lock_bits(locks);
+  update_mass(*self_, *slot);
+  return {};
+}
+
+template <class D> Status World<D>::set_damping(BodyId body, float linear, float angular) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_damping", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_damping");
+  check_range(complaint, "linear", linear, 0, 1e6);
+  check_range(complaint, "angular", angular, 0, 1e6);
+  if (!complaint.none_yet()) return complaint.error();
+  self_->bodies.motion[std::size_t(*slot)].linear_damping = linear;
+  self_->bodies.motion[std::size_t(*slot)].angular_damping = angular;
+  return {};
+}
+
+template <class D> Status World<D>::set_gravity_scale(BodyId body, float scale) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_gravity_scale", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_gravity_scale");
+  check_range(complaint, "scale", scale, -1e6, 1e6);
+  if (!complaint.none_yet()) return complaint.error();
+  wake_body(*self_, *slot);
+  self_->bodies.motion[std::size_t(*slot)].gravity_scale = scale;
+  return {};
+}
+
+template <class D> Status World<D>::set_user_data(BodyId body, std::uint64_t data) {
+  const Result<std::int32_t> slot = detail::slot_of(*self_, "set_user_data", body);
+  if (!slot.ok()) return slot.error();
+  self_->bodies.record[std::size_t(*slot)].user_data = data;
+  return {};
+}
+
+}  // namespace carom::rigid

@@ -1,0 +1,218 @@
+// World's members about the world as a whole: making it, stepping it, reading it.
+#pragma once
+
+#include <algorithm>
+
+#include "carom/rigid/detail/stages.h"
+
+namespace carom::rigid {
+namespace detail {
+
+/// Slots of a pool in the order of their birth.
+template <class Slots> void by_birth(const Slots& slots, const std::vector<std::uint64_t>& birth, std::vector<std::int32_t>& out) {
+  out.clear();
+  for (int i = 0; i < slots.capacity(); ++i)
+    if (slots.in_use(i)) out.push_back(i);
+  std::sort(out.begin(), out.end(), [&](std::int32_t a, std::int32_t b) { return birth[std::size_t(a)] < birth[std::size_t(b)]; });
+}
+
+inline void hash_add(core::StateHash& h, const Vec2d& v) { h.add(v.x).add(v.y); }
+inline void hash_add(core::StateHash& h, const Vec3d& v) { h.add(v.x).add(v.y).add(v.z); }
+inline void hash_add(core::StateHash& h, const Vec2f& v) { h.add(v.x).add(v.y); }
+inline void hash_add(core::StateHash& h, const Vec3f& v) { h.add(v.x).add(v.y).add(v.z); }
+inline void hash_add(core::StateHash& h, const Rot2f& q) { h.add(q.c).add(q.s); }
+inline void hash_add(core::StateHash& h, const Quatf& q) { h.add(q.w).add(q.x).add(q.y).add(q.z); }
+inline void hash_add(core::StateHash& h, float x) { h.add(x); }
+
+template <class D> double spin_energy(const BodyMotion<D>& m, const typename D::Rotation& q, const typename D::Angular& w, auto& momentum) {
+  if constexpr (D::dimension == 2) {
+    momentum += double(m.inertia) * double(w);
+    return 0.5 * double(m.inertia) * double(w) * double(w);
+  } else {
+    const Quatd qd(q);
+    const Vec3d body = inverse_rotate(qd, Vec3d(w));
+    const Vec3d l = Mat3d(m.inertia) * body;
+    momentum += rotate(qd, l);
+    return 0.5 * dot(l, body);
+  }
+}
+
+template <class T> std::size_t bytes_of(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
+template <class D> std::size_t bytes_of_world(const WorldImplementation<D>& w) {
+  std::size_t n = sizeof(w);
+  n += w.bodies.slots.bytes() + bytes_of(w.bodies.solver) + bytes_of(w.bodies.pose) + bytes_of(w.bodies.motion) +
+       bytes_of(w.bodies.record) + bytes_of(w.bodies.names) + bytes_of(w.bodies.birth) + bytes_of(w.bodies.awake);
+  n += w.shapes.slots.bytes() + bytes_of(w.shapes.record);
+  for (const auto& tree : w.shapes.trees) n += tree.bytes();
+  n += w.joints.bytes() + w.effectors.bytes();
+  n += bytes_of(w.contacts.contacts) + bytes_of(w.contacts.manifolds) + bytes_of(w.contacts.free_contacts) +
+       bytes_of(w.contacts.free_manifolds) + bytes_of(w.contacts.awake) + w.pairs.bytes();
+  for (const GraphColor& c : w.graph.colors) n += bytes_of(c.manifolds) + bytes_of(c.joints);
+  n += bytes_of(w.sleeping.islands) + bytes_of(w.sleeping.free);
+  for (const auto& island : w.sleeping.islands) n += bytes_of(island.bodies);
+  const StepScratch<D>& s = w.scratch;
+  for (const auto& list : s.found_pairs) n += bytes_of(list);
+  for (const auto& list : s.found_manifolds) n += bytes_of(list);
+  n += bytes_of(s.moved) + bytes_of(s.pairs) + bytes_of(s.swept) + bytes_of(s.fast) + bytes_of(s.body_changes) +
+       bytes_of(s.contact_changes) + bytes_of(s.manifolds) + bytes_of(s.island_parent) + bytes_of(s.island_list) +
+       bytes_of(s.island_bodies) + bytes_of(s.doomed_contacts) + bytes_of(s.new_touches) + bytes_of(s.island_restless) +
+       bytes_of(s.contact_begin) + bytes_of(s.contact_end) + bytes_of(s.contact_hit) + bytes_of(s.sensor_begin) +
+       bytes_of(s.sensor_end) + bytes_of(s.fell_asleep);
+  return n + w.arena.capacity();
+}
+
+}  // namespace detail
+
+template <class D> World<D>::World(const WorldDef<D>& definition) : self_(std::make_unique<Implementation>(definition)) {}
+template <class D> World<D>::~World() = default;
+template <class D> World<D>::World(World&&) noexcept = default;
+template <class D> World<D>& World<D>::operator=(World&&) noexcept = default;
+template <class D> Status World<D>::check(const WorldDef<D>& definition) {
+  return detail::check_definition<D>("World::check", definition);
+}
+template <class D> const WorldDef<D>& World<D>::definition() const { return self_->definition; }
+
+template <class D> Status World<D>::set_gravity(Vector gravity) {
+  using namespace detail;
+  Complaint complaint("World::set_gravity");
+  check_size(complaint, "gravity", gravity, 1e6);
+  if (!complaint.none_yet()) return complaint.error();
+  if (gravity == self_->definition.gravity) return {};
+  self_->definition.gravity = gravity;
+  for (std::int32_t i = 0; i < self_->bodies.slots.capacity(); ++i)
+    if (self_->bodies.slots.in_use(i) && self_->bodies.is_dynamic(i)) wake_body(*self_, i);
+  return {};
+}
+
+template <class D> Status World<D>::step(float dt) { return detail::step_world<D>(*self_, dt); }
+template <class D> std::uint64_t World<D>::step_count() const { return self_->step_count; }
+template <class D> double World<D>::time() const { return self_->time; }
+
+template <class D> Events<D> World<D>::events() const {
+  const detail::StepScratch<D>& s = self_->scratch;
+  return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin, s.sensor_end, s.fell_asleep, s.quarantined};
+}
+
+template <class D> void World<D>::bodies(std::vector<BodyId>& out) const {
+  std::vector<std::int32_t> order;
+  detail::by_birth(self_->bodies.slots, self_->bodies.birth, order);
+  out.clear();
+  for (const std::int32_t i : order) out.push_back(self_->bodies.slots.handle_at(i));
+}
+template <class D> void World<D>::shapes(BodyId body, std::vector<ShapeId>& out) const {
+  out.clear();
+  if (!contains(body)) return;
+  for (std::int32_t s = self_->bodies.record[std::size_t(self_->bodies.slots.slot(body))].first_shape; s != detail::none;
+       s = self_->shapes.at(s).next)
+    out.push_back(self_->shapes.slots.handle_at(s));
+}
+
+template <class D> void World<D>::contacts(std::vector<ContactView<D>>& out) const {
+  using namespace detail;
+  out.clear();
+  const ContactStore<D>& store = self_->contacts;
+  for (const ContactRecord<D>& c : store.contacts) {
+    if ((c.flags & contact_in_use) == 0 || (c.flags & contact_sensor) != 0) continue;
+    for (std::int32_t i = c.first_manifold; i != none; i = store.manifold(i).next) {
+      const ManifoldRecord<D>& m = store.manifold(i);
+      ContactView<D> view;
+      typename D::Position points[D::max_points];
+      float separations[D::max_points];
+      contact_points_now(*self_, m, points, separations, view.normal);
+      bool touches = false;
+      for (int k = 0; k < m.manifold.count; ++k) touches = touches || separations[k] <= 0 || m.impulses.total[k] > 0;
+      if (!touches) continue;
+      view.shape_a = self_->shapes.slots.handle_at(c.shape[0]);
+      view.shape_b = self_->shapes.slots.handle_at(c.shape[1]);
+      view.count = m.manifold.count;
+      for (int k = 0; k < m.manifold.count; ++k)
+        view.points[k] = {points[k], separations[k], m.impulses.total[k]};
+      view.friction_impulse = m.impulses.friction_total;
+      view.color = m.place.color;
+      out.push_back(view);
+    }
+  }
+}
+
+template <class D> Totals<D> World<D>::totals() const {
+  using namespace detail;
+  Totals<D> t;
+  Position weighted{};
+  std::vector<std::int32_t> order;
+  by_birth(self_->bodies.slots, self_->bodies.birth, order);
+  for (const std::int32_t i : order) {
+    const BodyMotion<D>& m = self_->bodies.motion[std::size_t(i)];
+    if (!self_->bodies.is_dynamic(i) || !self_->bodies.record[std::size_t(i)].enabled()) continue;
+    const SolverBody<D>& s = self_->bodies.solver[std::size_t(i)];
+    const double mass = double(m.mass);
+    const Position p = Position(s.linear_velocity) * mass;
+    t.mass += mass;
+    weighted += m.center * mass;
+    t.momentum += p;
+    t.angular_momentum += cross(m.center, p);
+    t.kinetic_energy += 0.5 * mass * math::length_squared(Position(s.linear_velocity)) +
+                        spin_energy<D>(m, self_->bodies.pose[std::size_t(i)].rotation, s.angular_velocity, t.angular_momentum);
+    t.potential_energy -= mass * double(m.gravity_scale) * dot(Position(self_->definition.gravity), m.center);
+  }
+  if (t.mass > 0) t.center_of_mass = weighted * (1 / t.mass);
+  return t;
+}
+
+template <class D> Counters World<D>::counters() const {
+  using namespace detail;
+  Counters c;
+  c.bodies = self_->bodies.slots.size();
+  c.awake_bodies = int(self_->bodies.awake.size());
+  c.shapes = self_->shapes.slots.size();
+  c.joints = self_->joints.count();
+  c.effectors = self_->effectors.count();
+  c.contacts = self_->contacts.count;
+  for (const ContactRecord<D>& contact : self_->contacts.contacts)
+    if ((contact.flags & contact_in_use) != 0 && (contact.flags & contact_touching) != 0 && (contact.flags & contact_sensor) == 0)
+      ++c.touching_contacts;
+  for (const ManifoldRecord<D>& m : self_->contacts.manifolds)
+    if (m.contact != none) c.contact_points += m.manifold.count;
+  c.islands = count_islands(*self_);
+  for (int i = 0; i < color_count; ++i)
+    if (!self_->graph.colors[i].manifolds.empty() || !self_->graph.colors[i].joints.empty()) ++c.colors;
+  c.overflow_constraints =
+      int(self_->graph.colors[overflow_color].manifolds.size() + self_->graph.colors[overflow_color].joints.size());
+  c.bytes = bytes_of_world(*self_);
+  return c;
+}
+
+template <class D> StepProfile World<D>::profile() const { return self_->profile; }
+
+template <class D> float World<D>::worst_penetration() const {
+  using namespace detail;
+  float worst = 0;
+  for (const ManifoldRecord<D>& m : self_->contacts.manifolds) {
+    if (m.contact == none) continue;
+    Position points[D::max_points];
+    float separations[D::max_points];
+    Vector normal;
+    contact_points_now(*self_, m, points, separations, normal);
+    for (int k = 0; k < m.manifold.count; ++k) worst = max(worst, -separations[k]);
+  }
+  return worst;
+}
+
+template <class D> std::uint64_t World<D>::state_hash() const {
+  using namespace detail;
+  core::StateHash hash;
+  std::vector<std::int32_t> order;
+  by_birth(self_->bodies.slots, self_->bodies.birth, order);
+  for (const std::int32_t i : order) {
+    const typename D::Pose& pose = self_->bodies.pose[std::size_t(i)];
+    const SolverBody<D>& s = self_->bodies.solver[std::size_t(i)];
+    hash_add(hash, pose.position);
+    hash_add(hash, pose.rotation);
+    hash_add(hash, s.linear_velocity);
+    hash_add(hash, s.angular_velocity);
+    hash.add(self_->bodies.record[std::size_t(i)].awake_index != none);
+    hash.add(std::uint32_t(self_->bodies.record[std::size_t(i)].type));
+  }
+  return hash.digest();
+}
+
+}  // namespace carom::rigid
