@@ -58,6 +58,15 @@ template <class T> struct Mat4 {
     return m.cx * v.x + m.cy * v.y + m.cz * v.z + m.cw * v.w;
   }
   friend constexpr Mat4 operator*(const Mat4& a, const Mat4& b) { return {a * b.cx, a * b.cy, a * b.cz, a * b.cw}; }
+  friend constexpr Mat4 operator*(T s, const Mat4& m) { return {s * m.cx, s * m.cy, s * m.cz, s * m.cw}; }
+  friend constexpr Mat4 operator*(const Mat4& m, T s) { return s * m; }
+  friend constexpr Mat4 operator/(const Mat4& m, T s) { return {m.cx / s, m.cy / s, m.cz / s, m.cw / s}; }
+  friend constexpr Mat4 operator+(const Mat4& a, const Mat4& b) {
+    return {a.cx + b.cx, a.cy + b.cy, a.cz + b.cz, a.cw + b.cw};
+  }
+  friend constexpr Mat4 operator-(const Mat4& a, const Mat4& b) {
+    return {a.cx - b.cx, a.cy - b.cy, a.cz - b.cz, a.cw - b.cw};
+  }
   friend constexpr bool operator==(const Mat4& a, const Mat4& b) {
     return a.cx == b.cx && a.cy == b.cy && a.cz == b.cz && a.cw == b.cw;
   }
@@ -89,6 +98,62 @@ template <class T> constexpr Mat3<T> inverse(const Mat3<T>& m) {
   const T d = dot(m.cx, a);
   const T s = d != T(0) ? T(1) / d : T(0);
   return transpose(Mat3<T>{a * s, b * s, c * s});
+}
+
+template <class T> constexpr Mat4<T> transpose(const Mat4<T>& m) {
+  return {{m.cx.x, m.cy.x, m.cz.x, m.cw.x},
+          {m.cx.y, m.cy.y, m.cz.y, m.cw.y},
+          {m.cx.z, m.cy.z, m.cz.z, m.cw.z},
+          {m.cx.w, m.cy.w, m.cz.w, m.cw.w}};
+}
+
+namespace detail {
+/// The 2×2 minors of the first two rows (a) and of the last two (b) of a 4×4 matrix, for Laplace's expansion.
+template <class T> struct Minors4 {
+  T a01, a02, a03, a12, a13, a23, b01, b02, b03, b12, b13, b23;
+  constexpr explicit Minors4(const Mat4<T>& m)
+      : a01(m.cx.x * m.cy.y - m.cx.y * m.cy.x), a02(m.cx.x * m.cz.y - m.cx.y * m.cz.x),
+        a03(m.cx.x * m.cw.y - m.cx.y * m.cw.x), a12(m.cy.x * m.cz.y - m.cy.y * m.cz.x),
+        a13(m.cy.x * m.cw.y - m.cy.y * m.cw.x), a23(m.cz.x * m.cw.y - m.cz.y * m.cw.x),
+        b01(m.cx.z * m.cy.w - m.cx.w * m.cy.z), b02(m.cx.z * m.cz.w - m.cx.w * m.cz.z),
+        b03(m.cx.z * m.cw.w - m.cx.w * m.cw.z), b12(m.cy.z * m.cz.w - m.cy.w * m.cz.z),
+        b13(m.cy.z * m.cw.w - m.cy.w * m.cw.z), b23(m.cz.z * m.cw.w - m.cz.w * m.cw.z) {}
+  constexpr T determinant() const {
+    return a01 * b23 - a02 * b13 + a03 * b12 + a12 * b03 - a13 * b02 + a23 * b01;
+  }
+};
+}  // namespace detail
+
+template <class T> constexpr T determinant(const Mat4<T>& m) { return detail::Minors4<T>(m).determinant(); }
+/// The inverse by cofactors, or the zero matrix where the determinant is zero.
+template <class T> constexpr Mat4<T> inverse(const Mat4<T>& m) {
+  const detail::Minors4<T> n(m);
+  const T d = n.determinant();
+  const T s = d != T(0) ? T(1) / d : T(0);
+  const Vec4<T>&x = m.cx, &y = m.cy, &z = m.cz, &w = m.cw;
+  const Mat4<T> adjugate{
+      {y.y * n.b23 - z.y * n.b13 + w.y * n.b12, -x.y * n.b23 + z.y * n.b03 - w.y * n.b02,
+       x.y * n.b13 - y.y * n.b03 + w.y * n.b01, -x.y * n.b12 + y.y * n.b02 - z.y * n.b01},
+      {-y.x * n.b23 + z.x * n.b13 - w.x * n.b12, x.x * n.b23 - z.x * n.b03 + w.x * n.b02,
+       -x.x * n.b13 + y.x * n.b03 - w.x * n.b01, x.x * n.b12 - y.x * n.b02 + z.x * n.b01},
+      {y.w * n.a23 - z.w * n.a13 + w.w * n.a12, -x.w * n.a23 + z.w * n.a03 - w.w * n.a02,
+       x.w * n.a13 - y.w * n.a03 + w.w * n.a01, -x.w * n.a12 + y.w * n.a02 - z.w * n.a01},
+      {-y.z * n.a23 + z.z * n.a13 - w.z * n.a12, x.z * n.a23 - z.z * n.a03 + w.z * n.a02,
+       -x.z * n.a13 + y.z * n.a03 - w.z * n.a01, x.z * n.a12 - y.z * n.a02 + z.z * n.a01}};
+  return adjugate * s;
+}
+
+/// x ↦ m x + p as a 4×4 matrix on homogeneous coordinates, and what it does to points and to directions.
+template <class T> constexpr Mat4<T> affine(const Mat3<T>& m, Vec3<T> p) {
+  return {{m.cx.x, m.cx.y, m.cx.z, 0}, {m.cy.x, m.cy.y, m.cy.z, 0}, {m.cz.x, m.cz.y, m.cz.z, 0}, {p.x, p.y, p.z, 1}};
+}
+template <class T> constexpr Vec3<T> transform_point(const Mat4<T>& m, Vec3<T> v) {
+  const Vec4<T> r = m * Vec4<T>{v.x, v.y, v.z, T(1)};
+  return {r.x, r.y, r.z};
+}
+template <class T> constexpr Vec3<T> transform_direction(const Mat4<T>& m, Vec3<T> v) {
+  const Vec4<T> r = m * Vec4<T>{v.x, v.y, v.z, T(0)};
+  return {r.x, r.y, r.z};
 }
 
 /// The matrix of v ↦ a × v.

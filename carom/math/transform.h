@@ -45,6 +45,8 @@ template <class T> constexpr Transform3<T> inverse(const Transform3<T>& t) {
   return {-inverse_rotate(t.q, t.p), conjugate(t.q)};
 }
 
+template <class T> constexpr Mat4<T> to_matrix(const Transform3<T>& t) { return affine(to_matrix(t.q), t.p); }
+
 /// Where a body is in the world: its origin in metres (double: millimetres at 10⁹ m) and its attitude.
 struct Pose2 {
   Vec2d position{};
