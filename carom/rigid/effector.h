@@ -9,7 +9,9 @@
 
 namespace carom::rigid {
 
-/// Bodies an effector acts on: one body, or (null) every awake dynamic body that passes the filter.
+/// Bodies an effector acts on: one body, or (null) every awake dynamic body. An effector that names a body goes with it.
+/// Effectors act once a step, on the state in the middle of the step: forces of position by the leapfrog (symplectic),
+/// resistances by their exact decay (stable for any coefficient, with the right terminal speed).
 struct EffectorTarget {
   BodyId body{};
 };
@@ -38,6 +40,7 @@ template <class D> struct Wind {
   typename D::Vector velocity{};    ///< m/s
 };
 /// Spring and damper between points of two bodies, or of a body and the world (body_b null, point_b in the world).
+/// Solved with the joints in every substep, so that stiff springs are stable and undamped ones keep their energy.
 template <class D> struct SpringDamper {
   BodyId body_a{}, body_b{};
   typename D::Vector point_a{};     ///< in A's frame

@@ -86,7 +86,7 @@ template <class D> class CAROM_API World {
   Status set_material(ShapeId shape, const Material& material);
   Status set_filter(ShapeId shape, const Filter& filter);
 
-  // Joints. One definition struct a type (definitions.h).
+  // Joints. One definition struct a type (definitions.h). body_a null: the world, frame_a in world axes.
   Result<JointId> create_joint(const DistanceJointDef<D>& definition);
   Result<JointId> create_joint(const BallJointDef<D>& definition);
   Result<JointId> create_joint(const HingeJointDef<D>& definition);
@@ -98,9 +98,9 @@ template <class D> class CAROM_API World {
   bool contains(JointId joint) const;
   Result<JointState<D>> joint_state(JointId joint) const;
   Result<AnyJointDef<D>> joint_definition(JointId joint) const;  ///< as it is now
-  Status set_motor(JointId joint, const JointMotor& motor);
-  Status set_limit(JointId joint, const JointLimit& limit);
-  Status set_spring(JointId joint, const JointSpring& spring);
+  Status set_motor(JointId joint, const JointMotor& motor);    ///< distance, hinge, slider
+  Status set_limit(JointId joint, const JointLimit& limit);    ///< distance, ball (its twist), hinge, slider
+  Status set_spring(JointId joint, const JointSpring& spring);  ///< both springs of a weld or motor joint
   Status set_mouse_target(JointId joint, Position target);
 
   // Effectors: forces that act on their own every step (effector.h).
