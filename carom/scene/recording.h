@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,12 +24,12 @@ class SceneWorld;
 
 struct RecordingHeader {
   std::uint32_t version = 1;
-  std::string name;          ///< of the scene
-  double dt = 1.0 / 60;      ///< s a step
+  std::string name;      ///< of the scene
+  double dt = 1.0 / 60;  ///< s a step
   int dimension = 3;
-  std::string scene;         ///< the `scene` message of docs/protocol.md
+  std::string scene;                ///< the `scene` message of docs/protocol.md
   std::vector<std::string> meshes;  ///< binary mesh messages, as in the protocol
-  std::string declaration;   ///< JSON text with plots and camera, or empty
+  std::string declaration;          ///< JSON text with plots and camera, or empty
 };
 struct RecordedBody {
   std::uint32_t id = 0;
@@ -45,8 +46,8 @@ struct RecordedFrame {
   double time = 0;
   bool has_hash = false;
   std::uint64_t state_hash = 0;
-  std::vector<RecordedBody> bodies;      ///< all bodies, by rising id
-  std::vector<RecordedSample> samples;   ///< taken since the frame before
+  std::vector<RecordedBody> bodies;     ///< all bodies, by rising id
+  std::vector<RecordedSample> samples;  ///< taken since the frame before
 };
 
 struct RecorderOptions {

@@ -28,8 +28,8 @@ struct Parameter {
   std::string display_unit;  ///< the unit people see, such as "mph"
   std::string description;
   double minimum = 0, maximum = 0, step = 0, value = 0;  ///< SI
-  double display_scale = 1;  ///< one display unit in SI units
-  bool live = false;         ///< may change while the scene runs (Scene::apply)
+  double display_scale = 1;                              ///< one display unit in SI units
+  bool live = false;                                     ///< may change while the scene runs (Scene::apply)
 };
 struct ParameterValue {
   std::string name;
@@ -83,8 +83,8 @@ class CAROM_API Scene {
   std::string name, description;
   Kind kind = Kind::rigid;
   int dimension = 3;
-  double step = 1.0 / 60;  ///< s
-  double duration = 10;    ///< s
+  double step = 1.0 / 60;        ///< s
+  double duration = 10;          ///< s
   std::optional<double> ground;  ///< m: height of a ground plane that pictures draw
   Camera camera;
   std::vector<Parameter> parameters;
@@ -109,11 +109,13 @@ using Resolver = std::function<Result<std::string>(std::string_view path)>;
 struct LoadOptions {
   std::string root;     ///< no include or mesh may lie outside it; empty: the scene file's own folder
   std::string presets;  ///< folder of presets; empty: "presets" beside the scene's folder, or in the working folder
+  int maximum_objects = 200000;  ///< bodies, shapes, joints and effectors that a scene may make
 };
 /// Reads and checks a scene file. Errors name file, line, JSON path, what was found and what was expected.
 CAROM_API Result<Scene> load_scene(const std::string& path, const LoadOptions& options = {});
 /// The same from memory. Includes, presets ("presets/ball/golf.json") and meshes are asked of `resolver`.
-CAROM_API Result<Scene> parse_scene(std::string_view text, std::string_view name, const Resolver& resolver = {});
+CAROM_API Result<Scene> parse_scene(std::string_view text, std::string_view name, const Resolver& resolver = {},
+                                    const LoadOptions& options = {});
 
 /// The JSON Schema of scene files, generated from the tables that the loader reads with.
 CAROM_API std::string scene_schema();

@@ -60,8 +60,8 @@ class CAROM_API SceneWorld {
 
   Kind kind = Kind::rigid;
   int dimension = 3;
-  double dt = 1.0 / 60;  ///< s
-  double duration = 10;  ///< s
+  double dt = 1.0 / 60;                   ///< s
+  double duration = 10;                   ///< s
   std::unique_ptr<rigid::World2> world2;  ///< one of these three is there
   std::unique_ptr<rigid::World3> world3;
   std::unique_ptr<detail::Flight> flight;

@@ -1,0 +1,473 @@
+#include "carom/scene/detail/fields.h"
+
+namespace carom::scene::detail {
+namespace {
+using T = FieldType;
+using M = Measure;
+
+constexpr std::string_view kind_choices[] = {"rigid", "flight"};
+constexpr std::string_view body_types[] = {"fixed", "kinematic", "dynamic"};
+constexpr std::string_view shape_types[] = {"sphere", "capsule", "box",     "cylinder",     "cone",
+                                            "hull",   "plane",   "mesh",    "height_field", "compound",
+                                            "circle", "polygon", "segment", "chain"};
+constexpr std::string_view joint_types[] = {"distance", "ball", "hinge", "slider", "weld", "motor", "mouse"};
+constexpr std::string_view effector_types[] = {
+    "spherical_gravity", "linear_drag", "quadratic_drag", "wind",        "spring",
+    "buoyancy",          "thrust",      "radial_field",   "vortex_field"};
+constexpr std::string_view series_styles[] = {"line", "points"};
+constexpr std::string_view earth_models[] = {"flat", "round", "wgs84"};
+constexpr std::string_view gravity_models[] = {"uniform", "inverse_square"};
+constexpr std::string_view method_choices[] = {"rk4", "heun", "midpoint", "euler", "dormand_prince"};
+constexpr std::string_view rate_frames[] = {"inertial", "ground"};
+
+constexpr Field rotation_fields[] = {
+    {"axis", T::vector, M::plain, "axis to turn about; need not be of unit length", nullptr, {}, false, 3},
+    {"angle", T::quantity, M::angle, "angle about the axis"},
+    {"yaw", T::quantity, M::angle, "turn about y, applied last", nullptr, {}, false, 3},
+    {"pitch", T::quantity, M::angle, "turn about z, applied second", nullptr, {}, false, 3},
+    {"roll", T::quantity, M::angle, "turn about x, applied first", nullptr, {}, false, 3},
+    {"quaternion", T::number_list, M::plain, "w, x, y, z", nullptr, {}, false, 3},
+};
+const ObjectKind rotation_kind{"rotation", "A rotation: axis and angle, yaw, pitch and roll, or a quaternion.",
+                               rotation_fields};
+
+constexpr Field parameter_fields[] = {
+    {"value", T::quantity, M::count_, "the default", nullptr, {}, true},
+    {"minimum", T::quantity, M::count_, "smallest value allowed"},
+    {"maximum", T::quantity, M::count_, "largest value allowed"},
+    {"step", T::quantity, M::count_, "step of a slider"},
+    {"unit", T::text, M::plain, "unit to show; by default the unit of the value"},
+    {"label", T::text, M::plain, "name for people"},
+    {"description", T::text, M::plain, "what it does"},
+    {"live", T::flag, M::plain, "may change while the scene runs"},
+};
+const ObjectKind parameter_kind{"parameter", "A number that a command line, a sweep or a slider may change.",
+                                parameter_fields};
+
+constexpr Field material_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"description", T::text},
+    {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0"},
+    {"restitution", T::quantity, M::plain, "0 to 1"},
+    {"rolling_resistance", T::quantity, M::plain, "lever arm over radius, at least 0"},
+    {"tangent_speed", T::quantity, M::speed, "speed of a conveyor along the surface"},
+    {"density", T::quantity, M::density, "used by shapes that give neither density nor mass"},
+    {"user_id", T::integer},
+};
+const ObjectKind material_kind{"material", "How a surface behaves.", material_fields};
+
+constexpr Field filter_fields[] = {
+    {"category", T::bits, M::plain, "what the shape is: a number, a hexadecimal text, or a list of bit numbers"},
+    {"mask", T::bits, M::plain, "what it collides with"},
+    {"group", T::integer, M::plain, "negative: never collide within the group; positive: always"},
+};
+const ObjectKind filter_kind{"filter", "Which shapes collide.", filter_fields};
+
+extern const ObjectKind shape_kind;
+constexpr Field shape_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"name", T::text},
+    {"description", T::text},
+    {"type", T::choice, M::plain, "kind of shape", nullptr, shape_types},
+    {"use", T::name, M::plain, "name of a shape of the scene's shapes to start from"},
+    {"radius", T::quantity, M::length,
+     "of spheres, circles, capsules, cylinders and cones; rounding of boxes, polygons and hulls"},
+    {"diameter", T::quantity, M::length, "instead of radius"},
+    {"size", T::vector, M::length, "of a box, edge to edge"},
+    {"half_extents", T::vector, M::length, "of a box, instead of size; without the rounding radius"},
+    {"length", T::quantity, M::length, "of a capsule's axis"},
+    {"half_length", T::quantity, M::length, "instead of length"},
+    {"height", T::quantity, M::length, "of a cylinder or cone"},
+    {"half_height", T::quantity, M::length, "instead of height"},
+    {"normal", T::vector, M::plain, "of a plane", nullptr, {}, false, 3},
+    {"points", T::point_list, M::length, "of a hull, polygon, segment or chain"},
+    {"loop", T::flag, M::plain, "a chain that closes", nullptr, {}, false, 2},
+    {"simplify", T::flag, M::plain, "drop the least important corners of a hull with too many", nullptr, {}, false, 3},
+    {"vertices", T::point_list, M::length, "of a mesh", nullptr, {}, false, 3},
+    {"indices", T::number_list, M::plain, "of a mesh, three a triangle", nullptr, {}, false, 3},
+    {"file",
+     T::text,
+     M::plain,
+     "mesh file beside the scene (OBJ, STL, glTF, GLB), for meshes and hulls",
+     nullptr,
+     {},
+     false,
+     3},
+    {"scale", T::quantity, M::plain, "of the mesh file", nullptr, {}, false, 3},
+    {"columns", T::integer, M::plain, "of a height field, vertices along x", nullptr, {}, false, 3},
+    {"rows", T::integer, M::plain, "of a height field, vertices along z", nullptr, {}, false, 3},
+    {"cell", T::number_list, M::length, "of a height field, spacing along x and z", nullptr, {}, false, 3},
+    {"heights", T::number_list, M::length, "of a height field, row by row", nullptr, {}, false, 3},
+    {"holes", T::number_list, M::plain, "of a height field, 1 a cell without surface", nullptr, {}, false, 3},
+    {"children", T::list, M::plain, "of a compound: convex shapes in their places", &shape_kind, {}, false, 3},
+    {"position", T::vector, M::length, "of the shape in its body"},
+    {"rotation", T::rotation, M::angle, "of the shape in its body", &rotation_kind},
+    {"density", T::quantity, M::density, "mass per volume (plane: per area)"},
+    {"mass", T::quantity, M::mass, "instead of density"},
+    {"material", T::reference, M::plain, "name of a material, or one written here", &material_kind},
+    {"filter", T::object, M::plain, "", &filter_kind},
+    {"sensor", T::flag, M::plain, "reports overlaps, pushes nothing"},
+    {"contact_events", T::flag},
+    {"hit_events", T::flag},
+    {"user_data", T::bits},
+};
+const ObjectKind shape_kind{"shape", "A collision shape.", shape_fields};
+
+constexpr Field mass_properties_fields[] = {
+    {"mass", T::quantity, M::mass, "", nullptr, {}, true},
+    {"center", T::vector, M::length, "centre of mass in the body's frame"},
+    {"inertia",
+     T::any,
+     M::inertia,
+     "about the centre of mass: a number (plane); Ixx, Iyy, Izz or these and Ixy, Ixz, Iyz as tensor components "
+     "(space)",
+     nullptr,
+     {},
+     true},
+};
+const ObjectKind mass_properties_kind{"mass_properties", "Mass, centre and inertia in place of those of the shapes.",
+                                      mass_properties_fields};
+
+constexpr Field body_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"name", T::text, M::plain, "unique; {expressions} in braces are replaced"},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this body out"},
+    {"type", T::choice, M::plain, "dynamic unless given", nullptr, body_types},
+    {"position", T::vector, M::length},
+    {"rotation", T::rotation, M::angle, "", &rotation_kind},
+    {"velocity", T::vector, M::speed, "of the centre of mass"},
+    {"angular_velocity", T::vector, M::angular_speed, "world axes; a number in the plane"},
+    {"linear_damping", T::quantity, M::rate},
+    {"angular_damping", T::quantity, M::rate},
+    {"gravity_scale", T::quantity, M::plain},
+    {"sleep_speed", T::quantity, M::speed, "0: never sleeps"},
+    {"locks", T::list, M::plain, "motions that are locked: x, y, z, rotation_x, rotation_y, rotation_z"},
+    {"awake", T::flag},
+    {"allow_sleep", T::flag},
+    {"bullet", T::flag, M::plain, "continuous collision against moving bodies too"},
+    {"enabled", T::flag},
+    {"user_data", T::bits},
+    {"color", T::color, M::plain, "as #rrggbb"},
+    {"shape", T::reference, M::plain, "one shape, or the name of one", &shape_kind},
+    {"shapes", T::list, M::plain, "several shapes", &shape_kind},
+    {"material", T::reference, M::plain, "of shapes that name none", &material_kind},
+    {"filter", T::object, M::plain, "of shapes that give none", &filter_kind},
+    {"density", T::quantity, M::density, "of shapes that give neither density nor mass"},
+    {"mass", T::quantity, M::mass, "of the whole body: the densities are scaled to it"},
+    {"mass_properties", T::object, M::plain, "", &mass_properties_kind},
+};
+const ObjectKind body_kind{"body", "A rigid body.", body_fields};
+
+constexpr Field frame_fields[] = {
+    {"position", T::vector, M::length, "in the body's frame"},
+    {"rotation", T::rotation, M::angle, "in the body's frame", &rotation_kind},
+};
+const ObjectKind frame_kind{"frame", "A joint's frame in a body.", frame_fields};
+constexpr Field spring_fields[] = {
+    {"frequency", T::quantity, M::frequency, "natural frequency, 0: no spring"},
+    {"damping_ratio", T::quantity, M::plain, "1: critical"},
+};
+const ObjectKind spring_kind{"spring", "A spring toward the rest state.", spring_fields};
+constexpr Field limit_fields[] = {
+    {"lower", T::quantity, M::count_, "length or angle", nullptr, {}, true},
+    {"upper", T::quantity, M::count_, "length or angle", nullptr, {}, true},
+    {"enabled", T::flag},
+};
+const ObjectKind limit_kind{"limit", "The range of a joint's coordinate.", limit_fields};
+constexpr Field motor_fields[] = {
+    {"speed", T::quantity, M::count_, "speed or angular speed", nullptr, {}, true},
+    {"max_force", T::quantity, M::force, "of sliders and distance joints"},
+    {"max_torque", T::quantity, M::torque, "of hinges"},
+    {"enabled", T::flag},
+};
+const ObjectKind motor_kind{"motor", "Drives a joint's coordinate.", motor_fields};
+
+constexpr Field joint_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"name", T::text},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this joint out"},
+    {"type", T::choice, M::plain, "", nullptr, joint_types, true},
+    {"body_a", T::name, M::plain, "name of a body, or \"world\""},
+    {"body_b", T::name, M::plain, "name of a body, or \"world\""},
+    {"anchor", T::vector, M::length, "where the joint is, in the world"},
+    {"anchor_a", T::vector, M::length, "where it holds body A, in the world"},
+    {"anchor_b", T::vector, M::length, "where it holds body B, in the world"},
+    {"axis", T::vector, M::plain, "in the world: of turning (hinge), of sliding, of the cone (ball)"},
+    {"frame_a", T::object, M::plain, "instead of anchor and axis", &frame_kind},
+    {"frame_b", T::object, M::plain, "instead of anchor and axis", &frame_kind},
+    {"collide_connected", T::flag},
+    {"length", T::quantity, M::length, "distance joint; by default the distance of the anchors"},
+    {"rope", T::flag, M::plain, "distance joint that only pulls"},
+    {"spring", T::object, M::plain, "", &spring_kind},
+    {"linear_spring", T::object, M::plain, "weld and motor joints", &spring_kind},
+    {"angular_spring", T::object, M::plain, "weld and motor joints", &spring_kind},
+    {"limit", T::object, M::plain, "", &limit_kind},
+    {"motor", T::object, M::plain, "", &motor_kind},
+    {"cone_angle", T::quantity, M::angle, "ball joint; negative: no limit"},
+    {"twist", T::object, M::plain, "ball joint", &limit_kind},
+    {"friction_torque", T::quantity, M::torque, "ball joint"},
+    {"target_angle", T::quantity, M::angle, "hinge, of the spring"},
+    {"target_translation", T::quantity, M::length, "slider, of the spring"},
+    {"target", T::vector, M::length, "mouse joint, in the world"},
+    {"max_force", T::quantity, M::force, "motor and mouse joints"},
+    {"max_torque", T::quantity, M::torque, "motor joint"},
+};
+const ObjectKind joint_kind{"joint", "Joins two bodies.", joint_fields};
+
+constexpr Field wave_fields[] = {
+    {"amplitude", T::quantity, M::length, "", nullptr, {}, true},
+    {"wavelength", T::quantity, M::length, "", nullptr, {}, true},
+    {"phase", T::quantity, M::angle},
+};
+const ObjectKind wave_kind{"wave", "A wave that runs along x.", wave_fields};
+
+constexpr Field effector_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"name", T::text},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this effector out"},
+    {"type", T::choice, M::plain, "", nullptr, effector_types, true},
+    {"body", T::name, M::plain, "the body acted on; all awake dynamic bodies where absent"},
+    {"center", T::vector, M::length, "spherical gravity and fields"},
+    {"gm", T::quantity, M::gravitational_parameter, "spherical gravity"},
+    {"minimum_radius", T::quantity, M::length, "spherical gravity"},
+    {"coefficient", T::quantity, M::damping, "linear drag"},
+    {"angular_coefficient", T::quantity, M::count_, "linear drag: N*m*s; quadratic drag: N*m*s^2"},
+    {"density", T::quantity, M::density, "of the medium"},
+    {"drag_coefficient", T::quantity, M::plain, "quadratic drag"},
+    {"area", T::quantity, M::area, "quadratic drag"},
+    {"point", T::vector, M::length, "quadratic drag and thrust, in the body"},
+    {"velocity", T::vector, M::speed, "wind"},
+    {"body_a", T::name, M::plain, "spring"},
+    {"body_b", T::name, M::plain, "spring; the world where absent"},
+    {"point_a", T::vector, M::length, "spring, in body A"},
+    {"point_b", T::vector, M::length, "spring, in body B or the world"},
+    {"rest_length", T::quantity, M::length, "spring"},
+    {"stiffness", T::quantity, M::stiffness, "spring"},
+    {"damping", T::quantity, M::damping, "spring"},
+    {"level", T::quantity, M::length, "buoyancy: height of the still surface"},
+    {"linear_drag", T::quantity, M::rate, "buoyancy"},
+    {"angular_drag", T::quantity, M::rate, "buoyancy"},
+    {"waves", T::list, M::plain, "buoyancy, at most four", &wave_kind},
+    {"current", T::vector, M::speed, "buoyancy"},
+    {"force", T::vector, M::force, "thrust, in the body's axes"},
+    {"strength", T::quantity, M::acceleration, "radial field"},
+    {"reference", T::quantity, M::length, "radial field: where the strength holds"},
+    {"exponent", T::quantity, M::plain, "radial field"},
+    {"range", T::quantity, M::length, "radial field"},
+    {"axis", T::vector, M::plain, "vortex field", nullptr, {}, false, 3},
+    {"circulation", T::quantity, M::circulation, "vortex field"},
+    {"core_radius", T::quantity, M::length, "vortex field"},
+    {"rate", T::quantity, M::rate, "vortex field"},
+};
+const ObjectKind effector_kind{"effector", "A force that acts on its own every step.", effector_fields};
+
+constexpr Field group_fields[] = {
+    {"repeat",
+     T::map,
+     M::plain,
+     "loop variables and their counts, the outermost first; a count may use earlier variables",
+     nullptr,
+     {},
+     true},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this turn out"},
+    {"bodies", T::list, M::plain, "", &body_kind},
+    {"joints", T::list, M::plain, "", &joint_kind},
+    {"effectors", T::list, M::plain, "", &effector_kind},
+};
+const ObjectKind group_kind{"group", "Bodies, joints and effectors made again for every value of the loop variables.",
+                            group_fields};
+
+constexpr Field camera_fields[] = {
+    {"position", T::vector, M::length, "of the eye", nullptr, {}, false, 3},
+    {"target", T::vector, M::length, "middle of the picture"},
+    {"field_of_view", T::quantity, M::angle, "", nullptr, {}, false, 3},
+    {"height", T::quantity, M::length, "shown from bottom to top", nullptr, {}, false, 2},
+    {"follow", T::name, M::plain, "name of a body"},
+};
+const ObjectKind camera_kind{"camera", "Where pictures are taken from.", camera_fields};
+constexpr Field axis_fields[] = {
+    {"quantity", T::text, M::plain, "expression of the world's quantities (x axis; time unless given)"},
+    {"label", T::text},
+    {"unit", T::text, M::plain, "to show the numbers in, and of the numbers in points"},
+};
+const ObjectKind axis_kind{"axis", "An axis of a plot.", axis_fields};
+constexpr Field series_fields[] = {
+    {"name", T::text, M::plain, "", nullptr, {}, true},
+    {"quantity", T::text, M::plain, "expression of the world's quantities"},
+    {"points", T::any, M::plain, "a fixed curve instead: a list of [x, y] in the units of the axes"},
+    {"style", T::choice, M::plain, "", nullptr, series_styles},
+    {"source", T::text, M::plain, "of published points"},
+};
+const ObjectKind series_kind{"series", "A curve of a plot.", series_fields};
+constexpr Field plot_fields[] = {
+    {"title", T::text, M::plain, "", nullptr, {}, true},
+    {"x", T::object, M::plain, "", &axis_kind},
+    {"y", T::object, M::plain, "", &axis_kind},
+    {"interval", T::quantity, M::time, "between samples; every step where absent"},
+    {"series", T::list, M::plain, "", &series_kind, {}, true},
+};
+const ObjectKind plot_kind{"plot", "Quantities drawn over time or over one another.", plot_fields};
+constexpr Field expectation_fields[] = {
+    {"time", T::quantity, M::time, "when to look; at the end where absent"},
+    {"quantity", T::text, M::plain, "expression of the world's quantities", nullptr, {}, true},
+    {"expected", T::quantity, M::count_, "", nullptr, {}, true},
+    {"tolerance", T::quantity, M::count_, "largest difference allowed", nullptr, {}, true},
+    {"source", T::text, M::plain, "where the number comes from"},
+};
+const ObjectKind expectation_kind{"expectation", "A number that the run must reach.", expectation_fields};
+
+constexpr Field world_fields[] = {
+    {"restitution_threshold", T::quantity, M::speed, "slower impacts do not bounce"},
+    {"contact_frequency", T::quantity, M::frequency, "stiffness of contacts"},
+    {"contact_damping_ratio", T::quantity, M::plain},
+    {"contact_push_speed", T::quantity, M::speed, "overlapping bodies separate no faster"},
+    {"joint_frequency", T::quantity, M::frequency, "stiffness of joints"},
+    {"joint_damping_ratio", T::quantity, M::plain},
+    {"maximum_linear_speed", T::quantity, M::speed},
+    {"sleep_time", T::quantity, M::time, "below the sleep speed before an island sleeps"},
+    {"allow_sleep", T::flag},
+    {"continuous", T::flag, M::plain, "fast bodies never pass through static geometry"},
+};
+const ObjectKind world_kind{"world", "Settings of the engine.", world_fields};
+
+constexpr Field earth_fields[] = {
+    {"model", T::choice, M::plain, "shape and frame of the Earth", nullptr, earth_models, true},
+    {"gravity", T::choice, M::plain, "of a flat Earth", nullptr, gravity_models},
+    {"radius", T::quantity, M::length,
+     "of a round Earth, at the equator of wgs84, of a flat one with inverse_square gravity"},
+    {"gm", T::quantity, M::gravitational_parameter},
+    {"uniform_gravity", T::quantity, M::acceleration},
+    {"rotation", T::quantity, M::angular_speed, "of wgs84 about the polar axis"},
+    {"j2", T::quantity, M::plain, "of wgs84, second zonal harmonic"},
+};
+const ObjectKind earth_kind{"earth", "What the flight is flown over.", earth_fields};
+constexpr Field vehicle_fields[] = {
+    {"mass", T::quantity, M::mass, "", nullptr, {}, true},
+    {"inertia",
+     T::number_list,
+     M::inertia,
+     "Ixx, Iyy, Izz about the centre of mass; x forward, y to starboard, z down",
+     nullptr,
+     {},
+     true},
+    {"drag_coefficient", T::quantity, M::plain, "constant, in the US Standard Atmosphere 1976"},
+    {"reference_area", T::quantity, M::area},
+};
+const ObjectKind vehicle_kind{"vehicle", "The body in flight.", vehicle_fields};
+constexpr Field initial_fields[] = {
+    {"latitude", T::quantity, M::angle, "geodetic"},
+    {"longitude", T::quantity, M::angle},
+    {"altitude", T::quantity, M::length, "above the surface"},
+    {"velocity", T::number_list, M::speed, "north, east and down, over the ground"},
+    {"yaw", T::quantity, M::angle},
+    {"pitch", T::quantity, M::angle},
+    {"roll", T::quantity, M::angle},
+    {"rates", T::number_list, M::angular_speed, "p, q, r in body axes"},
+    {"rates_relative_to", T::choice, M::plain, "", nullptr, rate_frames},
+};
+const ObjectKind initial_kind{"initial", "The state at the start.", initial_fields};
+constexpr Field flight_fields[] = {
+    {"earth", T::object, M::plain, "", &earth_kind, {}, true},
+    {"vehicle", T::object, M::plain, "", &vehicle_kind, {}, true},
+    {"initial", T::object, M::plain, "", &initial_kind, {}, true},
+    {"method", T::choice, M::plain, "of integration", nullptr, method_choices},
+};
+const ObjectKind flight_kind{"flight", "A free body with six degrees of freedom, integrated in double precision.",
+                             flight_fields};
+
+constexpr Field scene_fields[] = {
+    {"$schema", T::text},
+    {"name", T::text},
+    {"description", T::text},
+    {"source", T::text, M::plain, "where numbers of the scene come from"},
+    {"kind", T::choice, M::plain, "a world of rigid bodies unless given", nullptr, kind_choices},
+    {"dimension", T::integer, M::plain, "2 or 3"},
+    {"step", T::quantity, M::time, "of the engine, 1/60 s unless given"},
+    {"substeps", T::integer, M::plain, "of the solver, 1 to 64"},
+    {"duration", T::quantity, M::time, "of a run, 10 s unless given"},
+    {"gravity", T::vector, M::acceleration},
+    {"world", T::object, M::plain, "", &world_kind},
+    {"ground", T::quantity, M::length, "height of a ground plane that pictures draw"},
+    {"include", T::list, M::plain,
+     "files whose materials, shapes, parameters, bodies, joints and effectors come first"},
+    {"parameters", T::map, M::plain, "", &parameter_kind},
+    {"materials", T::map, M::plain, "", &material_kind},
+    {"shapes", T::map, M::plain, "", &shape_kind},
+    {"bodies", T::list, M::plain, "bodies and groups", &body_kind},
+    {"joints", T::list, M::plain, "joints and groups", &joint_kind},
+    {"effectors", T::list, M::plain, "effectors and groups", &effector_kind},
+    {"camera", T::object, M::plain, "", &camera_kind},
+    {"plots", T::list, M::plain, "", &plot_kind},
+    {"expectations", T::list, M::plain, "", &expectation_kind},
+    {"flight", T::object, M::plain, "where kind is flight", &flight_kind},
+};
+const ObjectKind scene_kind{"scene", "A Carom scene.", scene_fields};
+constexpr Field part_fields[] = {
+    {"$schema", T::text},
+    {"name", T::text},
+    {"description", T::text},
+    {"source", T::text},
+    {"include", T::list},
+    {"parameters", T::map, M::plain, "", &parameter_kind},
+    {"materials", T::map, M::plain, "", &material_kind},
+    {"shapes", T::map, M::plain, "", &shape_kind},
+    {"bodies", T::list, M::plain, "", &body_kind},
+    {"joints", T::list, M::plain, "", &joint_kind},
+    {"effectors", T::list, M::plain, "", &effector_kind},
+};
+const ObjectKind part_kind{"part", "A file that scenes include.", part_fields};
+constexpr Field preset_fields[] = {
+    {"$schema", T::text},
+    {"description", T::text, M::plain, "", nullptr, {}, true},
+    {"source", T::text, M::plain, "where the numbers come from", nullptr, {}, true},
+    {"values", T::any, M::plain, "the keys that the preset gives", nullptr, {}, true},
+};
+const ObjectKind preset_kind{"preset", "Values under a name, for the key preset.", preset_fields};
+
+const ObjectKind* const all_kinds[] = {
+    &scene_kind,    &world_kind,  &parameter_kind,       &material_kind,    &filter_kind, &shape_kind,
+    &rotation_kind, &body_kind,   &mass_properties_kind, &group_kind,       &joint_kind,  &frame_kind,
+    &spring_kind,   &limit_kind,  &motor_kind,           &effector_kind,    &wave_kind,   &camera_kind,
+    &plot_kind,     &axis_kind,   &series_kind,          &expectation_kind, &flight_kind, &earth_kind,
+    &vehicle_kind,  &initial_kind};
+
+}  // namespace
+
+const FieldTables& tables() {
+  static const FieldTables t{.scene = &scene_kind,
+                             .part = &part_kind,
+                             .world = &world_kind,
+                             .parameter = &parameter_kind,
+                             .material = &material_kind,
+                             .filter = &filter_kind,
+                             .shape = &shape_kind,
+                             .body = &body_kind,
+                             .mass_properties = &mass_properties_kind,
+                             .group = &group_kind,
+                             .joint = &joint_kind,
+                             .frame = &frame_kind,
+                             .spring = &spring_kind,
+                             .limit = &limit_kind,
+                             .motor = &motor_kind,
+                             .effector = &effector_kind,
+                             .wave = &wave_kind,
+                             .camera = &camera_kind,
+                             .plot = &plot_kind,
+                             .axis = &axis_kind,
+                             .series = &series_kind,
+                             .expectation = &expectation_kind,
+                             .rotation = &rotation_kind,
+                             .preset = &preset_kind,
+                             .flight = &flight_kind,
+                             .earth = &earth_kind,
+                             .vehicle = &vehicle_kind,
+                             .initial = &initial_kind,
+                             .all = all_kinds};
+  return t;
+}
+
+}  // namespace carom::scene::detail

@@ -1,0 +1,196 @@
+#include "carom/scene/detail/include.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "carom/core/spelling.h"
+
+namespace carom::scene::detail {
+namespace {
+
+constexpr std::size_t max_files = 256;
+constexpr int max_include_depth = 16;
+
+std::string folder_of(std::string_view path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string_view::npos ? std::string() : std::string(path.substr(0, slash + 1));
+}
+
+/// Relative, with forward slashes, and no way out of the root.
+bool is_inside(std::string_view path) {
+  if (path.empty() || path.size() > 256 || path[0] == '/' || path[0] == '~') return false;
+  for (const char c : path)
+    if (c == '\\' || c == ':' || static_cast<unsigned char>(c) < 0x20) return false;
+  for (std::size_t at = 0; at <= path.size();) {
+    const std::size_t end = std::min(path.find('/', at), path.size());
+    const std::string_view part = path.substr(at, end - at);
+    if (part.empty() || part == "." || part == "..") return false;
+    at = end + 1;
+  }
+  return true;
+}
+
+class PartReader {
+ public:
+  PartReader(SceneDocument& document, const Resolver& resolver, std::string_view name)
+      : document_(document), resolver_(resolver), shown_folder_(folder_of(name)) {}
+
+  /// `path` is the file's path from the root; empty for the scene itself.
+  core::Status read(std::string_view text, const std::string& shown, const std::string& path, int depth) {
+    if (depth > max_include_depth)
+      return core::Error{shown + ": included more than " + std::to_string(max_include_depth) + " files deep"};
+    core::Result<Node> node = parse(text, shown);
+    if (!node) return node.error();
+    if (const core::Status merged = merge_presets(*node, path, 0); !merged) return merged;
+    if (const Node* list = node->is_object() ? node->find("include") : nullptr) {
+      if (!list->is_array()) return error(*list, "include", "found " + show(*list) + ", expected a list of file names");
+      for (std::size_t i = 0; i < list->children.size(); ++i)
+        if (const core::Status read = include(list->children[i], index_path("include", i), path, depth); !read)
+          return read;
+    }
+    document_.parts.push_back(std::move(*node));
+    return {};
+  }
+
+ private:
+  core::Error error(const Node& at, std::string_view path, const std::string& message) const {
+    return core::Error{document_.files[at.file] + ":" + std::to_string(at.line) + ": " + std::string(path) + ": " +
+                       message};
+  }
+
+  core::Result<Node> parse(std::string_view text, const std::string& shown) {
+    if (document_.files.size() >= max_files)
+      return core::Error{shown + ": a scene may have at most " + std::to_string(max_files) + " files"};
+    document_.files.push_back(shown);
+    return parse_document(text, shown, std::uint16_t(document_.files.size() - 1));
+  }
+
+  core::Status include(const Node& node, const std::string& where, const std::string& from, int depth) {
+    if (!node.is_text() || !is_inside(node.text))
+      return error(node, where,
+                   "found " + show(node) + ", expected a file name such as \"parts/ground.json\", without \"..\"");
+    const std::string path = folder_of(from) + node.text;
+    for (const std::string& open : chain_)
+      if (open == path) return error(node, where, "found " + show(node) + ", which includes itself");
+    for (const std::string& seen : included_)
+      if (seen == path) return {};  // what two parts share comes once
+    if (!resolver_) return error(node, where, "found an include, but this scene has no folder to read from");
+    const core::Result<std::string> text = resolver_(path);
+    if (!text) return error(node, where, text.error().message);
+    chain_.push_back(path);
+    const core::Status read_part = read(*text, shown_folder_ + path, path, depth + 1);
+    chain_.pop_back();
+    included_.push_back(path);
+    return read_part;
+  }
+
+  /// Puts the keys that presets give into the objects that name them, where those do not have them.
+  core::Status merge_presets(Node& node, const std::string& from, int depth) {
+    if (node.is_object()) {
+      if (const Node* preset = node.find("preset"); preset != nullptr && preset->is_text()) {
+        if (depth >= 8) return error(*preset, "preset", "presets name one another more than 8 deep");
+        const Node named = *preset;
+        const Node* values = nullptr;
+        if (const core::Status found = load_preset(named, values); !found) return found;
+        for (std::size_t i = 0; i < values->keys.size(); ++i) {
+          if (values->keys[i] == "preset" || node.find(values->keys[i]) != nullptr) continue;
+          node.keys.push_back(values->keys[i]);
+          node.children.push_back(values->children[i]);
+        }
+      }
+    }
+    for (Node& child : node.children)
+      if (const core::Status merged = merge_presets(child, from, depth); !merged) return merged;
+    return {};
+  }
+
+  core::Status load_preset(const Node& at, const Node*& values) {
+    const auto known = presets_.find(at.text);
+    if (known == presets_.end()) {
+      if (!is_inside(at.text))
+        return error(at, "preset", "found " + show(at) + ", expected the name of a preset such as \"ball/golf\"");
+      if (!resolver_) return error(at, "preset", "found a preset, but this scene has no folder to read from");
+      const std::string path = "presets/" + at.text + ".json";
+      const core::Result<std::string> text = resolver_(path);
+      if (!text) return error(at, "preset", text.error().message);
+      if (text->size() > 65536) return error(at, "preset", "a preset may have at most 65536 bytes");
+      core::Result<Node> parsed = parse(*text, path);
+      if (!parsed) return parsed.error();
+      Reader reader(document_);
+      Object o;
+      if (!reader.open(*parsed, "", *tables().preset, o)) return reader.error();
+      if (!o.find("values")->is_object())
+        return error(*o.find("values"), "values", "found " + show(*o.find("values")) + ", expected an object");
+      Node own = *o.find("values");
+      if (own.find("preset") != nullptr) return error(own, "values.preset", "a preset may not name another one");
+      merged_ += own.children.size();
+      presets_.emplace(at.text, std::move(own));
+    }
+    values = &presets_.find(at.text)->second;
+    merged_ += count(*values);
+    if (merged_ > (2u << 20)) return error(at, "preset", "the presets of this scene add more than two million values");
+    return {};
+  }
+  static std::size_t count(const Node& node) {
+    std::size_t n = 1;
+    for (const Node& child : node.children) n += count(child);
+    return n;
+  }
+
+  SceneDocument& document_;
+  const Resolver& resolver_;
+  std::string shown_folder_;
+  std::vector<std::string> chain_, included_;
+  std::map<std::string, Node> presets_;
+  std::size_t merged_ = 0;
+};
+
+}  // namespace
+
+core::Status read_parts(SceneDocument& document, std::string_view text, std::string_view name,
+                        const Resolver& resolver) {
+  return PartReader(document, resolver, name).read(text, std::string(name), "", 0);
+}
+
+core::Result<std::string> read_file(const std::string& path, std::size_t limit) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return core::Error{path + ": cannot be opened"};
+  std::string text;
+  char buffer[65536];
+  std::size_t got = 0;
+  while ((got = std::fread(buffer, 1, sizeof buffer, file)) > 0) {
+    text.append(buffer, got);
+    if (text.size() > limit) break;
+  }
+  const bool bad = std::ferror(file) != 0;
+  std::fclose(file);
+  if (bad) return core::Error{path + ": cannot be read"};
+  if (text.size() > limit) return core::Error{path + ": found more than " + std::to_string(limit) + " bytes"};
+  return text;
+}
+
+}  // namespace carom::scene::detail
+
+namespace carom::scene {
+
+Result<Scene> load_scene(const std::string& path, const LoadOptions& options) {
+  constexpr std::size_t limit = 64u << 20;
+  const core::Result<std::string> text = detail::read_file(path, limit);
+  if (!text) return text.error();
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
+  const std::string root = options.root.empty() ? folder : options.root + "/";
+  const Resolver resolver = [&](std::string_view name) -> Result<std::string> {
+    if (name.rfind("presets/", 0) != 0) return detail::read_file(root + std::string(name), limit);
+    const std::string rest(name.substr(8));
+    if (!options.presets.empty()) return detail::read_file(options.presets + "/" + rest, limit);
+    for (const std::string& place : {root + "presets/", root + "../presets/", std::string("presets/")})
+      if (Result<std::string> found = detail::read_file(place + rest, limit); found.ok()) return found;
+    return core::Error{"the preset file presets/" + rest +
+                       " is neither in the scene's folder, nor beside it, nor in the working folder"};
+  };
+  return parse_scene(*text, path, resolver, options);
+}
+
+}  // namespace carom::scene

@@ -1,0 +1,314 @@
+#include "carom/scene/detail/joints.h"
+
+namespace carom::scene::detail {
+namespace {
+using namespace rigid;
+
+enum JointChoice { distance_joint, ball_joint, hinge_joint, slider_joint, weld_joint, motor_joint, mouse_joint };
+
+/// The rotation that turns `from` (x or z) onto the axis by the shortest way.
+math::Rot2d onto_axis(math::Vec3d axis, math::Vec3d, Dim2*) { return {axis.x, axis.y}; }
+math::Quatd onto_axis(math::Vec3d axis, math::Vec3d from, Dim3*) {
+  const double cosine = math::dot(from, axis);
+  if (cosine < -1 + 1e-12) return {0, from.z != 0 ? math::Vec3d{1, 0, 0} : math::Vec3d{0, 0, 1}};
+  return math::normalize(math::Quatd{1 + cosine, math::cross(from, axis)});
+}
+
+JointSpring read_spring(Reader& reader, const Object& o, const char* key, JointSpring spring) {
+  Object s;
+  if (!o.has(key) || !reader.open(*o.find(key), o.path_of(key), *tables().spring, s)) return spring;
+  spring.hertz = float(reader.number(s, "frequency", spring.hertz));
+  spring.damping_ratio = float(reader.number(s, "damping_ratio", spring.damping_ratio));
+  return spring;
+}
+JointLimit read_limit(Reader& reader, const Object& o, const char* key, Measure measure) {
+  JointLimit limit;
+  Object l;
+  if (!o.has(key) || !reader.open(*o.find(key), o.path_of(key), *tables().limit, l)) return limit;
+  limit.enabled = reader.flag(l, "enabled", true);
+  limit.lower = float(reader.number(l, "lower", 0, measure));
+  limit.upper = float(reader.number(l, "upper", 0, measure));
+  return limit;
+}
+JointMotor read_motor(Reader& reader, const Object& o, bool angular) {
+  JointMotor motor;
+  Object m;
+  if (!o.has("motor") || !reader.open(*o.find("motor"), o.path_of("motor"), *tables().motor, m)) return motor;
+  motor.enabled = reader.flag(m, "enabled", true);
+  motor.speed = float(reader.number(m, "speed", 0, angular ? Measure::angular_speed : Measure::speed));
+  const char* due = angular ? "max_torque" : "max_force";
+  if (!m.has(due))
+    reader.fail(*m.node, m.path, std::string("the key ") + quote(due) + " is missing in this joint's motor");
+  motor.max_force = float(reader.number(m, due, 0));
+  return motor;
+}
+
+/// Frames from "frame_a" and "frame_b", or from anchors and an axis in the world.
+template <class D>
+class FrameReader {
+ public:
+  FrameReader(Reader& reader, const World<D>& world, const Object& o, int type)
+      : reader_(reader), world_(world), o_(o), type_(type) {}
+
+  void read(JointFrames<D>& out) {
+    const bool framed_a = o_.has("frame_a"), framed_b = o_.has("frame_b");
+    if (framed_a) out.frame_a = frame("frame_a");
+    if (framed_b) out.frame_b = frame("frame_b");
+    if (!framed_a && type_ != mouse_joint) out.frame_a = anchored(out.body_a, "anchor_a");
+    if (!framed_b) out.frame_b = anchored(out.body_b, "anchor_b");
+  }
+
+ private:
+  typename D::Transform frame(const char* key) {
+    typename D::Transform t{};
+    Object f;
+    if (!reader_.open(*o_.find(key), o_.path_of(key), *tables().frame, f)) return t;
+    t.p = vector_for(reader_.vector(f, "position"), static_cast<D*>(nullptr));
+    t.q = rotation_for(reader_, f, "rotation", static_cast<D*>(nullptr));
+    return t;
+  }
+  typename D::Transform anchored(BodyId body, const char* key) {
+    typename D::Transform t{};
+    if (!o_.has("anchor") && !o_.has(key)) {
+      if (type_ == motor_joint) return t;
+      reader_.fail(*o_.node, o_.path, std::string("the joint needs the key \"anchor\", ") + quote(key) + " or a frame");
+    }
+    if (reader_.failed()) return t;
+    const Result<BodyState<D>> state = world_.state(body);
+    if (!reader_.accept(state.ok() ? Status{} : Status{state.error()}, *o_.node, o_.path)) return t;
+    const math::Vec3d point = o_.has(key) ? reader_.vector(o_, key) : reader_.vector(o_, "anchor");
+    t.p = math::local_point(state->pose, position_of(point, static_cast<D*>(nullptr)));
+    const math::Vec3d unit = type_ == slider_joint ? math::Vec3d{1, 0, 0} : math::Vec3d{0, 0, 1};
+    const bool turned = o_.has("axis") && (D::dimension == 3 || type_ == slider_joint);
+    const math::Vec3d axis = turned ? math::normalize(reader_.vector(o_, "axis")) : unit;
+    if (!reader_.failed() && axis == math::Vec3d{})
+      reader_.fail(*o_.find("axis"), o_.path_of("axis"), "the axis has no direction");
+    using Rotation = typename D::Rotation;
+    const Rotation world_rotation = turned ? Rotation(onto_axis(axis, unit, static_cast<D*>(nullptr))) : Rotation{};
+    t.q = math::normalize(math::conjugate(state->pose.rotation) * world_rotation);
+    return t;
+  }
+
+  Reader& reader_;
+  const World<D>& world_;
+  const Object& o_;
+  int type_;
+};
+
+BodyId named_body(Reader& reader, BodyNames& names, const Object& o, const char* key) {
+  const std::string name = reader.text(o, key);
+  if (reader.failed()) return {};
+  return names.find_body(*o.find(key), o.path_of(key), name);
+}
+
+}  // namespace
+
+template <class D>
+bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const Object& o, ReadJoint<D>& out) {
+  const int type = reader.choice(o, "type", 0);
+  if (reader.failed()) return false;
+  JointFrames<D> frames;
+  for (const char* key : {"body_a", "body_b"}) {
+    if (type == mouse_joint && key[5] == 'a') continue;
+    if (!o.has(key))
+      return reader.fail(*o.node, o.path, std::string("the key ") + quote(key) + " is missing in a joint"), false;
+    (key[5] == 'a' ? frames.body_a : frames.body_b) = named_body(reader, names, o, key);
+  }
+  if (reader.failed()) return false;
+  frames.collide_connected = reader.flag(o, "collide_connected", false);
+  FrameReader<D>(reader, world, o, type).read(frames);
+  const bool angular = type == hinge_joint;
+  out.has_spring = o.has("spring");
+  out.has_limit = o.has("limit");
+  out.has_motor = o.has("motor");
+  out.spring = read_spring(reader, o, "spring", type == mouse_joint ? JointSpring{5, 1} : JointSpring{});
+  out.limit = read_limit(reader, o, "limit", angular ? Measure::angle : Measure::length);
+  out.motor = read_motor(reader, o, angular);
+  switch (type) {
+    case distance_joint: {
+      DistanceJointDef<D> d{frames};
+      d.spring = out.spring;
+      d.limit = out.limit;
+      d.motor = out.motor;
+      d.rope = reader.flag(o, "rope", false);
+      if (o.has("length")) {
+        d.length = float(reader.number(o, "length", 1));
+      } else if (!reader.failed()) {
+        const auto a = world.state(frames.body_a), b = world.state(frames.body_b);
+        if (a.ok() && b.ok())
+          d.length = float(math::distance(math::world_point(a->pose, frames.frame_a.p),
+                                          math::world_point(b->pose, frames.frame_b.p)));
+      }
+      if (d.rope && !out.has_limit) d.limit = {true, 0, d.length};
+      out.definition = d;
+      break;
+    }
+    case ball_joint: {
+      BallJointDef<D> d{frames};
+      d.spring = out.spring;
+      d.cone_angle = float(reader.number(o, "cone_angle", d.cone_angle));
+      d.twist = read_limit(reader, o, "twist", Measure::angle);
+      d.friction_torque = float(reader.number(o, "friction_torque", 0));
+      out.definition = d;
+      break;
+    }
+    case hinge_joint: {
+      HingeJointDef<D> d{frames};
+      d.spring = out.spring;
+      d.target_angle = float(reader.number(o, "target_angle", 0));
+      d.limit = out.limit;
+      d.motor = out.motor;
+      out.definition = d;
+      break;
+    }
+    case slider_joint: {
+      SliderJointDef<D> d{frames};
+      d.spring = out.spring;
+      d.target_translation = float(reader.number(o, "target_translation", 0));
+      d.limit = out.limit;
+      d.motor = out.motor;
+      out.definition = d;
+      break;
+    }
+    case weld_joint: {
+      WeldJointDef<D> d{frames};
+      d.linear = read_spring(reader, o, "linear_spring", d.linear);
+      d.angular = read_spring(reader, o, "angular_spring", d.angular);
+      out.definition = d;
+      break;
+    }
+    case motor_joint: {
+      MotorJointDef<D> d{frames};
+      d.linear = read_spring(reader, o, "linear_spring", d.linear);
+      d.angular = read_spring(reader, o, "angular_spring", d.angular);
+      d.max_force = float(reader.number(o, "max_force", d.max_force));
+      d.max_torque = float(reader.number(o, "max_torque", d.max_torque));
+      out.definition = d;
+      break;
+    }
+    default: {
+      MouseJointDef<D> d{frames};
+      if (!o.has("target")) reader.fail(*o.node, o.path, "the key \"target\" is missing in a mouse joint");
+      d.target = position_of(reader.vector(o, "target"), static_cast<D*>(nullptr));
+      d.spring = out.spring;
+      d.max_force = float(reader.number(o, "max_force", d.max_force));
+      out.definition = d;
+    }
+  }
+  return !reader.failed();
+}
+
+namespace {
+
+template <class D>
+EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& o, int type) {
+  D* const d = nullptr;
+  EffectorTarget target;
+  if (o.has("body")) target.body = named_body(reader, names, o, "body");
+  switch (type) {
+    case 0: {
+      SphericalGravity<D> e{target};
+      e.center = position_of(reader.vector(o, "center"), d);
+      e.gm = reader.number(o, "gm", e.gm);
+      e.minimum_radius = reader.number(o, "minimum_radius", e.minimum_radius);
+      return e;
+    }
+    case 1: {
+      LinearDrag<D> e{target};
+      e.coefficient = reader.number(o, "coefficient", 0);
+      e.angular_coefficient = reader.number(o, "angular_coefficient", 0, Measure::angular_damping);
+      return e;
+    }
+    case 2: {
+      QuadraticDrag<D> e{target};
+      e.density = reader.number(o, "density", e.density);
+      e.drag_coefficient = reader.number(o, "drag_coefficient", e.drag_coefficient);
+      e.area = reader.number(o, "area", e.area);
+      e.point = vector_for(reader.vector(o, "point"), d);
+      e.angular_coefficient = reader.number(o, "angular_coefficient", 0, Measure::quadratic_angular_damping);
+      return e;
+    }
+    case 3:
+      return Wind<D>{vector_for(reader.vector(o, "velocity"), d)};
+    case 4: {
+      SpringDamper<D> e;
+      if (!o.has("body_a"))
+        reader.fail(*o.node, o.path, "the key \"body_a\" is missing in a spring");
+      else
+        e.body_a = named_body(reader, names, o, "body_a");
+      if (o.has("body_b")) e.body_b = named_body(reader, names, o, "body_b");
+      e.point_a = vector_for(reader.vector(o, "point_a"), d);
+      e.point_b = position_of(reader.vector(o, "point_b"), d);
+      e.rest_length = reader.number(o, "rest_length", e.rest_length);
+      e.stiffness = reader.number(o, "stiffness", e.stiffness);
+      e.damping = reader.number(o, "damping", e.damping);
+      return e;
+    }
+    case 5: {
+      Buoyancy<D> e;
+      e.body = target.body;
+      e.density = reader.number(o, "density", e.density);
+      e.level = reader.number(o, "level", e.level);
+      e.linear_drag = reader.number(o, "linear_drag", 0);
+      e.angular_drag = reader.number(o, "angular_drag", 0);
+      e.current = vector_for(reader.vector(o, "current"), d);
+      const Node* waves = o.find("waves");
+      if (waves == nullptr) return e;
+      const std::string path = o.path_of("waves");
+      if (!waves->is_array() || waves->children.size() > 4) {
+        reader.expected(*waves, path, "a list of at most four waves");
+        return e;
+      }
+      for (std::size_t i = 0; i < waves->children.size(); ++i) {
+        Object w;
+        if (!reader.open(waves->children[i], index_path(path, i), *tables().wave, w)) return e;
+        e.waves[i].amplitude = reader.number(w, "amplitude", 0);
+        e.waves[i].wavelength = reader.number(w, "wavelength", 10);
+        e.waves[i].phase = reader.number(w, "phase", 0);
+        ++e.wave_count;
+      }
+      return e;
+    }
+    case 6: {
+      Thrust<D> e{target};
+      e.point = vector_for(reader.vector(o, "point"), d);
+      e.force = vector_for(reader.vector(o, "force"), d);
+      return e;
+    }
+    case 7: {
+      RadialField<D> e{target};
+      e.center = position_of(reader.vector(o, "center"), d);
+      e.strength = reader.number(o, "strength", e.strength);
+      e.reference = reader.number(o, "reference", e.reference);
+      e.exponent = reader.number(o, "exponent", e.exponent);
+      e.range = reader.number(o, "range", e.range);
+      return e;
+    }
+    default: {
+      VortexField<D> e{target};
+      e.center = position_of(reader.vector(o, "center"), d);
+      if (D::dimension == 3) e.axis = math::Vec3f(reader.vector(o, "axis", {0, 1, 0}));
+      e.circulation = reader.number(o, "circulation", e.circulation);
+      e.core_radius = reader.number(o, "core_radius", e.core_radius);
+      e.rate = reader.number(o, "rate", e.rate);
+      return e;
+    }
+  }
+}
+
+}  // namespace
+
+template <class D>
+bool read_effector(Reader& reader, BodyNames& names, const Object& o, EffectorDef<D>& out) {
+  const int type = reader.choice(o, "type", 0);
+  if (reader.failed()) return false;
+  out = read_effector_of<D>(reader, names, o, type);
+  return !reader.failed();
+}
+
+template bool read_joint<Dim2>(Reader&, BodyNames&, const World<Dim2>&, const Object&, ReadJoint<Dim2>&);
+template bool read_joint<Dim3>(Reader&, BodyNames&, const World<Dim3>&, const Object&, ReadJoint<Dim3>&);
+template bool read_effector<Dim2>(Reader&, BodyNames&, const Object&, EffectorDef<Dim2>&);
+template bool read_effector<Dim3>(Reader&, BodyNames&, const Object&, EffectorDef<Dim3>&);
+
+}  // namespace carom::scene::detail
