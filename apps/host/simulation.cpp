@@ -3,29 +3,12 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "carom/core/spelling.h"
+
 namespace carom::host {
 
 std::string nearest_name(std::string_view name, const std::vector<std::string_view>& known) {
-  std::size_t best = 3;  // more edits than this is another word
-  std::string nearest;
-  name = name.substr(0, 64);
-  for (const std::string_view candidate : known) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= name.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j < row.size(); ++j) {
-        const std::size_t change = diagonal + (name[i - 1] != candidate[j - 1]);
-        diagonal = row[j];
-        row[j] = std::min({change, row[j] + 1, row[j - 1] + 1});
-      }
-    }
-    if (row.back() >= best) continue;
-    best = row.back();
-    nearest = candidate;
-  }
-  return nearest;
+  return std::string(core::nearest_name(name, known));
 }
 
 namespace {

@@ -5,7 +5,7 @@
 
 namespace carom::host {
 
-StageBase::StageBase(const Declaration& declaration, int threads) : declaration_(declaration), threads_(threads) {
+StageBase::StageBase(Declaration& declaration, int threads) : declaration_(declaration), threads_(threads) {
   for (const Parameter& parameter : declaration.parameters) state.values.push_back(parameter.value);
   state.inputs.resize(declaration.inputs.size());
   state.presses.resize(declaration.inputs.size());

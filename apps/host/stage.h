@@ -17,7 +17,7 @@ namespace carom::host {
 /// Everything of a stage that does not depend on the dimension.
 class StageBase {
  public:
-  explicit StageBase(const Declaration& declaration, int threads);
+  explicit StageBase(Declaration& declaration, int threads);
 
   const Declaration& declaration() const { return declaration_; }
   /// A parameter's value now (SI). An unknown name is a mistake in the demo: it fails the stage and gives 0.
@@ -46,6 +46,9 @@ class StageBase {
   }
   /// What the sliders should show from now on, where a demo changes a parameter itself.
   void set_value(std::string_view name, double value);
+  /// Lets the camera follow a body, by the id that `actors` gives it.
+  void follow(int id) { declaration_.camera.follow = id; }
+  int threads() const { return threads_; }
 
   // For the simulation that owns the stage.
   struct State {
@@ -63,7 +66,7 @@ class StageBase {
   bool looks_in_materials = false;
 
  protected:
-  const Declaration& declaration_;
+  Declaration& declaration_;
   int threads_;
 };
 
@@ -79,7 +82,7 @@ class Stage : public StageBase {
     rigid::ShapeDef<D> definition{};
   };
 
-  Stage(const Declaration& declaration, int threads) : StageBase(declaration, threads) { start({}); }
+  Stage(Declaration& declaration, int threads) : StageBase(declaration, threads) { start({}); }
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 

@@ -1,0 +1,142 @@
+// The program `carom`.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <thread>
+
+#include "apps/command/command.h"
+
+using namespace carom::command;
+
+namespace {
+
+constexpr const char* exit_codes =
+    "Exit status: 0 all well, 1 an expectation failed, 2 bad usage, 3 a file or name that cannot be used,\n"
+    "4 a file that cannot be written or a port that is taken, 5 the simulation stopped with an error, 130 interrupted\n"
+    "(what was written by then is whole).";
+
+std::string with_examples(const char* examples) { return std::string("Examples:\n") + examples + "\n" + exit_codes; }
+
+int threads_of(int wanted) {
+  return wanted > 0 ? wanted : int(std::max(1u, std::min(64u, std::thread::hardware_concurrency())));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  CLI::App app{"Carom: the physics of a game in one library."};
+  app.require_subcommand(1);
+  app.footer(exit_codes);
+  app.set_version_flag("--version", std::string(CAROM_VERSION_STRING));
+  int result = exit_ok;
+
+  RunOptions run_options;
+  CLI::App* run_command = app.add_subcommand(
+      "run", "Simulate a scene file or a demo without a display; report, recording, plots, pictures");
+  bool no_record = false, no_pictures = false;
+  run_command->add_option("scene", run_options.scene, "a scene file, or a name that `carom list` shows")->required();
+  run_command->add_option("--out,-o", run_options.out, "folder for what is written (out/SCENE)");
+  run_command->add_option("--set,-s", run_options.settings, "a parameter: name=value with its unit; may be repeated")
+      ->take_all();
+  run_command
+      ->add_option("--threads,-t", run_options.threads,
+                   "worker threads; 0: all processors. The result has the same bits")
+      ->check(CLI::Range(0, 64));
+  auto* steps =
+      run_command->add_option("--steps", run_options.steps, "how many steps")->check(CLI::Range(1LL, 1'000'000'000LL));
+  run_command->add_option("--duration", run_options.duration, "simulated seconds (the scene's own)")
+      ->check(CLI::Range(1e-6, 1e7))
+      ->excludes(steps);
+  run_command->add_option("--hash-every", run_options.hash_every, "list the state hash every N steps")
+      ->check(CLI::Range(1, 1'000'000'000));
+  run_command->add_option("--trace", run_options.trace, "write a Chrome trace of the run to this file");
+  run_command->add_flag("--no-record", no_record, "no recording");
+  run_command->add_flag("--no-pictures", no_pictures, "no pictures and plots");
+  run_command->add_flag("--json", run_options.json, "the report as JSON on the output");
+  run_command->add_flag("--quiet,-q", run_options.quiet, "no report on the output");
+  run_command->footer(
+      with_examples("  carom run wrecking-ball\n"
+                    "  carom run wrecking-ball --set \"ball_mass=2 t\" --set \"angle=80 deg\" --duration 5\n"
+                    "  carom run scenes/nesc/case_02.json --json --no-pictures\n"
+                    "  carom run pyramids --threads 2 --steps 300 --hash-every 100 --no-record\n"));
+  run_command->callback([&] {
+    run_options.record = !no_record;
+    run_options.pictures = !no_pictures;
+    run_options.threads = threads_of(run_options.threads);
+    result = run(run_options);
+  });
+
+  ServeOptions serve_options;
+  CLI::App* serve_command =
+      app.add_subcommand("serve", "Serve the playground; the engine runs here, the page shows it");
+  serve_command->add_option("--address,-a", serve_options.address, "where to listen (127.0.0.1: this machine only)");
+  auto* port =
+      serve_command->add_option("--port,-p", serve_options.port, "port; 0: any free one (8080, or the next free one)")
+          ->check(CLI::Range(0, 65535));
+  serve_command->add_option("--page", serve_options.page, "folder of the built page")->check(CLI::ExistingDirectory);
+  serve_command->add_option("--allow-host", serve_options.allowed_hosts,
+                            "a further name under which pages may reach this server");
+  serve_command->add_option("--threads,-t", serve_options.threads, "worker threads of each world; 0: all processors")
+      ->check(CLI::Range(0, 64));
+  serve_command->add_option("--clients", serve_options.clients, "pages at once (64)")->check(CLI::Range(1, 1024));
+  serve_command->add_flag("--open", serve_options.open, "open a browser where there is a desktop");
+  serve_command->add_flag("--json", serve_options.json, "say where it is as one line of JSON");
+  serve_command->add_flag("--quiet,-q", serve_options.quiet, "say nothing");
+  serve_command->footer(with_examples(
+      "  carom serve\n"
+      "  carom serve --port 9000 --open\n"
+      "  carom serve --address 0.0.0.0 --allow-host mybox.local   (others on the network may drive it)\n"));
+  serve_command->callback([&] {
+    serve_options.port_given = port->count() > 0;
+    serve_options.threads = threads_of(serve_options.threads);
+    result = serve(serve_options);
+  });
+
+  MassOptions mass_options;
+  CLI::App* mass_command =
+      app.add_subcommand("mass", "Mass, centre of mass and inertia tensor of a closed mesh (OBJ, STL, glTF, GLB)");
+  mass_command->add_option("file", mass_options.file, "the mesh")->required();
+  mass_command->add_option("--density,-d", mass_options.density, "with its unit (1000 kg/m^3)");
+  mass_command->add_option("--unit,-u", mass_options.unit, "of the file's coordinates (m)");
+  mass_command->add_flag("--json", mass_options.json, "as JSON");
+  mass_command->footer(
+      with_examples("  carom mass gear.stl --density \"7850 kg/m^3\" --unit mm\n"
+                    "  carom mass hull.obj --density \"0.0361 lb/in^3\" --unit in --json\n"));
+  mass_command->callback([&] { result = mass(mass_options); });
+
+  bool list_json = false, doctor_json = false;
+  CLI::App* list_command =
+      app.add_subcommand("list", "Demos, scenes and presets; with --json every parameter, plot and input");
+  list_command->add_flag("--json", list_json, "as JSON");
+  list_command->footer(with_examples("  carom list\n  carom list --json\n"));
+  list_command->callback([&] { result = list(list_json); });
+
+  CLI::App* doctor_command = app.add_subcommand("doctor", "What this machine and this build have, and what is missing");
+  doctor_command->add_flag("--json", doctor_json, "as JSON");
+  doctor_command->footer(with_examples("  carom doctor\n"));
+  doctor_command->callback([&] { result = doctor(doctor_json); });
+
+  BenchOptions bench_options;
+  CLI::App* bench_command = app.add_subcommand("bench", "Time the benchmark scenes");
+  bench_command->add_option("scenes", bench_options.scenes, "names of scenes (all)");
+  bench_command->add_option("--threads,-t", bench_options.threads, "worker threads; 0: all processors")
+      ->check(CLI::Range(0, 64));
+  bench_command->add_option("--repeats", bench_options.repeats, "runs of each scene; the best is told (3)")
+      ->check(CLI::Range(1, 100));
+  bench_command->add_option("--steps", bench_options.steps, "steps of each run (the scene's own)")
+      ->check(CLI::Range(1, 100000));
+  bench_command->add_flag("--json", bench_options.json, "as JSON");
+  bench_command->footer(with_examples("  carom bench\n  carom bench large_pyramid --threads 2 --json\n"));
+  bench_command->callback([&] {
+    bench_options.threads = threads_of(bench_options.threads);
+    result = bench(bench_options);
+  });
+
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? exit_ok : exit_usage;
+  }
+  return result;
+}

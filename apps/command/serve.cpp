@@ -1,0 +1,99 @@
+#include <unistd.h>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/command/command.h"
+#include "apps/host/scene_demo.h"
+#if CAROM_WITH_SERVER
+#include "apps/server/server.h"
+#endif
+
+namespace carom::command {
+
+#if CAROM_WITH_SERVER
+
+namespace {
+
+/// Shows the address in the desktop's browser, where there is a desktop.
+void open_browser(const std::string& url) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+  const pid_t child = fork();
+  if (child == 0) {
+    // A grandchild, so that nobody has to wait for the browser.
+    if (fork() == 0) {
+      const int null = ::open("/dev/null", O_RDWR);
+      dup2(null, STDIN_FILENO);
+      dup2(null, STDOUT_FILENO);
+      dup2(null, STDERR_FILENO);
+      execlp("xdg-open", "xdg-open", url.c_str(), static_cast<char*>(nullptr));
+    }
+    _exit(0);
+  }
+  if (child > 0) waitpid(child, nullptr, 0);
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options) {
+  server::ServerOptions server;
+  server.address = options.address;
+  server.port = static_cast<unsigned short>(options.port);
+  server.root = options.page.empty() ? page_folder() : options.page;
+  server.allowed_hosts = options.allowed_hosts;
+  server.max_clients = options.clients;
+  server.threads = int(std::clamp(std::thread::hardware_concurrency(), 2u, 8u));
+  const std::vector<host::MenuScene> scenes = menu_scenes();
+  server.host_options = [&scenes, threads = options.threads] {
+    host::HostOptions out;
+    out.threads = threads;
+    out.scenes = scenes;
+    out.parse_scene = [](std::string_view name, std::string_view text) -> core::Result<std::unique_ptr<host::Demo>> {
+      // A file dropped on the page may include presets, never files of this machine beyond them.
+      core::Result<scene::Scene> scene = scene::parse_scene(text, name);
+      if (!scene.ok()) return scene.error();
+      return host::make_scene_demo(std::move(scene).value(), std::string(name));
+    };
+    return out;
+  };
+  core::Result<std::unique_ptr<server::Server>> started = server::Server::start(server);
+  // The usual port is often taken; only a port that somebody asked for is worth an error.
+  for (int next = 1; !started.ok() && !options.port_given && next < 20; ++next) {
+    server.port = static_cast<unsigned short>(options.port + next);
+    started = server::Server::start(server);
+  }
+  if (!started.ok()) return fail(exit_system, started.error().message);
+  const std::string url = (*started)->url();
+  if (options.json)
+    std::printf(
+        "%s\n",
+        nlohmann::json({{"url", url}, {"port", (*started)->port()}, {"page", server.root}, {"scenes", scenes.size()}})
+            .dump()
+            .c_str());
+  else if (!options.quiet)
+    std::printf(
+        "Carom is at %s   (Ctrl-C ends it)\n%s", url.c_str(),
+        server.root.empty() ? "the page has not been built: ./play builds it; the WebSocket at /ws works\n" : "");
+  std::fflush(stdout);
+  watch_for_interrupts();
+  if (options.open) open_browser(url);
+  while (!interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  (*started)->stop();
+  return exit_ok;
+}
+
+#else
+
+int serve(const ServeOptions&) {
+  return fail(exit_system, "this build has no server: install libboost-dev and build again");
+}
+
+#endif
+
+}  // namespace carom::command

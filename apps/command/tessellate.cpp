@@ -1,0 +1,125 @@
+#include "apps/command/tessellate.h"
+
+#include <cmath>
+
+namespace carom::command {
+
+using namespace math;
+using host::ShapeKind;
+
+namespace {
+
+struct Builder {
+  Vec3d position;
+  Quatd rotation, local_rotation;
+  Vec3d local_position;
+  std::uint32_t color;
+  double opacity;
+  std::vector<Triangle>& out;
+
+  Vec3d place(Vec3d p) const { return position + rotate(rotation, local_position + rotate(local_rotation, p)); }
+  Vec3d turn(Vec3d n) const { return rotate(rotation, rotate(local_rotation, n)); }
+  void triangle(Vec3d a, Vec3d b, Vec3d c, Vec3d na, Vec3d nb, Vec3d nc) {
+    out.push_back({{place(a), place(b), place(c)}, {turn(na), turn(nb), turn(nc)}, color, opacity});
+  }
+  void flat(Vec3d a, Vec3d b, Vec3d c) {
+    const Vec3d n = normalize(cross(b - a, c - a));
+    triangle(a, b, c, n, n, n);
+  }
+  void quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+    flat(a, b, c);
+    flat(a, c, d);
+  }
+
+  /// A surface of revolution about y from rings (radius, height, normal's radial and axial part).
+  struct Ring {
+    double radius, height, radial, axial;
+  };
+  void revolve(const std::vector<Ring>& rings, int segments) {
+    for (int i = 0; i < segments; ++i) {
+      const double a = 2 * pi * i / segments, b = 2 * pi * (i + 1) / segments;
+      const Vec3d u{std::cos(a), 0, std::sin(a)}, v{std::cos(b), 0, std::sin(b)};
+      for (std::size_t k = 0; k + 1 < rings.size(); ++k) {
+        const Ring &low = rings[k], &high = rings[k + 1];
+        const auto point = [](const Ring& r, Vec3d d) { return d * r.radius + Vec3d{0, r.height, 0}; };
+        const auto normal = [](const Ring& r, Vec3d d) { return d * r.radial + Vec3d{0, r.axial, 0}; };
+        if (low.radius > 0)
+          triangle(point(low, u), point(high, u), point(low, v), normal(low, u), normal(high, u), normal(low, v));
+        if (high.radius > 0)
+          triangle(point(low, v), point(high, u), point(high, v), normal(low, v), normal(high, u), normal(high, v));
+      }
+    }
+  }
+};
+
+void box(Builder& b, Vec3d h) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Vec3d n{}, u{}, v{};
+      n[axis] = side * h[axis];
+      u[(axis + 1) % 3] = h[(axis + 1) % 3];
+      v[(axis + 2) % 3] = side * h[(axis + 2) % 3];
+      b.quad(n - u - v, n + u - v, n + u + v, n - u + v);
+    }
+  }
+}
+
+}  // namespace
+
+void tessellate(const host::ShapeView& shape, const host::MeshLibrary& meshes, const Vec3d& position,
+                const Quatf& rotation, std::uint32_t color, int detail, std::vector<Triangle>& out) {
+  double opacity = shape.sensor ? 0.25 : 1;
+  if (shape.look) {
+    color = shape.look & 0xffffff;
+    opacity = double(shape.look >> 24) / 255;
+  }
+  Builder b{position, Quatd(rotation), Quatd(shape.local.q), Vec3d(shape.local.p), color, opacity, out};
+  const double r = shape.radius, h = shape.size.y;
+  std::vector<Builder::Ring> rings;
+  switch (shape.kind) {
+    case ShapeKind::sphere:
+    case ShapeKind::capsule: {
+      const double half = shape.kind == ShapeKind::capsule ? h : 0;
+      const int steps = detail / 2;
+      for (int i = 0; i <= steps; ++i) {
+        const double a = -pi / 2 + pi * i / steps;
+        const double c = i == 0 || i == steps ? 0 : std::cos(a);
+        const double shift = 2 * i < steps ? -half : half;
+        if (2 * i == steps && half > 0) rings.push_back({r, -half, 1, 0});
+        rings.push_back({r * c, shift + r * std::sin(a), c, std::sin(a)});
+      }
+      b.revolve(rings, detail);
+      break;
+    }
+    case ShapeKind::box:
+      box(b, Vec3d(shape.size) + Vec3d{r, r, r});
+      break;
+    case ShapeKind::cylinder:
+      b.revolve({{r, -h, 1, 0}, {r, h, 1, 0}}, detail);
+      b.revolve({{0, -h, 0, -1}, {r, -h, 0, -1}}, detail);
+      b.revolve({{r, h, 0, 1}, {0, h, 0, 1}}, detail);
+      break;
+    case ShapeKind::cone: {
+      const double slope = r / std::sqrt(r * r + 4 * h * h), across = 2 * h / std::sqrt(r * r + 4 * h * h);
+      b.revolve({{r, -h, across, slope}, {0, h, across, slope}}, detail);
+      b.revolve({{0, -h, 0, -1}, {r, -h, 0, -1}}, detail);
+      break;
+    }
+    case ShapeKind::mesh: {
+      if (shape.mesh >= meshes.meshes().size()) break;
+      const host::Mesh& mesh = meshes.meshes()[shape.mesh];
+      for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+        b.flat(Vec3d(mesh.vertices[mesh.indices[i]]), Vec3d(mesh.vertices[mesh.indices[i + 1]]),
+               Vec3d(mesh.vertices[mesh.indices[i + 2]]));
+      break;
+    }
+    case ShapeKind::plane:  // drawn as the ground
+    case ShapeKind::circle:
+    case ShapeKind::polygon:
+    case ShapeKind::segment:
+    case ShapeKind::chain:
+      break;
+  }
+}
+
+}  // namespace carom::command

@@ -1,0 +1,22 @@
+// Shapes as triangles for the picture.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/host/views.h"
+
+namespace carom::command {
+
+struct Triangle {
+  math::Vec3d corner[3];
+  math::Vec3d normal[3];
+  std::uint32_t color = 0;
+  double opacity = 1;
+};
+
+/// Adds the shape of a body at its place; `detail` is the number of segments round a circle.
+void tessellate(const host::ShapeView& shape, const host::MeshLibrary& meshes, const math::Vec3d& position,
+                const math::Quatf& rotation, std::uint32_t color, int detail, std::vector<Triangle>& out);
+
+}  // namespace carom::command

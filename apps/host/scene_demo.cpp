@@ -1,0 +1,159 @@
+#include "apps/host/scene_demo.h"
+
+#include <utility>
+
+namespace carom::host {
+
+Declaration declaration_of(const scene::Scene& scene, std::string id) {
+  Declaration d;
+  d.id = std::move(id);
+  d.title = scene.name;
+  d.text = scene.description;
+  d.summary = scene.description.substr(0, scene.description.find('\n'));
+  d.group = "Scenes";
+  d.dimension = scene.dimension;
+  d.dt = scene.step;
+  d.duration = scene.duration;
+  d.camera = {scene.camera.position, scene.camera.target, scene.camera.field_of_view, scene.camera.height};
+  d.ground = scene.ground;
+  for (const scene::Parameter& p : scene.parameters)
+    d.parameters.push_back(
+        {p.name, p.label, p.unit, p.display_unit, p.description, p.minimum, p.maximum, p.step, p.value, p.live});
+  for (const scene::Plot& p : scene.plots) {
+    Plot plot{p.title, {p.x.label, p.x.display_unit}, {p.y.label, p.y.display_unit}, {}};
+    for (const scene::Series& s : p.series) {
+      Series series{s.name, s.style == "points" ? Series::Style::points : Series::Style::line};
+      for (const auto& [x, y] : s.points) series.points.push_back({x / p.x.display_scale, y / p.y.display_scale});
+      plot.series.push_back(std::move(series));
+    }
+    d.plots.push_back(std::move(plot));
+  }
+  return d;
+}
+
+namespace {
+
+template <class D>
+class SceneDemo final : public DemoOf<D> {
+ public:
+  SceneDemo(scene::Scene scene, std::string id) : scene_(std::move(scene)), id_(std::move(id)) {}
+
+  Declaration declaration() const override { return declaration_of(scene_, id_); }
+  std::unique_ptr<Demo> again() const override { return std::make_unique<SceneDemo<D>>(scene_, id_); }
+
+  void build(Stage<D>& stage) override {
+    core::Result<scene::SceneWorld> made = scene_.instantiate(values(stage), {stage.threads()});
+    if (!made.ok()) return stage.fail(made.error());
+    world_ = std::move(made).value();
+    if (world_.kind == scene::Kind::flight)
+      marker(stage);
+    else if constexpr (D::dimension == 2)
+      stage.use(*world_.world2);
+    else
+      stage.use(*world_.world3);
+    for (const scene::SceneBody& body : world_.bodies)
+      if (body.colored) stage.set_color(body.id, 0xff000000u | body.color);
+    if (const scene::SceneBody* body = world_.find_body(scene_.camera.follow); body && !scene_.camera.follow.empty())
+      for (const auto& actor : stage.actors())
+        if (actor.body == body->id) stage.follow(int(actor.id));
+    for (const scene::Plot& plot : scene_.plots) {
+      Feed feed{stage.keep(world_.probe(plot.x_expression)), {}};
+      for (const scene::Series& series : plot.series)
+        feed.y.push_back(series.expression.empty() ? scene::Probe{} : stage.keep(world_.probe(series.expression)));
+      feeds_.push_back(std::move(feed));
+    }
+    for (const scene::Expectation& e : scene_.expectations) {
+      probes_.push_back(stage.keep(world_.probe(e.quantity)));
+      found_.push_back(0);
+      taken_.push_back(false);
+    }
+    sample(stage);
+  }
+
+  core::Status step(Stage<D>& stage) override {
+    if (world_.kind == scene::Kind::flight)
+      // The stage's own world holds only a mark; it keeps the time.
+      if (const core::Status status = stage.world().step(float(scene_.step)); !status.ok()) return status;
+    return world_.step();
+  }
+  void after_step(Stage<D>& stage) override { sample(stage); }
+  void changed(Stage<D>& stage, std::string_view) override { stage.check(scene_.apply(world_, values(stage))); }
+  std::uint64_t state_hash(std::uint64_t) const override { return world_.state_hash(); }
+
+  void expectations(Stage<D>&, std::vector<Expectation>& out) override {
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+      const scene::Expectation& e = scene_.expectations[i];
+      const bool reached = e.time < 0 || taken_[i];
+      const double found = e.time < 0 ? world_.read(probes_[i]) : reached ? found_[i] : 0.0 / 0.0;
+      std::string name = e.quantity;
+      if (e.time >= 0) {
+        char when[40];
+        std::snprintf(when, sizeof when, " at %g s", e.time);
+        name += when;
+      }
+      const double scale = e.display_scale != 0 ? e.display_scale : 1;
+      out.push_back({name, e.display_unit, e.source, found / scale, e.expected / scale, e.tolerance / scale});
+    }
+  }
+
+ private:
+  struct Feed {
+    scene::Probe x;
+    std::vector<scene::Probe> y;
+    double next = 0;
+  };
+
+  std::vector<scene::ParameterValue> values(Stage<D>& stage) const {
+    std::vector<scene::ParameterValue> out;
+    for (std::size_t i = 0; i < scene_.parameters.size(); ++i)
+      out.push_back({scene_.parameters[i].name, stage.state.values[i]});
+    return out;
+  }
+
+  /// A flight has no body in a world: a small mark stands for it.
+  void marker(Stage<D>& stage) {
+    rigid::BodyDef<D> body;
+    body.type = rigid::BodyType::kinematic;
+    body.name = scene_.name;
+    if constexpr (D::dimension == 3)
+      stage.add(body, geometry::Box{}, {}, 0xffe8833a);
+    else
+      stage.add(body, geometry::Circle{}, {}, 0xffe8833a);
+  }
+
+  void sample(Stage<D>& stage) {
+    const double t = world_.time(), slack = 1e-6 * scene_.step;
+    for (std::size_t i = 0; i < feeds_.size(); ++i) {
+      Feed& feed = feeds_[i];
+      const scene::Plot& plot = scene_.plots[i];
+      if (t + slack < feed.next) continue;
+      feed.next += plot.interval > 0 ? plot.interval : 0;
+      const double x = world_.read(feed.x) / plot.x.display_scale;
+      for (std::size_t k = 0; k < feed.y.size(); ++k)
+        if (feed.y[k].expression) stage.sample(int(i), int(k), x, world_.read(feed.y[k]) / plot.y.display_scale);
+    }
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+      const scene::Expectation& e = scene_.expectations[i];
+      if (e.time < 0 || taken_[i] || t + 0.5 * scene_.step < e.time) continue;
+      found_[i] = world_.read(probes_[i]);
+      taken_[i] = true;
+    }
+  }
+
+  scene::Scene scene_;
+  std::string id_;
+  scene::SceneWorld world_;
+  std::vector<Feed> feeds_;
+  std::vector<scene::Probe> probes_;
+  std::vector<double> found_;
+  std::vector<bool> taken_;
+};
+
+}  // namespace
+
+std::unique_ptr<Demo> make_scene_demo(scene::Scene scene, std::string id) {
+  if (scene.dimension == 2) return std::make_unique<SceneDemo<rigid::Dim2>>(std::move(scene), std::move(id));
+  return std::make_unique<SceneDemo<rigid::Dim3>>(std::move(scene), std::move(id));
+}
+
+}  // namespace carom::host
