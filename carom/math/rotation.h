@@ -239,10 +239,13 @@ inline YawPitchRoll<T> yaw_pitch_roll(const Quat<T>& q) {
 /// The shortest rotation that takes the unit vector a to the unit vector b; about any normal axis where they oppose.
 template <class T>
 inline Quat<T> from_to(Vec3<T> a, Vec3<T> b) {
-  const Vec3<T> sum = a + b;
-  const T l = length(sum);
-  if (!(l > T(4) * std::numeric_limits<T>::epsilon())) return {T(0), perpendicular(a)};
-  const Vec3<T> half = sum * (T(1) / l);
+  if (dot(a, b) < T(0)) {
+    // a + b would cancel: half a turn about the normal of both takes a to −a, from where b is near.
+    const Vec3<T> normal = normalize_or(cross(a, b), perpendicular(a), T(4) * std::numeric_limits<T>::epsilon());
+    const Quat<T> half_turn{T(0), normalize(normal - a * dot(a, normal))};
+    return normalize(from_to(-a, b) * half_turn);
+  }
+  const Vec3<T> half = normalize(a + b);
   return normalize(Quat<T>{dot(a, half), cross(a, half)});
 }
 
