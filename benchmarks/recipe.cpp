@@ -1,6 +1,7 @@
 #include "benchmarks/recipe.h"
 
 #include "carom/math/elementary.h"
+#include "carom/math/vec.h"
 
 namespace carom::bench {
 namespace {
@@ -101,7 +102,7 @@ Recipe heap() {
   return r;
 }
 
-// 100 × 100 spheres in a net of 19 800 ball joints that hangs from its upper edge; nothing collides.
+// 100 × 100 spheres in a net of 19 701 ball joints (none between two fixed ones) that hangs from its upper edge; nothing collides.
 Recipe joint_grid() {
   Recipe r;
   r.name = "joint_grid";
@@ -117,7 +118,7 @@ Recipe joint_grid() {
       const int index = int(r.bodies.size());
       r.bodies.push_back(b);
       if (i > 0) r.joints.push_back({index - 1, index, {0, -0.5f, 0}, {0, 0.5f, 0}});
-      if (k > 0) r.joints.push_back({index - n, index, {0.5f, 0, 0}, {-0.5f, 0, 0}});
+      if (k > 0 && i > 0) r.joints.push_back({index - n, index, {0.5f, 0, 0}, {-0.5f, 0, 0}});
     }
   return r;
 }
