@@ -169,6 +169,7 @@ template <class D> struct MotorJointDef : JointFrames<D> {
   float max_torque = 1e3f;  ///< N·m
 };
 /// Pulls a point of B toward a target in the world: the hand of a user. body_a is ignored; frame_b.p is the point.
+/// Slows the body's turning too, at the rate ½ hertz · damping_ratio (1/s).
 template <class D> struct MouseJointDef : JointFrames<D> {
   typename D::Position target{};
   JointSpring spring{5.0f, 1.0f};

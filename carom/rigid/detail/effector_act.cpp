@@ -91,10 +91,13 @@ struct Resistances {
   void slow_spin(const EffectorBody<D>& body, double c) const {
     BodyMotion<D>& motion = world.bodies.motion[std::size_t(body.slot)];
     double mobility;
-    if constexpr (D::dimension == 2)
+    if constexpr (D::dimension == 2) {
       mobility = double(motion.world_inverse_inertia);
-    else
-      mobility = double(trace(motion.world_inverse_inertia));
+    } else {  // at least the largest eigenvalue, by row sums
+      const Mat3f& m = motion.world_inverse_inertia;
+      const Vec3f rows = math::abs(m.cx) + math::abs(m.cy) + math::abs(m.cz);
+      mobility = double(math::max(rows.x, math::max(rows.y, rows.z)));
+    }
     motion.torque += typename D::Angular(body.spin * (-c * mean_decay(c * mobility * dt)));
   }
 

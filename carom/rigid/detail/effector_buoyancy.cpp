@@ -31,7 +31,7 @@ LocalWater<D> water_near(const WorldImplementation<D>& world, const Buoyancy<D>&
   if constexpr (D::dimension == 3) at.z = p.z;
   const environment::WaterPoint sample = environment::sample(water, at, time);
   out.point = p;
-  out.point.y = p.y + sample.height;
+  out.point.y = sample.height;
   if constexpr (D::dimension == 3) {
     out.normal = sample.normal;
     out.velocity = sample.velocity;

@@ -53,14 +53,17 @@ struct PointBlock {
   float max_impulse = 1e30f;
   bool rigid = true;
 
+  // Both bodies take the impulse at B's anchor: then the pair's angular momentum stays exact also where the anchors are
+  // apart (springs, motors). Its rate is that of the gap as seen from A.
   void warm_start(BodyPair<D>& pair) const {
-    pair.apply(impulse, rotate(pair.turn_a, arm_a), rotate(pair.turn_b, arm_b));
+    const Vector b = rotate(pair.turn_b, arm_b);
+    pair.apply(impulse, offset + pair.shift + b, b);
   }
   void solve(BodyPair<D>& pair, const JointPass& pass) {
     Response r;
     if (!select_response(response, rigid, pass, r)) return;
-    const Vector a = rotate(pair.turn_a, arm_a), b = rotate(pair.turn_b, arm_b);
-    const Vector error = offset + pair.shift + (b - a);
+    const Vector b = rotate(pair.turn_b, arm_b), a = offset + pair.shift + b;
+    const Vector error = a - rotate(pair.turn_a, arm_a);
     const Vector v = pair.point_velocity(a, b);
     const Vector wanted = solve_mobility(point_mobility(pair, a, b), r.velocity * v + r.position * error);
     const Vector old = impulse;

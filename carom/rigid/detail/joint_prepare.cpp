@@ -190,7 +190,13 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
     spring = ball->spring;
   else if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition))
     spring = weld->angular;
-  else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
+  else if (const auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition)) {
+    // The hand also slows the body's turning, so that it does not swing for ever.
+    const float keep = math::exp(-0.5f * mouse->spring.hertz * mouse->spring.damping_ratio * h);
+    block.rigid = false;
+    block.response = {1 - keep, 0, keep};
+    return;
+  } else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
     spring = motor->angular;
     block.max_impulse = motor->max_torque * h;
   }
@@ -302,7 +308,7 @@ std::uint8_t parts_of(const JointData<D>& data) {
     } else if constexpr (std::is_same_v<Def, SliderJointDef<D>>) {
       return part_slide | part_angular | (axis_is_used(d.spring, d.motor, d.limit) ? part_linear : 0);
     } else if constexpr (std::is_same_v<Def, MouseJointDef<D>>) {
-      return part_point;
+      return part_point | (d.spring.hertz > 0 ? part_angular : 0);
     } else {
       return part_point | part_angular;
     }
