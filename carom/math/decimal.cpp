@@ -41,7 +41,6 @@ class BigNatural {
     const std::uint64_t next = words_.size() > 1 ? words_[words_.size() - 2] : 0;
     return zeros == 0 ? words_.back() : (words_.back() << zeros) | (next >> (64 - zeros));
   }
-  friend bool operator<(const BigNatural& a, const BigNatural& b) { return compare(a, b) < 0; }
   static int compare(const BigNatural& a, const BigNatural& b) {
     if (a.words_.size() != b.words_.size()) return a.words_.size() < b.words_.size() ? -1 : 1;
     for (std::size_t i = a.words_.size(); i-- > 0;) {
