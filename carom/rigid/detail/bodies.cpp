@@ -180,7 +180,7 @@ template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t 
   const typename D::Vector old_center = m.local_center;
   m.inner_extent = 0;
   m.outer_extent = 0;
-  typename D::MassProperties sum{};
+  typename D::MassProperties sum{};  // nothing yet: mass and inertia zero
   bool first = true;
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
@@ -206,7 +206,7 @@ template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t 
   }
   const bool translates = (record.locks & (D::dimension == 2 ? 3 : 7)) != (D::dimension == 2 ? 3 : 7);
   m.inverse_mass = record.type == BodyType::dynamic && m.mass > 0 && translates ? 1 / m.mass : 0;
-  if (record.type != BodyType::dynamic) m.inverse_inertia = typename D::Inertia(decltype(sum.inertia){});
+  if (record.type != BodyType::dynamic) m.inverse_inertia = no_inertia<typename D::Inertia>();
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     m.outer_extent = max(m.outer_extent, math::length(shape.local.p - m.local_center) + shape.outer_extent);

@@ -12,6 +12,11 @@ namespace carom::rigid::detail {
 
 inline constexpr std::int32_t none = -1;  ///< no slot, no list entry
 
+template <class Inertia> constexpr Inertia no_inertia() {
+  if constexpr (requires { Inertia::zero(); }) return Inertia::zero();  // a default matrix is the identity
+  else return 0;
+}
+
 /// Mass, forces and what the integrator needs. Read at the start and end of a step, not inside the contact solver.
 template <class D> struct BodyMotion {
   typename D::Position center{};             ///< m, centre of mass in the world
@@ -19,9 +24,9 @@ template <class D> struct BodyMotion {
   typename D::Vector force{};                ///< N, gathered for the next step
   typename D::Angular torque{};              ///< N·m, about the centre of mass
   float mass = 0, inverse_mass = 0;          ///< 0 where forces do not move the body (inverse_mass), or it has none
-  typename D::Inertia inertia{};             ///< about the centre of mass, body axes
-  typename D::Inertia inverse_inertia{};     ///< body axes (2D: already with the rotation lock)
-  typename D::Inertia world_inverse_inertia{};  ///< at the start of the step, world axes, locked axes zero
+  typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
+  typename D::Inertia inverse_inertia = no_inertia<typename D::Inertia>();  ///< body axes (2D: already with the rotation lock)
+  typename D::Inertia world_inverse_inertia = no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
   float inner_extent = 0;                    ///< m: half the smallest extent of its shapes; how far is "fast"
