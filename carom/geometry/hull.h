@@ -26,22 +26,32 @@ struct Hull {
   std::vector<Vec3f> vertices;
   std::vector<HullPlane> planes;  ///< one a face
   std::vector<HullFace> faces;
-  std::vector<HullEdge> edges;    ///< half-edges; a half-edge and its twin stand beside each other (2k, 2k + 1)
-  Bounds3f bounds;                ///< of the vertices, without the radius
+  std::vector<HullEdge> edges;  ///< half-edges; a half-edge and its twin stand beside each other (2k, 2k + 1)
+  Bounds3f bounds;              ///< of the vertices, without the radius
   Vec3f centroid;
   float volume = 0;
-  float inner_radius = 0;         ///< radius of the largest sphere about the centroid inside the polyhedron
+  float inner_radius = 0;  ///< radius of the largest sphere about the centroid inside the polyhedron
   float radius = 0;
 };
 
 /// The convex hull of at least four points that are not in one plane, with coplanar triangles merged into faces.
-/// Points closer than a tolerance relative to the size of the cloud are welded. Errors: not finite, flat, more than
-/// `max_vertices` corners (≤ 255; where `simplify` is set the least important corners are dropped instead).
+/// Points are taken in the order in which they stand out, until all are inside; the combinatorics is exact (integer
+/// arithmetic on a grid of 2^20 cells over the cloud), so the answer is always a closed convex polyhedron. Its faces
+/// are planar to four times hull_tolerance, and all points are inside to eight times. Errors: not finite, flat, more
+/// than `max_vertices` corners (4 to 255; where `simplify` is set the least important corners are left out instead and
+/// points may stand outside).
 struct HullOptions {
-  float radius = 0;
+  float radius = 0;  ///< m, ≥ 0
   int max_vertices = 128;
   bool simplify = false;
 };
 CAROM_API core::Result<std::shared_ptr<const Hull>> make_hull(std::span<const Vec3f> points, const HullOptions& = {});
+/// The distance (m) that make_hull takes for zero: 4·2^−20 of the cloud's largest extent, or four units in the last
+/// place of its farthest coordinate.
+CAROM_API double hull_tolerance(std::span<const Vec3f> points);
+
+/// Checks everything that users of a Hull rely on: a closed consistent half-edge structure, Euler's formula, planar
+/// faces, convexity, and that `points` are inside, all to `tolerance` metres. The error names the first fault.
+CAROM_API core::Status validate_hull(const Hull& hull, std::span<const Vec3f> points, double tolerance);
 
 }  // namespace carom::geometry
