@@ -96,14 +96,14 @@ class ShadowMap {
   /// The lit share of a point, softened over a few texels.
   double lit(Vec3d point, Vec3d normal) const {
     if (!ready_) return 1;
-    const Vec3d p = coordinates(point + normal * (1.5 * texel_));
+    const Vec3d p = coordinates(point + normal * (3.0 * texel_));
     const double x = (p.x - origin_.x) / texel_, y = (p.y - origin_.y) / texel_;
     double sum = 0;
     for (int j = -2; j <= 2; ++j) {
       for (int i = -2; i <= 2; ++i) {
         const int u = int(std::floor(x)) + i, v = int(std::floor(y)) + j;
         const bool inside = u >= 0 && v >= 0 && u < shadow_size && v < shadow_size;
-        if (!inside || depth_[std::size_t(v) * shadow_size + u] <= p.z + 1.2 * texel_) sum += 1;
+        if (!inside || depth_[std::size_t(v) * shadow_size + u] <= p.z + 3.0 * texel_) sum += 1;
       }
     }
     return sum / 25;
@@ -143,11 +143,11 @@ struct Buffer {
   std::vector<float> depth;
 };
 
-double grid_line(double coordinate, double spacing, double footprint) {
+double grid_line(double coordinate, double spacing, double width, double footprint) {
   const double f = std::fabs(coordinate / spacing - std::round(coordinate / spacing)) * spacing;
-  const double half = std::max(0.012 * spacing, 0.7 * footprint);
+  const double half = std::max(width, 0.7 * footprint);
   const double cover = std::clamp((half - f) / std::max(footprint, 1e-9) + 0.5, 0.0, 1.0);
-  return cover * std::min(1.0, 0.012 * spacing / half + 0.45) * std::clamp(spacing / (6 * footprint), 0.0, 1.0);
+  return cover * std::min(1.0, width / half + 0.45) * std::clamp(spacing / (6 * footprint), 0.0, 1.0);
 }
 
 void background(const RasterScene& scene, const View& view, const ShadowMap& shadows, Buffer& out) {
@@ -163,9 +163,11 @@ void background(const RasterScene& scene, const View& view, const ShadowMap& sha
         const Vec3d p = view.eye + ray * t;
         depth = float(t);  // ray·forward is 1
         const double footprint = t / view.scale * std::max(1.0, 0.5 * length(ray) / -ray.y);
-        double line = 0.55 * std::max(grid_line(p.x, scene.grid, footprint), grid_line(p.z, scene.grid, footprint));
-        line = std::max(line,
-                        std::max(grid_line(p.x, 5 * scene.grid, footprint), grid_line(p.z, 5 * scene.grid, footprint)));
+        const double fine = scene.grid, coarse = 5 * scene.grid;
+        const auto line_of = [&](double spacing, double width) {
+          return std::max(grid_line(p.x, spacing, width, footprint), grid_line(p.z, spacing, width, footprint));
+        };
+        const double line = std::max(0.5 * line_of(fine, 0.010 * fine), line_of(coarse, 0.018 * fine));
         Vec3d albedo = lerp(Vec3d{0.56, 0.57, 0.57}, Vec3d{0.34, 0.36, 0.38}, line);
         const Vec3d lit = shade(albedo, {0, 1, 0}, normalize(-ray), shadows.lit(p, {0, 1, 0}));
         const double haze = 1 - std::exp(-std::max(0.0, t * length(ray) / reach - 1.5) / 7);

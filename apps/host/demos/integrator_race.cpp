@@ -205,7 +205,7 @@ class Race final : public Repeatable<Race<course>, Demo2> {
     State next = state_[i];
     if (ode::step(runners[i].method, f, taken_ * h, next, h) != ode::Outcome::done) return;
     // A method that has blown up stays where it was last seen.
-    if (is_finite(next.position) && length_squared(next.position) < 1e10 && length_squared(next.velocity) < 1e16)
+    if (is_finite(next.position) && length_squared(next.position) < 1e60 && length_squared(next.velocity) < 1e60)
       state_[i] = next;
   }
 
@@ -236,9 +236,9 @@ class Race final : public Repeatable<Race<course>, Demo2> {
     if constexpr (course == Course::ship)
       return {s.position.x, 9.0 - 3.6 * i};
     else if constexpr (course == Course::spring)
-      return {clamp(s.position.x, -5.5, 1e3), -1.4 * i};
+      return {clamp(s.position.x, -5.5, 60.0), -1.4 * i};
     else
-      return s.position;
+      return {clamp(s.position.x, -1e3, 1e3), clamp(s.position.y, -1e3, 1e3)};
   }
 
   static void coil(Stage2& stage, Vec2d from, Vec2d to, std::uint32_t color) {

@@ -21,7 +21,7 @@ class WreckingBall final : public Repeatable<WreckingBall, Demo3> {
         "The chain carries a load many times its own mass; a rope constraint from the beam to the ball keeps it from "
         "stretching. The plot shows how potential energy turns into motion and how the wall eats it up.";
     d.duration = 8;
-    d.camera = {{10.5, 4.6, 9.5}, {0, 2.4, 0.6}};
+    d.camera = {{11.5, 5.2, 13.5}, {-0.4, 3.4, 0.8}};
     d.ground = 0;
     d.parameters = {
         {"rows", "Rows of bricks", "", "", "height of the wall in bricks of 0.3 m", 2, 16, 1, 10, false},
