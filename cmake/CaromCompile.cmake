@@ -9,6 +9,16 @@ target_compile_options(carom_flags INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-misleading-indentation -Wno-restrict>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-warning-option -Wno-missing-field-initializers -Wno-gnu-anonymous-struct -Wno-nested-anon-types>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>)
+# gcc 12 turns neighbouring a·b − c, a·b + c into one fused instruction in its straight-line vectoriser even with
+# -ffp-contract=off. Only where the target has such instructions (a user's -march=native, say).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  include(CheckCXXSourceCompiles)
+  check_cxx_source_compiles("#if !defined(__FMA__) && !defined(__AVX512F__)\n#error none\n#endif\nint main() {}"
+    CAROM_TARGET_FUSES)
+  if(CAROM_TARGET_FUSES)
+    target_compile_options(carom_flags INTERFACE -fno-tree-slp-vectorize)
+  endif()
+endif()
 target_include_directories(carom_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 find_package(Threads)

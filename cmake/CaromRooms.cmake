@@ -21,7 +21,8 @@ function(carom_add_room NAME FLOOR)
     if(source MATCHES "_avx2\\.cpp$")
       set(flags -mavx2)
     elseif(source MATCHES "_avx512\\.cpp$")
-      set(flags -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512)
+      set(flags -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
+        -fno-tree-slp-vectorize)  # gcc 12 fuses a·b ± c in this pass in spite of -ffp-contract=off
     else()
       continue()
     endif()
