@@ -17,8 +17,8 @@ struct SinCos {
 };
 
 // Double. All arguments, of any size: angles are reduced by 2/π with as many digits as the argument needs.
-CAROM_API double sin(double x);             ///< x in rad; error < 0.85 ulp.
-CAROM_API double cos(double x);             ///< x in rad; error < 0.85 ulp.
+CAROM_API double sin(double x);             ///< x in rad; error < 0.9 ulp.
+CAROM_API double cos(double x);             ///< x in rad; error < 0.9 ulp.
 CAROM_API SinCos<double> sincos(double x);  ///< The bits of sin(x) and cos(x), with one reduction.
 CAROM_API double tan(double x);             ///< x in rad; error < 1 ulp.
 CAROM_API double asin(double x);            ///< rad in [−π/2, π/2]; NaN outside [−1, 1]; error < 0.6 ulp.

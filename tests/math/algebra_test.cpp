@@ -5,7 +5,7 @@
 #include "carom/math/random.h"
 #include "carom/math/rotation.h"
 
-namespace carom::test {
+namespace carom::test::algebra_tests {
 namespace {
 
 using namespace carom::math;
@@ -190,4 +190,4 @@ TEST(Eigen, DiagonalMatricesKeepTheCoordinateAxes) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::algebra_tests

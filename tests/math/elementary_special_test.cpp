@@ -8,7 +8,7 @@
 #include "carom/math/vec.h"
 #include "tests/math/elementary_hash.h"
 
-namespace carom::test {
+namespace carom::test::elementary_special_tests {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -147,4 +147,4 @@ TEST(ElementarySpecial, SincosHasTheBitsOfSinAndCos) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::elementary_special_tests

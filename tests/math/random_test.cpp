@@ -10,7 +10,7 @@
 #include "carom/math/elementary.h"
 #include "carom/math/statistics.h"
 
-namespace carom::test {
+namespace carom::test::random_tests {
 namespace {
 
 using namespace carom::math;
@@ -161,4 +161,4 @@ TEST(Statistics, PercentilesOfType7) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::random_tests

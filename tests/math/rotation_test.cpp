@@ -5,7 +5,7 @@
 
 #include "carom/math/random.h"
 
-namespace carom::test {
+namespace carom::test::rotation_tests {
 namespace {
 
 using namespace carom::math;
@@ -198,4 +198,4 @@ TEST(Rotation, PlaneRotations) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::rotation_tests

@@ -10,7 +10,7 @@
 #include "carom/math/cpu.h"
 #include "carom/math/vec.h"
 
-namespace carom::test {
+namespace carom::test::simd_tests {
 namespace {
 
 template <class Width>
@@ -140,4 +140,4 @@ TEST(Cpu, AChosenInstructionSetIsNeverAboveTheDetectedOne) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::simd_tests

@@ -12,7 +12,7 @@
 #include "carom/math/quantity.h"
 #include "tests/math/mpfr_reference.h"
 
-namespace carom::test {
+namespace carom::test::units_tests {
 namespace {
 
 using namespace math::literals;
@@ -282,4 +282,4 @@ TEST(Quantity, ArithmeticCarriesTheDimension) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::units_tests

@@ -4,7 +4,7 @@
 #include "carom/math/random.h"
 #include "carom/math/rotation.h"
 
-namespace carom::test {
+namespace carom::test::appendices {
 namespace {
 
 using namespace carom::math;
@@ -156,4 +156,4 @@ TEST(AppendixC, QuaternionAlgebra) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::appendices

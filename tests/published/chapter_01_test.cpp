@@ -10,7 +10,7 @@
 #include "carom/math/relativity.h"
 #include "carom/math/units.h"
 
-namespace carom::test {
+namespace carom::test::chapter_01 {
 namespace {
 
 using namespace carom::math;
@@ -140,4 +140,4 @@ TEST(Chapter01Relativity, GpsClocks) {
 }
 
 }  // namespace
-}  // namespace carom::test
+}  // namespace carom::test::chapter_01
