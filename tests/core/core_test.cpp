@@ -15,7 +15,7 @@
 #include "carom/core/spelling.h"
 #include "carom/core/string.h"
 
-namespace {
+namespace core_test {
 using namespace carom::core;
 using Id = Handle<struct TestTag>;
 
@@ -225,4 +225,4 @@ TEST(FunctionRef, CallsLambdasFunctionsAndConstObjects) {
   EXPECT_EQ(g(21), 42);
 }
 
-}  // namespace
+}  // namespace core_test

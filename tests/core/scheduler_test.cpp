@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace {
+namespace scheduler_test {
 using carom::core::make_thread_pool;
 using carom::core::TaskScheduler;
 
@@ -126,4 +126,4 @@ TEST(Scheduler, TakesTheCallersOwnJobSystem) {
   EXPECT_EQ(sum_of_roots(backwards), sum_of_roots(serial));
 }
 
-}  // namespace
+}  // namespace scheduler_test

@@ -9,7 +9,7 @@
 #include "carom/environment/water.h"
 #include "carom/environment/wind.h"
 
-namespace {
+namespace environment_test {
 using namespace carom;
 using environment::Geodetic;
 using math::Vec3d;
@@ -182,4 +182,4 @@ TEST(Water, WavesObeyTheirEquations) {
               environment::surface_height(water, 3, 0, 0), 1e-13);
 }
 
-}  // namespace
+}  // namespace environment_test

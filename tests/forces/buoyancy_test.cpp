@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace buoyancy_test {
 using namespace carom;
 using forces::Submerged2;
 using forces::Submerged3;
@@ -187,4 +187,4 @@ TEST(SubmergedSpace, DepthsAtTheVerticesGiveThePlaneAgain) {
   EXPECT_NEAR(math::distance(plane.centroid, columns.centroid), 0, 1e-13);
 }
 
-}  // namespace
+}  // namespace buoyancy_test

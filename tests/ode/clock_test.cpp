@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace {
+namespace clock_test {
 using carom::ode::FixedClock;
 using carom::ode::Frame;
 
@@ -64,4 +64,4 @@ TEST(FixedClock, SlowMotion) {
   EXPECT_EQ(clock.rate(), 0.5);
 }
 
-}  // namespace
+}  // namespace clock_test

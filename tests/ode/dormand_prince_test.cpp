@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace dormand_prince_test {
 using namespace carom;
 using math::Vec2d;
 using ode::DormandPrince;
@@ -155,4 +155,4 @@ TEST(DormandPrince, SaysWhyItStopped) {
   EXPECT_EQ(to_infinity.advance([](double, double y) { return y; }, HUGE_VAL), Outcome::bad_argument);
 }
 
-}  // namespace
+}  // namespace dormand_prince_test

@@ -9,7 +9,7 @@
 #include "carom/math/elementary.h"
 #include "carom/ode/dormand_prince.h"
 
-namespace {
+namespace methods_test {
 using namespace carom;
 using math::Vec2d;
 using math::Vec3d;
@@ -186,4 +186,4 @@ TEST(Integrators, AreChosenByName) {
   EXPECT_EQ(ode::method_from_name("rk5"), std::nullopt);
 }
 
-}  // namespace
+}  // namespace methods_test

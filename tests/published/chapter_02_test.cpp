@@ -12,7 +12,7 @@
 #include "carom/math/elementary.h"
 #include "carom/ode/methods.h"
 
-namespace {
+namespace chapter_02_test {
 using namespace carom;
 using forces::ConstantAcceleration;
 using forces::FlightPoint;
@@ -236,4 +236,4 @@ TEST(Chapter02, RollingWheel) {
   EXPECT_NEAR(math::distance(b, Vec3d{-50, 6, 0}), 0, 1e-13);
 }
 
-}  // namespace
+}  // namespace chapter_02_test

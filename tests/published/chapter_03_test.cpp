@@ -15,7 +15,7 @@
 #include "carom/math/elementary.h"
 #include "carom/ode/dormand_prince.h"
 
-namespace {
+namespace chapter_03_test {
 using namespace carom;
 using math::Vec2d;
 using math::Vec3d;
@@ -206,4 +206,4 @@ TEST(Chapter03, WrenchTransport) {
               forces::force_at(Vec2d{10, -4}, Vec2d{0.3, -1}, Vec2d{-2, 0.5}).moment, 1e-13);
 }
 
-}  // namespace
+}  // namespace chapter_03_test

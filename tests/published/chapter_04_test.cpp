@@ -9,7 +9,7 @@
 #include "carom/forces/projectile.h"
 #include "carom/ode/dormand_prince.h"
 
-namespace {
+namespace chapter_04_test {
 using namespace carom;
 using forces::FlightPoint;
 using forces::LinearDragFlight;
@@ -98,4 +98,4 @@ TEST(Chapter04, RollingRace) {
   EXPECT_NEAR(forces::rolling_acceleration(20 * degree, 1.0, 9.81) / along, 1.0 / 2, 1e-14);
 }
 
-}  // namespace
+}  // namespace chapter_04_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace {
+namespace chapter_05_test {
 using namespace carom;
 using forces::ImpactBody2;
 using forces::ImpactBody3;
@@ -104,4 +104,4 @@ TEST(Chapter05, BouncingBall) {
 // 5.4: tour drivers give a ball/club speed of about 1.48–1.49 (published shot data); 200 g head, 45.93 g ball, e = .83.
 TEST(Chapter05, DriverAndBall) { EXPECT_NEAR(forces::struck_ball_speed(0.2, 0.04593, 1, 0.83), 1.49, 0.01); }
 
-}  // namespace
+}  // namespace chapter_05_test

@@ -6,7 +6,7 @@
 #include "carom/forces/drag.h"
 #include "carom/ode/methods.h"
 
-namespace {
+namespace chapter_07_test {
 using namespace carom;
 using ode::Method;
 using ode::Motion;
@@ -71,4 +71,4 @@ TEST(Chapter07, OscillatorEnergyAfterAHundredPeriods) {
   EXPECT_NEAR(run(Method::implicit_midpoint, least, most), 1, 1e-10);
 }
 
-}  // namespace
+}  // namespace chapter_07_test

@@ -8,7 +8,7 @@
 
 #include "carom/rigid/free_body.h"
 
-namespace {
+namespace nesc_test {
 using namespace carom;
 using math::Mat3d;
 using math::Vec3d;
@@ -199,4 +199,4 @@ TEST(NescCases, AgreeBetweenIntegrators) {
   EXPECT_NEAR(fly(flight).back().altitude, reference, 1e-3);
 }
 
-}  // namespace
+}  // namespace nesc_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace free_body_test {
 using namespace carom;
 using math::Mat3d;
 using math::Quatd;
@@ -195,4 +195,4 @@ TEST(Flight, RoundWorldOrbit) {
   EXPECT_NEAR(last.latitude, 0, 1e-12);
 }
 
-}  // namespace
+}  // namespace free_body_test
