@@ -322,6 +322,22 @@ Result<SceneWorld> Scene::instantiate(std::span<const ParameterValue> values, co
   return out;
 }
 
+Result<std::vector<Expectation>> Scene::expectations_for(const SceneWorld& world,
+                                                         std::span<const ParameterValue> values) const {
+  if (!document) return core::Error{"the scene was not loaded"};
+  Reader reader(*document);
+  reader.dimension = dimension;
+  if (const Status set = detail::set_variables(reader, *this, values); !set) return set.error();
+  Object o;
+  Scene evaluated;
+  if (reader.open(document->main(), "", *tables().scene, o)) {
+    each_of(reader, o, "expectations",
+            [&](const Node& n, const std::string& path) { read_expectation(reader, n, path, world, evaluated); });
+  }
+  if (reader.failed()) return reader.error();
+  return std::move(evaluated.expectations);
+}
+
 Status Scene::apply(SceneWorld& world, std::span<const ParameterValue> values) const {
   if (!document || (!world.world2 && !world.world3)) return core::Error{"the scene has no running world of bodies"};
   Reader reader(*document);

@@ -89,13 +89,15 @@ class CAROM_API Scene {
   Camera camera;
   std::vector<Parameter> parameters;
   std::vector<Plot> plots;
-  std::vector<Expectation> expectations;
+  std::vector<Expectation> expectations;  ///< for the default values of the parameters
 
   /// "speed=30 mph": a parameter of this scene, its dimension and its range checked.
   Result<ParameterValue> parse_parameter(std::string_view text) const;
   /// A new world with these values in place of the defaults.
   Result<SceneWorld> instantiate(std::span<const ParameterValue> values = {},
                                  const InstantiateOptions& options = {}) const;
+  /// The expectations with these values in place of the defaults: expected numbers may be expressions of parameters.
+  Result<std::vector<Expectation>> expectations_for(const SceneWorld& world, std::span<const ParameterValue> values) const;
   /// Puts what a running world can change to the given values: gravity, effectors, joint motors, limits and springs,
   /// materials, damping. Bodies stay where they are.
   Status apply(SceneWorld& world, std::span<const ParameterValue> values) const;

@@ -1,0 +1,525 @@
+#include "carom/scene/write_scene.h"
+
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "carom/geometry/compound.h"
+#include "carom/geometry/height_field.h"
+#include "carom/geometry/hull.h"
+#include "carom/geometry/triangle_mesh.h"
+#include "carom/scene/detail/document.h"
+
+namespace carom::scene {
+namespace {
+using namespace rigid;
+using detail::quote;
+
+/// Digits that give the same bits back when they are read as a double and narrowed.
+std::string digits(double v) { return detail::shortest(v); }
+std::string digits(float v) {
+  const std::string s = detail::shortest(v);
+  double wide = 0;
+  std::from_chars(s.data(), s.data() + s.size(), wide);
+  return float(wide) == v ? s : detail::shortest(double(v));
+}
+template <class T>
+std::string vector_text(math::Vec2<T> v) {
+  return "[" + digits(v.x) + ", " + digits(v.y) + "]";
+}
+template <class T>
+std::string vector_text(math::Vec3<T> v) {
+  return "[" + digits(v.x) + ", " + digits(v.y) + ", " + digits(v.z) + "]";
+}
+std::string rotation_text(math::Rot2f q) { return "[" + digits(q.c) + ", " + digits(q.s) + "]"; }
+std::string rotation_text(const math::Quatf& q) {
+  return "[" + digits(q.w) + ", " + digits(q.x) + ", " + digits(q.y) + ", " + digits(q.z) + "]";
+}
+std::string angular_text(float w) { return digits(w); }
+std::string angular_text(math::Vec3f w) { return vector_text(w); }
+std::string bits_text(std::uint64_t bits) {
+  char buffer[24] = "0x";
+  const std::to_chars_result end = std::to_chars(buffer + 2, buffer + sizeof buffer, bits, 16);
+  return quote(std::string_view(buffer, std::size_t(end.ptr - buffer)));
+}
+const char* truth(bool b) { return b ? "true" : "false"; }
+
+/// "key": value pairs of one object.
+class Fields {
+ public:
+  Fields& put(const char* key, const std::string& json) {
+    text_ += (text_.empty() ? "" : ", ") + quote(key) + ": " + json;
+    return *this;
+  }
+  Fields& put(const char* key, double v) { return put(key, digits(v)); }
+  Fields& put(const char* key, float v) { return put(key, digits(v)); }
+  Fields& flag(const char* key, bool v, bool fallback) {
+    return v == fallback ? *this : put(key, std::string(truth(v)));
+  }
+  template <class T>
+  Fields& unless(const char* key, T v, T fallback) {
+    return v == fallback ? *this : put(key, v);
+  }
+  std::string object() const { return "{" + text_ + "}"; }
+
+ private:
+  std::string text_;
+};
+
+template <class V>
+std::string points_text(std::span<const V> points) {
+  std::string out = "[";
+  for (const V& p : points) out += (out.size() > 1 ? ", " : "") + vector_text(p);
+  return out + "]";
+}
+
+void put_geometry(const geometry::Shape2& s, Fields& f) {
+  switch (s.type) {
+    case geometry::ShapeType2::circle:
+      f.put("type", quote("circle")).put("radius", s.circle.radius);
+      return;
+    case geometry::ShapeType2::capsule:
+      f.put("type", quote("capsule")).put("half_length", s.capsule.half_length).put("radius", s.capsule.radius);
+      return;
+    case geometry::ShapeType2::polygon:
+      f.put("type", quote("polygon"))
+          .put("points", points_text(std::span<const math::Vec2f>(s.polygon.vertices, std::size_t(s.polygon.count))))
+          .unless("radius", s.polygon.radius, 0.0f);
+      return;
+    case geometry::ShapeType2::segment: {
+      const math::Vec2f ends[] = {s.segment.a, s.segment.b};
+      f.put("type", quote("segment")).put("points", points_text(std::span<const math::Vec2f>(ends)));
+      return;
+    }
+    case geometry::ShapeType2::chain_segment: {
+      const math::Vec2f ends[] = {s.chain_segment.a, s.chain_segment.b};
+      f.put("type", quote("segment")).put("points", points_text(std::span<const math::Vec2f>(ends)));
+      return;
+    }
+    case geometry::ShapeType2::chain:
+      f.put("type", quote("chain")).put("points", points_text(std::span<const math::Vec2f>(s.chain->points)));
+      f.flag("loop", s.chain->loop, false);
+      return;
+  }
+}
+
+template <class T>
+std::string numbers_text(const std::vector<T>& values) {
+  std::string out = "[";
+  for (const T v : values) {
+    if (out.size() > 1) out += ", ";
+    if constexpr (std::is_floating_point_v<T>)
+      out += digits(v);
+    else
+      out += std::to_string(v);
+  }
+  return out + "]";
+}
+
+void put_geometry(const geometry::Shape3& s, Fields& f) {
+  switch (s.type) {
+    case geometry::ShapeType3::sphere:
+      f.put("type", quote("sphere")).put("radius", s.sphere.radius);
+      return;
+    case geometry::ShapeType3::capsule:
+      f.put("type", quote("capsule")).put("half_length", s.capsule.half_length).put("radius", s.capsule.radius);
+      return;
+    case geometry::ShapeType3::box:
+      f.put("type", quote("box"))
+          .put("half_extents", vector_text(s.box.half_extents))
+          .unless("radius", s.box.radius, 0.0f);
+      return;
+    case geometry::ShapeType3::cylinder:
+      f.put("type", quote("cylinder")).put("half_height", s.cylinder.half_height).put("radius", s.cylinder.radius);
+      return;
+    case geometry::ShapeType3::cone:
+      f.put("type", quote("cone")).put("half_height", s.cone.half_height).put("radius", s.cone.radius);
+      return;
+    case geometry::ShapeType3::plane:
+      f.put("type", quote("plane")).put("normal", vector_text(s.plane.normal));
+      return;
+    case geometry::ShapeType3::hull:
+      f.put("type", quote("hull")).put("points", points_text(std::span<const math::Vec3f>(s.hull->vertices)));
+      f.unless("radius", s.hull->radius, 0.0f);
+      return;
+    case geometry::ShapeType3::mesh:
+      f.put("type", quote("mesh")).put("vertices", points_text(std::span<const math::Vec3f>(s.mesh->vertices)));
+      f.put("indices", numbers_text(s.mesh->indices));
+      return;
+    case geometry::ShapeType3::height_field: {
+      const geometry::HeightField& h = *s.height_field;
+      f.put("type", quote("height_field"))
+          .put("columns", std::to_string(h.columns))
+          .put("rows", std::to_string(h.rows));
+      f.put("cell", vector_text(h.cell)).put("heights", numbers_text(h.heights));
+      if (!h.holes.empty()) f.put("holes", numbers_text(h.holes));
+      return;
+    }
+    case geometry::ShapeType3::compound: {
+      std::string children = "[";
+      for (const geometry::CompoundChild& child : s.compound->children) {
+        Fields c;
+        put_geometry(child.shape, c);
+        c.put("position", vector_text(child.local.p)).put("rotation", rotation_text(child.local.q));
+        children += (children.size() > 1 ? ", " : "") + c.object();
+      }
+      f.put("type", quote("compound")).put("children", children + "]");
+      return;
+    }
+  }
+}
+
+std::string material_text(const Material& m) {
+  Fields f;
+  f.put("friction", m.friction)
+      .put("restitution", m.restitution)
+      .unless("rolling_resistance", m.rolling_resistance, 0.0f);
+  f.unless("tangent_speed", m.tangent_speed, 0.0f);
+  if (m.user_id != 0) f.put("user_id", std::to_string(m.user_id));
+  return f.object();
+}
+
+template <class D>
+std::string shape_text(const typename D::Shape& shape, const ShapeDef<D>& d) {
+  Fields f;
+  put_geometry(shape, f);
+  if (!(d.local == typename D::Transform{}))
+    f.put("position", vector_text(d.local.p)).put("rotation", rotation_text(d.local.q));
+  f.put("density", d.density).put("material", material_text(d.material));
+  if (!(d.filter == Filter{})) {
+    Fields filter;
+    filter.put("category", bits_text(d.filter.category))
+        .put("mask", bits_text(d.filter.mask))
+        .put("group", std::to_string(d.filter.group));
+    f.put("filter", filter.object());
+  }
+  f.flag("sensor", d.sensor, false)
+      .flag("contact_events", d.contact_events, true)
+      .flag("hit_events", d.hit_events, false);
+  if (d.user_data != 0) f.put("user_data", bits_text(d.user_data));
+  return f.object();
+}
+
+geometry::MassProperties2 mass_of(const World2& w, BodyId b) { return w.mass_properties2(b).value_or({}); }
+geometry::MassProperties3 mass_of(const World3& w, BodyId b) { return w.mass_properties3(b).value_or({}); }
+bool same_mass(const geometry::MassProperties2& a, const geometry::MassProperties2& b) {
+  return a.mass == b.mass && a.center == b.center && a.inertia == b.inertia;
+}
+bool same_mass(const geometry::MassProperties3& a, const geometry::MassProperties3& b) {
+  return a.mass == b.mass && a.center == b.center && a.inertia == b.inertia;
+}
+std::string inertia_text(double i) { return digits(i); }
+std::string inertia_text(const math::Mat3d& i) {
+  std::string out = "[" + digits(i(0, 0)) + ", " + digits(i(1, 1)) + ", " + digits(i(2, 2));
+  if (i(0, 1) != 0 || i(0, 2) != 0 || i(1, 2) != 0)
+    out += ", " + digits(i(0, 1)) + ", " + digits(i(0, 2)) + ", " + digits(i(1, 2));
+  return out + "]";
+}
+
+template <class D>
+class SceneWriter {
+ public:
+  SceneWriter(const World<D>& world, const WriteOptions& options, std::span<const SceneBody> names)
+      : world_(world), options_(options) {
+    for (const SceneBody& n : names)
+      if (!n.name.empty()) given_.emplace(n.id.packed(), &n);
+  }
+
+  Result<std::string> write() {
+    const WorldDef<D>& def = world_.definition();
+    std::string out = "{\n  \"name\": " + quote(options_.name) + ",\n";
+    if (!options_.description.empty()) out += "  \"description\": " + quote(options_.description) + ",\n";
+    out += "  \"dimension\": " + std::to_string(D::dimension) + ",\n  \"step\": " + digits(options_.dt) +
+           ",\n  \"substeps\": " + std::to_string(def.substeps) + ",\n  \"duration\": " + digits(options_.duration) +
+           ",\n  \"gravity\": " + vector_text(def.gravity) + ",\n  \"world\": " + world_text(def) +
+           ",\n  \"bodies\": [";
+    std::vector<BodyId> bodies;
+    world_.bodies(bodies);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const std::string body = body_text(bodies[i], i);
+      if (failed_) return error_;
+      out += (i == 0 ? "\n    " : ",\n    ") + body;
+    }
+    out += "\n  ],\n  \"joints\": [";
+    std::vector<JointId> joints;
+    world_.joints(joints);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const Result<AnyJointDef<D>> d = world_.joint_definition(joints[i]);
+      if (!d) return d.error();
+      out += (i == 0 ? "\n    " : ",\n    ") + std::visit([this](const auto& j) { return joint_text(j); }, *d);
+    }
+    out += "\n  ],\n  \"effectors\": [";
+    std::vector<EffectorId> effectors;
+    world_.effectors(effectors);
+    bool first = true;
+    for (const EffectorId id : effectors) {
+      const Result<EffectorDef<D>> d = world_.effector_definition(id);
+      if (!d) return d.error();
+      if (std::holds_alternative<CustomEffector<D>>(*d)) continue;
+      out += (first ? "\n    " : ",\n    ") + std::visit([this](const auto& e) { return effector_text(e); }, *d);
+      first = false;
+    }
+    return out + "\n  ]\n}\n";
+  }
+
+ private:
+  static std::string world_text(const WorldDef<D>& d) {
+    Fields f;
+    f.put("restitution_threshold", d.restitution_threshold).put("contact_frequency", d.contact_hertz);
+    f.put("contact_damping_ratio", d.contact_damping_ratio).put("contact_push_speed", d.contact_push_speed);
+    f.put("joint_frequency", d.joint_hertz).put("joint_damping_ratio", d.joint_damping_ratio);
+    f.put("maximum_linear_speed", d.maximum_linear_speed).put("sleep_time", d.sleep_time);
+    f.flag("allow_sleep", d.allow_sleep, true).flag("continuous", d.continuous, true);
+    return f.object();
+  }
+
+  std::string name_of(BodyId id, std::string_view own, std::size_t index) {
+    const auto given = given_.find(id.packed());
+    std::string name = given != given_.end() ? given->second->name : std::string(own);
+    if (name.empty()) name = "body_" + std::to_string(index);
+    while (!used_.insert(name).second) name += "_";
+    return name;
+  }
+
+  std::string body_text(BodyId id, std::size_t index) {
+    const Result<BodyDef<D>> found = world_.body_definition(id);
+    if (!found) return failed_ = true, error_ = found.error(), std::string();
+    const BodyDef<D>& d = *found;
+    const BodyDef<D> fallback;
+    const std::string name = name_of(id, d.name, index);
+    names_.emplace(id.packed(), name);
+    constexpr const char* types[] = {"fixed", "kinematic", "dynamic"};
+    Fields f;
+    f.put("name", quote(name)).put("type", quote(types[int(d.type)])).put("position", vector_text(d.position));
+    f.put("rotation", rotation_text(d.rotation)).put("velocity", vector_text(d.linear_velocity));
+    f.put("angular_velocity", angular_text(d.angular_velocity));
+    f.unless("linear_damping", d.linear_damping, 0.0f).unless("angular_damping", d.angular_damping, 0.0f);
+    f.unless("gravity_scale", d.gravity_scale, 1.0f).unless("sleep_speed", d.sleep_speed, fallback.sleep_speed);
+    put_locks(d.locks, f);
+    f.flag("awake", d.awake, true)
+        .flag("allow_sleep", d.allow_sleep, true)
+        .flag("bullet", d.bullet, false)
+        .flag("enabled", d.enabled, true);
+    if (d.user_data != 0) f.put("user_data", bits_text(d.user_data));
+    if (const auto given = given_.find(id.packed()); given != given_.end() && given->second->colored) {
+      char color[16];
+      std::snprintf(color, sizeof color, "#%06x", unsigned(given->second->color & 0xFFFFFF));
+      f.put("color", quote(color));
+    }
+    put_shapes(id, d, f);
+    return f.object();
+  }
+
+  static void put_locks(const MotionLocks& l, Fields& f) {
+    std::string list;
+    const std::pair<bool, const char*> all[] = {{l.x, "x"},
+                                                {l.y, "y"},
+                                                {l.z, "z"},
+                                                {l.rotation_x, "rotation_x"},
+                                                {l.rotation_y, "rotation_y"},
+                                                {l.rotation_z, "rotation_z"}};
+    for (const auto& [locked, name] : all)
+      if (locked) list += (list.empty() ? "" : ", ") + quote(name);
+    if (!list.empty()) f.put("locks", "[" + list + "]");
+  }
+
+  void put_shapes(BodyId id, BodyDef<D> d, Fields& f) {
+    // A copy in an empty world shows what mass the shapes alone give; only another one needs to be written.
+    d.awake = true;
+    d.name = {};
+    const Result<BodyId> copy = scratch_.create_body(d);
+    std::vector<ShapeId> shapes;
+    world_.shapes(id, shapes);
+    std::string list;
+    for (const ShapeId s : shapes) {
+      const Result<typename D::Shape> shape = world_.shape_geometry(s);
+      const Result<ShapeDef<D>> definition = world_.shape_definition(s);
+      if (!shape || !definition) continue;
+      list += (list.empty() ? "" : ", ") + shape_text<D>(*shape, *definition);
+      if (copy) (void)scratch_.add_shape(*copy, *shape, *definition);
+    }
+    if (!list.empty()) f.put("shapes", "[" + list + "]");
+    const typename D::MassProperties alone = copy ? mass_of(scratch_, *copy) : typename D::MassProperties{};
+    if (copy) (void)scratch_.destroy_body(*copy);
+    const typename D::MassProperties now = mass_of(world_, id);
+    if (d.type != BodyType::dynamic || !(now.mass > 0) || same_mass(now, alone)) return;
+    Fields m;
+    m.put("mass", now.mass).put("center", vector_text(now.center)).put("inertia", inertia_text(now.inertia));
+    f.put("mass_properties", m.object());
+  }
+
+  std::string quoted_name(BodyId id) const {
+    const auto found = names_.find(id.packed());
+    return quote(found == names_.end() ? "" : found->second);
+  }
+  Fields joint_fields(const char* type, const JointFrames<D>& j, bool with_a = true) const {
+    const auto frame = [](const typename D::Transform& t) {
+      return Fields().put("position", vector_text(t.p)).put("rotation", rotation_text(t.q)).object();
+    };
+    Fields f;
+    f.put("type", quote(type));
+    if (with_a) f.put("body_a", quoted_name(j.body_a)).put("frame_a", frame(j.frame_a));
+    f.put("body_b", quoted_name(j.body_b)).put("frame_b", frame(j.frame_b));
+    return f.flag("collide_connected", j.collide_connected, false);
+  }
+  static std::string spring_text(const JointSpring& s) {
+    return Fields().put("frequency", s.hertz).put("damping_ratio", s.damping_ratio).object();
+  }
+  static std::string limit_text(const JointLimit& l) {
+    return Fields().put("lower", l.lower).put("upper", l.upper).flag("enabled", l.enabled, true).object();
+  }
+  static std::string motor_text(const JointMotor& m, bool angular) {
+    return Fields()
+        .put("speed", m.speed)
+        .put(angular ? "max_torque" : "max_force", m.max_force)
+        .flag("enabled", m.enabled, true)
+        .object();
+  }
+  static void put_drive(Fields& f, const JointSpring& s, const JointLimit& l, const JointMotor& m, bool angular) {
+    if (!(s == JointSpring{})) f.put("spring", spring_text(s));
+    if (!(l == JointLimit{})) f.put("limit", limit_text(l));
+    if (!(m == JointMotor{})) f.put("motor", motor_text(m, angular));
+  }
+
+  std::string joint_text(const DistanceJointDef<D>& j) const {
+    Fields f = joint_fields("distance", j);
+    f.put("length", j.length).flag("rope", j.rope, false);
+    put_drive(f, j.spring, j.limit, j.motor, false);
+    return f.object();
+  }
+  std::string joint_text(const BallJointDef<D>& j) const {
+    Fields f = joint_fields("ball", j);
+    f.unless("cone_angle", j.cone_angle, -1.0f).unless("friction_torque", j.friction_torque, 0.0f);
+    if (!(j.spring == JointSpring{})) f.put("spring", spring_text(j.spring));
+    if (!(j.twist == JointLimit{})) f.put("twist", limit_text(j.twist));
+    return f.object();
+  }
+  std::string joint_text(const HingeJointDef<D>& j) const {
+    Fields f = joint_fields("hinge", j);
+    f.unless("target_angle", j.target_angle, 0.0f);
+    put_drive(f, j.spring, j.limit, j.motor, true);
+    return f.object();
+  }
+  std::string joint_text(const SliderJointDef<D>& j) const {
+    Fields f = joint_fields("slider", j);
+    f.unless("target_translation", j.target_translation, 0.0f);
+    put_drive(f, j.spring, j.limit, j.motor, false);
+    return f.object();
+  }
+  std::string joint_text(const WeldJointDef<D>& j) const {
+    return joint_fields("weld", j)
+        .put("linear_spring", spring_text(j.linear))
+        .put("angular_spring", spring_text(j.angular))
+        .object();
+  }
+  std::string joint_text(const MotorJointDef<D>& j) const {
+    Fields f = joint_fields("motor", j);
+    f.put("linear_spring", spring_text(j.linear)).put("angular_spring", spring_text(j.angular));
+    return f.put("max_force", j.max_force).put("max_torque", j.max_torque).object();
+  }
+  std::string joint_text(const MouseJointDef<D>& j) const {
+    Fields f = joint_fields("mouse", j, false);
+    return f.put("target", vector_text(j.target))
+        .put("spring", spring_text(j.spring))
+        .put("max_force", j.max_force)
+        .object();
+  }
+
+  Fields effector_fields(const char* type, BodyId body = {}) const {
+    Fields f;
+    f.put("type", quote(type));
+    if (!body.is_null()) f.put("body", quoted_name(body));
+    return f;
+  }
+  std::string effector_text(const SphericalGravity<D>& e) const {
+    return effector_fields("spherical_gravity", e.body)
+        .put("center", vector_text(e.center))
+        .put("gm", e.gm)
+        .put("minimum_radius", e.minimum_radius)
+        .object();
+  }
+  std::string effector_text(const LinearDrag<D>& e) const {
+    return effector_fields("linear_drag", e.body)
+        .put("coefficient", e.coefficient)
+        .put("angular_coefficient", e.angular_coefficient)
+        .object();
+  }
+  std::string effector_text(const QuadraticDrag<D>& e) const {
+    Fields f = effector_fields("quadratic_drag", e.body);
+    f.put("density", e.density)
+        .put("drag_coefficient", e.drag_coefficient)
+        .put("area", e.area)
+        .put("point", vector_text(e.point));
+    return f.put("angular_coefficient", e.angular_coefficient).object();
+  }
+  std::string effector_text(const Wind<D>& e) const {
+    return effector_fields("wind").put("velocity", vector_text(e.velocity)).object();
+  }
+  std::string effector_text(const SpringDamper<D>& e) const {
+    Fields f = effector_fields("spring");
+    f.put("body_a", quoted_name(e.body_a));
+    if (!e.body_b.is_null()) f.put("body_b", quoted_name(e.body_b));
+    f.put("point_a", vector_text(e.point_a)).put("point_b", vector_text(e.point_b)).put("rest_length", e.rest_length);
+    return f.put("stiffness", e.stiffness).put("damping", e.damping).object();
+  }
+  std::string effector_text(const Buoyancy<D>& e) const {
+    Fields f = effector_fields("buoyancy", e.body);
+    f.put("density", e.density)
+        .put("level", e.level)
+        .put("linear_drag", e.linear_drag)
+        .put("angular_drag", e.angular_drag);
+    f.put("current", vector_text(e.current));
+    std::string waves;
+    for (int i = 0; i < e.wave_count; ++i)
+      waves += (i > 0 ? ", " : "") + Fields()
+                                         .put("amplitude", e.waves[i].amplitude)
+                                         .put("wavelength", e.waves[i].wavelength)
+                                         .put("phase", e.waves[i].phase)
+                                         .object();
+    if (!waves.empty()) f.put("waves", "[" + waves + "]");
+    return f.object();
+  }
+  std::string effector_text(const Thrust<D>& e) const {
+    return effector_fields("thrust", e.body)
+        .put("point", vector_text(e.point))
+        .put("force", vector_text(e.force))
+        .object();
+  }
+  std::string effector_text(const RadialField<D>& e) const {
+    Fields f = effector_fields("radial_field", e.body);
+    f.put("center", vector_text(e.center)).put("strength", e.strength).put("reference", e.reference);
+    return f.put("exponent", e.exponent).put("range", e.range).object();
+  }
+  std::string effector_text(const VortexField<D>& e) const {
+    Fields f = effector_fields("vortex_field", e.body);
+    f.put("center", vector_text(e.center));
+    if (D::dimension == 3) f.put("axis", vector_text(e.axis));
+    return f.put("circulation", e.circulation).put("core_radius", e.core_radius).put("rate", e.rate).object();
+  }
+  std::string effector_text(const CustomEffector<D>&) const { return {}; }
+
+  const World<D>& world_;
+  const WriteOptions& options_;
+  World<D> scratch_;
+  std::map<std::uint64_t, const SceneBody*> given_;
+  std::map<std::uint64_t, std::string> names_;
+  std::set<std::string> used_;
+  bool failed_ = false;
+  core::Error error_;
+};
+
+}  // namespace
+
+Result<std::string> write_scene(const World2& world, const WriteOptions& options, std::span<const SceneBody> names) {
+  return SceneWriter<Dim2>(world, options, names).write();
+}
+Result<std::string> write_scene(const World3& world, const WriteOptions& options, std::span<const SceneBody> names) {
+  return SceneWriter<Dim3>(world, options, names).write();
+}
+Result<std::string> write_scene(const SceneWorld& world, const WriteOptions& options) {
+  if (world.world2) return write_scene(*world.world2, options, world.bodies);
+  if (world.world3) return write_scene(*world.world3, options, world.bodies);
+  return core::Error{"only worlds of bodies can be written"};
+}
+
+}  // namespace carom::scene

@@ -1,0 +1,298 @@
+// Worlds from files: parameters, groups, presets, plots; every scene of this repository; world → file → world.
+#include <gtest/gtest.h>
+
+#include <dirent.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "carom/geometry/hull.h"
+#include "carom/scene/recording.h"
+#include "carom/scene/scene.h"
+#include "carom/scene/write_scene.h"
+
+namespace carom::scene {
+namespace {
+
+std::string scenes_folder() { return std::string(CAROM_SOURCE_DIR) + "/scenes/"; }
+std::vector<std::string> scene_files() {
+  std::vector<std::string> files;
+  DIR* folder = opendir(scenes_folder().c_str());
+  if (folder == nullptr) return files;
+  while (const dirent* entry = readdir(folder)) {
+    const std::string name = entry->d_name;
+    if (name.size() > 5 && name.substr(name.size() - 5) == ".json") files.push_back(name);
+  }
+  closedir(folder);
+  std::sort(files.begin(), files.end());
+  return files;
+}
+Scene load(const std::string& name) {
+  Result<Scene> scene = load_scene(scenes_folder() + name);
+  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
+  return scene.ok() ? *scene : Scene{};
+}
+Scene parse(std::string_view text) {
+  Result<Scene> scene = parse_scene(text, "test");
+  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
+  return scene.ok() ? *scene : Scene{};
+}
+SceneWorld start(const Scene& scene, std::span<const ParameterValue> values = {}) {
+  Result<SceneWorld> world = scene.instantiate(values);
+  EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
+  return std::move(world).value();
+}
+double read(const SceneWorld& world, std::string_view quantity) {
+  const Result<Probe> probe = world.probe(quantity);
+  EXPECT_TRUE(probe.ok()) << (probe.ok() ? "" : probe.error().message);
+  return probe.ok() ? world.read(*probe) : 0;
+}
+
+class EverySceneFile : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, EverySceneFile, testing::ValuesIn(scene_files()),
+                         [](const auto& info) { return info.param.substr(0, info.param.size() - 5); });
+
+TEST_P(EverySceneFile, LoadsAndRunsAndDescribesItself) {
+  const Scene scene = load(GetParam());
+  EXPECT_FALSE(scene.name.empty());
+  EXPECT_FALSE(scene.description.empty());
+  EXPECT_FALSE(scene.plots.empty() && scene.expectations.empty());
+  SceneWorld world = start(scene);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(world.step().ok());
+  EXPECT_EQ(world.step_count(), 10u);
+  RecordedFrame frame;
+  capture_frame(world, frame);
+  EXPECT_EQ(frame.bodies.size(), world.bodies.size());
+  const double level = 0;
+  EXPECT_NE(scene_messages(world, &level).scene.find("\"ground\""), std::string::npos);
+  for (const Parameter& p : scene.parameters) {
+    EXPECT_LE(p.minimum, p.value);
+    EXPECT_LE(p.value, p.maximum);
+  }
+}
+
+TEST_P(EverySceneFile, ComesBackFromAFileWithTheSameStateHash) {
+  const Scene scene = load(GetParam());
+  if (scene.kind == Kind::flight) GTEST_SKIP() << "a flight is not a world of bodies";
+  SceneWorld world = start(scene);
+  for (int i = 0; i < 25; ++i) ASSERT_TRUE(world.step().ok());
+  const Result<std::string> text = write_scene(world);
+  ASSERT_TRUE(text.ok()) << text.error().message;
+  const Scene again = parse(*text);
+  const SceneWorld copy = start(again);
+  EXPECT_EQ(copy.state_hash(), world.state_hash());
+  EXPECT_EQ(copy.bodies.size(), world.bodies.size());
+  const Result<std::string> twice = write_scene(copy);
+  ASSERT_TRUE(twice.ok());
+  EXPECT_EQ(*twice, *text) << "writing what was read gives the same file";
+}
+
+/// The expectations at their times, as `carom run` checks them.
+void expect_expectations(const Scene& scene, std::span<const ParameterValue> values = {}) {
+  SceneWorld world = start(scene, values);
+  const auto list = scene.expectations_for(world, values);
+  ASSERT_TRUE(list.ok());
+  ASSERT_FALSE(list->empty());
+  std::vector<std::uint64_t> steps;
+  const std::uint64_t last = std::uint64_t(world.duration / world.dt + 0.5);
+  for (const Expectation& e : *list) steps.push_back(e.time < 0 ? last : std::uint64_t(e.time / world.dt + 0.5));
+  for (std::uint64_t k = 0;; ++k) {
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (steps[i] != k) continue;
+      const Expectation& e = (*list)[i];
+      EXPECT_NEAR(read(world, e.quantity), e.expected, e.tolerance) << scene.name << ": " << e.quantity << " at " << k * world.dt << " s, " << e.source;
+    }
+    if (k == last) break;
+    ASSERT_TRUE(world.step().ok());
+  }
+}
+
+class SceneExpectations : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneExpectations,
+                         testing::Values("nesc_01", "nesc_02", "nesc_04", "pendulum", "collision_lab_2d", "collision_lab_3d",
+                                         "tumbling_brick", "hovercraft_2d", "cannon", "floating_boxes", "wall_and_wrecking_ball"));
+TEST_P(SceneExpectations, AreMet) { expect_expectations(load(std::string(GetParam()) + ".json")); }
+
+TEST(SceneExpectation, FollowsTheParameters) {
+  const Scene scene = load("collision_lab_2d.json");
+  const ParameterValue values[] = {{"e", 0.2}, {"u1", 9}, {"m2", 4}};
+  expect_expectations(scene, values);
+}
+
+TEST(SceneParameters, AreReadWithUnitsAndRanges) {
+  const Scene scene = parse(R"({"parameters": {"speed": {"value": "30 mph", "minimum": "0 mph", "maximum": "60 mph", "step": "1 mph"}},
+    "bodies": [{"name": "car", "velocity": ["$speed", 0, 0], "gravity_scale": 0, "shape": {"type": "sphere"}}]})");
+  ASSERT_EQ(scene.parameters.size(), 1u);
+  EXPECT_EQ(scene.parameters[0].unit, "m/s");
+  EXPECT_EQ(scene.parameters[0].display_unit, "mph");
+  EXPECT_DOUBLE_EQ(scene.parameters[0].display_scale, 0.44704);
+  EXPECT_DOUBLE_EQ(scene.parameters[0].value, 13.4112);
+  const Result<ParameterValue> fast = scene.parse_parameter("speed=45 mph");
+  ASSERT_TRUE(fast.ok());
+  EXPECT_FLOAT_EQ(float(read(start(scene, {&*fast, 1}), "car.velocity.x")), float(45 * 0.44704));
+  EXPECT_DOUBLE_EQ(scene.parse_parameter("speed=45")->value, 45 * 0.44704) << "a number alone is in the unit shown";
+  for (const char* bad : {"speed", "speed=", "speed=90 mph", "speed=3 kg", "spede=3 mph", "speed=nan"})
+    EXPECT_FALSE(scene.parse_parameter(bad).ok()) << bad;
+  EXPECT_NE(scene.parse_parameter("sped=3 mph").error().message.find("did you mean \"speed\""), std::string::npos);
+  const ParameterValue beyond[] = {{"speed", 1e9}}, unknown[] = {{"mass", 1}};
+  EXPECT_FALSE(scene.instantiate(beyond).ok());
+  EXPECT_FALSE(scene.instantiate(unknown).ok());
+}
+
+TEST(SceneParameters, ActOnARunningWorldWhereLive) {
+  const Scene scene = parse(R"({"parameters": {"g": {"value": 10, "minimum": 0, "maximum": 100, "live": true}, "n": {"value": 1, "minimum": 1, "maximum": 9}},
+    "gravity": [0, "=-g", 0], "bodies": [{"repeat": {"i": "=n"}, "bodies": [{"name": "b{i}", "shape": {"type": "sphere"}}]}]})");
+  SceneWorld world = start(scene);
+  ASSERT_TRUE(world.step().ok());
+  const double before = read(world, "b0.velocity.y");
+  const ParameterValue none[] = {{"g", 0}};
+  ASSERT_TRUE(scene.apply(world, none).ok());
+  ASSERT_TRUE(world.step().ok());
+  EXPECT_EQ(read(world, "b0.velocity.y"), before);
+  const ParameterValue more[] = {{"n", 3}};
+  EXPECT_FALSE(scene.apply(world, more).ok()) << "a live value may not change how many bodies there are";
+}
+
+TEST(SceneGroups, CountWithInnerCountsAndConditions) {
+  const SceneWorld world = start(parse(R"({"bodies": [{"repeat": {"i": 4, "j": "=4 - i"}, "bodies": [
+    {"name": "b_{i}_{j}", "position": ["=i*2 m", "=j", 0], "shape": {"type": "sphere"}, "if": "=i + j != 3"}]}],
+    "joints": [{"repeat": {"i": 2}, "joints": [{"type": "ball", "body_a": "b_{i}_0", "body_b": "b_{i+1}_0", "anchor": ["=2*i + 1", 0, 0]}]}]})"));
+  EXPECT_EQ(world.bodies.size(), 6u);
+  EXPECT_EQ(world.joints.size(), 2u);
+  EXPECT_EQ(read(world, "b_1_1.position.x"), 2);
+  EXPECT_EQ(world.find_body("b_0_3"), nullptr);
+}
+
+TEST(SceneShapes, GiveTheMassAskedFor) {
+  const SceneWorld world = start(parse(R"({"materials": {"oak": {"density": "700 kg/m^3"}}, "shapes": {"crate": {"type": "box", "size": [2, 1, 1]}},
+    "bodies": [{"name": "a", "mass": "12 kg", "shape": "crate"}, {"name": "b", "shape": {"use": "crate", "material": "oak"}, "position": [5, 0, 0]},
+    {"name": "c", "position": [0, 9, 0], "shapes": [{"type": "sphere", "mass": "3 kg"}, {"type": "sphere", "mass": "4 kg", "position": [0, 2, 0]}]},
+    {"name": "d", "position": [0, 0, 9], "shape": "crate", "mass_properties": {"mass": 5, "center": [0.1, 0, 0], "inertia": [1, 2, 2.5]}}]})"));
+  EXPECT_NEAR(read(world, "a.mass"), 12, 1e-5);
+  EXPECT_NEAR(read(world, "b.mass"), 1400, 1e-3);
+  EXPECT_NEAR(read(world, "c.mass"), 7, 1e-5);
+  EXPECT_EQ(read(world, "d.mass"), 5);
+  EXPECT_NEAR(read(world, "c.center.y"), 9 + 2 * 4.0 / 7, 1e-5);
+  EXPECT_NEAR(read(world, "d.center.x"), 0.1, 1e-7);
+}
+
+TEST(SceneBodies, ReadRotationsInEveryForm) {
+  const SceneWorld world = start(parse(R"({"bodies": [
+    {"name": "axis", "rotation": {"axis": [0, 0, 2], "angle": "90 deg"}}, {"name": "pitch", "rotation": {"pitch": "90 deg"}},
+    {"name": "quat", "rotation": [0.70710678, 0, 0, 0.70710678]}, {"name": "tilted", "rotation": {"roll": "30 deg"}}]})"));
+  for (const char* name : {"axis", "pitch", "quat"}) {
+    const auto state = world.world3->state(world.find_body(name)->id);
+    const math::Vec3f x = math::rotate(state->pose.rotation, math::Vec3f{1, 0, 0});
+    EXPECT_NEAR(x.y, 1, 1e-6) << name;
+  }
+  EXPECT_NEAR(read(world, "tilted.tilt"), math::radians(30.0), 1e-6);
+}
+
+TEST(SceneJoints, OfEveryTypeInBothDimensions) {
+  const char* joints = R"("joints": [
+    {"type": "distance", "body_a": "a", "body_b": "b", "anchor_a": [A0], "anchor_b": [A1], "spring": {"frequency": "2 Hz", "damping_ratio": 0.3}},
+    {"type": "hinge", "body_a": "world", "body_b": "a", "anchor": [A0], "limit": {"lower": "-1 deg", "upper": "90 deg"}, "motor": {"speed": "60 rpm", "max_torque": "5 N*m"}},
+    {"type": "slider", "body_a": "world", "body_b": "b", "anchor": [A1], "axis": [A1], "motor": {"speed": "1 m/s", "max_force": "10 N"}},
+    {"type": "weld", "body_a": "a", "body_b": "c", "anchor": [A0], "angular_spring": {"frequency": "1 Hz"}},
+    {"type": "ball", "body_a": "a", "body_b": "c", "anchor": [A0]},
+    {"type": "motor", "body_a": "b", "body_b": "c", "max_force": "10 N"},
+    {"type": "mouse", "body_b": "c", "anchor": [A1], "target": [A0]}])";
+  for (const int dimension : {2, 3}) {
+    std::string text = "{\"dimension\": " + std::to_string(dimension) + ", \"bodies\": [";
+    for (const char* name : {"a", "b", "c"})
+      text += std::string(name[0] == 'a' ? "" : ", ") + "{\"name\": \"" + name + "\", \"shape\": {\"type\": \"" + (dimension == 2 ? "circle" : "sphere") + "\"}, \"position\": [A1]}";
+    text += std::string("], ") + joints + "}";
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"[A0]", dimension == 2 ? "[0, 0]" : "[0, 0, 0]"}, {"[A1]", dimension == 2 ? "[1, 1]" : "[1, 1, 1]"}})
+      for (std::size_t at = 0; (at = text.find(from)) != std::string::npos;) text.replace(at, from.size(), to);
+    SceneWorld world = start(parse(text));
+    EXPECT_EQ(world.joints.size(), 7u);
+    EXPECT_EQ(world.bodies.size(), 4u) << "and the body \"world\"";
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(world.step().ok());
+    const Result<std::string> written = write_scene(world);
+    ASSERT_TRUE(written.ok());
+    EXPECT_EQ(start(parse(*written)).state_hash(), world.state_hash());
+    EXPECT_EQ(write_scene(start(parse(*written))).value(), *written);
+  }
+}
+
+TEST(SceneEffectors, OfEveryTypeComeBackTheSame) {
+  const SceneWorld world = start(parse(R"({"bodies": [{"name": "a", "shape": {"type": "sphere"}}, {"name": "b", "position": [3, 0, 0], "shape": {"type": "sphere"}}],
+    "effectors": [{"type": "spherical_gravity", "center": [0, -7e6, 0]}, {"type": "linear_drag", "coefficient": 0.3, "angular_coefficient": "0.1 N*m*s"},
+    {"type": "quadratic_drag", "body": "a", "point": [0.1, 0, 0]}, {"type": "wind", "velocity": ["10 kn", 0, 0]},
+    {"type": "spring", "body_a": "a", "body_b": "b", "stiffness": "3 N/mm"}, {"type": "spring", "body_a": "a", "point_b": [0, 9, 0]},
+    {"type": "buoyancy", "waves": [{"amplitude": "1 ft", "wavelength": "30 m", "phase": "20 deg"}]},
+    {"type": "thrust", "body": "b", "force": ["1 lbf", 0, 0]}, {"type": "radial_field"}, {"type": "vortex_field", "axis": [0, 0, 1]}]})"));
+  EXPECT_EQ(world.effectors.size(), 10u);
+  const Result<std::string> written = write_scene(world);
+  ASSERT_TRUE(written.ok());
+  EXPECT_EQ(write_scene(start(parse(*written))).value(), *written);
+}
+
+TEST(WriteScene, KeepsEveryKindOfShape) {
+  const SceneWorld space = start(parse(R"({"bodies": [
+    {"name": "fixed", "type": "fixed", "shapes": [{"type": "plane", "normal": [0.1, 1, 0]},
+      {"type": "mesh", "vertices": [[0,0,0],[1,0,0],[0,0,1],[1,0.3,1]], "indices": [0,2,1,1,2,3]},
+      {"type": "height_field", "columns": 3, "rows": 2, "cell": [1, 0.5], "heights": [0, 0.1, 0, 0.2, 0.3, 0.1], "holes": [0, 1]}]},
+    {"name": "hull", "position": [0.1, 5.3, 0.7], "awake": false, "user_data": "0xfedcba9876543210", "locks": ["x", "rotation_z"],
+      "shape": {"type": "hull", "points": [[0,0,0],[1,0,0],[0,1.1,0],[0,0,1.3],[0.7,0.7,0.7]], "radius": 0.02, "filter": {"category": [1, 40], "mask": "0xff", "group": -3}}},
+    {"name": "compound", "position": [5, 5, 5], "rotation": {"yaw": "33 deg", "pitch": "12 deg"},
+      "shape": {"type": "compound", "children": [{"type": "cylinder", "height": 2}, {"type": "cone", "position": [0, 1, 0]}, {"type": "capsule", "length": 1, "radius": 0.2}]}},
+    {"name": "box", "position": [-5, 5, 5], "shape": {"type": "box", "size": [1, 2, 3], "radius": 0.1, "sensor": true}}]})"));
+  const std::string text = write_scene(space).value();
+  const SceneWorld copy = start(parse(text));
+  EXPECT_EQ(copy.state_hash(), space.state_hash());
+  EXPECT_EQ(write_scene(copy).value(), text);
+  const SceneWorld plane = start(parse(R"({"dimension": 2, "bodies": [
+    {"type": "fixed", "shapes": [{"type": "segment", "points": [[-1, 0], [1, 0.1]]}, {"type": "chain", "points": [[0,0],[1,0],[1,1]], "loop": true}]},
+    {"position": [3, 3.3], "rotation": "17 deg", "shapes": [{"type": "polygon", "points": [[0,0],[1,0],[0.3,1.7]], "radius": 0.01}, {"type": "capsule"}, {"type": "box", "size": [1, 2]}, {"type": "circle", "diameter": "3 in"}]}]})"));
+  const std::string flat = write_scene(plane).value();
+  EXPECT_EQ(start(parse(flat)).state_hash(), plane.state_hash());
+  EXPECT_EQ(write_scene(start(parse(flat))).value(), flat);
+}
+
+TEST(Probe, ReadsExpressionsWithUnits) {
+  const SceneWorld world = start(parse(R"({"gravity": [0, -10, 0], "bodies": [{"name": "a.b", "position": [0, 3, 0], "velocity": [3, 4, 0], "mass": "2 kg", "shape": {"type": "sphere"}}]})"));
+  EXPECT_EQ(read(world, "a.b.speed"), 5);
+  EXPECT_EQ(read(world, "a.b.position.y*2"), 6);
+  EXPECT_NEAR(read(world, "energy.kinetic"), 25, 1e-5);
+  EXPECT_NEAR(read(world, "energy.total"), 85, 1e-4);
+  EXPECT_NEAR(read(world, "momentum.x"), 6, 1e-6);
+  EXPECT_EQ(world.probe("a.b.speed*a.b.mass")->unit, world.probe("momentum.x")->unit);
+  for (const char* bad : {"", "a.b", "a.b.speeed", "a.b.position", "c.speed", "momentum", "a.b.speed + time", "joint.x.coordinate"})
+    EXPECT_FALSE(world.probe(bad).ok()) << bad;
+}
+
+TEST(Schema, InTheRepositoryIsTheOneOfTheLoader) {
+  std::ifstream file(scenes_folder() + "schema/carom-scene.schema.json");
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_EQ(text.str(), scene_schema()) << "write it anew: carom list --schema, or scene_schema()";
+}
+
+TEST(Presets, AllStateTheirSourceAndLoad) {
+  for (const char* name : {"ball/golf", "ball/tennis", "ball/basketball", "ball/soccer", "ball/baseball", "ball/bowling", "ball/billiard"}) {
+    const Result<Scene> scene = parse_scene(std::string("{\"bodies\": [{\"name\": \"b\", \"preset\": \"") + name + "\"}]}", "t", [](std::string_view path) -> Result<std::string> {
+      std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
+      std::stringstream text;
+      text << file.rdbuf();
+      return text.str();
+    });
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    EXPECT_GT(read(start(*scene), "b.mass"), 0.04);
+  }
+  for (const char* name : {"steel", "aluminium", "wood", "cork", "concrete", "brick", "rubber", "ice", "glass"}) {
+    LoadOptions options;
+    const Result<Scene> scene = parse_scene(std::string("{\"materials\": {\"m\": {\"preset\": \"material/") + name + "\"}}, \"bodies\": [{\"name\": \"b\", \"shape\": {\"type\": \"box\", \"size\": [1, 1, 1], \"material\": \"m\"}}]}", "t", [](std::string_view path) -> Result<std::string> {
+      std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
+      std::stringstream text;
+      text << file.rdbuf();
+      return text.str();
+    }, options);
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    EXPECT_GT(read(start(*scene), "b.mass"), 200);
+  }
+}
+
+}  // namespace
+}  // namespace carom::scene
