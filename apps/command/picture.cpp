@@ -73,25 +73,45 @@ struct Plane2 {
 
 void grid2(cairo_t* c, const Plane2& view, int width, int height, double spacing) {
   cairo_set_line_width(c, 1);
-  font(c, 12);
   const double right = view.left + width / view.scale, bottom = view.top - height / view.scale;
+  const auto stroke = [&](double i, double x0, double y0, double x1, double y1) {
+    set(c, i == 0 ? rgb(0xb4bec8) : rgb(0xe1e6eb));
+    cairo_move_to(c, x0, y0);
+    cairo_line_to(c, x1, y1);
+    cairo_stroke(c);
+  };
   for (double i = std::ceil(view.left / spacing); i * spacing < right; ++i) {
     const double x = std::floor(view.x(i * spacing)) + 0.5;
-    set(c, i == 0 ? rgb(0xb4bec8) : rgb(0xe1e6eb));
-    cairo_move_to(c, x, 0);
-    cairo_line_to(c, x, height);
-    cairo_stroke(c);
-    set(c, rgb(0x7b8794));
-    if (x > 40 && x < width - 30) text(c, x + 3, height - 4, tick_text(i * spacing, spacing), 0, 1);
+    stroke(i, x, 0, x, height);
   }
   for (double i = std::ceil(bottom / spacing); i * spacing < view.top; ++i) {
     const double y = std::floor(view.y(i * spacing)) + 0.5;
-    set(c, i == 0 ? rgb(0xb4bec8) : rgb(0xe1e6eb));
-    cairo_move_to(c, 0, y);
-    cairo_line_to(c, width, y);
-    cairo_stroke(c);
-    set(c, rgb(0x7b8794));
-    if (y > 90 && y < height - 24) text(c, width - 6, y - 3, tick_text(i * spacing, spacing) + " m", 1, 1);
+    stroke(i, 0, y, width, y);
+  }
+}
+
+/// Text on whatever lies below it, with a halo that keeps it readable.
+void marked(cairo_t* c, double x, double y, const std::string& s, double x_align) {
+  cairo_new_path(c);
+  cairo_move_to(c, x - x_align * text_width(c, s), y);
+  cairo_text_path(c, s.c_str());
+  set(c, rgb(0xf6f8fa, 0.9));
+  cairo_set_line_width(c, 4);
+  cairo_stroke_preserve(c);
+  set(c, rgb(0x5b6773));
+  cairo_fill(c);
+}
+
+void grid_labels2(cairo_t* c, const Plane2& view, int width, int height, double spacing) {
+  font(c, 12);
+  const double right = view.left + width / view.scale, bottom = view.top - height / view.scale;
+  for (double i = std::ceil(view.left / spacing); i * spacing < right; ++i) {
+    const double x = view.x(i * spacing);
+    if (x > 40 && x < width - 40) marked(c, x, height - 6, tick_text(i * spacing, spacing), 0.5);
+  }
+  for (double i = std::ceil(bottom / spacing); i * spacing < view.top; ++i) {
+    const double y = view.y(i * spacing);
+    if (y > 90 && y < height - 70) marked(c, width - 6, y + 4, tick_text(i * spacing, spacing) + " m", 1);
   }
 }
 
@@ -202,6 +222,7 @@ Surface plane_picture(host::Simulation& simulation, const std::vector<host::Body
     cairo_line_to(c, view.x(line.b.x), view.y(line.b.y));
     cairo_stroke(c);
   }
+  grid_labels2(c, view, width, height, spacing);
   scale_bar(c, spacing, spacing * scale, width, height);
   caption(c, simulation, width, height, "grid " + length_text(spacing));
   return surface;

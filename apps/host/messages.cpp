@@ -97,7 +97,7 @@ std::string color_text(std::uint32_t rgb) {
 
 Json shape_json(const ShapeView& s) {
   const math::Transform3f& t = s.local;
-  Json out = {{"kind", name_of(s.kind)}, {"local", {t.p.x, t.p.y, t.p.z, t.q.x, t.q.y, t.q.z, t.q.w}}};
+  Json out = {{"kind", name_of(s.kind)}, {"local", {t.p.x, t.p.y, t.p.z, t.q.w, t.q.x, t.q.y, t.q.z}}};
   if (s.sensor) out["sensor"] = true;
   if (s.look) {
     out["color"] = color_text(s.look);

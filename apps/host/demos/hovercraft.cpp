@@ -53,7 +53,7 @@ class Hovercraft final : public Repeatable<Hovercraft, Demo2> {
     stage.start(world);
     material_.restitution = stage.valuef("restitution");
     material_.friction = 0.3f;
-    player_ = craft(stage, {-32, -14}, 0, orange, "craft");
+    player_ = craft(stage, {-34, -16.5}, 0, orange, "craft");
     others_.push_back(craft(stage, {20, 12}, 2.6f, blue, "other craft"));
     others_.push_back(craft(stage, {26, -6}, -2.2f, teal, "other craft"));
     others_.push_back(craft(stage, {-20, 12}, -0.6f, violet, "other craft"));

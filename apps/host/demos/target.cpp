@@ -25,7 +25,7 @@ class Target final : public Repeatable<Target, Demo3> {
         "The test for a hit sweeps the shell along its path, so that a fast shell never slips through between two "
         "steps. With the values one finds here (600 m away, 75 m up, 100 m/s) the low arc starts at 26.10°.";
     d.duration = 12;
-    d.camera = {{250, 170, 560}, {300, 75, 0}};
+    d.camera = {{260, 210, 930}, {300, 185, 0}};
     d.ground = 0;
     d.parameters = {
         {"speed", "Muzzle speed V", "m/s", "m/s", "", 20, 200, 0.5, 100, true},

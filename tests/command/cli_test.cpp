@@ -1,0 +1,206 @@
+// The program `carom` as a user meets it: exit codes, JSON, help, interrupted runs.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "carom/scene/recording.h"
+
+namespace carom::command {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Cli : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("carom_cli_test_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Runs `carom` with these arguments; the exit status, and what it said.
+  int carom(const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" CAROM_COMMAND "' " + arguments + " > out.txt 2> err.txt";
+    const int status = std::system(command.c_str());
+    out_ = read(folder_ / "out.txt");
+    err_ = read(folder_ / "err.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  static std::string read(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  bool no_leftovers() const {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.path().extension() == ".part") return false;
+    return true;
+  }
+
+  fs::path folder_;
+  std::string out_, err_;
+};
+
+TEST_F(Cli, HelpHasExamplesAndExitCodes) {
+  EXPECT_EQ(carom("--help"), 0);
+  EXPECT_NE(out_.find("Exit status"), std::string::npos);
+  for (const char* command : {"run", "serve", "mass", "list", "doctor", "bench"}) {
+    EXPECT_EQ(carom(std::string(command) + " --help"), 0) << command;
+    EXPECT_NE(out_.find("Examples:"), std::string::npos) << command;
+  }
+  EXPECT_EQ(carom("--version"), 0);
+}
+
+TEST_F(Cli, BadUsageIsTwo) {
+  for (const char* bad :
+       {"", "fly", "run", "run pyramids --threads many", "run pyramids --threads 1000", "run pyramids --steps 0",
+        "run pyramids --steps 5 --duration 1", "run pyramids --set friction", "run pyramids --set friction=9",
+        "run pyramids --set 'friction=2 m'", "run pyramids --set 'nothing=2'", "serve --port 70000", "bench nothing"})
+    EXPECT_EQ(carom(bad), 2) << bad;
+  carom("run pyramids --set fricton=0.5");
+  EXPECT_NE(err_.find("did you mean \"friction\""), std::string::npos) << err_;
+}
+
+TEST_F(Cli, BadInputIsThree) {
+  EXPECT_EQ(carom("run no-such-scene"), 3);
+  EXPECT_EQ(carom("run pyramid"), 3);
+  EXPECT_NE(err_.find("pyramids"), std::string::npos) << err_;
+  std::ofstream(folder_ / "broken.json") << "{ \"bodies\": [ ";
+  EXPECT_EQ(carom("run broken.json"), 3);
+  EXPECT_NE(err_.find("broken.json"), std::string::npos) << err_;
+  EXPECT_EQ(carom("mass nothing.obj"), 3);
+}
+
+TEST_F(Cli, AFolderThatCannotBeMadeIsFour) {
+  std::ofstream(folder_ / "file") << "x";
+  EXPECT_EQ(carom("run race-ship --out file/below"), 4);
+}
+
+TEST_F(Cli, RunWritesAWholeReport) {
+  ASSERT_EQ(carom("run collision-lab-2d --json"), 0) << out_ << err_;
+  const Json report = Json::parse(out_, nullptr, false);
+  ASSERT_TRUE(report.is_object()) << out_;
+  for (const char* field : {"bodies", "contacts", "joints", "start", "end", "worst_penetration_m", "step_ms_median",
+                            "step_ms_worst", "real_time_factor", "state_hash", "expectations", "files"})
+    EXPECT_TRUE(report.contains(field)) << field;
+  EXPECT_TRUE(report["passed"]);
+  EXPECT_GE(report["expectations"].size(), 2u);
+  for (const Json& file : report["files"]) EXPECT_TRUE(fs::is_regular_file(folder_ / file.get<std::string>())) << file;
+  EXPECT_EQ(Json::parse(read(folder_ / "out/collision-lab-2d/report.json"), nullptr, false)["state_hash"],
+            report["state_hash"]);
+  EXPECT_EQ(read(folder_ / "out/collision-lab-2d/end.png").substr(1, 3), "PNG");
+  EXPECT_TRUE(no_leftovers());
+  auto recording = scene::Recording::open((folder_ / "out/collision-lab-2d/recording.carom-rec").string());
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_TRUE(recording->complete());
+  EXPECT_NEAR(recording->last_time(), 4.0, 1e-9);
+  const auto frame = recording->frame(recording->frame_count() - 1);
+  ASSERT_TRUE(frame.ok());
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(frame->state_hash));
+  EXPECT_EQ(report["state_hash"], hash) << "the last frame is the end";
+}
+
+TEST_F(Cli, SettingsTakeUnitsAndChangeTheRun) {
+  ASSERT_EQ(carom("run collision-lab-2d --json --no-record --no-pictures --set 'speed_a=20 km/h' --set mass_a=3"), 0)
+      << err_;
+  const Json report = Json::parse(out_, nullptr, false);
+  EXPECT_EQ(report["parameters"]["mass_a"], "3 kg");
+  EXPECT_EQ(report["parameters"]["speed_a"], "5.55555556 m/s");
+  EXPECT_TRUE(report["expectations"].empty()) << "they are facts about the default values";
+}
+
+TEST_F(Cli, ThreadsDoNotChangeTheBits) {
+  std::string hash[2];
+  for (const int threads : {1, 2}) {
+    ASSERT_EQ(carom("run wrecking-ball --json --no-record --no-pictures --steps 200 --hash-every 50 --threads " +
+                    std::to_string(threads)),
+              0);
+    const Json report = Json::parse(out_, nullptr, false);
+    EXPECT_EQ(report["hashes"].size(), 4u);
+    hash[threads - 1] = report["hashes"].dump();
+  }
+  EXPECT_EQ(hash[0], hash[1]);
+}
+
+TEST_F(Cli, ATraceIsChromeJson) {
+  ASSERT_EQ(carom("run race-ship --no-record --no-pictures --quiet --trace trace.json"), 0);
+  EXPECT_EQ(out_, "");
+  EXPECT_FALSE(Json::parse(read(folder_ / "trace.json"), nullptr, false).is_discarded());
+}
+
+TEST_F(Cli, NoProgressBarOffATerminal) {
+  ASSERT_EQ(carom("run race-ship --no-record --no-pictures"), 0);
+  EXPECT_EQ(err_, "");
+}
+
+TEST_F(Cli, InterruptedLeavesWholeFiles) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) != 0 || !freopen("out.txt", "w", stdout)) _exit(99);
+    execl(CAROM_COMMAND, "carom", "run", "pyramids", "--duration", "100000", "--json", static_cast<char*>(nullptr));
+    _exit(98);
+  }
+  // Not before it runs: the recording's temporary file tells.
+  for (int i = 0; i < 1000 && !fs::exists(folder_ / "out/pyramids/start.png"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ASSERT_EQ(kill(child, SIGINT), 0);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const Json report = Json::parse(read(folder_ / "out/pyramids/report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object());
+  EXPECT_TRUE(report["interrupted"]);
+  EXPECT_TRUE(no_leftovers());
+  auto recording = scene::Recording::open((folder_ / "out/pyramids/recording.carom-rec").string());
+  ASSERT_TRUE(recording.ok());
+  EXPECT_TRUE(recording->complete());
+  EXPECT_NEAR(recording->last_time(), report["simulated_s"].get<double>(), 1e-9);
+}
+
+TEST_F(Cli, ListAndDoctorSpeakJson) {
+  carom("list --json");
+  const Json list = Json::parse(out_, nullptr, false);
+  ASSERT_TRUE(list.is_object());
+  EXPECT_GE(list["demos"].size(), 12u);
+  EXPECT_TRUE(list["demos"][0]["parameters"].is_array());
+  EXPECT_EQ(carom("doctor --json"), 0) << out_;
+  const Json doctor = Json::parse(out_, nullptr, false);
+  for (const char* field : {"version", "compiler", "instruction set", "processors", "page", "free port", "engine"})
+    EXPECT_TRUE(doctor.contains(field)) << field;
+}
+
+TEST_F(Cli, ServeEndsCleanlyOnATerminationRequest) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) != 0 || !freopen("serve.txt", "w", stdout)) _exit(99);
+    execl(CAROM_COMMAND, "carom", "serve", "--port", "0", "--json", static_cast<char*>(nullptr));
+    _exit(98);
+  }
+  for (int i = 0; i < 500 && read(folder_ / "serve.txt").empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const Json where = Json::parse(read(folder_ / "serve.txt"), nullptr, false);
+  EXPECT_TRUE(where.is_object() && where["port"].get<int>() > 0);
+  kill(child, SIGTERM);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+}  // namespace
+}  // namespace carom::command

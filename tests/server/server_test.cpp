@@ -1,0 +1,277 @@
+// The live server as a hostile network sees it, and as its own page does.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "apps/server/requests.h"
+#include "apps/server/server.h"
+
+namespace carom::server {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+namespace fs = std::filesystem;
+
+class LiveServer : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("carom_server_test_" + std::to_string(::getpid()));
+    fs::create_directories(folder_ / "page/assets");
+    write("page/index.html", "<!doctype html><title>page</title>");
+    write("page/main.js", "export {};");
+    write("page/engine.wasm", std::string("\0asm", 4));
+    write("page/assets/a.css", "body{}");
+    write("page/.hidden", "hidden");
+    write("secret.txt", "secret");
+    fs::create_symlink(folder_ / "secret.txt", folder_ / "page/link.txt");
+    start({});
+  }
+  void TearDown() override {
+    server_.reset();
+    fs::remove_all(folder_);
+  }
+  void start(ServerOptions options) {
+    options.root = (folder_ / "page").string();
+    auto started = Server::start(std::move(options));
+    ASSERT_TRUE(started.ok()) << started.error().message;
+    server_ = std::move(started).value();
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+
+  tcp::socket connect() {
+    tcp::socket socket(context_);
+    socket.connect({asio::ip::make_address("127.0.0.1"), server_->port()});
+    return socket;
+  }
+  std::string authority() const { return "127.0.0.1:" + std::to_string(server_->port()); }
+
+  http::response<http::string_body> get(const std::string& target, const std::string& host = {},
+                                        http::verb verb = http::verb::get) {
+    tcp::socket socket = connect();
+    http::request<http::string_body> request(verb, target, 11);
+    request.set(http::field::host, host.empty() ? authority() : host);
+    http::write(socket, request);
+    beast::flat_buffer buffer;
+    http::response_parser<http::string_body> parser;
+    if (verb == http::verb::head) parser.skip(true);
+    http::read(socket, buffer, parser);
+    return parser.release();
+  }
+
+  using Stream = websocket::stream<tcp::socket>;
+  std::unique_ptr<Stream> upgrade(beast::error_code& error, const std::string& origin = {},
+                                  const std::string& host = {}, const std::string& path = "/ws") {
+    auto stream = std::make_unique<Stream>(connect());
+    stream->set_option(websocket::stream_base::decorator([origin](websocket::request_type& request) {
+      if (!origin.empty()) request.set(http::field::origin, origin);
+    }));
+    stream->handshake(host.empty() ? authority() : host, path, error);
+    return stream;
+  }
+  static std::string say(Stream& stream, const std::string& text) {
+    stream.text(true);
+    stream.write(asio::buffer(text));
+    return hear(stream);
+  }
+  static std::string hear(Stream& stream) {
+    beast::flat_buffer buffer;
+    stream.read(buffer);
+    return beast::buffers_to_string(buffer.data());
+  }
+
+  fs::path folder_;
+  asio::io_context context_;
+  std::unique_ptr<Server> server_;
+};
+
+TEST_F(LiveServer, ServesThePageWithTypesAndHeaders) {
+  const auto page = get("/");
+  EXPECT_EQ(page.result(), http::status::ok);
+  EXPECT_EQ(page.body(), "<!doctype html><title>page</title>");
+  EXPECT_EQ(page[http::field::content_type], "text/html; charset=utf-8");
+  EXPECT_EQ(page[http::field::cache_control], "no-cache");
+  EXPECT_EQ(page["X-Content-Type-Options"], "nosniff");
+  EXPECT_EQ(page["Cross-Origin-Opener-Policy"], "same-origin");
+  EXPECT_EQ(page["Cross-Origin-Embedder-Policy"], "require-corp");
+  EXPECT_NE(page["Content-Security-Policy"].find("default-src 'self'"), boost::string_view::npos);
+  EXPECT_EQ(get("/main.js?v=1")[http::field::content_type], "text/javascript; charset=utf-8");
+  EXPECT_EQ(get("/engine.wasm")[http::field::content_type], "application/wasm");
+  EXPECT_NE(get("/assets/a.css")[http::field::cache_control].find("immutable"), boost::string_view::npos);
+  const auto head = get("/main.js", {}, http::verb::head);
+  EXPECT_EQ(head.result(), http::status::ok);
+  EXPECT_EQ(head[http::field::content_length], "10");
+}
+
+TEST_F(LiveServer, NothingOutsideItsFolder) {
+  for (const char* target :
+       {"/../secret.txt", "/..%2fsecret.txt", "/%2e%2e/secret.txt", "/assets/../../secret.txt",
+        "/assets/%2e%2e/%2e%2e/secret.txt", "//../secret.txt", "/..\\secret.txt", "/%5c..%5csecret.txt", "/link.txt",
+        "/.hidden", "/%00", "/index.html%00.js", "/%zz", "/%2", "/etc/passwd", "/nothing"}) {
+    const auto answer = get(target);
+    EXPECT_EQ(answer.result(), http::status::not_found) << target;
+    EXPECT_EQ(answer.body().find("secret"), std::string::npos) << target;
+  }
+}
+
+TEST_F(LiveServer, OnlyReadingMethods) {
+  for (const auto verb : {http::verb::post, http::verb::put, http::verb::delete_, http::verb::options})
+    EXPECT_EQ(get("/", {}, verb).result(), http::status::method_not_allowed);
+}
+
+TEST_F(LiveServer, ForeignHostNamesAreRefused) {
+  EXPECT_EQ(get("/", "localhost").result(), http::status::ok);
+  EXPECT_EQ(get("/", "[::1]:80").result(), http::status::ok);
+  for (const char* host : {"evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example",
+                           "192.168.1.5", "", " "})
+    EXPECT_NE(get("/", *host ? host : "@").result(), http::status::ok) << host;
+}
+
+TEST_F(LiveServer, ForeignOriginsMayNotDriveIt) {
+  beast::error_code error;
+  upgrade(error, "http://" + authority());
+  EXPECT_FALSE(error) << error.message();
+  upgrade(error);  // a program that is no browser
+  EXPECT_FALSE(error) << error.message();
+  for (const std::string origin :
+       {"http://evil.example", "null", "http://127.0.0.1:1", "https://localhost.evil.example", "file://"}) {
+    upgrade(error, origin);
+    EXPECT_TRUE(error) << origin;
+  }
+  upgrade(error, {}, "evil.example");
+  EXPECT_TRUE(error);
+  upgrade(error, {}, {}, "/other");
+  EXPECT_TRUE(error);
+}
+
+TEST_F(LiveServer, ADemoRunsOverTheWebSocket) {
+  beast::error_code error;
+  const auto stream = upgrade(error);
+  ASSERT_FALSE(error);
+  EXPECT_NE(say(*stream, R"({"type":"hello","protocol":1})").find("\"welcome\""), std::string::npos);
+  EXPECT_NE(say(*stream, R"({"type":"open","demo":"pyramids"})").find("\"opened\""), std::string::npos);
+  int frames = 0;
+  for (int i = 0; i < 60 && frames < 5; ++i) {
+    const std::string message = hear(*stream);
+    if (message.empty() || message[0] != 2) continue;
+    ++frames;
+    std::uint32_t sequence = 0;
+    std::memcpy(&sequence, message.data() + 4, 4);
+    stream->text(true);
+    stream->write(asio::buffer(R"({"type":"ack","sequence":)" + std::to_string(sequence) + "}"));
+  }
+  EXPECT_EQ(frames, 5);
+  stream->close(websocket::close_code::normal, error);
+}
+
+TEST_F(LiveServer, AMessageTooLongEndsOnlyItsOwnConnection) {
+  beast::error_code error;
+  const auto big = upgrade(error), small = upgrade(error);
+  big->text(true);
+  big->write(asio::buffer(std::string(5 << 20, ' ')), error);
+  beast::flat_buffer buffer;
+  big->read(buffer, error);
+  EXPECT_TRUE(error);
+  EXPECT_NE(say(*small, R"({"type":"hello","protocol":1})").find("welcome"), std::string::npos);
+}
+
+TEST_F(LiveServer, GarbageInsteadOfHttp) {
+  for (const std::string garbage :
+       {std::string("\0\1\2\3\r\n\r\n", 8), std::string("GET\r\n\r\n"), std::string(100'000, 'A')}) {
+    tcp::socket socket = connect();
+    beast::error_code error;
+    asio::write(socket, asio::buffer(garbage), error);
+    socket.shutdown(tcp::socket::shutdown_send, error);
+    std::string answer(4096, '\0');
+    while (!error) socket.read_some(asio::buffer(answer), error);
+  }
+  EXPECT_EQ(get("/").result(), http::status::ok);
+}
+
+TEST_F(LiveServer, FiftyClientsAndNoMoreThanAllowed) {
+  server_.reset();
+  ServerOptions options;
+  options.max_clients = 50;
+  start(options);
+  std::vector<std::unique_ptr<Stream>> clients;
+  beast::error_code error;
+  for (int i = 0; i < 50; ++i) {
+    clients.push_back(upgrade(error));
+    ASSERT_FALSE(error) << i << ": " << error.message();
+    EXPECT_NE(say(*clients.back(), R"({"type":"hello","protocol":1})").find("welcome"), std::string::npos);
+    EXPECT_NE(say(*clients.back(), R"({"type":"open","demo":"collision-lab-2d"})").find("opened"), std::string::npos);
+  }
+  upgrade(error);
+  EXPECT_TRUE(error) << "the fifty-first";
+  for (const auto& client : clients) {
+    bool frame = false;
+    for (int i = 0; i < 20 && !frame; ++i) {
+      const std::string message = hear(*client);
+      frame = !message.empty() && message[0] == 2;
+    }
+    EXPECT_TRUE(frame);
+  }
+  clients.clear();
+  for (int i = 0; i < 200 && server_->clients() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(server_->clients(), 0);
+}
+
+TEST_F(LiveServer, AClientThatNeverReadsHoldsNobodyUp) {
+  beast::error_code error;
+  const auto slow = upgrade(error), quick = upgrade(error);
+  slow->text(true);
+  slow->write(asio::buffer(std::string(R"({"type":"hello","protocol":1})")), error);
+  for (int i = 0; i < 100 && !error; ++i)
+    slow->write(asio::buffer(std::string(R"({"type":"open","demo":"collision-lab-3d"})")), error);
+  EXPECT_NE(say(*quick, R"({"type":"hello","protocol":1})").find("welcome"), std::string::npos);
+}
+
+TEST_F(LiveServer, StopSaysGoodbyeAndIsQuick) {
+  beast::error_code error;
+  const auto stream = upgrade(error);
+  say(*stream, R"({"type":"hello","protocol":1})");
+  const auto started = std::chrono::steady_clock::now();
+  std::thread stopper([this] { server_->stop(); });
+  beast::flat_buffer buffer;
+  while (!error) stream->read(buffer, error);
+  stopper.join();
+  EXPECT_EQ(error, websocket::error::closed);
+  EXPECT_LT(std::chrono::steady_clock::now() - started, std::chrono::seconds(3));
+}
+
+TEST_F(LiveServer, ATakenPortIsAClearError) {
+  ServerOptions options;
+  options.port = server_->port();
+  const auto second = Server::start(std::move(options));
+  ASSERT_FALSE(second.ok());
+  EXPECT_NE(second.error().message.find(std::to_string(server_->port())), std::string::npos);
+}
+
+TEST(Requests, HostNames) {
+  EXPECT_EQ(host_name("localhost:80"), "localhost");
+  EXPECT_EQ(host_name("[::1]:80"), "::1");
+  for (const char* bad : {"", "a:b", "a:123456", "[::1", "a:80:90"}) EXPECT_EQ(host_name(bad), "") << bad;
+  const std::vector<std::string> allowed = {"MyBox.local"};
+  EXPECT_TRUE(host_allowed("mybox.local:8080", true, allowed));
+  EXPECT_TRUE(host_allowed("192.168.1.5:8080", true, allowed));
+  EXPECT_FALSE(host_allowed("192.168.1.5:8080", false, allowed));
+  EXPECT_FALSE(host_allowed("other.local", true, allowed));
+}
+
+}  // namespace
+}  // namespace carom::server
