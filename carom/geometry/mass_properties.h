@@ -13,8 +13,8 @@ struct MassProperties2 {
   double inertia = 0;  ///< kg·m², about the centre of mass
 };
 struct MassProperties3 {
-  double mass = 0;  ///< kg
-  Vec3d center{};   ///< m, in the shape's frame
+  double mass = 0;                ///< kg
+  Vec3d center{};                 ///< m, in the shape's frame
   Mat3d inertia = Mat3d::zero();  ///< kg·m², about the centre of mass, axes of the shape's frame
 };
 
@@ -42,14 +42,23 @@ struct PrincipalAxes {
 };
 CAROM_API PrincipalAxes principal_axes(const Mat3d& inertia);
 
-/// A closed surface's volume integrals. The surface must be closed, oriented outward and consistently wound.
-/// `area` in m². Errors name the defect: open edges (how many, where the first is), edges used more than twice,
-/// triangles wound against their neighbours, an inside-out surface, no volume, a bad index.
+/// What a closed surface encloses, by the divergence theorem. Vertices in one place count as one (STL files share
+/// none); where edges stay open, so do vertices closer than 1e-6 of the mesh's size. Triangles run counterclockwise
+/// seen from outside. A piece that lies inside another one and is wound the other way is a cavity, and its volume is
+/// taken off.
 struct MeshMass {
   MassProperties3 properties;
-  double volume = 0, area = 0;
-  int triangles = 0, components = 0;  ///< components: connected pieces
+  double volume = 0, area = 0;  ///< m³, m²
+  Bounds3d bounds;
+  int triangles = 0;           ///< with an area; the others are left out
+  int components = 0;          ///< pieces connected by edges, cavities included
+  int cavities = 0;            ///< pieces that are holes in others
+  int overlapping = 0;         ///< pieces that begin inside another one and are not cavities: counted twice
+  int non_manifold_edges = 0;  ///< edges where more than two triangles meet, as many one way as the other: harmless
 };
+/// density > 0: kg/m³. Errors name the defect, how often it occurs and where the first one is: a bad index, a vertex
+/// that is not finite, open edges, edges that more triangles run one way than the other, neighbours wound against each
+/// other, a surface (or a piece that is no cavity) that is inside out, no volume.
 CAROM_API core::Result<MeshMass> mesh_mass_properties(std::span<const Vec3d> vertices,
                                                       std::span<const std::uint32_t> indices, double density);
 

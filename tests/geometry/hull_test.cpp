@@ -6,7 +6,7 @@
 
 #include "carom/geometry/mass_properties.h"
 
-namespace carom::geometry {
+namespace carom::geometry::hull_test {
 namespace {
 
 // A linear congruential generator whose sequence the rigid-body scene recipes give: exact integers, any platform.
@@ -224,4 +224,4 @@ TEST(HullTest, ValidateFindsDamage) {
 }
 
 }  // namespace
-}  // namespace carom::geometry
+}  // namespace carom::geometry::hull_test
