@@ -5,7 +5,7 @@
 #include "mechanics_world.h"
 
 namespace carom::rigid::test {
-namespace {
+namespace effector_test {
 
 template <class D>
 class Effectors : public testing::Test {};
@@ -374,5 +374,5 @@ TEST(Buoyancy2, PolygonCircleAndCapsuleFloat) {
   EXPECT_NEAR(depth(geometry::Circle{0.5f}, 500), 0, 1e-3);
 }
 
-}  // namespace
+}  // namespace effector_test
 }  // namespace carom::rigid::test

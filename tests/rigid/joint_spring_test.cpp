@@ -3,7 +3,7 @@
 #include "mechanics_world.h"
 
 namespace carom::rigid::test {
-namespace {
+namespace joint_spring_test {
 
 template <class D>
 class JointSprings : public testing::Test {};
@@ -174,5 +174,5 @@ TYPED_TEST(JointSprings, StiffestSpringsDoNotBlowUp) {
   EXPECT_LT(math::length(state_of(world, hub).linear_velocity), 5.0f);
 }
 
-}  // namespace
+}  // namespace joint_spring_test
 }  // namespace carom::rigid::test

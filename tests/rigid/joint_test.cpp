@@ -2,7 +2,7 @@
 #include "mechanics_world.h"
 
 namespace carom::rigid::test {
-namespace {
+namespace joint_test {
 
 template <class D>
 class Joints : public testing::Test {};
@@ -409,5 +409,5 @@ TEST(Joints3, GyroscopeOnABallJointPrecesses) {
   EXPECT_LT(-lowest, 0.03 * arm);
 }
 
-}  // namespace
+}  // namespace joint_test
 }  // namespace carom::rigid::test

@@ -5,7 +5,7 @@
 #include "mechanics_world.h"
 
 namespace carom::rigid::test {
-namespace {
+namespace joint_validation_test {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -184,5 +184,5 @@ TYPED_TEST(JointValidation, Effectors) {
   refuse(vortex, "core_radius");
 }
 
-}  // namespace
+}  // namespace joint_validation_test
 }  // namespace carom::rigid::test

@@ -3,7 +3,7 @@
 #include "mechanics_world.h"
 
 namespace carom::rigid::test {
-namespace {
+namespace query_test {
 
 /// A small linear congruential generator: the same scene everywhere.
 struct Draw {
@@ -216,5 +216,5 @@ TYPED_TEST(Queries, SensorsAreNotSeenAndBadNumbersAreRefused) {
   EXPECT_FALSE(world.shape_cast(bad, {}, vec<D>(1, 0)).ok());
 }
 
-}  // namespace
+}  // namespace query_test
 }  // namespace carom::rigid::test

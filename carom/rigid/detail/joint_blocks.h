@@ -21,18 +21,9 @@ struct JointPass {
   float h = 0;  ///< s, substep
   float inverse_h = 0;
   bool use_bias = true;  ///< false: the relaxing pass
-  Response rigid{};
+  Response rigid{};      ///< of rigid rows in this pass: the relaxing pass removes speed and nothing else
 };
 
-/// What a rigid row does in this pass, or the spring's own law. False: nothing to do.
-inline bool select_response(const Response& own, bool rigid, const JointPass& pass, Response& out) {
-  if (rigid) {
-    out = pass.use_bias ? pass.rigid : velocity_only;
-    return true;
-  }
-  out = own;
-  return pass.use_bias;
-}
 template <class V>
 V clamp_magnitude(V v, float limit) {
   const float l = magnitude(v);
@@ -49,6 +40,7 @@ struct PointBlock {
   Vector arm_a{}, arm_b{};  ///< from the centres of mass, world axes at the start of the step
   Vector offset{};          ///< centre of B minus centre of A at the start of the step
   Vector impulse{};
+  Vector before{};  ///< of a spring: the speed at the end of the last substep
   Response response{};
   float max_impulse = 1e30f;
   bool rigid = true;
@@ -59,13 +51,22 @@ struct PointBlock {
     const Vector b = rotate(pair.turn_b, arm_b);
     pair.apply(impulse, offset + pair.shift + b, b);
   }
+  void note_speed(const BodyPair<D>& pair) {
+    const Vector b = rotate(pair.turn_b, arm_b);
+    before = pair.point_velocity(offset + pair.shift + b, b);
+  }
   void solve(BodyPair<D>& pair, const JointPass& pass) {
-    Response r;
-    if (!select_response(response, rigid, pass, r)) return;
     const Vector b = rotate(pair.turn_b, arm_b), a = offset + pair.shift + b;
-    const Vector error = a - rotate(pair.turn_a, arm_a);
     const Vector v = pair.point_velocity(a, b);
-    const Vector wanted = solve_mobility(point_mobility(pair, a, b), r.velocity * v + r.position * error);
+    if (!rigid && !pass.use_bias) {
+      before = v;
+      return;
+    }
+    const Response& r = rigid ? pass.rigid : response;
+    Vector residual = r.velocity * v;
+    if (r.position > 0) residual += r.position * (a - rotate(pair.turn_a, arm_a));
+    if (!rigid) residual += r.previous * before;
+    const Vector wanted = solve_mobility(point_mobility(pair, a, b), residual);
     const Vector old = impulse;
     impulse = old - wanted - r.memory * old;
     if (max_impulse < 1e29f) impulse = clamp_magnitude(impulse, max_impulse);
@@ -78,28 +79,31 @@ struct AngularBlock {
   using Angular = typename D::Angular;
   typename D::Rotation frame_a{}, frame_b{};  ///< joint frames in the world at the start of the step
   Angular impulse{};
+  Angular before{};  ///< as in PointBlock
   Response response{};
   float max_impulse = 1e30f;
   bool rigid = true;      ///< else a spring, or friction
   bool friction = false;  ///< no wanted attitude
 
   void warm_start(BodyPair<D>& pair) const { pair.apply_angular(impulse); }
+  void note_speed(const BodyPair<D>& pair) { before = pair.spin_b - pair.spin_a; }
   void solve(BodyPair<D>& pair, const JointPass& pass) {
-    Response r;
-    if (friction)
-      r = velocity_only;
-    else if (!select_response(response, rigid, pass, r))
+    const Angular spin = pair.spin_b - pair.spin_a;
+    if (!rigid && !friction && !pass.use_bias) {
+      before = spin;
       return;
-    Angular error{};
+    }
+    const Response& r = friction ? velocity_only : (rigid ? pass.rigid : response);
+    Angular residual = r.velocity * spin;
     if (r.position > 0) {
       if constexpr (D::dimension == 2) {
-        error = twist_angle(conjugate(pair.turn_a * frame_a) * (pair.turn_b * frame_b));
+        residual += r.position * twist_angle(conjugate(pair.turn_a * frame_a) * (pair.turn_b * frame_b));
       } else {
-        error = rotation_vector_of((pair.turn_b * frame_b) * conjugate(pair.turn_a * frame_a));
+        residual += r.position * rotation_vector_of((pair.turn_b * frame_b) * conjugate(pair.turn_a * frame_a));
       }
     }
-    const auto mobility = pair.inverse_inertia_a + pair.inverse_inertia_b;
-    const Angular wanted = solve_mobility(mobility, r.velocity * (pair.spin_b - pair.spin_a) + r.position * error);
+    if (!rigid) residual += r.previous * before;
+    const Angular wanted = solve_mobility(pair.inverse_inertia_a + pair.inverse_inertia_b, residual);
     const Angular old = impulse;
     impulse = old - wanted - r.memory * old;
     if (max_impulse < 1e29f) impulse = clamp_magnitude(impulse, max_impulse);
@@ -125,7 +129,7 @@ struct HingeBlock {
     pair.apply_angular(impulse.x * u + impulse.y * v);
   }
   void solve(BodyPair<Dim3>& pair, const JointPass& pass) {
-    const Response r = pass.use_bias ? pass.rigid : velocity_only;
+    const Response& r = pass.rigid;
     Vec3f u, v;
     Vec2f error;
     directions(pair, u, v, error);
@@ -174,7 +178,7 @@ struct SlideBlock {
     for (int i = 0; i < rows; ++i) pair.apply_row(impulse[i], row[i].n, row[i].lever_a, row[i].lever_b);
   }
   void solve(BodyPair<D>& pair, const JointPass& pass) {
-    const Response r = pass.use_bias ? pass.rigid : velocity_only;
+    const Response& r = pass.rigid;
     Row row[rows];
     directions(pair, row);
     float wanted[rows], residual[rows];
@@ -207,6 +211,7 @@ struct AxisLaw {
   Response response{};
   float rest = 0, speed = 0, max_motor_impulse = 0, low = 0, high = 0;
   float spring_impulse = 0, motor_impulse = 0, lower_impulse = 0, upper_impulse = 0;
+  float before = 0;  ///< as in PointBlock
 
   bool has(Flag f) const { return (flags & f) != 0; }
   bool needs_coordinate() const { return (flags & (spring | lower | upper)) != 0; }
@@ -217,13 +222,18 @@ struct AxisLaw {
     if (!(inverse_mass > 0)) return 0;
     const float mass = 1 / inverse_mass;
     float sum = 0;
-    Response r;
-    if (has(spring) && select_response(response, has(rigid), pass, r)) {
-      const float error = has(periodic) ? wrap_angle(coordinate - rest) : coordinate - rest;
-      const float old = spring_impulse;
-      spring_impulse = old - mass * (r.velocity * v + r.position * error) - r.memory * old;
-      if (has(pull_only)) spring_impulse = min(spring_impulse, 0.0f);
-      add(spring_impulse - old, inverse_mass, v, sum);
+    if (has(spring)) {
+      if (!has(rigid) && !pass.use_bias) {
+        before = v;
+      } else {
+        const Response& r = has(rigid) ? pass.rigid : response;
+        const float error = has(periodic) ? wrap_angle(coordinate - rest) : coordinate - rest;
+        const float old = spring_impulse;
+        const float residual = r.velocity * v + r.position * error + (has(rigid) ? 0 : r.previous * before);
+        spring_impulse = old - mass * residual - r.memory * old;
+        if (has(pull_only)) spring_impulse = min(spring_impulse, 0.0f);
+        add(spring_impulse - old, inverse_mass, v, sum);
+      }
     }
     if (has(motor)) {
       const float old = motor_impulse;
@@ -252,7 +262,7 @@ struct AxisLaw {
     if (gap > 0) {
       next = old - mass * (v + gap * pass.inverse_h);
     } else {
-      const Response r = pass.use_bias ? pass.rigid : velocity_only;
+      const Response& r = pass.rigid;
       next = old - mass * (r.velocity * v + r.position * gap) - r.memory * old;
     }
     impulse = max(next, 0.0f);
@@ -288,6 +298,10 @@ struct LinearAxis {
     }
     r.lever_b = cross(b, r.n);
     return r;
+  }
+  void note_speed(const BodyPair<D>& pair) {
+    const Row r = row(pair);
+    law.before = pair.row_velocity(r.n, r.lever_a, r.lever_b);
   }
   void warm_start(BodyPair<D>& pair) const {
     const Row r = row(pair);
@@ -328,6 +342,10 @@ struct AngularAxis {
       if (with_coordinate) coordinate = twist_angle(conjugate(a) * b);
       return (z_a + z_b) * (1 / max(1 + cosine, 0.02f));
     }
+  }
+  void note_speed(const BodyPair<D>& pair) {
+    float unused;
+    law.before = inner(row(pair, false, unused), pair.spin_b - pair.spin_a);
   }
   void warm_start(BodyPair<D>& pair) const {
     float unused;

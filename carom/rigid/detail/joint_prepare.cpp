@@ -71,10 +71,18 @@ float mass_ratio_root(float row_mobility, float held_mobility) {
   if (!(row_mobility > 0)) return 1;
   return math::sqrt(row_mobility / max(held_mobility, 0.01f * row_mobility));
 }
-/// A pair at rest with the record's masses.
+/// A pair with the record's masses, at rest or with the speeds of `bodies`.
 template <class D>
-BodyPair<D> pair_of(const JointRecord<D>& record) {
+BodyPair<D> pair_of(const JointRecord<D>& record, const SolverBody<D>* bodies = nullptr) {
   BodyPair<D> pair;
+  if (bodies != nullptr) {
+    if (record.body_a != none) {
+      pair.velocity_a = bodies[record.body_a].linear_velocity;
+      pair.spin_a = bodies[record.body_a].angular_velocity;
+    }
+    pair.velocity_b = bodies[record.body_b].linear_velocity;
+    pair.spin_b = bodies[record.body_b].angular_velocity;
+  }
   pair.inverse_mass_a = record.inverse_mass_a;
   pair.inverse_mass_b = record.inverse_mass_b;
   pair.inverse_inertia_a = record.inverse_inertia_a;
@@ -194,7 +202,7 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
     // The hand also slows the body's turning, so that it does not swing for ever.
     const float keep = math::exp(-0.5f * mouse->spring.hertz * mouse->spring.damping_ratio * h);
     block.rigid = false;
-    block.response = {1 - keep, 0, keep};
+    block.response = {1 - keep, 0, keep, 0};
     return;
   } else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
     spring = motor->angular;
@@ -250,18 +258,23 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   }
   const JointPlacement<D> at = place_joint(world.bodies, header, data);
   const JointMemory<D>& memory = data.memory;
+  const auto moving = [&] { return pair_of(record, world.bodies.solver.data()); };
+  const auto note = [&](auto& axis) {
+    if (axis.law.has(AxisLaw::spring) && !axis.law.has(AxisLaw::rigid)) axis.note_speed(moving());
+  };
   for_each_block(record, [&](JointPart part, auto& raw) {
     using Block = std::remove_reference_t<decltype(raw)>;
     Block& block = *::new (static_cast<void*>(&raw)) Block{};
     if constexpr (std::is_same_v<Block, LinearAxis<D>>)
-      fill_linear(block, data, at, record, h);
-    else if constexpr (std::is_same_v<Block, PointBlock<D>>)
+      fill_linear(block, data, at, record, h), note(block);
+    else if constexpr (std::is_same_v<Block, PointBlock<D>>) {
       fill_point(block, data, at, h);
-    else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
+      if (!block.rigid) block.note_speed(moving());
+    } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
       if (part == part_cone)
         fill_cone(block, data, at);
       else
-        fill_twist(block, data, at, record, h);
+        fill_twist(block, data, at, record, h), note(block);
     } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
       if (part == part_friction) {
         block.friction = true;
@@ -270,6 +283,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
         block.max_impulse = std::get<BallJointDef<D>>(data.definition).friction_torque * h;
       } else {
         fill_angular(block, data, at, h);
+        if (!block.rigid) block.note_speed(moving());
       }
     } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
       block.arm_a = at.arm_a;

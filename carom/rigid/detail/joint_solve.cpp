@@ -81,8 +81,8 @@ void warm_start_joints(StepContext<D>& context, int color) {
 template <class D>
 void solve_joints(StepContext<D>& context, int color, bool use_bias) {
   const Softness& soft = context.joint_softness;
-  const JointPass pass{
-      context.h, context.inverse_h, use_bias, {soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale}};
+  const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
+  const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
   for_each_record<false>(context, color, [&pass](BodyPair<D>& pair, auto& block) { block.solve(pair, pass); });
 }
 
