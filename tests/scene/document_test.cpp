@@ -1,6 +1,8 @@
 // The JSON tree and the errors of scene files: file, line, path, found, expected, nearest known name.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "carom/scene/detail/document.h"
 #include "carom/scene/scene.h"
 
@@ -41,7 +43,7 @@ TEST(Document, LimitsDepthAndSize) {
 }
 
 TEST(Document, ShortestDigitsRestoreTheBits) {
-  for (const double v : {0.1, 1.0 / 3, 1e-310, -9.80665, 6.02214076e23}) EXPECT_EQ(std::stod(detail::shortest(v)), v);
+  for (const double v : {0.1, 1.0 / 3, 1e-310, -9.80665, 6.02214076e23}) EXPECT_EQ(std::strtod(detail::shortest(v).c_str(), nullptr), v);
 }
 
 TEST(SceneErrors, NameFileLinePathFoundAndExpected) {
