@@ -13,6 +13,10 @@ namespace {
 
 constexpr double width = 960, height = 540;
 
+Color color_of(const ChartSeries& s, std::size_t i, double alpha = 1) {
+  return rgb(s.color ? s.color : palette(i), alpha);
+}
+
 struct Frame {
   double left = 84, right = width - 28, top = 84, bottom = height - 62;
   double x0 = 0, x1 = 1, y0 = 0, y1 = 1;
@@ -99,13 +103,13 @@ void curves(cairo_t* c, const Chart& chart, const Frame& f) {
     for (std::size_t i = 0; i < chart.series.size(); ++i) {
       const ChartSeries& s = chart.series[i];
       if (s.points != points || s.data.empty()) continue;
-      set(c, rgb(palette(i)));
+      set(c, color_of(s, i));
       if (points || s.data.size() == 1) {
         for (const math::Vec2d p : s.data) {
           cairo_new_sub_path(c);
           cairo_arc(c, f.x(p.x), f.y(p.y), 4, 0, 2 * M_PI);
         }
-        set(c, rgb(palette(i), 0.85));
+        set(c, color_of(s, i, 0.85));
         cairo_fill_preserve(c);
         set(c, rgb(0xffffff));
         cairo_set_line_width(c, 1);
@@ -137,7 +141,7 @@ void legend(cairo_t* c, const Chart& chart, const Frame& f) {
     const ChartSeries& s = chart.series[i];
     const double room = 34 + text_width(c, s.name);
     if (x + room > f.right + 10) break;
-    set(c, rgb(palette(i)));
+    set(c, color_of(s, i));
     if (s.points) {
       cairo_arc(c, x + 11, 60, 4, 0, 2 * M_PI);
       cairo_fill(c);
@@ -171,7 +175,7 @@ std::string axis_text(const host::Axis& axis) {
 Chart chart_of(const host::Plot& plot, int index, const std::vector<host::Sample>& samples) {
   Chart chart{plot.title, "", axis_text(plot.x), axis_text(plot.y), {}};
   for (const host::Series& s : plot.series)
-    chart.series.push_back({s.name, s.style == host::Series::Style::points, s.points});
+    chart.series.push_back({s.name, s.style == host::Series::Style::points, s.points, s.color});
   for (const host::Sample& s : samples)
     if (s.plot == index && s.series >= 0 && std::size_t(s.series) < chart.series.size())
       chart.series[std::size_t(s.series)].data.push_back({s.x, s.y});

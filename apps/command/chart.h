@@ -13,6 +13,7 @@ struct ChartSeries {
   std::string name;
   bool points = false;
   std::vector<math::Vec2d> data;
+  std::uint32_t color = 0;  ///< 0: by its place
 };
 struct Chart {
   std::string title, subtitle, x_label, y_label;

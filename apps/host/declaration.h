@@ -35,6 +35,7 @@ struct Series {
   std::string name;
   Style style = Style::line;
   std::vector<Vec2d> points{};  ///< a fixed curve (analytic or published); empty: fed while the demo runs
+  std::uint32_t color = 0;      ///< 0xRRGGBB, 0: the viewer's choice
 };
 
 struct Plot {

@@ -42,10 +42,17 @@ Json parameter_json(const Parameter& p) {
           {"live", p.live}};
 }
 
+std::string color_text(std::uint32_t rgb) {
+  char text[8];
+  std::snprintf(text, sizeof text, "#%06x", unsigned(rgb & 0xffffff));
+  return text;
+}
+
 Json plot_json(const Plot& plot) {
   Json series = Json::array();
   for (const Series& s : plot.series) {
     Json entry = {{"name", s.name}, {"style", s.style == Series::Style::line ? "line" : "points"}};
+    if (s.color) entry["color"] = color_text(s.color);
     if (!s.points.empty()) {
       Json points = Json::array();
       for (const Vec2d p : s.points) points.push_back({p.x, p.y});
@@ -87,12 +94,6 @@ Json declaration_fields(const Declaration& d) {
           {"parameters", std::move(parameters)},
           {"plots", std::move(plots)},
           {"inputs", std::move(inputs)}};
-}
-
-std::string color_text(std::uint32_t rgb) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%06x", unsigned(rgb & 0xffffff));
-  return text;
 }
 
 Json shape_json(const ShapeView& s) {

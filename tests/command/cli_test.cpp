@@ -105,7 +105,7 @@ TEST_F(Cli, RunWritesAWholeReport) {
   auto recording = scene::Recording::open((folder_ / "out/collision-lab-2d/recording.carom-rec").string());
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_TRUE(recording->complete());
-  EXPECT_NEAR(recording->last_time(), 4.0, 1e-9);
+  EXPECT_NEAR(recording->last_time(), 3.0, 1e-6);
   const auto frame = recording->frame(recording->frame_count() - 1);
   ASSERT_TRUE(frame.ok());
   char hash[20];

@@ -24,8 +24,9 @@ class CollisionLab2 final : public Repeatable<CollisionLab2, Demo2> {
         "1 and 3 m/s. "
         "The pucks start over when they have flown apart.";
     d.dt = 1.0 / 120;
-    d.duration = 4;
-    d.camera.height = 9;
+    d.duration = 3;
+    d.camera.target = {1.5, 0, 0};
+    d.camera.height = 11;
     d.parameters = {
         {"restitution", "Restitution e", "", "", "0: they stay together, 1: no energy is lost", 0, 1, 0, 0.5, false},
         {"friction", "Friction μ", "", "", "turns some of a glancing blow into spin", 0, 1.5, 0, 0.3, false},

@@ -57,17 +57,25 @@ class TumblingBrick final : public Repeatable<TumblingBrick, Demo3> {
     d.parameters = {{"p", "Rate about x", "rad/s", "deg/s", "the long axis", -2, 2, 0, radians(10.0), false},
                     {"q", "Rate about y", "rad/s", "deg/s", "", -2, 2, 0, radians(20.0), false},
                     {"r", "Rate about z", "rad/s", "deg/s", "the short axis", -2, 2, 0, radians(30.0), false}};
-    d.plots = {
-        {"Body rates",
-         {"time", "s"},
-         {"rate", "deg/s"},
-         {{"p"},
-          {"q"},
-          {"r"},
-          {"p, NASA", Series::Style::points, {{1, 4.2588419}, {2, -1.7508153}, {5, -16.9394851}, {10, -2.4189022}}},
-          {"q, NASA", Series::Style::points, {{1, 23.1199429}, {2, 23.6495578}, {5, 9.6319394}, {10, -23.5525695}}},
-          {"r, NASA", Series::Style::points, {{1, 28.3798178}, {2, 28.07132}, {5, 33.4066281}, {10, 28.1285926}}}}},
-        {"Drift", {"time", "s"}, {"relative drift", "1e-6"}, {{"energy"}, {"angular momentum"}}}};
+    d.plots = {{"Body rates",
+                {"time", "s"},
+                {"rate", "deg/s"},
+                {{"p", Series::Style::line, {}, blue},
+                 {"q", Series::Style::line, {}, orange},
+                 {"r", Series::Style::line, {}, green},
+                 {"p, NASA",
+                  Series::Style::points,
+                  {{1, 4.2588419}, {2, -1.7508153}, {5, -16.9394851}, {10, -2.4189022}},
+                  blue},
+                 {"q, NASA",
+                  Series::Style::points,
+                  {{1, 23.1199429}, {2, 23.6495578}, {5, 9.6319394}, {10, -23.5525695}},
+                  orange},
+                 {"r, NASA",
+                  Series::Style::points,
+                  {{1, 28.3798178}, {2, 28.07132}, {5, 33.4066281}, {10, 28.1285926}},
+                  green}}},
+               {"Drift", {"time", "s"}, {"relative drift", "1e-6"}, {{"energy"}, {"angular momentum"}}}};
     return d;
   }
 

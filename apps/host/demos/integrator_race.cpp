@@ -35,7 +35,7 @@ class Race final : public Repeatable<Race<course>, Demo2> {
     d.group = "Integrators";
     d.chapter = "7";
     std::vector<Series> names;
-    for (const Runner& r : runners) names.push_back({r.name});
+    for (const Runner& r : runners) names.push_back({r.name, Series::Style::line, {}, r.color});
     const Axis time{"time", "s"};
     if constexpr (course == Course::ship) {
       d.id = "race-ship";
@@ -48,8 +48,8 @@ class Race final : public Repeatable<Race<course>, Demo2> {
           "the step: Euler's error "
           "halves, Heun's falls to a quarter, RK4's to a sixteenth. That is what the order of a method means.";
       d.duration = 10;
-      d.camera.target = {42, -1.2, 0};
-      d.camera.height = 46;
+      d.camera.target = {38, -1.2, 0};
+      d.camera.height = 52;
       d.parameters = {{"step", "Step", "s", "s", "of every method", 0.05, 4, 0.05, 1, false},
                       {"mass", "Mass of the ship", "kg", "t", "", 1e3, 1e5, 0, 1e4, false},
                       {"thrust", "Thrust", "N", "kN", "", 1e3, 1e5, 0, 2e4, false},
@@ -109,7 +109,7 @@ class Race final : public Repeatable<Race<course>, Demo2> {
       rigid::ShapeDef<Dim2> ghost;
       ghost.filter.mask = 0;
       if constexpr (course == Course::ship) {
-        constexpr Vec2f hull[] = {{-4, -1}, {1.5f, -1}, {3, 0}, {1.5f, 1}, {-4, 1}};
+        constexpr Vec2f hull[] = {{-7, -1}, {-1.5f, -1}, {0, 0}, {-1.5f, 1}, {-7, 1}};
         markers_[i] = stage.add(body, stage.keep(geometry::make_polygon(hull)), ghost, runners[i].color);
       } else {
         const float size = course == Course::spring ? 0.34f : 0.045f;
@@ -162,7 +162,7 @@ class Race final : public Repeatable<Race<course>, Demo2> {
 
  private:
   static std::vector<Series> with_exact(std::vector<Series> names) {
-    names.push_back({"exact", Series::Style::points});
+    names.push_back({"exact", Series::Style::points, {}, dark});
     return names;
   }
 
