@@ -8,7 +8,9 @@ target_compile_options(carom_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wno-psabi $<$<BOOL:${CAROM_WERROR}>:-Werror>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-misleading-indentation -Wno-restrict>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-warning-option -Wno-missing-field-initializers -Wno-gnu-anonymous-struct -Wno-nested-anon-types>
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>
+  # In unity a source is an included file, where gcc distrusts anonymous namespaces as if it were a header.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CAROM_UNITY}>>:-Wno-subobject-linkage>)
 # gcc 12 turns neighbouring a·b − c, a·b + c into one fused instruction in its straight-line vectoriser even with
 # -ffp-contract=off. Only where the target has such instructions (a user's -march=native, say).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

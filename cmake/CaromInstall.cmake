@@ -20,5 +20,12 @@ install(FILES ${PROJECT_BINARY_DIR}/carom-config.cmake ${PROJECT_BINARY_DIR}/car
 # find_package(carom) with carom_DIR set to the build folder.
 export(EXPORT carom-targets NAMESPACE carom:: FILE ${PROJECT_BINARY_DIR}/carom-targets.cmake)
 
+# The pkg-config file finds its prefix from its own place, so that an installation may be moved.
+file(RELATIVE_PATH CAROM_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" CAROM_PC_PREFIX "${CAROM_PC_PREFIX}")
+set(CAROM_PC_FLAGS -ffp-contract=off)
+if(BUILD_SHARED_LIBS)
+  string(APPEND CAROM_PC_FLAGS " -DCAROM_SHARED")
+endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/carom.pc.in ${PROJECT_BINARY_DIR}/carom.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/carom.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -79,6 +79,8 @@ function(carom_add_library)
   endforeach()
   add_library(carom::carom ALIAS carom)
   target_compile_features(carom PUBLIC cxx_std_20)
+  # The inline functions of the headers must give a user who compiles with -march=native the library's own bits.
+  target_compile_options(carom INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-ffp-contract=off>)
   target_include_directories(carom PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include>)
   set_target_properties(carom PROPERTIES LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION 0)
   if(BUILD_SHARED_LIBS)

@@ -8,6 +8,7 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/math/decimal.h"
 #include "carom/scene/detail/document.h"
 
 namespace carom::scene {
@@ -19,9 +20,7 @@ using detail::quote;
 std::string digits(double v) { return detail::shortest(v); }
 std::string digits(float v) {
   const std::string s = detail::shortest(v);
-  double wide = 0;
-  std::from_chars(s.data(), s.data() + s.size(), wide);
-  return float(wide) == v ? s : detail::shortest(double(v));
+  return float(math::parse_decimal(s).value) == v ? s : detail::shortest(double(v));
 }
 template <class T>
 std::string vector_text(math::Vec2<T> v) {
@@ -246,7 +245,7 @@ class SceneWriter {
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const Result<AnyJointDef<D>> d = world_.joint_definition(joints[i]);
       if (!d) return d.error();
-      out += (i == 0 ? "\n    " : ",\n    ") + std::visit([this](const auto& j) { return joint_text(j); }, *d);
+      out += (i == 0 ? "\n    " : ",\n    ") + std::visit([this](const auto& j) { return this->joint_text(j); }, *d);
     }
     out += "\n  ],\n  \"effectors\": [";
     std::vector<EffectorId> effectors;
@@ -256,7 +255,7 @@ class SceneWriter {
       const Result<EffectorDef<D>> d = world_.effector_definition(id);
       if (!d) return d.error();
       if (std::holds_alternative<CustomEffector<D>>(*d)) continue;
-      out += (first ? "\n    " : ",\n    ") + std::visit([this](const auto& e) { return effector_text(e); }, *d);
+      out += (first ? "\n    " : ",\n    ") + std::visit([this](const auto& e) { return this->effector_text(e); }, *d);
       first = false;
     }
     return out + "\n  ]\n}\n";

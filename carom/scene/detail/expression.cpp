@@ -1,8 +1,7 @@
 #include "carom/scene/detail/expression.h"
 
-#include <charconv>
-
 #include "carom/core/spelling.h"
+#include "carom/math/decimal.h"
 #include "carom/math/elementary.h"
 #include "carom/math/vec.h"
 #include "carom/scene/detail/document.h"
@@ -141,10 +140,10 @@ class ExpressionParser {
   }
   void number() {
     const std::size_t start = at_;
-    double value = 0;
-    const std::from_chars_result end = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    if (end.ec != std::errc{} || !math::is_finite(value)) return fail("found " + rest() + ", expected a number");
-    at_ = std::size_t(end.ptr - text_.data());
+    const math::DecimalResult number = math::parse_decimal(std::string_view(text_).substr(at_));
+    const double value = number.value;
+    if (number.length == 0 || !math::is_finite(value)) return fail("found " + rest() + ", expected a number");
+    at_ += number.length;
     const std::size_t number_end = at_;
     skip();
     const std::size_t unit = at_;

@@ -1,7 +1,6 @@
 #include "carom/scene/detail/quantity.h"
 
-#include <charconv>
-
+#include "carom/math/decimal.h"
 #include "carom/math/vec.h"
 
 namespace carom::scene::detail {
@@ -47,17 +46,16 @@ std::string_view skip_spaces(std::string_view text) {
 
 /// Reads "a/b" at the beginning; false where there is none.
 bool take_fraction(std::string_view& text, double& value) {
-  double above = 0, below = 0;
   const std::string_view start = skip_spaces(text);
-  const std::from_chars_result first = std::from_chars(start.data(), start.data() + start.size(), above);
-  if (first.ec != std::errc{}) return false;
-  std::string_view rest = skip_spaces(start.substr(std::size_t(first.ptr - start.data())));
+  const math::DecimalResult above = math::parse_decimal(start);
+  if (above.length == 0) return false;
+  std::string_view rest = skip_spaces(start.substr(above.length));
   if (rest.empty() || rest[0] != '/') return false;
   rest = skip_spaces(rest.substr(1));
-  const std::from_chars_result second = std::from_chars(rest.data(), rest.data() + rest.size(), below);
-  if (second.ec != std::errc{}) return false;
-  text = skip_spaces(rest.substr(std::size_t(second.ptr - rest.data())));
-  value = above / below;
+  const math::DecimalResult below = math::parse_decimal(rest);
+  if (below.length == 0) return false;
+  text = skip_spaces(rest.substr(below.length));
+  value = above.value / below.value;
   return true;
 }
 
