@@ -2,7 +2,8 @@
 // substep's impulse again (warm_start), how to remove the error of velocity and position (solve), and what it exerted.
 // Moments arms turn with the bodies in every pass: unlike contacts, joints see large rotations in a step.
 //
-//   PointBlock    the anchors coincide                     ball, hinge, weld, motor, mouse
+//   PinBlock      the anchors coincide                     ball, hinge, weld
+//   PointBlock    the same by a spring or with limited force  soft weld, motor, mouse
 //   AngularBlock  the frames have the same attitude        weld, slider, motor, ball spring and friction
 //   HingeBlock    the z axes are parallel (3D)             hinge
 //   SlideBlock    B's anchor stays on A's x axis           slider
@@ -35,6 +36,36 @@ inline Vec2f clamp_magnitude(Vec2f v, float limit) {
 }
 
 template <class D>
+struct PinBlock {
+  using Vector = typename D::Vector;
+  Vector arm_a{}, arm_b{};  ///< from the centres of mass, world axes at the start of the step
+  Vector offset{};          ///< centre of B minus centre of A at the start of the step
+  Vector impulse{};
+  std::conditional_t<D::dimension == 2, Factor2, Factor3> mobility{};  ///< of this substep
+
+  // Both bodies take the impulse at B's anchor: then the pair's angular momentum stays exact also where the anchors are
+  // a little apart. Its rate is that of the gap as seen from A.
+  template <class Pair>
+  void warm_start(Pair& pair) const {
+    const Vector b = rotate(pair.turn_b, arm_b);
+    pair.apply(impulse, offset + pair.shift + b, b);
+  }
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
+    const Response& r = pass.rigid;
+    const Vector b = rotate(pair.turn_b, arm_b), a = offset + pair.shift + b;
+    Vector residual = r.velocity * pair.point_velocity(a, b);
+    if (pass.use_bias) {
+      residual += r.position * (a - rotate(pair.turn_a, arm_a));
+      mobility = factorise(point_mobility(pair, a, b));  // good enough for the relaxing pass too
+    }
+    const Vector change = -detail::solve(mobility, residual) - r.memory * impulse;
+    impulse += change;
+    pair.apply(change, a, b);
+  }
+};
+
+template <class D>
 struct PointBlock {
   using Vector = typename D::Vector;
   Vector arm_a{}, arm_b{};  ///< from the centres of mass, world axes at the start of the step
@@ -45,17 +76,19 @@ struct PointBlock {
   float max_impulse = 1e30f;
   bool rigid = true;
 
-  // Both bodies take the impulse at B's anchor: then the pair's angular momentum stays exact also where the anchors are
-  // apart (springs, motors). Its rate is that of the gap as seen from A.
-  void warm_start(BodyPair<D>& pair) const {
+  // At B's anchor, as a pin; here it matters more, because the anchors may be far apart.
+  template <class Pair>
+  void warm_start(Pair& pair) const {
     const Vector b = rotate(pair.turn_b, arm_b);
     pair.apply(impulse, offset + pair.shift + b, b);
   }
-  void note_speed(const BodyPair<D>& pair) {
+  template <class Pair>
+  void note_speed(const Pair& pair) {
     const Vector b = rotate(pair.turn_b, arm_b);
     before = pair.point_velocity(offset + pair.shift + b, b);
   }
-  void solve(BodyPair<D>& pair, const JointPass& pass) {
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
     const Vector b = rotate(pair.turn_b, arm_b), a = offset + pair.shift + b;
     const Vector v = pair.point_velocity(a, b);
     if (!rigid && !pass.use_bias) {
@@ -85,9 +118,16 @@ struct AngularBlock {
   bool rigid = true;      ///< else a spring, or friction
   bool friction = false;  ///< no wanted attitude
 
-  void warm_start(BodyPair<D>& pair) const { pair.apply_angular(impulse); }
-  void note_speed(const BodyPair<D>& pair) { before = pair.spin_b - pair.spin_a; }
-  void solve(BodyPair<D>& pair, const JointPass& pass) {
+  template <class Pair>
+  void warm_start(Pair& pair) const {
+    pair.apply_angular(impulse);
+  }
+  template <class Pair>
+  void note_speed(const Pair& pair) {
+    before = pair.spin_b - pair.spin_a;
+  }
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
     const Angular spin = pair.spin_b - pair.spin_a;
     if (!rigid && !friction && !pass.use_bias) {
       before = spin;
@@ -116,24 +156,27 @@ struct HingeBlock {
   Vec3f x_a{}, y_a{}, z_b{};
   Vec2f impulse{};
 
-  void directions(const BodyPair<Dim3>& pair, Vec3f& u, Vec3f& v, Vec2f& error) const {
+  template <class Pair>
+  void directions(const Pair& pair, Vec3f& u, Vec3f& v, Vec2f& error) const {
     const Vec3f z = rotate(pair.turn_b, z_b), x = rotate(pair.turn_a, x_a), y = rotate(pair.turn_a, y_a);
     u = cross(z, x);
     v = cross(z, y);
     error = {dot(z, x), dot(z, y)};
   }
-  void warm_start(BodyPair<Dim3>& pair) const {
+  template <class Pair>
+  void warm_start(Pair& pair) const {
     Vec3f u, v;
     Vec2f error;
     directions(pair, u, v, error);
     pair.apply_angular(impulse.x * u + impulse.y * v);
   }
-  void solve(BodyPair<Dim3>& pair, const JointPass& pass) {
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
     const Response& r = pass.rigid;
     Vec3f u, v;
     Vec2f error;
     directions(pair, u, v, error);
-    const Mat3f k = pair.inverse_inertia_a + pair.inverse_inertia_b;
+    const auto k = pair.inverse_inertia_a + pair.inverse_inertia_b;
     const Vec3f ku = k * u, kv = k * v;
     const float uv = dot(u, kv);
     const Mat2f mobility{{dot(u, ku), uv}, {uv, dot(v, kv)}};
@@ -161,7 +204,8 @@ struct SlideBlock {
     typename D::Angular lever_a{}, lever_b{};
     float error = 0;
   };
-  void directions(const BodyPair<D>& pair, Row (&row)[rows]) const {
+  template <class Pair>
+  void directions(const Pair& pair, Row (&row)[rows]) const {
     const Vector b = rotate(pair.turn_b, arm_b);
     const Vector reach = offset + pair.shift + b;  // from A's centre to B's anchor
     const Vector d = reach - rotate(pair.turn_a, arm_a);
@@ -172,12 +216,14 @@ struct SlideBlock {
       row[i].error = dot(d, row[i].n);
     }
   }
-  void warm_start(BodyPair<D>& pair) const {
+  template <class Pair>
+  void warm_start(Pair& pair) const {
     Row row[rows];
     directions(pair, row);
     for (int i = 0; i < rows; ++i) pair.apply_row(impulse[i], row[i].n, row[i].lever_a, row[i].lever_b);
   }
-  void solve(BodyPair<D>& pair, const JointPass& pass) {
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
     const Response& r = pass.rigid;
     Row row[rows];
     directions(pair, row);
@@ -283,7 +329,8 @@ struct LinearAxis {
     typename D::Angular lever_a{}, lever_b{};
     float coordinate = 0;
   };
-  Row row(const BodyPair<D>& pair) const {
+  template <class Pair>
+  Row row(const Pair& pair) const {
     const Vector a = rotate(pair.turn_a, arm_a), b = rotate(pair.turn_b, arm_b);
     const Vector reach = offset + pair.shift + b, d = reach - a;
     Row r;
@@ -299,15 +346,18 @@ struct LinearAxis {
     r.lever_b = cross(b, r.n);
     return r;
   }
-  void note_speed(const BodyPair<D>& pair) {
+  template <class Pair>
+  void note_speed(const Pair& pair) {
     const Row r = row(pair);
     law.before = pair.row_velocity(r.n, r.lever_a, r.lever_b);
   }
-  void warm_start(BodyPair<D>& pair) const {
+  template <class Pair>
+  void warm_start(Pair& pair) const {
     const Row r = row(pair);
     pair.apply_row(law.total(), r.n, r.lever_a, r.lever_b);
   }
-  void solve(BodyPair<D>& pair, const JointPass& pass) {
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
     const Row r = row(pair);
     const float change = law.solve(pair.row_inverse_mass(r.lever_a, r.lever_b), r.coordinate,
                                    pair.row_velocity(r.n, r.lever_a, r.lever_b), pass);
@@ -324,7 +374,8 @@ struct AngularAxis {
   AxisLaw law{};
 
   /// For the twist φ of a swing–twist decomposition φ̇ = (ω_b − ω_a)·(z_a + z_b)/(1 + z_a·z_b).
-  Angular row(const BodyPair<D>& pair, bool with_coordinate, float& coordinate) const {
+  template <class Pair>
+  Angular row(const Pair& pair, bool with_coordinate, float& coordinate) const {
     coordinate = 0;
     if constexpr (D::dimension == 2) {
       if (with_coordinate) coordinate = twist_angle(conjugate(pair.turn_a * frame_a) * (pair.turn_b * frame_b));
@@ -343,15 +394,18 @@ struct AngularAxis {
       return (z_a + z_b) * (1 / max(1 + cosine, 0.02f));
     }
   }
-  void note_speed(const BodyPair<D>& pair) {
+  template <class Pair>
+  void note_speed(const Pair& pair) {
     float unused;
     law.before = inner(row(pair, false, unused), pair.spin_b - pair.spin_a);
   }
-  void warm_start(BodyPair<D>& pair) const {
+  template <class Pair>
+  void warm_start(Pair& pair) const {
     float unused;
     pair.apply_angular(law.total() * row(pair, false, unused));
   }
-  void solve(BodyPair<D>& pair, const JointPass& pass) {
+  template <class Pair>
+  void solve(Pair& pair, const JointPass& pass) {
     float coordinate;
     const Angular n = row(pair, law.needs_coordinate(), coordinate);
     const float inverse_mass = inner(n, pair.inverse_inertia_a * n) + inner(n, pair.inverse_inertia_b * n);

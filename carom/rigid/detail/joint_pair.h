@@ -11,11 +11,12 @@ inline float magnitude(float a) { return math::abs(a); }
 inline float magnitude(Vec3f a) { return math::length(a); }
 
 /// The working copy of the two bodies of a joint. A fixed body or the world has zero inverse mass and inertia.
-template <class D>
+/// I: the inverse inertia; in space a number will do for bodies that turn alike about every axis.
+template <class D, class I = typename D::Inertia>
 struct BodyPair {
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
-  using Inertia = typename D::Inertia;
+  using Inertia = I;
 
   Vector velocity_a{}, velocity_b{};
   Angular spin_a{}, spin_b{};
@@ -61,49 +62,64 @@ inline void add_point_mobility(Mat3f& k, Vec3f r, const Mat3f& inertia) {
   k.cy += cross(r, Vec3f{x.y, y.y, z.y});
   k.cz += cross(r, Vec3f{x.z, y.z, z.z});
 }
+inline void add_point_mobility(Mat3f& k, Vec3f r, float inertia) {
+  const Vec3f s = inertia * r;
+  const float trace = dot(s, r);
+  k.cx += Vec3f{trace - s.x * r.x, -s.x * r.y, -s.x * r.z};
+  k.cy += Vec3f{-s.y * r.x, trace - s.y * r.y, -s.y * r.z};
+  k.cz += Vec3f{-s.z * r.x, -s.z * r.y, trace - s.z * r.z};
+}
 inline void add_point_mobility(Mat2f& k, Vec2f r, float inertia) {
   k.cx += Vec2f{inertia * r.y * r.y, -inertia * r.x * r.y};
   k.cy += Vec2f{-inertia * r.x * r.y, inertia * r.x * r.x};
 }
 
-/// m⁻¹ v of a symmetric positive semi-definite m; directions in which nothing can move get nothing.
-inline Vec2f solve_mobility(Mat2f m, Vec2f v) {
-  if (!(m.cx.x > 0)) {
-    m.cx.x = 1;
-    v.x = 0;
-  }
-  if (!(m.cy.y > 0)) {
-    m.cy.y = 1;
-    v.y = 0;
-  }
-  const float d = m.cx.x * m.cy.y - m.cy.x * m.cx.y;
-  if (!(d > 1e-7f * m.cx.x * m.cy.y)) {  // the two rows are one: move along the stiffer diagonal only
-    return m.cx.x >= m.cy.y ? Vec2f{v.x / m.cx.x, 0} : Vec2f{0, v.y / m.cy.y};
-  }
-  const float s = 1 / d;
-  return {s * (m.cy.y * v.x - m.cy.x * v.y), s * (m.cx.x * v.y - m.cx.y * v.x)};
+/// m = L D Lᵀ, which keeps its digits at extreme mass ratios where cofactors cancel. Rows that cannot move get zero.
+struct Factor3 {
+  float i1 = 0, i2 = 0, i3 = 0, l21 = 0, l31 = 0, l32 = 0;  ///< 1/D and L
+};
+inline Factor3 factorise(const Mat3f& m) {
+  Factor3 f;
+  f.i1 = m.cx.x > 0 ? 1 / m.cx.x : 0;
+  f.l21 = m.cx.y * f.i1;
+  f.l31 = m.cx.z * f.i1;
+  const float d2 = m.cy.y - f.l21 * m.cx.y;
+  f.i2 = d2 > 1e-7f * m.cy.y ? 1 / d2 : 0;
+  const float u32 = m.cy.z - f.l31 * m.cx.y;
+  f.l32 = u32 * f.i2;
+  const float d3 = m.cz.z - f.l31 * m.cx.z - f.l32 * u32;
+  f.i3 = d3 > 1e-7f * m.cz.z ? 1 / d3 : 0;
+  return f;
 }
-/// By LDLᵀ, which keeps its digits at extreme mass ratios where cofactors cancel.
-inline Vec3f solve_mobility(const Mat3f& m, Vec3f v) {
-  const float d1 = m.cx.x;
-  const float i1 = d1 > 0 ? 1 / d1 : 0;
-  const float l21 = m.cx.y * i1, l31 = m.cx.z * i1;
-  const float d2 = m.cy.y - l21 * m.cx.y;
-  const float i2 = d2 > 1e-7f * m.cy.y ? 1 / d2 : 0;
-  const float u32 = m.cy.z - l31 * m.cx.y;
-  const float l32 = u32 * i2;
-  const float d3 = m.cz.z - l31 * m.cx.z - l32 * u32;
-  const float i3 = d3 > 1e-7f * m.cz.z ? 1 / d3 : 0;
-  const float y1 = v.x, y2 = v.y - l21 * y1, y3 = v.z - l31 * y1 - l32 * y2;
-  const float z = y3 * i3;
-  const float y = y2 * i2 - l32 * z;
-  const float x = y1 * i1 - l21 * y - l31 * z;
+inline Vec3f solve(const Factor3& f, Vec3f v) {
+  const float y2 = v.y - f.l21 * v.x, y3 = v.z - f.l31 * v.x - f.l32 * y2;
+  const float z = y3 * f.i3;
+  const float y = y2 * f.i2 - f.l32 * z;
+  const float x = v.x * f.i1 - f.l21 * y - f.l31 * z;
   return {x, y, z};
 }
+struct Factor2 {
+  float i1 = 0, i2 = 0, l21 = 0;
+};
+inline Factor2 factorise(const Mat2f& m) {
+  Factor2 f;
+  f.i1 = m.cx.x > 0 ? 1 / m.cx.x : 0;
+  f.l21 = m.cx.y * f.i1;
+  const float d2 = m.cy.y - f.l21 * m.cx.y;
+  f.i2 = d2 > 1e-7f * m.cy.y ? 1 / d2 : 0;
+  return f;
+}
+inline Vec2f solve(const Factor2& f, Vec2f v) {
+  const float y = (v.y - f.l21 * v.x) * f.i2;
+  return {v.x * f.i1 - f.l21 * y, y};
+}
+inline Vec3f solve_mobility(const Mat3f& m, Vec3f v) { return solve(factorise(m), v); }
+inline Vec2f solve_mobility(const Mat2f& m, Vec2f v) { return solve(factorise(m), v); }
+inline Vec3f solve_mobility(float m, Vec3f v) { return m > 0 ? v * (1 / m) : Vec3f{}; }
 inline float solve_mobility(float m, float v) { return m > 0 ? v / m : 0; }
 
-template <class D>
-auto point_mobility(const BodyPair<D>& pair, typename D::Vector arm_a, typename D::Vector arm_b) {
+template <class D, class I>
+auto point_mobility(const BodyPair<D, I>& pair, typename D::Vector arm_a, typename D::Vector arm_b) {
   const float m = pair.inverse_mass_a + pair.inverse_mass_b;
   if constexpr (D::dimension == 2) {
     Mat2f k{{m, 0}, {0, m}};

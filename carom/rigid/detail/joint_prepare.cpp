@@ -73,7 +73,7 @@ float mass_ratio_root(float row_mobility, float held_mobility) {
 }
 /// A pair with the record's masses, at rest or with the speeds of `bodies`.
 template <class D>
-BodyPair<D> pair_of(const JointRecord<D>& record, const SolverBody<D>* bodies = nullptr) {
+BodyPair<D> pair_of(JointRecord<D>& record, const SolverBody<D>* bodies = nullptr) {
   BodyPair<D> pair;
   if (bodies != nullptr) {
     if (record.body_a != none) {
@@ -83,10 +83,7 @@ BodyPair<D> pair_of(const JointRecord<D>& record, const SolverBody<D>* bodies = 
     pair.velocity_b = bodies[record.body_b].linear_velocity;
     pair.spin_b = bodies[record.body_b].angular_velocity;
   }
-  pair.inverse_mass_a = record.inverse_mass_a;
-  pair.inverse_mass_b = record.inverse_mass_b;
-  pair.inverse_inertia_a = record.inverse_inertia_a;
-  pair.inverse_inertia_b = record.inverse_inertia_b;
+  load_masses(pair, record);
   return pair;
 }
 template <class Axis>
@@ -105,8 +102,8 @@ void memorise(const AxisLaw& law, Axis& memory) {
 }
 
 template <class D>
-void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at,
-                 const JointRecord<D>& record, float h) {
+void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, JointRecord<D>& record,
+                 float h) {
   block.arm_a = at.arm_a;
   block.arm_b = at.arm_b;
   block.offset = at.offset;
@@ -152,8 +149,8 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
 }
 
 template <class D>
-void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at,
-                const JointRecord<D>& record, float h) {
+void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, JointRecord<D>& record,
+                float h) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
   block.law.flags = AxisLaw::periodic;
@@ -238,24 +235,22 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   const JointData<D>& data = world.joints.data[std::size_t(record.joint)];
   record.body_a = header.body[0];
   record.body_b = header.body[1];
-  if (record.body_a != none && world.bodies.is_dynamic(record.body_a)) {
-    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(record.body_a)];
-    record.dynamic_a = true;
-    record.inverse_mass_a = motion.inverse_mass;
-    record.inverse_inertia_a = motion.world_inverse_inertia;
-    record.turning_inertia |= motion.gyroscopic;
-  } else if constexpr (D::dimension == 3) {
-    record.inverse_inertia_a = Mat3f::zero();
-  }
-  if (world.bodies.is_dynamic(record.body_b)) {
-    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(record.body_b)];
-    record.dynamic_b = true;
-    record.inverse_mass_b = motion.inverse_mass;
-    record.inverse_inertia_b = motion.world_inverse_inertia;
-    record.turning_inertia |= motion.gyroscopic;
-  } else if constexpr (D::dimension == 3) {
-    record.inverse_inertia_b = Mat3f::zero();
-  }
+  record.dynamic_a = record.body_a != none && world.bodies.is_dynamic(record.body_a);
+  record.dynamic_b = world.bodies.is_dynamic(record.body_b);
+  const auto fill_masses = [&](bool dynamic, std::int32_t body, float& inverse_mass, float& inverse_inertia, int side) {
+    const BodyMotion<D>* motion = dynamic ? &world.bodies.motion[std::size_t(body)] : nullptr;
+    inverse_mass = dynamic ? motion->inverse_mass : 0;
+    if constexpr (D::dimension == 2) {
+      inverse_inertia = dynamic ? motion->world_inverse_inertia : 0;
+    } else if (record.isotropic) {
+      inverse_inertia = dynamic ? motion->world_inverse_inertia.cx.x : 0;
+    } else {
+      ::new (static_cast<void*>(record.tensors() + side))
+          Mat3f(dynamic ? motion->world_inverse_inertia : Mat3f::zero());
+    }
+  };
+  fill_masses(record.dynamic_a, record.body_a, record.inverse_mass_a, record.inverse_inertia_a, 0);
+  fill_masses(record.dynamic_b, record.body_b, record.inverse_mass_b, record.inverse_inertia_b, 1);
   const JointPlacement<D> at = place_joint(world.bodies, header, data);
   const JointMemory<D>& memory = data.memory;
   const auto moving = [&] { return pair_of(record, world.bodies.solver.data()); };
@@ -285,6 +280,11 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
         fill_angular(block, data, at, h);
         if (!block.rigid) block.note_speed(moving());
       }
+    } else if constexpr (std::is_same_v<Block, PinBlock<D>>) {
+      block.arm_a = at.arm_a;
+      block.arm_b = at.arm_b;
+      block.offset = at.offset;
+      block.impulse = memory.point;
     } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
       block.arm_a = at.arm_a;
       block.arm_b = at.arm_b;
@@ -296,7 +296,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
         block.normal[0] = rotate(at.frame_a, Vec3f{0, 1, 0});
         block.normal[1] = rotate(at.frame_a, Vec3f{0, 0, 1});
       }
-    } else {
+    } else if constexpr (D::dimension == 3) {
       block.x_a = rotate(at.frame_a, Vec3f{1, 0, 0});
       block.y_a = rotate(at.frame_a, Vec3f{0, 1, 0});
       block.z_b = rotate(at.frame_b, Vec3f{0, 0, 1});
@@ -305,29 +305,45 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   });
 }
 
+/// Do both bodies turn alike about every axis?
+template <class D>
+bool is_isotropic(const WorldImplementation<D>& world, std::int32_t joint) {
+  if constexpr (D::dimension == 2) return true;
+  constexpr std::uint8_t turning_locks = 56;
+  for (const std::int32_t body : world.joints.headers[std::size_t(joint)].body) {
+    if (body == none || !world.bodies.is_dynamic(body)) continue;
+    if (world.bodies.motion[std::size_t(body)].gyroscopic ||
+        (world.bodies.record[std::size_t(body)].locks & turning_locks) != 0)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 template <class D>
-std::uint8_t parts_of(const JointData<D>& data) {
+std::uint16_t parts_of(const JointData<D>& data) {
   const auto parts = [](const auto& d) -> int {
     using Def = std::remove_cvref_t<decltype(d)>;
     if constexpr (std::is_same_v<Def, DistanceJointDef<D>>) {
       return part_linear;
     } else if constexpr (std::is_same_v<Def, BallJointDef<D>>) {
-      return part_point | (d.spring.hertz > 0 ? part_angular : 0) | (d.friction_torque > 0 ? part_friction : 0) |
+      return part_pin | (d.spring.hertz > 0 ? part_angular : 0) | (d.friction_torque > 0 ? part_friction : 0) |
              (D::dimension == 3 && d.cone_angle >= 0 ? part_cone : 0) | (d.twist.enabled ? part_twist : 0);
     } else if constexpr (std::is_same_v<Def, HingeJointDef<D>>) {
-      return part_point | (D::dimension == 3 ? part_hinge : 0) |
+      return part_pin | (D::dimension == 3 ? part_hinge : 0) |
              (axis_is_used(d.spring, d.motor, d.limit) ? part_twist : 0);
     } else if constexpr (std::is_same_v<Def, SliderJointDef<D>>) {
       return part_slide | part_angular | (axis_is_used(d.spring, d.motor, d.limit) ? part_linear : 0);
     } else if constexpr (std::is_same_v<Def, MouseJointDef<D>>) {
       return part_point | (d.spring.hertz > 0 ? part_angular : 0);
+    } else if constexpr (std::is_same_v<Def, WeldJointDef<D>>) {
+      return (d.linear.hertz > 0 ? part_point : part_pin) | part_angular;
     } else {
       return part_point | part_angular;
     }
   };
-  return std::uint8_t(std::visit(parts, data.definition));
+  return std::uint16_t(std::visit(parts, data.definition));
 }
 
 template <class D>
@@ -343,7 +359,7 @@ void prepare_joints(StepContext<D>& context) {
     for (const std::int32_t joint : color.joints) {
       joints.order.push_back(joint);
       joints.offset.push_back(units);
-      units += record_units<D>(parts_of(joints.data[std::size_t(joint)]));
+      units += record_units<D>(parts_of(joints.data[std::size_t(joint)]), is_isotropic(world, joint));
     }
   }
   joints.color_begin.push_back(std::int32_t(joints.order.size()));
@@ -353,6 +369,7 @@ void prepare_joints(StepContext<D>& context) {
     for (int i = begin; i < end; ++i) {
       auto& record = *::new (static_cast<void*>(&joints.records[joints.offset[std::size_t(i)]])) JointRecord<D>{};
       record.joint = joints.order[std::size_t(i)];
+      record.isotropic = is_isotropic(world, record.joint);
       record.parts = parts_of(joints.data[std::size_t(record.joint)]);
       fill_record(record, world, context.h);
     }
@@ -377,7 +394,7 @@ void store_joints(StepContext<D>& context) {
         if constexpr (std::is_same_v<Block, LinearAxis<D>>) {
           memorise(block.law, memory.linear);
           force += block.law.total() * block.row(pair).n;
-        } else if constexpr (std::is_same_v<Block, PointBlock<D>>) {
+        } else if constexpr (std::is_same_v<Block, PointBlock<D>> || std::is_same_v<Block, PinBlock<D>>) {
           memory.point = block.impulse;
           force += block.impulse;
         } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
@@ -408,8 +425,8 @@ void store_joints(StepContext<D>& context) {
   });
 }
 
-template std::uint8_t parts_of(const JointData<Dim2>&);
-template std::uint8_t parts_of(const JointData<Dim3>&);
+template std::uint16_t parts_of(const JointData<Dim2>&);
+template std::uint16_t parts_of(const JointData<Dim3>&);
 template void prepare_joints(StepContext<Dim2>&);
 template void prepare_joints(StepContext<Dim3>&);
 template void store_joints(StepContext<Dim2>&);

@@ -5,22 +5,19 @@
 namespace carom::rigid::detail {
 namespace {
 
-template <class D>
-void load_pair(BodyPair<D>& pair, const JointRecord<D>& record, const SolverBody<D>* bodies) {
+template <class D, class I>
+void load_pair(BodyPair<D, I>& pair, JointRecord<D>& record, const SolverBody<D>* bodies) {
   load_turns(pair, record, bodies);
+  load_masses(pair, record);
   if (record.body_a != none) {
     pair.velocity_a = bodies[record.body_a].linear_velocity;
     pair.spin_a = bodies[record.body_a].angular_velocity;
   }
   pair.velocity_b = bodies[record.body_b].linear_velocity;
   pair.spin_b = bodies[record.body_b].angular_velocity;
-  pair.inverse_mass_a = record.inverse_mass_a;
-  pair.inverse_mass_b = record.inverse_mass_b;
-  pair.inverse_inertia_a = record.inverse_inertia_a;
-  pair.inverse_inertia_b = record.inverse_inertia_b;
 }
-template <class D>
-void save_pair(const BodyPair<D>& pair, const JointRecord<D>& record, SolverBody<D>* bodies) {
+template <class D, class I>
+void save_pair(const BodyPair<D, I>& pair, const JointRecord<D>& record, SolverBody<D>* bodies) {
   if (record.dynamic_a) {
     bodies[record.body_a].linear_velocity = pair.velocity_a;
     bodies[record.body_a].angular_velocity = pair.spin_a;
@@ -40,11 +37,17 @@ inline void turn_inertia(Mat3f& inverse_inertia, const BodyMotion<Dim3>& motion,
 inline void turn_inertias(JointRecord<Dim3>& record, const StepContext<Dim3>& context) {
   const auto& motion = context.world.bodies.motion;
   if (record.dynamic_a)
-    turn_inertia(record.inverse_inertia_a, motion[std::size_t(record.body_a)],
-                 context.bodies[record.body_a].delta_rotation);
+    turn_inertia(record.tensors()[0], motion[std::size_t(record.body_a)], context.bodies[record.body_a].delta_rotation);
   if (record.dynamic_b)
-    turn_inertia(record.inverse_inertia_b, motion[std::size_t(record.body_b)],
-                 context.bodies[record.body_b].delta_rotation);
+    turn_inertia(record.tensors()[1], motion[std::size_t(record.body_b)], context.bodies[record.body_b].delta_rotation);
+}
+
+template <class I, class D, class Act>
+void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
+  BodyPair<D, I> pair;
+  load_pair(pair, record, bodies);
+  for_each_block(record, [&](JointPart, auto& block) { act(pair, block); });
+  save_pair(pair, record, bodies);
 }
 
 /// Runs `act` on the records of a colour: side by side, but for the overflow one after the other.
@@ -56,13 +59,14 @@ void for_each_record(StepContext<D>& context, int color, const Act& act) {
   const auto run = [&](int begin, int end, int) {
     for (int i = first + begin; i < first + end; ++i) {
       auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
-      if constexpr (first_of_substep && D::dimension == 3) {
-        if (record.turning_inertia) turn_inertias(record, context);
+      if constexpr (D::dimension == 3) {
+        if (!record.isotropic) {
+          if constexpr (first_of_substep) turn_inertias(record, context);
+          act_on<Mat3f>(record, context.bodies, act);
+          continue;
+        }
       }
-      BodyPair<D> pair;
-      load_pair(pair, record, context.bodies);
-      for_each_block(record, [&](JointPart, auto& block) { act(pair, block); });
-      save_pair(pair, record, context.bodies);
+      act_on<float>(record, context.bodies, act);
     }
   };
   if (color == overflow_color || last - first < 64)
@@ -75,7 +79,7 @@ void for_each_record(StepContext<D>& context, int color, const Act& act) {
 
 template <class D>
 void warm_start_joints(StepContext<D>& context, int color) {
-  for_each_record<true>(context, color, [](BodyPair<D>& pair, auto& block) { block.warm_start(pair); });
+  for_each_record<true>(context, color, [](auto& pair, auto& block) { block.warm_start(pair); });
 }
 
 template <class D>
@@ -83,7 +87,7 @@ void solve_joints(StepContext<D>& context, int color, bool use_bias) {
   const Softness& soft = context.joint_softness;
   const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
   const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
-  for_each_record<false>(context, color, [&pass](BodyPair<D>& pair, auto& block) { block.solve(pair, pass); });
+  for_each_record<false>(context, color, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
 }
 
 template <class D>
