@@ -1,0 +1,43 @@
+// Contact points while a manifold is being made: clipping, and the choice of at most four.
+#pragma once
+
+#include "carom/geometry/detail/convex.h"
+#include "carom/geometry/manifold.h"
+
+namespace carom::geometry::detail {
+
+/// Candidates along one normal, in the frame of A.
+struct ContactPoints {
+  static constexpr int capacity = 64;
+  int count = 0;
+  ManifoldPoint3 point[capacity];
+  void add(Vec3f p, float separation, std::uint32_t feature) {
+    if (count < capacity) point[count++] = {p, separation, feature};
+  }
+};
+
+/// Writes at most four of the candidates: the deepest, and those that span the widest support. Ties within a
+/// thousandth of the patch go to the earlier one, so that the choice does not flicker.
+void write_points(const ContactPoints& points, Vec3f normal, Manifold3& out);
+
+/// Clips `incident` to the prism over the polygon `reference` and adds what lies within `margin` of its face.
+/// Separations are along reference.normal. `radius_r`, `radius_i` are swept off. `tag` marks the features' names.
+void clip_to_face(const Feature& reference, float radius_r, const Feature& incident, float radius_i, float margin,
+                  std::uint32_t tag, ContactPoints& out);
+
+/// The same manifold seen from the other shape: `a_in_b` is the pose of its frame in the other's.
+void flip(Manifold3& m, const Transform3f& a_in_b);
+
+/// The closest parameters of two segments, clamped to them (Ericson 2005, §5.1.9).
+void closest_on_segments(Vec3f p1, Vec3f d1, Vec3f p2, Vec3f d2, float& s, float& t);
+
+/// General pairs of convex cores (manifold3_convex.cpp).
+void collide_cores(const Convex& a, const Convex& b, const Transform3f& b_in_a, float margin, PairCache& cache,
+                   Manifold3& out);
+void collide_box_box(const Box& a, const Box& b, const Transform3f& b_in_a, float margin, PairCache& cache,
+                     Manifold3& out);
+void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_a, float margin, Manifold3& out);
+void collide_triangle(const Convex& triangle, std::uint8_t flat_edges, const Convex& b, const Transform3f& b_in_a,
+                      float margin, Vec3f& normal, ContactPoints& out);
+
+}  // namespace carom::geometry::detail

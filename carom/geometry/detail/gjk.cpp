@@ -1,0 +1,286 @@
+#include "carom/geometry/detail/gjk.h"
+
+namespace carom::geometry::detail {
+namespace gjk {
+
+struct Reduced {
+  int count;
+  int index[4];
+  double weight[4];
+  Vec3d closest;
+};
+
+Reduced of_point(const SimplexVertex* s, int i) { return {1, {i}, {1}, s[i].w}; }
+
+Reduced of_segment(const SimplexVertex* s, int i, int j) {
+  const Vec3d a = s[i].w, d = s[j].w - a;
+  const double dd = dot(d, d), t = -dot(a, d);
+  if (!(t > 0)) return of_point(s, i);
+  if (!(t < dd)) return of_point(s, j);
+  const double u = t / dd;
+  return {2, {i, j}, {1 - u, u}, a + d * u};
+}
+
+// The regions of a triangle, after Ericson 2005, §5.1.5.
+Reduced of_triangle(const SimplexVertex* s, int i, int j, int k) {
+  const Vec3d a = s[i].w, b = s[j].w, c = s[k].w, ab = b - a, ac = c - a;
+  const Vec3d n = cross(ab, ac);
+  const double nn = dot(n, n);
+  const auto best_edge = [&] {
+    Reduced r = of_segment(s, i, j);
+    const Reduced r2 = of_segment(s, j, k), r3 = of_segment(s, k, i);
+    if (length_squared(r2.closest) < length_squared(r.closest)) r = r2;
+    if (length_squared(r3.closest) < length_squared(r.closest)) r = r3;
+    return r;
+  };
+  if (!(nn > 1e-28 * dot(ab, ab) * dot(ac, ac))) return best_edge();
+  // Signed areas of the origin's projection against the edges.
+  const double u = triple(n, b, c), v = triple(n, c, a), w = triple(n, a, b);
+  if (u >= 0 && v >= 0 && w >= 0) {
+    const double sum = u + v + w;
+    if (sum > 0) return {3, {i, j, k}, {u / sum, v / sum, w / sum}, n * (dot(n, a) / nn)};
+  }
+  return best_edge();
+}
+
+Reduced of_tetrahedron(const SimplexVertex* s) {
+  constexpr int faces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
+  Reduced best{4, {0, 1, 2, 3}, {0.25, 0.25, 0.25, 0.25}, {}};
+  double least = -1;
+  for (const auto& f : faces) {
+    const Vec3d a = s[f[0]].w;
+    const Vec3d n = cross(s[f[1]].w - a, s[f[2]].w - a);
+    const double inside = dot(n, s[f[3]].w - a), origin = -dot(n, a);
+    // A flat tetrahedron has no inside: every face is asked.
+    const bool flat = math::abs(inside) <= 1e-14 * math::sqrt(dot(n, n)) * math::sqrt(length_squared(s[f[3]].w - a));
+    if (!flat && origin * inside >= 0) continue;
+    const Reduced r = of_triangle(s, f[0], f[1], f[2]);
+    const double d = length_squared(r.closest);
+    if (least < 0 || d < least) least = d, best = r;
+  }
+  return best;
+}
+
+Reduced reduce(const SimplexVertex* s, int count) {
+  switch (count) {
+    case 1:
+      return of_point(s, 0);
+    case 2:
+      return of_segment(s, 0, 1);
+    case 3:
+      return of_triangle(s, 0, 1, 2);
+    default:
+      return of_tetrahedron(s);
+  }
+}
+
+SimplexVertex support_of(const Placed& a, const Placed& b, Vec3d toward_b) {
+  SimplexVertex v;
+  v.a = a.support(toward_b);
+  v.b = b.support(-toward_b);
+  v.w = v.b - v.a;
+  return v;
+}
+
+}  // namespace gjk
+
+void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out) {
+  out.overlap = false;
+  if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
+  if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
+  SimplexVertex* s = out.simplex;
+  s[0] = gjk::support_of(a, b, guess);
+  out.count = 1;
+  gjk::Reduced r = gjk::reduce(s, 1);
+  double vv = length_squared(r.closest), scale = length_squared(s[0].w);
+  for (int iteration = 0; iteration < 64; ++iteration) {
+    if (out.count == 4 || vv <= 1e-20 * scale) {
+      out.overlap = true;
+      break;
+    }
+    const Vec3d v = r.closest;
+    const SimplexVertex next = gjk::support_of(a, b, v);
+    const double reach = dot(v, next.w);
+    if (reach > 0 && reach * reach > cutoff * cutoff * vv) {
+      out.distance = reach / math::sqrt(vv);
+      out.normal = v / math::sqrt(vv);
+      return;
+    }
+    if (vv - reach <= 1e-9 * vv + 1e-15 * math::sqrt(vv * scale)) break;
+    bool known = false;
+    for (int i = 0; i < out.count; ++i) known = known || next.w == s[i].w;
+    if (known) break;
+    scale = max(scale, length_squared(next.w));
+    SimplexVertex grown[4];
+    for (int i = 0; i < out.count; ++i) grown[i] = s[i];
+    grown[out.count] = next;
+    const gjk::Reduced smaller = gjk::reduce(grown, out.count + 1);
+    const double nearer = length_squared(smaller.closest);
+    if (smaller.count < 4 && !(nearer < vv)) break;  // rounding: no nearer any more
+    r = smaller;
+    vv = nearer;
+    out.count = r.count;
+    for (int i = 0; i < r.count; ++i) s[i] = grown[r.index[i]];
+  }
+  out.point_a = out.point_b = {};
+  for (int i = 0; i < r.count; ++i) {
+    out.point_a += s[i].a * r.weight[i];
+    out.point_b += s[i].b * r.weight[i];
+  }
+  out.distance = out.overlap ? 0 : math::sqrt(vv);
+  out.normal = out.overlap ? Vec3d{} : r.closest * (1 / out.distance);
+}
+
+namespace epa {
+
+constexpr int max_vertices = 80, max_faces = 160;
+struct Face {
+  int v[3];
+  Vec3d normal;
+  double distance;
+  bool alive;
+};
+struct Polytope {
+  SimplexVertex vertex[max_vertices];
+  Face face[max_faces];
+  int vertices = 0, faces = 0;
+  Vec3d inside{};
+
+  bool add_face(int i, int j, int k) {
+    if (faces == max_faces) return false;
+    Face& f = face[faces];
+    f.v[0] = i, f.v[1] = j, f.v[2] = k;
+    const Vec3d p = vertex[i].w;
+    Vec3d n = cross(vertex[j].w - p, vertex[k].w - p);
+    const double l = math::length(n);
+    if (!(l > 1e-200)) return false;
+    n *= 1 / l;
+    if (dot(n, p - inside) < 0) {
+      n = -n;
+      f.v[1] = k, f.v[2] = j;
+    }
+    f.normal = n;
+    f.distance = dot(n, p);
+    f.alive = true;
+    ++faces;
+    return true;
+  }
+};
+
+constexpr double unit_axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+// Adds support points until the simplex is a tetrahedron with volume.
+bool complete(const Placed& a, const Placed& b, SimplexVertex* s, int count, double scale) {
+  const double tiny = 1e-9 * scale;
+  if (count == 4 && math::abs(triple(s[1].w - s[0].w, s[2].w - s[0].w, s[3].w - s[0].w)) <= tiny * scale * scale)
+    count = 3;
+  if (count == 3 && math::length(cross(s[1].w - s[0].w, s[2].w - s[0].w)) <= tiny * scale) count = 2;
+  if (count == 2 && math::length(s[1].w - s[0].w) <= tiny) count = 1;
+  for (int k = 0; count == 1 && k < 6; ++k) {
+    const Vec3d d = Vec3d{unit_axes[k / 2][0], unit_axes[k / 2][1], unit_axes[k / 2][2]} * (k & 1 ? -1.0 : 1.0);
+    s[1] = gjk::support_of(a, b, d);
+    if (math::length(s[1].w - s[0].w) > tiny) count = 2;
+  }
+  if (count == 2) {
+    const Vec3d line = normalize(s[1].w - s[0].w);
+    const Vec3d u = perpendicular(line), v = cross(line, u);
+    constexpr double turn[6][2] = {{1, 0},  {-0.5, 0.8660254037844386}, {-0.5, -0.8660254037844386},
+                                   {-1, 0}, {0.5, -0.8660254037844386}, {0.5, 0.8660254037844386}};
+    for (int k = 0; count == 2 && k < 6; ++k) {
+      s[2] = gjk::support_of(a, b, u * turn[k][0] + v * turn[k][1]);
+      if (math::length(cross(s[2].w - s[0].w, line)) > tiny) count = 3;
+    }
+  }
+  if (count == 3) {
+    const Vec3d n = normalize(cross(s[1].w - s[0].w, s[2].w - s[0].w));
+    for (int k = 0; count == 3 && k < 2; ++k) {
+      s[3] = gjk::support_of(a, b, k == 0 ? n : -n);
+      if (math::abs(dot(s[3].w - s[0].w, n)) > tiny) count = 4;
+    }
+  }
+  return count == 4;
+}
+
+}  // namespace epa
+
+bool core_depth(const Placed& a, const Placed& b, CoreDistance& d) {
+  double scale = 0;
+  for (const auto& x : epa::unit_axes) {
+    const Vec3d axis{x[0], x[1], x[2]};
+    scale = max(scale, math::length(gjk::support_of(a, b, axis).w - gjk::support_of(a, b, -axis).w));
+  }
+  epa::Polytope p;
+  SimplexVertex s[4];
+  for (int i = 0; i < d.count; ++i) s[i] = d.simplex[i];
+  if (!(scale > 0) || !epa::complete(a, b, s, d.count, scale)) return false;
+  for (int i = 0; i < 4; ++i) p.vertex[i] = s[i];
+  p.vertices = 4;
+  p.inside = (s[0].w + s[1].w + s[2].w + s[3].w) * 0.25;
+  if (!p.add_face(0, 1, 2) || !p.add_face(0, 2, 3) || !p.add_face(0, 3, 1) || !p.add_face(1, 3, 2)) return false;
+
+  epa::Face found{};
+  while (true) {
+    int best = 0;
+    for (int i = 1; i < p.faces; ++i)
+      if (p.face[i].distance < p.face[best].distance) best = i;
+    found = p.face[best];
+    // The polytope is of b − a: the origin lies `distance` behind this face, so moving B by −normal·distance parts
+    // them.
+    const SimplexVertex next = gjk::support_of(a, b, -found.normal);
+    const double gain = dot(next.w, found.normal) - found.distance;
+    if (gain <= 1e-7 * scale || p.vertices == epa::max_vertices) break;
+    bool known = false;
+    for (int i = 0; i < p.vertices; ++i) known = known || next.w == p.vertex[i].w;
+    if (known) break;
+    // The horizon: edges of faces that see the new point, each used once.
+    int edge[epa::max_faces][2], edges = 0;
+    bool fits = true;
+    for (int i = 0; i < p.faces; ++i) {
+      epa::Face& g = p.face[i];
+      if (dot(g.normal, next.w) - g.distance <= 1e-12 * scale) continue;
+      g.alive = false;
+      for (int k = 0; k < 3; ++k) {
+        const int u = g.v[k], v = g.v[(k + 1) % 3];
+        int twin = -1;
+        for (int e = 0; e < edges; ++e)
+          if (edge[e][0] == v && edge[e][1] == u) twin = e;
+        if (twin >= 0) {
+          --edges;
+          edge[twin][0] = edge[edges][0], edge[twin][1] = edge[edges][1];
+        } else if (edges < epa::max_faces) {
+          edge[edges][0] = u, edge[edges][1] = v;
+          ++edges;
+        } else {
+          fits = false;
+        }
+      }
+    }
+    int alive = 0;
+    for (int i = 0; i < p.faces; ++i)
+      if (p.face[i].alive) {
+        if (alive != i) p.face[alive] = p.face[i];
+        ++alive;
+      }
+    p.faces = alive;
+    fits = fits && edges >= 3 && edges + p.faces <= epa::max_faces;
+    p.vertex[p.vertices] = next;
+    for (int e = 0; fits && e < edges; ++e) fits = p.add_face(edge[e][0], edge[e][1], p.vertices);
+    ++p.vertices;
+    if (!fits) break;  // the last good face stands
+  }
+  const SimplexVertex t[3] = {p.vertex[found.v[0]], p.vertex[found.v[1]], p.vertex[found.v[2]]};
+  const Vec3d q = found.normal * found.distance;
+  const Vec3d e0 = t[1].w - t[0].w, e1 = t[2].w - t[0].w, e2 = q - t[0].w;
+  const double d00 = dot(e0, e0), d01 = dot(e0, e1), d11 = dot(e1, e1), d20 = dot(e2, e0), d21 = dot(e2, e1);
+  const double det = d00 * d11 - d01 * d01;
+  double v = det > 0 ? (d11 * d20 - d01 * d21) / det : 1.0 / 3, w = det > 0 ? (d00 * d21 - d01 * d20) / det : 1.0 / 3;
+  v = clamp(v, 0.0, 1.0), w = clamp(w, 0.0, 1.0 - v);
+  d.point_a = t[0].a * (1 - v - w) + t[1].a * v + t[2].a * w;
+  d.point_b = t[0].b * (1 - v - w) + t[1].b * v + t[2].b * w;
+  d.normal = -found.normal;
+  d.distance = -max(found.distance, 0.0);
+  d.overlap = true;
+  return true;
+}
+
+}  // namespace carom::geometry::detail

@@ -1,0 +1,40 @@
+// Closest points of two convex cores, and the depth of their overlap, in double.
+#pragma once
+
+#include "carom/geometry/detail/convex.h"
+
+namespace carom::geometry::detail {
+
+/// A placed core: its pose in the frame of computation.
+struct Placed {
+  const Convex* core;
+  Mat3d rotation{};
+  Vec3d position{};
+
+  explicit Placed(const Convex& c) : core(&c) {}
+  Placed(const Convex& c, const Transform3f& t) : Placed(c, Transform3d{Vec3d(t.p), Quatd(t.q)}) {}
+  Placed(const Convex& c, const Transform3d& t) : core(&c), rotation(to_matrix(normalize(t.q))), position(t.p) {}
+  Vec3d support(Vec3d d) const { return rotation * detail::support(*core, d * rotation) + position; }
+  Vec3d center() const { return rotation * Vec3d(inner_point(*core)) + position; }
+};
+
+struct SimplexVertex {
+  Vec3d w, a, b;  ///< w = b − a
+};
+struct CoreDistance {
+  bool overlap = false;
+  double distance = 0;  ///< m, of the cores, without their radii
+  Vec3d point_a{}, point_b{};
+  Vec3d normal{};  ///< unit, from A to B
+  int count = 0;   ///< of the last simplex
+  SimplexVertex simplex[4];
+};
+/// Gilbert, Johnson & Keerthi 1988. Stops early, with a lower bound as the distance and no points, once the cores are
+/// known to be farther apart than `cutoff`. `guess` is a direction from A to B to begin with (zero: the centres').
+void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out);
+
+/// For cores that overlap (from the simplex of core_distance): the shortest translation that parts them, by the
+/// expanding polytope algorithm (van den Bergen 2001). distance ≤ 0. False where the difference body is flat.
+bool core_depth(const Placed& a, const Placed& b, CoreDistance& inout);
+
+}  // namespace carom::geometry::detail

@@ -1,0 +1,226 @@
+// Contacts of general convex cores: the axis by distance or depth, the points by clipping the features that face it.
+#include "carom/geometry/detail/contact_points.h"
+#include "carom/geometry/detail/gjk.h"
+
+namespace carom::geometry::detail {
+namespace core_pair {
+
+constexpr std::uint8_t face_of_a = 1, face_of_b = 2, direction = 3;
+
+// A direction in 32 bits (octahedral), exact enough for a first guess.
+std::uint32_t pack(Vec3f n) {
+  const float k = 1 / (abs(n.x) + abs(n.y) + abs(n.z));
+  float u = n.x * k, v = n.y * k;
+  if (n.z < 0) {
+    const float w = (1 - abs(v)) * (u < 0 ? -1.0f : 1.0f);
+    v = (1 - abs(u)) * (v < 0 ? -1.0f : 1.0f);
+    u = w;
+  }
+  return std::uint32_t(int((u + 1) * 32767.0f)) << 16 | std::uint32_t(int((v + 1) * 32767.0f));
+}
+Vec3f unpack(std::uint32_t p) {
+  float u = float(p >> 16) / 32767.0f - 1, v = float(p & 0xffff) / 32767.0f - 1;
+  const float z = 1 - abs(u) - abs(v);
+  if (z < 0) {
+    const float w = (1 - abs(v)) * (u < 0 ? -1.0f : 1.0f);
+    v = (1 - abs(u)) * (v < 0 ? -1.0f : 1.0f);
+    u = w;
+  }
+  return normalize(Vec3f{u, v, z});
+}
+
+void place(Feature& f, const Transform3f& t) {
+  for (int i = 0; i < f.count; ++i) f.point[i] = transform_point(t, f.point[i]);
+  f.normal = rotate(t.q, f.normal);
+}
+
+struct Pair {
+  const Convex &a, &b;
+  const Transform3f& x;  // B in A
+  float margin;
+
+  float radius() const { return a.radius + b.radius; }
+  // Separation of the cores along a face of A (n in A's frame) or of B (n in B's frame).
+  float along_a(FacePlane p) const {
+    const Vec3f s = Vec3f(support(b, Vec3d(-inverse_rotate(x.q, p.normal))));
+    return dot(p.normal, transform_point(x, s)) - p.offset;
+  }
+  float along_b(FacePlane p) const {
+    const Vec3f s = Vec3f(support(a, Vec3d(-rotate(x.q, p.normal))));
+    return dot(p.normal, inverse_transform_point(x, s)) - p.offset;
+  }
+  void clip_a(const Feature& face, ContactPoints& points) const {
+    Feature incident;
+    feature(b, -inverse_rotate(x.q, face.normal), incident);
+    place(incident, x);
+    clip_to_face(face, a.radius, incident, b.radius, margin, 0, points);
+  }
+  void clip_b(Feature face, ContactPoints& points) const {
+    place(face, x);
+    Feature incident;
+    feature(a, -face.normal, incident);
+    clip_to_face(face, b.radius, incident, a.radius, margin, 0x80000000u, points);
+  }
+};
+
+float least_separation(const ContactPoints& c) {
+  float s = c.point[0].separation;
+  for (int i = 1; i < c.count; ++i) s = min(s, c.point[i].separation);
+  return s;
+}
+
+// The face that held the contact last time holds it still, if it is shallow and the features still overlap on it.
+bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold3& out, bool& apart) {
+  const bool of_a = cache.kind == face_of_a;
+  const Convex& c = of_a ? pair.a : pair.b;
+  if (int(cache.d) >= face_count(c)) return false;
+  const FacePlane plane = face_plane(c, int(cache.d));
+  const float s = of_a ? pair.along_a(plane) : pair.along_b(plane);
+  if (s - pair.radius() > pair.margin) {
+    apart = true;
+    return true;
+  }
+  if (s < -shallow) return false;
+  const Vec3f toward = of_a ? plane.normal : plane.normal;
+  Feature face;
+  face_feature(c, int(cache.d), toward, face);
+  ContactPoints points;
+  if (of_a)
+    pair.clip_a(face, points);
+  else
+    pair.clip_b(face, points);
+  // Apart, the face tells the true distance only where the nearest corner is over it.
+  if (points.count == 0 || (s > 0 && least_separation(points) > s - pair.radius() + 1e-4f * shallow)) return false;
+  const Vec3f n = of_a ? face.normal : -rotate(pair.x.q, face.normal);
+  write_points(points, n, out);
+  return true;
+}
+
+int face_index(const Convex& c, Vec3f n) {
+  const int count = face_count(c);
+  int best = -1;
+  float most = -2;
+  for (int i = 0; i < count; ++i) {
+    const float d = dot(face_plane(c, i).normal, n);
+    if (d > most) most = d, best = i;
+  }
+  return best;
+}
+
+// Contacts for the normal n (A to B, in A's frame) with core separation d. Returns the cache entry.
+void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCache& cache, Manifold3& out) {
+  const Vec3f n = normalize(Vec3f(found.normal));
+  const float d = float(found.distance);
+  const int fa = face_index(pair.a, n), fb = face_index(pair.b, -inverse_rotate(pair.x.q, n));
+  float sa = -1e30f, sb = -1e30f;
+  if (fa >= 0) sa = pair.along_a(face_plane(pair.a, fa));
+  if (fb >= 0) sb = pair.along_b(face_plane(pair.b, fb));
+  const float tolerance = d > 0 ? 0.01f * d + 0.02f * slack : 0.05f * -d + slack;
+  const bool use_a = sa >= d - tolerance, use_b = sb >= d - tolerance;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const bool of_a = (attempt == 0) == (use_a && (!use_b || sb <= sa + slack));
+    if (!(of_a ? use_a : use_b)) continue;
+    const Convex& c = of_a ? pair.a : pair.b;
+    Feature face;
+    const Vec3f toward = of_a ? n : -inverse_rotate(pair.x.q, n);
+    face_feature(c, of_a ? fa : fb, toward, face);
+    ContactPoints points;
+    if (of_a)
+      pair.clip_a(face, points);
+    else
+      pair.clip_b(face, points);
+    if (points.count == 0) continue;
+    write_points(points, of_a ? face.normal : -rotate(pair.x.q, face.normal), out);
+    cache.kind = of_a ? face_of_a : face_of_b;
+    cache.d = std::uint32_t(of_a ? fa : fb);
+    return;
+  }
+  cache.kind = direction;
+  cache.d = pack(n);
+  // Two straight sides along each other touch in two points.
+  Vec3f la[2], lb[2];
+  if (side_line(pair.a, n, la) && side_line(pair.b, -inverse_rotate(pair.x.q, n), lb)) {
+    for (Vec3f& p : lb) p = transform_point(pair.x, p);
+    const Vec3f da = la[1] - la[0], db = lb[1] - lb[0];
+    const float length_a = length(da), length_b = length(db);
+    if (length(cross(da, db)) < 0.03f * length_a * length_b) {
+      const Vec3f t = da * (1 / length_a);
+      float t0 = dot(lb[0] - la[0], t), t1 = dot(lb[1] - la[0], t);
+      const float low = max(0.0f, min(t0, t1)), high = min(length_a, max(t0, t1));
+      if (high - low > 1e-3f * length_a) {
+        out.normal = n;
+        out.count = 0;
+        for (int k = 0; k < 2; ++k) {
+          const float u = k == 0 ? low : high;
+          const Vec3f pa = la[0] + t * u, pb = lb[0] + db * ((u - t0) / (t1 - t0));
+          const float s = dot(n, pb - pa) - pair.radius();
+          if (s > pair.margin) continue;
+          const std::uint32_t name = 0x40000000u | std::uint32_t(k);
+          out.points[out.count++] = {(pa + n * pair.a.radius + pb - n * pair.b.radius) * 0.5f, s, name};
+        }
+        if (out.count > 0) return;
+      }
+    }
+  }
+  const float s = d - pair.radius();
+  if (s > pair.margin) return;
+  const Vec3f pa = Vec3f(found.point_a) + n * pair.a.radius, pb = Vec3f(found.point_b) - n * pair.b.radius;
+  out.normal = n;
+  out.count = 1;
+  out.points[0] = {(pa + pb) * 0.5f, s, 0x20000000u};
+}
+
+}  // namespace core_pair
+
+void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float margin, PairCache& cache,
+                   Manifold3& out) {
+  using namespace core_pair;
+  const Pair pair{a, b, x, margin};
+  float small = 1e30f;
+  for (const Convex* c : {&a, &b})
+    if (const float s = inner_size(*c); s > 0) small = min(small, s);
+  if (cache.kind == face_of_a || cache.kind == face_of_b) {
+    bool apart = false;
+    if (keep_face(pair, cache, 0.04f * small + 0.5f * pair.radius(), out, apart)) return;
+  }
+  const Vec3f guess = cache.kind == direction ? unpack(cache.d) : Vec3f{};
+  const Placed pa(a), pb(b, x);
+  CoreDistance found;
+  core_distance(pa, pb, double(pair.radius()) + double(margin), Vec3d(guess), found);
+  if (!found.overlap && found.distance > double(pair.radius()) + double(margin)) {
+    cache.kind = direction;
+    cache.d = pack(normalize(Vec3f(found.normal)));
+    return;
+  }
+  if (found.overlap && !core_depth(pa, pb, found)) {
+    Vec3d n = pb.center() - pa.center();
+    n = length(n) > 1e-9 ? normalize(n) : Vec3d{0, 1, 0};
+    found.normal = n, found.distance = 0;
+  }
+  points_for(pair, found, 5e-4f * small, cache, out);
+}
+
+void collide_plane(const Plane& plane, const Convex& b, const Transform3f& x, float margin, Manifold3& out) {
+  const Vec3f n = plane.normal;
+  const Vec3f down = -inverse_rotate(x.q, n);
+  ContactPoints points;
+  const auto add = [&](Vec3f local, std::uint32_t id) {
+    const Vec3f p = transform_point(x, local);
+    const float s = dot(n, p) - b.radius;
+    if (s <= margin) points.add(p - n * (b.radius + 0.5f * s), s, id);
+  };
+  if (b.kind == CoreKind::hull) {
+    const std::vector<Vec3f>& v = b.hull->vertices;
+    for (std::size_t i = 0; i < v.size() && points.count < ContactPoints::capacity; ++i) add(v[i], std::uint32_t(i));
+  } else if (b.kind == CoreKind::box) {
+    for (int i = 0; i < 8; ++i)
+      add({i & 1 ? b.half.x : -b.half.x, i & 2 ? b.half.y : -b.half.y, i & 4 ? b.half.z : -b.half.z}, std::uint32_t(i));
+  } else {
+    Feature f;
+    feature(b, down, f);
+    for (int i = 0; i < f.count; ++i) add(f.point[i], f.id[i]);
+  }
+  write_points(points, n, out);
+}
+
+}  // namespace carom::geometry::detail

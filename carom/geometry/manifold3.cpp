@@ -1,0 +1,178 @@
+// Contact manifolds in space: closed forms for round pairs, and the table that picks the method for any two shapes.
+#include "carom/geometry/detail/contact_points.h"
+
+namespace carom::geometry {
+namespace pairs3 {
+
+using detail::closest_on_segments;
+
+void point_point(Vec3f a, float ra, Vec3f b, float rb, float margin, std::uint32_t id, Manifold3& out) {
+  const Vec3f d = b - a;
+  const float l2 = dot(d, d), reach = ra + rb + margin;
+  if (l2 > reach * reach) return;
+  const float l = sqrt(l2);
+  const Vec3f n = l > 1e-12f ? d * (1 / l) : Vec3f{0, 1, 0};
+  const float s = l - ra - rb;
+  out.normal = n;
+  out.count = 1;
+  out.points[0] = {a + n * (ra + 0.5f * s), s, id};
+}
+
+void sphere_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache&, Manifold3& out) {
+  point_point({}, a.sphere.radius, x.p, b.sphere.radius, margin, 0, out);
+}
+
+void capsule_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache&, Manifold3& out) {
+  const float y = clamp(x.p.y, -a.capsule.half_length, a.capsule.half_length);
+  point_point({0, y, 0}, a.capsule.radius, x.p, b.sphere.radius, margin, 0, out);
+}
+
+void capsule_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache&, Manifold3& out) {
+  const float ha = a.capsule.half_length, hb = b.capsule.half_length, ra = a.capsule.radius, rb = b.capsule.radius;
+  const Vec3f axis = rotate(x.q, Vec3f{0, 1, 0});
+  const Vec3f d1{0, 2 * ha, 0}, p1{0, -ha, 0}, d2 = axis * (2 * hb), p2 = x.p - axis * hb;
+  float s, t;
+  closest_on_segments(p1, d1, p2, d2, s, t);
+  const Vec3f ca = p1 + d1 * s, cb = p2 + d2 * t, gap = cb - ca;
+  const float l2 = dot(gap, gap), reach = ra + rb + margin;
+  if (l2 > reach * reach) return;
+  // Nearly parallel: the two ends of the common stretch.
+  const float across = axis.x * axis.x + axis.z * axis.z;
+  if (across < 1e-3f && ha > 0 && hb > 0) {
+    const float y0 = p2.y, y1 = p2.y + d2.y;
+    const float low = max(-ha, min(y0, y1)), high = min(ha, max(y0, y1));
+    if (high - low > 1e-3f * min(ha, hb)) {
+      const float l = sqrt(l2);
+      const Vec3f n =
+          l > 1e-6f * (ra + rb) ? gap * (1 / l) : normalize_or(Vec3f{axis.y, -axis.x, 0}, Vec3f{1, 0, 0}, 1e-6f);
+      if (abs(n.y) < 0.1f) {
+        out.normal = n;
+        for (int k = 0; k < 2; ++k) {
+          const float y = k == 0 ? low : high;
+          const Vec3f pa{0, y, 0}, pb = p2 + d2 * ((y - y0) / (y1 - y0));
+          const float separation = dot(n, pb - pa) - ra - rb;
+          if (separation > margin) continue;
+          const Vec3f u = pa + n * ra, v = pb - n * rb;
+          out.points[out.count++] = {(u + v) * 0.5f, separation, std::uint32_t(1 + k)};
+        }
+        if (out.count > 0) return;
+      }
+    }
+  }
+  if (l2 > 1e-12f * (ra + rb) * (ra + rb)) return point_point(ca, ra, cb, rb, margin, 0, out);
+  // The axes cross: push along their common normal.
+  const Vec3f n = normalize_or(cross(d1, d2), normalize_or(cross(axis, Vec3f{1, 0, 0}), Vec3f{0, 0, 1}, 1e-3f), 1e-12f);
+  out.normal = n;
+  out.count = 1;
+  out.points[0] = {ca + n * (0.5f * (ra - rb)), -ra - rb, 0};
+}
+
+void box_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache&, Manifold3& out) {
+  const Vec3f h = a.box.half_extents, c = x.p;
+  const Vec3f q{clamp(c.x, -h.x, h.x), clamp(c.y, -h.y, h.y), clamp(c.z, -h.z, h.z)};
+  const Vec3f d = c - q;
+  const float l2 = dot(d, d), r = b.sphere.radius, reach = a.box.radius + r + margin;
+  if (l2 > reach * reach) return;
+  if (l2 > 1e-12f * dot(h, h)) return point_point(q, a.box.radius, c, r, margin, 0, out);
+  // The centre is in the box: out by the nearest face.
+  const Vec3f gap = abs(c) - h;
+  const int axis = gap.x >= gap.y && gap.x >= gap.z ? 0 : (gap.y >= gap.z ? 1 : 2);
+  Vec3f n{};
+  n[axis] = c[axis] < 0 ? -1.0f : 1.0f;
+  const float s = gap[axis] - a.box.radius - r;
+  out.normal = n;
+  out.count = 1;
+  out.points[0] = {c - n * (r + 0.5f * s), s, 0};
+}
+
+// A capsule's core against a box: the best of the box's faces and of the axes across both; two points on a face.
+void box_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache& cache,
+                 Manifold3& out) {
+  const Vec3f h = a.box.half_extents;
+  const float radius = a.box.radius + b.capsule.radius;
+  const Vec3f axis = rotate(x.q, Vec3f{0, 1, 0}), half = axis * b.capsule.half_length, reach = abs(half);
+  const Vec3f s = abs(x.p) - h - reach;
+  const int face = s.x >= s.y && s.x >= s.z ? 0 : (s.y >= s.z ? 1 : 2);
+  if (s[face] > radius + margin) return;
+  // On a face: part of the segment stands over it, and it is not deeper there than the radius allows to see.
+  Vec3f n{};
+  n[face] = x.p[face] < 0 ? -1.0f : 1.0f;
+  const int u = (face + 1) % 3, v = (face + 2) % 3;
+  float t0 = -1, t1 = 1;
+  for (const int k : {u, v}) {
+    const float p = x.p[k], d = half[k];
+    if (abs(d) < 1e-7f * h[k]) {
+      if (abs(p) > h[k]) t0 = 2;
+      continue;
+    }
+    const float ta = (-h[k] - p) / d, tb = (h[k] - p) / d;
+    t0 = max(t0, min(ta, tb)), t1 = min(t1, max(ta, tb));
+  }
+  const float slope = dot(n, half);
+  const float lowest = slope < 0 ? 1.0f : -1.0f;
+  const bool nearest_is_over = t0 <= t1 && (slope == 0 || (lowest > 0 ? t1 >= 1 - 1e-4f : t0 <= -1 + 1e-4f));
+  // Lying nearly level it is a face contact wherever it overhangs; steep, only if the lower end is over the face.
+  const bool level = abs(slope) < 0.02f * b.capsule.half_length;
+  const bool shallow = s[face] > -0.5f * min(h.x, min(h.y, h.z));
+  if (t0 <= t1 && shallow && (nearest_is_over || (level && s[face] > -1e-3f * h[face]))) {
+    out.normal = n;
+    for (int k = 0; k < 2; ++k) {
+      const float t = k == 0 ? t0 : t1;
+      const Vec3f p = x.p + half * t;
+      const float separation = n[face] * p[face] - h[face] - radius;
+      if (separation > margin) continue;
+      const Vec3f on_b = p - n * b.capsule.radius;
+      out.points[out.count++] = {on_b - n * (0.5f * separation), separation, std::uint32_t(k)};
+      if (t1 - t0 < 1e-4f) break;
+    }
+    if (out.count > 0) return;
+  }
+  detail::collide_cores(detail::convex_of(a), detail::convex_of(b), x, margin, cache, out);
+}
+
+void box_box(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache& cache, Manifold3& out) {
+  if (a.box.radius == 0 && b.box.radius == 0) return detail::collide_box_box(a.box, b.box, x, margin, cache, out);
+  detail::collide_cores(detail::convex_of(a), detail::convex_of(b), x, margin, cache, out);
+}
+
+void general(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache& cache, Manifold3& out) {
+  detail::collide_cores(detail::convex_of(a), detail::convex_of(b), x, margin, cache, out);
+}
+
+void plane_any(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache&, Manifold3& out) {
+  detail::collide_plane(a.plane, detail::convex_of(b), x, margin, out);
+}
+
+using Collide = void (*)(const Shape3&, const Shape3&, const Transform3f&, float, PairCache&, Manifold3&);
+
+template <Collide F>
+void flipped(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache& cache, Manifold3& out) {
+  F(b, a, inverse(x), margin, cache, out);
+  if (out.count > 0) detail::flip(out, x);
+}
+void none(const Shape3&, const Shape3&, const Transform3f&, float, PairCache&, Manifold3&) {}
+
+// Rows: A; columns: B; sphere, capsule, box, cylinder, cone, hull, plane.
+constexpr Collide table[7][7] = {
+    {sphere_sphere, flipped<capsule_sphere>, flipped<box_sphere>, flipped<general>, flipped<general>, flipped<general>,
+     flipped<plane_any>},
+    {capsule_sphere, capsule_capsule, flipped<box_capsule>, flipped<general>, flipped<general>, flipped<general>,
+     flipped<plane_any>},
+    {box_sphere, box_capsule, box_box, flipped<general>, flipped<general>, general, flipped<plane_any>},
+    {general, general, general, general, flipped<general>, flipped<general>, flipped<plane_any>},
+    {general, general, general, general, general, flipped<general>, flipped<plane_any>},
+    {general, general, flipped<general>, general, general, general, flipped<plane_any>},
+    {plane_any, plane_any, plane_any, plane_any, plane_any, plane_any, none},
+};
+
+}  // namespace pairs3
+
+void collide(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, PairCache& cache,
+             Manifold3& out) {
+  out.count = 0;
+  out.child = 0;
+  if (a.type > ShapeType3::plane || b.type > ShapeType3::plane) return;
+  pairs3::table[int(a.type)][int(b.type)](a, b, b_in_a, margin, cache, out);
+}
+
+}  // namespace carom::geometry
