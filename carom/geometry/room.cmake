@@ -1,0 +1,17 @@
+# glTF files are read through tinygltf (headers only; its JSON parser too), in the one source that may throw.
+set(gltf_source ${PROJECT_SOURCE_DIR}/carom/geometry/detail/mesh_gltf.cpp)
+if(CAROM_MESH_FILES AND NOT CMAKE_CROSSCOMPILING)
+  find_path(CAROM_TINYGLTF_INCLUDE tiny_gltf.h)
+  find_path(CAROM_NLOHMANN_JSON_INCLUDE nlohmann/json.hpp)
+  if(CAROM_TINYGLTF_INCLUDE AND CAROM_NLOHMANN_JSON_INCLUDE)
+    set_source_files_properties(${gltf_source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+      COMPILE_DEFINITIONS CAROM_HAVE_TINYGLTF COMPILE_OPTIONS "-fexceptions;-frtti;-w")
+    foreach(folder IN ITEMS ${CAROM_TINYGLTF_INCLUDE} ${CAROM_NLOHMANN_JSON_INCLUDE})
+      if(NOT folder STREQUAL "/usr/include")
+        target_include_directories(${target} SYSTEM PRIVATE ${folder})
+      endif()
+    endforeach()
+  else()
+    message(STATUS "Carom: tinygltf (Debian and Ubuntu: libtinygltf-dev) not found, glTF files will not be read")
+  endif()
+endif()
