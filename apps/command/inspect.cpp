@@ -120,8 +120,8 @@ int doctor(bool json) {
   findings.push_back(
       {"instruction set", std::string(math::to_string(set)) + ", " + std::to_string(math::simd_width(set)) + " lanes"});
   findings.push_back({"processors", std::to_string(std::thread::hardware_concurrency())});
-  findings.push_back({"mesh files", CAROM_WITH_MESH_FILES ? "OBJ, STL, glTF" : "no", CAROM_WITH_MESH_FILES,
-                      "install libassimp-dev and build again, for `carom mass` and meshes in scenes"});
+  findings.push_back({"mesh files", CAROM_WITH_GLTF ? "OBJ, STL, glTF, GLB" : "OBJ, STL", CAROM_WITH_GLTF != 0,
+                      "configure with -DCAROM_MESH_FILES=ON for glTF"});
   findings.push_back(
       {"server", CAROM_WITH_SERVER ? "yes" : "no", CAROM_WITH_SERVER, "install libboost-dev and build again"});
   const std::string page = page_folder();

@@ -69,7 +69,7 @@ class CollisionLab3 final : public Repeatable<CollisionLab3, Demo3> {
     steel_shape.material = {0.0f, 1.0f};
     for (int i = 0; i < 5; ++i) {
       body.name = "row";
-      body.position = {-0.5 + 0.402 * i, 0.2 + 1e-4, -2.2};
+      body.position = {-0.5 + 0.43 * i, 0.2 + 1e-4, -2.2};
       row_.push_back(stage.add(body, geometry::Sphere{0.2f}, steel_shape, i == 0 ? red : steel));
     }
     launch(stage);
@@ -133,7 +133,7 @@ class CollisionLab3 final : public Repeatable<CollisionLab3, Demo3> {
     const Quatf edge{0.9238795f, 0, 0, 0.3826834f};  // 45° about z: lands on an edge
     throw_one(stage, cube_, {-v * lead, 0.30 + up, 1.3}, edge, {float(0.5 * v), -float(fall), 0});
     for (std::size_t i = 0; i < row_.size(); ++i)
-      throw_one(stage, row_[i], {(i == 0 ? -1.5 : -0.5 + 0.402 * double(i)), 0.2001, -2.2}, {},
+      throw_one(stage, row_[i], {(i == 0 ? -1.5 : -0.5 + 0.43 * double(i)), 0.2001, -2.2}, {},
                 {i == 0 ? 3.0f : 0.0f, 0, 0}, false);
     bounced_ = false;
     trail_.clear();

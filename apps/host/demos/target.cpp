@@ -69,7 +69,10 @@ class Target final : public Repeatable<Target, Demo3> {
     body.name = "cannon";
     rigid::ShapeDef<Dim3> tube;
     tube.local.p = {0, 7, 0};
-    cannon_ = stage.add(body, {{geometry::Cylinder{9, 2.2f}, tube}, {geometry::Sphere{5}, {}}}, steel);
+    // The cannon is only looked at.
+    rigid::ShapeDef<Dim3> carriage;
+    tube.filter.mask = carriage.filter.mask = 0;
+    cannon_ = stage.add(body, {{geometry::Cylinder{9, 2.2f}, tube}, {geometry::Sphere{5}, carriage}}, steel);
     aim(stage);
   }
 
@@ -128,8 +131,8 @@ class Target final : public Repeatable<Target, Demo3> {
     shape.density = 7850;
     shape.material.restitution = 0.3f;
     shape.material.rolling_resistance = 0.1f;
-    shape.filter.mask = 1;
-    shape.filter.category = 2;
+    // In flight it meets nothing but gravity, as in the formula; what it hits is found by the sweep in `follow`.
+    shape.filter.mask = 0;
     shells_.push_back(stage.add(body, geometry::Sphere{shell_radius_}, shape, dark));
     shot_time_ = stage.world().time();
     start_ = last_ = muzzle;
@@ -160,19 +163,27 @@ class Target final : public Repeatable<Target, Demo3> {
     const double entry = sweep(last_, p, half + shell_radius_);
     if (entry <= 1) {
       ++hits_;
-      in_flight_ = false;
+      land(stage);
       hit_time_ = t - stage.declaration().dt * (1 - entry);
       stage.say(
           format("hit after %.2f s at %.0f m/s", hit_time_, length(Vec3d(stage.at(shells_.back()).linear_velocity))));
     } else if (p.y <= shell_radius_ && velocity_.y - g_ * t < 0) {
-      in_flight_ = false;
+      land(stage);
       const double off = distance(Vec3d{p.x, 0, p.z}, Vec3d{target_.x, 0, target_.z});
       stage.say(format("ground after %.2f s, %.1f m away; %.0f m from the target", t, length2(p), off));
     } else if (t > 60) {
-      in_flight_ = false;
+      land(stage);
       stage.say("timed out after 60 s");
     }
     last_ = p;
+  }
+
+  /// From the first hit on, the shell is a body among others.
+  void land(Stage3& stage) {
+    in_flight_ = false;
+    std::vector<rigid::ShapeId> shapes;
+    stage.world().shapes(shells_.back(), shapes);
+    for (const rigid::ShapeId shape : shapes) stage.check(stage.world().set_filter(shape, {}));
   }
 
   /// The fraction of the way from a to b at which the segment enters the target's cube, or 2.
