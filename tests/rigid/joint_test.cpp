@@ -317,6 +317,44 @@ TYPED_TEST(Joints, DestroyingABodyDestroysItsJoints) {
   world.step(frame).value();
 }
 
+TEST(Joints3, JointedBodiesSleepAndWakeTogether) {
+  World3 world(WorldDef<Dim3>{.gravity = {}});
+  BallJointDef<Dim3> def;
+  def.body_a = add_mass(world, 0, 0, 1, 0.1);
+  def.body_b = add_mass(world, 1, 0, 1, 0.1);
+  def.frame_a.p = {0.5f, 0, 0};
+  def.frame_b.p = {-0.5f, 0, 0};
+  const JointId joint = world.create_joint(def).value();
+  for (int i = 0; i < 60; ++i) world.step(frame).value();
+  EXPECT_FALSE(state_of(world, def.body_a).awake);
+  EXPECT_FALSE(state_of(world, def.body_b).awake);
+  world.set_velocity(def.body_a, {1, 0, 0}, {}).value();
+  for (int i = 0; i < 30; ++i) world.step(frame).value();
+  EXPECT_TRUE(state_of(world, def.body_b).awake);
+  EXPECT_NEAR(state_of(world, def.body_b).linear_velocity.x, 0.5, 1e-3);
+  EXPECT_LT(world.joint_state(joint).value().linear_error, 1e-3f);
+}
+
+TEST(Joints3, ConnectedBodiesCollideOnlyWhereAsked) {
+  for (const bool collide : {false, true}) {
+    World3 world(weightless<Dim3>());
+    BallJointDef<Dim3> def;
+    def.body_a = world.create_body({.position = {0, 0, 0}}).value();
+    def.body_b = world.create_body({.position = {0.9, 0, 0}}).value();
+    world.add_shape(def.body_a, geometry::Sphere{0.5f}).value();
+    world.add_shape(def.body_b, geometry::Sphere{0.5f}).value();
+    def.frame_a.p = {0.45f, 0, 0};
+    def.frame_b.p = {-0.45f, 0, 0};
+    def.collide_connected = collide;
+    const JointId joint = world.create_joint(def).value();
+    for (int i = 0; i < 5; ++i) world.step(frame).value();
+    EXPECT_EQ(world.counters().touching_contacts, collide ? 1 : 0);
+    world.destroy_joint(joint).value();
+    for (int i = 0; i < 5; ++i) world.step(frame).value();
+    EXPECT_EQ(world.counters().contacts, 1) << "the pair is looked for again";
+  }
+}
+
 TEST(Joints3, HingeKeepsItsAxis) {
   WorldDef<Dim3> definition;
   definition.allow_sleep = false;
