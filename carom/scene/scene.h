@@ -97,7 +97,8 @@ class CAROM_API Scene {
   Result<SceneWorld> instantiate(std::span<const ParameterValue> values = {},
                                  const InstantiateOptions& options = {}) const;
   /// The expectations with these values in place of the defaults: expected numbers may be expressions of parameters.
-  Result<std::vector<Expectation>> expectations_for(const SceneWorld& world, std::span<const ParameterValue> values) const;
+  Result<std::vector<Expectation>> expectations_for(const SceneWorld& world,
+                                                    std::span<const ParameterValue> values) const;
   /// Puts what a running world can change to the given values: gravity, effectors, joint motors, limits and springs,
   /// materials, damping. Bodies stay where they are.
   Status apply(SceneWorld& world, std::span<const ParameterValue> values) const;

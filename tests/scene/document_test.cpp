@@ -16,7 +16,8 @@ std::string error_of(std::string_view text, const Resolver& resolver = {}) {
 bool holds(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 TEST(Document, KnowsTheLineOfEveryValue) {
-  const auto node = detail::parse_document("// a comment\n{\n \"a\": 12,\n \"b\": [true,\n  \"x\"], /* and\n another */ \"c\": null\n}\n", "t", 0);
+  const auto node = detail::parse_document(
+      "// a comment\n{\n \"a\": 12,\n \"b\": [true,\n  \"x\"], /* and\n another */ \"c\": null\n}\n", "t", 0);
   ASSERT_TRUE(node.ok()) << node.error().message;
   EXPECT_EQ(node->find("a")->line, 3);
   EXPECT_EQ(node->find("a")->number, 12);
@@ -26,7 +27,8 @@ TEST(Document, KnowsTheLineOfEveryValue) {
 }
 
 TEST(Document, RefusesWhatIsNotJson) {
-  for (const char* bad : {"", "{", "[1,2", "{\"a\":}", "{\"a\":1,}", "nul", "\"\\x\"", "{\"a\":1e999}", "{\"a\":1}{}", "\xff", "{\"a\":1,\"a\":2}"}) {
+  for (const char* bad : {"", "{", "[1,2", "{\"a\":}", "{\"a\":1,}", "nul", "\"\\x\"", "{\"a\":1e999}", "{\"a\":1}{}",
+                          "\xff", "{\"a\":1,\"a\":2}"}) {
     const auto node = detail::parse_document(bad, "t", 0);
     EXPECT_FALSE(node.ok()) << bad;
     if (!node.ok()) EXPECT_EQ(node.error().message.rfind("t:1: ", 0), 0u) << node.error().message;
@@ -43,12 +45,16 @@ TEST(Document, LimitsDepthAndSize) {
 }
 
 TEST(Document, ShortestDigitsRestoreTheBits) {
-  for (const double v : {0.1, 1.0 / 3, 1e-310, -9.80665, 6.02214076e23}) EXPECT_EQ(std::strtod(detail::shortest(v).c_str(), nullptr), v);
+  for (const double v : {0.1, 1.0 / 3, 1e-310, -9.80665, 6.02214076e23})
+    EXPECT_EQ(std::strtod(detail::shortest(v).c_str(), nullptr), v);
 }
 
 TEST(SceneErrors, NameFileLinePathFoundAndExpected) {
-  const std::string e = error_of("{\n\"bodies\": [\n{},\n{\"shape\": {\"type\": \"sphere\"},\n\"mass\": \"1200 kgg\"}\n]}");
-  EXPECT_EQ(e.rfind("scenes/wall.json:5: bodies[1].mass: found \"1200 kgg\", expected a mass such as \"1200 kg\"", 0), 0u) << e;
+  const std::string e =
+      error_of("{\n\"bodies\": [\n{},\n{\"shape\": {\"type\": \"sphere\"},\n\"mass\": \"1200 kgg\"}\n]}");
+  EXPECT_EQ(e.rfind("scenes/wall.json:5: bodies[1].mass: found \"1200 kgg\", expected a mass such as \"1200 kg\"", 0),
+            0u)
+      << e;
   EXPECT_TRUE(holds(e, "kg")) << e;
 }
 
@@ -59,7 +65,10 @@ TEST(SceneErrors, SuggestTheNearestKey) {
 }
 
 TEST(SceneErrors, CoverEveryKindOfField) {
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"[]", "expected an object (scene)"},
       {"{\"dimension\": 4}", "a whole number from 2 to 3"},
       {"{\"dimension\": \"two\"}", "dimension: found \"two\", expected a plain number"},
@@ -70,7 +79,8 @@ TEST(SceneErrors, CoverEveryKindOfField) {
       {"{\"bodies\": [{\"type\": \"dynamc\"}]}", "did you mean \"dynamic\""},
       {"{\"bodies\": [{\"shape\": {\"type\": \"sphere\", \"radius\": -1}}]}", "bodies[0].shape"},
       {"{\"bodies\": [{\"shape\": {\"radius\": 1}}]}", "the key \"type\" is missing in a shape"},
-      {"{\"bodies\": [{\"shape\": \"brik\"}], \"shapes\": {\"brick\": {\"type\": \"sphere\"}}}", "did you mean \"brick\""},
+      {"{\"bodies\": [{\"shape\": \"brik\"}], \"shapes\": {\"brick\": {\"type\": \"sphere\"}}}",
+       "did you mean \"brick\""},
       {"{\"bodies\": [{\"shape\": {\"type\": \"circle\"}}]}", "a scene of dimension 3 does not have"},
       {"{\"bodies\": [{\"color\": \"red\"}]}", "expected a color such as"},
       {"{\"bodies\": [{\"name\": \"a\"}, {\"name\": \"a\"}]}", "a second time"},
@@ -78,14 +88,20 @@ TEST(SceneErrors, CoverEveryKindOfField) {
       {"{\"bodies\": [{\"locks\": [\"rotationx\"]}]}", "did you mean \"rotation_x\""},
       {"{\"bodies\": [{\"position\": [\"=1/0\", 0, 0]}]}", "not finite"},
       {"{\"bodies\": [{\"position\": [\"=1 m + 2 s\", 0, 0]}]}", "a sum needs two of one kind"},
-      {"{\"bodies\": [{\"position\": [\"=sped\", 0, 0]}], \"parameters\": {\"speed\": {\"value\": 1, \"minimum\": 0, \"maximum\": 2}}}", "did you mean \"speed\""},
-      {"{\"joints\": [{\"type\": \"ball\", \"body_a\": \"x\", \"body_b\": \"y\", \"anchor\": [0,0,0]}]}", "expected the name of a body"},
+      {"{\"bodies\": [{\"position\": [\"=sped\", 0, 0]}], \"parameters\": {\"speed\": {\"value\": 1, \"minimum\": 0, "
+       "\"maximum\": 2}}}",
+       "did you mean \"speed\""},
+      {"{\"joints\": [{\"type\": \"ball\", \"body_a\": \"x\", \"body_b\": \"y\", \"anchor\": [0,0,0]}]}",
+       "expected the name of a body"},
       {"{\"joints\": [{\"type\": \"hinge\"}]}", "the key \"body_a\" is missing"},
       {"{\"joints\": [{}]}", "the key \"type\" is missing in a joint"},
       {"{\"effectors\": [{\"type\": \"thrust\", \"body\": \"rocket\"}]}", "expected the name of a body"},
-      {"{\"parameters\": {\"a\": {\"value\": \"3 kg\", \"minimum\": \"0 m\", \"maximum\": \"5 kg\"}}}", "expected a mass like the value"},
+      {"{\"parameters\": {\"a\": {\"value\": \"3 kg\", \"minimum\": \"0 m\", \"maximum\": \"5 kg\"}}}",
+       "expected a mass like the value"},
       {"{\"parameters\": {\"a\": {\"value\": 9, \"minimum\": 0, \"maximum\": 5}}}", "from minimum to maximum"},
-      {"{\"plots\": [{\"title\": \"t\", \"series\": [{\"name\": \"s\", \"quantity\": \"boll.speed\"}]}], \"bodies\": [{\"name\": \"ball\"}]}", "did you mean \"ball\""},
+      {"{\"plots\": [{\"title\": \"t\", \"series\": [{\"name\": \"s\", \"quantity\": \"boll.speed\"}]}], \"bodies\": "
+       "[{\"name\": \"ball\"}]}",
+       "did you mean \"ball\""},
       {"{\"expectations\": [{\"quantity\": \"time\", \"expected\": \"3 m\", \"tolerance\": 0}]}", "expected a time"},
       {"{\"include\": [\"../secret.json\"]}", "without \"..\""},
       {"{\"bodies\": [{\"preset\": \"ball/golf\"}]}", "no folder to read from"},
@@ -106,10 +122,12 @@ TEST(SceneErrors, IncludesKnowTheirOwnFileAndCycles) {
     if (path == "loop.json") return std::string("{\"include\": [\"loop.json\"]}");
     if (path == "sub/b.json") return std::string("{\"include\": [\"c.json\"]}");
     if (path == "sub/c.json") return std::string("{\"bodies\": [{\"name\": \"deep\"}]}");
-    if (path == "presets/p.json") return std::string("{\"description\": \"d\", \"source\": \"s\", \"values\": {\"mas\": 1}}");
+    if (path == "presets/p.json")
+      return std::string("{\"description\": \"d\", \"source\": \"s\", \"values\": {\"mas\": 1}}");
     return core::Error{"no such file"};
   };
-  EXPECT_TRUE(holds(error_of("{\"include\": [\"a.json\"]}", files), "scenes/a.json:2: bodies[0].masss")) << error_of("{\"include\": [\"a.json\"]}", files);
+  EXPECT_TRUE(holds(error_of("{\"include\": [\"a.json\"]}", files), "scenes/a.json:2: bodies[0].masss"))
+      << error_of("{\"include\": [\"a.json\"]}", files);
   EXPECT_TRUE(holds(error_of("{\"include\": [\"loop.json\"]}", files), "includes itself"));
   EXPECT_TRUE(holds(error_of("{\"include\": [\"none.json\"]}", files), "no such file"));
   EXPECT_TRUE(holds(error_of("{\"bodies\": [{\"preset\": \"p\"}]}", files), "presets/p.json:1: bodies[0].mas"));

@@ -32,6 +32,9 @@ TEST(Expression, CarriesUnits) {
   EXPECT_DOUBLE_EQ(value_of("3 km + 200 m"), 3200);
   EXPECT_DOUBLE_EQ(value_of("30 mph"), 13.4112);
   EXPECT_DOUBLE_EQ(value_of("9.81 m/s^2 * 2 s"), 19.62);
+  EXPECT_DOUBLE_EQ(value_of("6 kg/m^3/pi*pi"), 6) << "a name after a slash is no unit";
+  EXPECT_DOUBLE_EQ(value_of("2 m*min(3, 4)"), 6) << "a function is no minute";
+  EXPECT_DOUBLE_EQ(value_of("2 N*m + 3 kg*m^2/s^2"), 5);
   const auto e = parse_expression("sqrt(2*9.81 m/s^2*5 m)");
   ASSERT_TRUE(e.ok());
   const auto d = check_expression(*e, {});
@@ -40,7 +43,8 @@ TEST(Expression, CarriesUnits) {
 }
 
 TEST(Expression, RefusesWhatMakesNoSense) {
-  for (const char* bad : {"", "1 +", "(1", "1)", "foo(1)", "sqrt(1, 2)", "1 kgg", "2 ^ x", "@", "1..2", "min(1)", "a b"})
+  for (const char* bad :
+       {"", "1 +", "(1", "1)", "foo(1)", "sqrt(1, 2)", "1 kgg", "2 ^ x", "@", "1..2", "min(1)", "a b"})
     EXPECT_FALSE(parse_expression(bad).ok()) << bad;
   for (const char* bad : {"1 m + 1 s", "1 m < 2 kg", "sin(1 m)", "sqrt(1 m)", "min(1 m, 1 s)", "if(1, 1 m, 1 s)"}) {
     const auto e = parse_expression(bad);

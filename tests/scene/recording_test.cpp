@@ -134,8 +134,10 @@ TEST(Recording, TellsOfEveryFlippedBit) {
     bool told = !r->complete() || !r->damage().empty();
     for (std::size_t k = 0; k < r->frame_count(); ++k) {
       const Result<RecordedFrame> f = r->frame(k);
-      if (!f.ok()) told = true;
-      else expect_same(*f, frame_of(int(k), 3));
+      if (!f.ok())
+        told = true;
+      else
+        expect_same(*f, frame_of(int(k), 3));
     }
     // Four bytes of the preamble are reserved: nothing reads them.
     EXPECT_TRUE(told || (i >= 12 && i < 16)) << "byte " << i;
@@ -145,10 +147,12 @@ TEST(Recording, TellsOfEveryFlippedBit) {
 TEST(Recording, IsCompactWhereMotionIsSmooth) {
   RecordedFrame f;
   std::vector<std::uint8_t> bytes;
-  Result<Recorder> recorder = Recorder::open([&](std::span<const std::uint8_t> part) -> Status {
-    bytes.insert(bytes.end(), part.begin(), part.end());
-    return {};
-  }, header_of(3), {1000});
+  Result<Recorder> recorder = Recorder::open(
+      [&](std::span<const std::uint8_t> part) -> Status {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+        return {};
+      },
+      header_of(3), {1000});
   const int bodies = 200, frames = 100;
   for (int k = 0; k < frames; ++k) {
     f.step = std::uint64_t(k);

@@ -205,9 +205,11 @@ class Builder final : public BodyNames {
     const std::size_t had = what == "bodies"   ? own_bodies()
                             : what == "joints" ? out_.joints.size()
                                                : out_.effectors.size();
-    if (next_ != had)
-      reader_.fail(document_.main(), what,
-                   "this value changes how many " + std::string(what) + " there are: restart the scene");
+    if (next_ != had) count_changed(what);
+  }
+  void count_changed(std::string_view what) {
+    reader_.fail(document_.main(), what,
+                 "this value changes how many " + std::string(what) + " there are: restart the scene");
   }
   std::size_t own_bodies() const {
     // The body "world" that joints may have made is not in any list.
@@ -304,7 +306,7 @@ class Builder final : public BodyNames {
   }
 
   void update_body(const Object& o, const BodyDef<D>& def, const std::vector<ReadShape<D>>& shapes) {
-    if (next_ >= out_.bodies.size()) return check_count("bodies");
+    if (next_ >= out_.bodies.size()) return count_changed("bodies");
     const BodyId id = out_.bodies[next_++].id;
     std::vector<ShapeId> ids;
     world().shapes(id, ids);
@@ -326,7 +328,7 @@ class Builder final : public BodyNames {
     ReadJoint<D> joint;
     if (!read_joint<D>(reader_, *this, world(), o, joint)) return;
     if (update_) {
-      if (next_ >= out_.joints.size()) return check_count("joints");
+      if (next_ >= out_.joints.size()) return count_changed("joints");
       const JointId id = out_.joints[next_++].id;
       if (joint.has_spring && !reader_.accept(world().set_spring(id, joint.spring), node, path)) return;
       if (joint.has_limit && !reader_.accept(world().set_limit(id, joint.limit), node, path)) return;
@@ -346,7 +348,7 @@ class Builder final : public BodyNames {
     EffectorDef<D> def;
     if (!read_effector<D>(reader_, *this, o, def)) return;
     if (update_) {
-      if (next_ >= out_.effectors.size()) return check_count("effectors");
+      if (next_ >= out_.effectors.size()) return count_changed("effectors");
       reader_.accept(world().set_effector(out_.effectors[next_++].id, def), node, path);
       return;
     }

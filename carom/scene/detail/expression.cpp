@@ -147,7 +147,7 @@ class ExpressionParser {
     const std::size_t number_end = at_;
     skip();
     const std::size_t unit = at_;
-    // A unit is one run without spaces: letters, ^ with its exponent, and / or · before another letter.
+    // A unit is one run without spaces: letters, ^ with its exponent, and / or * before another letter.
     while (at_ < text_.size()) {
       const char c = text_[at_];
       if (is_letter(c) || c == '%')
@@ -158,7 +158,7 @@ class ExpressionParser {
         if (next >= text_.size() || !is_digit(text_[next])) break;
         while (next < text_.size() && is_digit(text_[next])) ++next;
         at_ = next;
-      } else if (c == '/' && at_ > unit && at_ + 1 < text_.size() && is_letter(text_[at_ + 1])) {
+      } else if ((c == '/' || c == '*') && at_ > unit && at_ + 1 < text_.size() && is_letter(text_[at_ + 1])) {
         ++at_;
       } else {
         break;
@@ -168,7 +168,20 @@ class ExpressionParser {
       at_ = number_end;
       return emit(Code::constant, 0, value);
     }
-    const core::Result<Quantity> quantity = parse_quantity(text_.substr(start, at_ - start));
+    // "600 kg/m^3/water" divides by a name and "2 m*min(" calls a function: what is no unit after the last sign is not
+    // part of the unit.
+    const auto previous_factor = [&](std::size_t end) {
+      const std::size_t sign = text_.find_last_of("/*", end - 1);
+      return sign == std::string_view::npos || sign <= unit ? unit : sign;
+    };
+    if (at_ < text_.size() && text_[at_] == '(' && previous_factor(at_) > unit) at_ = previous_factor(at_);
+    core::Result<Quantity> quantity = parse_quantity(text_.substr(start, at_ - start));
+    for (std::size_t end = previous_factor(at_); !quantity.ok() && end > unit; end = previous_factor(end)) {
+      core::Result<Quantity> shorter = parse_quantity(text_.substr(start, end - start));
+      if (!shorter.ok()) continue;
+      quantity = shorter;
+      at_ = end;
+    }
     if (!quantity) {
       at_ = unit;
       return fail(quantity.error().message);

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <map>
 
-#include "carom/core/spelling.h"
+#include "carom/geometry/mesh_file.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -100,8 +100,59 @@ class PartReader {
         }
       }
     }
+    if (node.is_object() && node.find("file") != nullptr && node.find("type") != nullptr)
+      if (const core::Status read = read_mesh(node, from); !read) return read;
     for (Node& child : node.children)
       if (const core::Status merged = merge_presets(child, from, depth); !merged) return merged;
+    return {};
+  }
+
+  /// Puts vertices and indices of a mesh file into the shape that names it.
+  core::Status read_mesh(Node& shape, const std::string& from) {
+    const Node file = *shape.find("file");
+    const bool hull = shape.find("type")->text == "hull";
+    if (!hull && shape.find("type")->text != "mesh")
+      return error(file, "file", "only meshes and hulls are read from files");
+    if (shape.find("vertices") != nullptr || shape.find("points") != nullptr || shape.find("indices") != nullptr)
+      return error(file, "file", "found a file beside vertices, points or indices, expected one of them");
+    if (!file.is_text() || !is_inside(file.text))
+      return error(file, "file", "found " + show(file) + ", expected the name of a mesh file, without \"..\"");
+    if (!resolver_) return error(file, "file", "found a mesh file, but this scene has no folder to read from");
+    const core::Result<std::string> bytes = resolver_(folder_of(from) + file.text);
+    if (!bytes) return error(file, "file", bytes.error().message);
+    geometry::MeshFileOptions options;
+    options.max_triangles = 500000;
+    const core::Result<geometry::MeshFile> mesh =
+        geometry::parse_mesh(*bytes, geometry::detect_mesh_format(file.text, *bytes), options, file.text);
+    if (!mesh) return error(file, "file", mesh.error().message);
+    if ((mesh_values_ += mesh->vertices.size() + mesh->indices.size()) > 4000000)
+      return error(file, "file", "the meshes of this scene have more than four million numbers");
+    Node like;
+    like.file = file.file;
+    like.line = file.line;
+    like.column = file.column;
+    const auto number = [&like](double value) {
+      Node n = like;
+      n.kind = NodeKind::number;
+      n.number = value;
+      return n;
+    };
+    Node points = like;
+    points.kind = NodeKind::array;
+    for (const math::Vec3d& v : mesh->vertices) {
+      Node point = like;
+      point.kind = NodeKind::array;
+      for (int i = 0; i < 3; ++i) point.children.push_back(number(v[i]));
+      points.children.push_back(std::move(point));
+    }
+    shape.keys.push_back(hull ? "points" : "vertices");
+    shape.children.push_back(std::move(points));
+    if (hull) return {};
+    Node indices = like;
+    indices.kind = NodeKind::array;
+    for (const std::uint32_t i : mesh->indices) indices.children.push_back(number(double(i)));
+    shape.keys.push_back("indices");
+    shape.children.push_back(std::move(indices));
     return {};
   }
 
@@ -143,7 +194,7 @@ class PartReader {
   std::string shown_folder_;
   std::vector<std::string> chain_, included_;
   std::map<std::string, Node> presets_;
-  std::size_t merged_ = 0;
+  std::size_t merged_ = 0, mesh_values_ = 0;
 };
 
 }  // namespace

@@ -149,7 +149,8 @@ bool read_hull(Reader& reader, const Object& o, geometry::Shape3& out) {
   const char* key = o.has("points") ? "points" : "vertices";
   if (!needs(reader, o, key, "hull")) return false;
   std::vector<Vec3f> points;
-  for (const Vec3d& p : reader.points(o, key)) points.emplace_back(p);
+  const double scale = reader.number(o, "scale", 1);
+  for (const Vec3d& p : reader.points(o, key)) points.emplace_back(p * scale);
   geometry::HullOptions options;
   options.radius = radius_of(reader, o, 0);
   options.simplify = reader.flag(o, "simplify", false);
@@ -161,7 +162,8 @@ bool read_hull(Reader& reader, const Object& o, geometry::Shape3& out) {
 bool read_mesh(Reader& reader, const Object& o, geometry::Shape3& out) {
   if (!needs(reader, o, "vertices", "mesh") || !needs(reader, o, "indices", "mesh")) return false;
   std::vector<Vec3f> vertices;
-  for (const Vec3d& p : reader.points(o, "vertices")) vertices.emplace_back(p);
+  const double scale = reader.number(o, "scale", 1);
+  for (const Vec3d& p : reader.points(o, "vertices")) vertices.emplace_back(p * scale);
   std::vector<std::uint32_t> indices;
   for (const double i : reader.numbers(o, "indices")) {
     if (!(i >= 0 && i < 4294967295.0) || i != __builtin_floor(i))
