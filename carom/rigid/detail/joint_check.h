@@ -126,4 +126,8 @@ void check_joint(Complaint& c, const MouseJointDef<D>& d) {
   c.not_negative("max_force", d.max_force);
 }
 
+/// q of unit length. What is so already, to rounding, keeps its bits: a world that is saved and loaded stays the same.
+inline Rot2f unit_rotation(Rot2f q) { return abs(q.c * q.c + q.s * q.s - 1) < 1e-6f ? q : normalize(q); }
+inline Quatf unit_rotation(const Quatf& q) { return abs(dot(q, q) - 1) < 1e-6f ? q : normalize(q); }
+
 }  // namespace carom::rigid::detail

@@ -79,7 +79,7 @@ template <class D> Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   bodies.motion[slot] = {};
   bodies.record[slot] = {};
   bodies.birth[slot] = self_->births++;
-  bodies.pose[slot] = {d.position, normalize(d.rotation)};
+  bodies.pose[slot] = {d.position, unit_rotation(d.rotation)};
   BodyMotion<D>& m = bodies.motion[slot];
   m.center = d.position;
   m.linear_damping = d.linear_damping;
@@ -249,7 +249,7 @@ template <class D> Status World<D>::set_pose(BodyId body, Position position, Rot
   if (!complaint.none_yet()) return complaint.error();
   wake_body(*self_, *slot);
   wake_touching(*self_, *slot);
-  self_->bodies.pose[std::size_t(*slot)] = {position, normalize(rotation)};
+  self_->bodies.pose[std::size_t(*slot)] = {position, unit_rotation(rotation)};
   center_from_pose(*self_, *slot);
   update_world_inertia(*self_, *slot);
   refresh_bounds(*self_, *slot);

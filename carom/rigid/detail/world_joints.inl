@@ -33,8 +33,8 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   check_joint(complaint, def);
   if (!complaint.none_yet()) return complaint.error();
 
-  def.frame_a.q = normalize(def.frame_a.q);
-  def.frame_b.q = normalize(def.frame_b.q);
+  def.frame_a.q = unit_rotation(def.frame_a.q);
+  def.frame_b.q = unit_rotation(def.frame_b.q);
   JointStore<D>& joints = world.joints;
   const JointId id = joints.slots.allocate();
   const std::size_t slot = std::size_t(joints.slots.slot(id));

@@ -117,7 +117,7 @@ template <class D> Result<ShapeId> World<D>::add_shape(BodyId body, const Shape&
   s.flags = moved;
   s.geometry = shape;
   s.local = d.local;
-  s.local.q = normalize(d.local.q);
+  s.local.q = unit_rotation(d.local.q);
   s.at_origin = s.local == typename D::Transform{};
   s.body = *slot;
   s.density = d.density;
