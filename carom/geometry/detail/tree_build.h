@@ -130,9 +130,10 @@ std::size_t binned_split(std::span<BuildItem<V>> items, int depth) {
     if (size[i] > size[axis]) axis = i;
   if (!(size[axis] > T(0))) return count / 2;
 
-  const T low = centers.low[axis], scale = T(bins) / size[axis];
+  const T low = centers.low[axis], extent = size[axis];
   const auto bin_of = [&](const BuildItem<V>& item) {
-    const int b = int((item.box.center()[axis] - low) * scale);
+    // Divided first: the reciprocal of a subnormal extent would be infinite.
+    const int b = int((item.box.center()[axis] - low) / extent * T(bins));
     return b < 0 ? 0 : (b >= bins ? bins - 1 : b);
   };
   std::size_t counts[bins] = {};
