@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "carom/math/elementary.h"
+
 namespace carom::command {
 
 using namespace math;
@@ -305,8 +307,9 @@ Image render(const RasterScene& scene, int width, int height) {
                        std::sqrt(std::clamp(double(c.z), 0.0, 1.0))};
         }
       sum = sum * (255.0 / (samples * samples));
-      image.pixels[std::size_t(y) * width + x] =
-          std::uint32_t(sum.x + 0.5) << 16 | std::uint32_t(sum.y + 0.5) << 8 | std::uint32_t(sum.z + 0.5);
+      image.pixels[std::size_t(y) * width + x] = std::uint32_t(math::round(sum.x)) << 16 |
+                                                 std::uint32_t(math::round(sum.y)) << 8 |
+                                                 std::uint32_t(math::round(sum.z));
     }
   }
   return image;

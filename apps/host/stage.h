@@ -10,6 +10,7 @@
 
 #include "apps/host/declaration.h"
 #include "apps/host/views.h"
+#include "carom/math/elementary.h"
 #include "carom/rigid/world.h"
 
 namespace carom::host {
@@ -23,7 +24,7 @@ class StageBase {
   /// A parameter's value now (SI). An unknown name is a mistake in the demo: it fails the stage and gives 0.
   double value(std::string_view name);
   float valuef(std::string_view name) { return float(value(name)); }
-  int count(std::string_view name) { return int(value(name) + 0.5); }
+  int count(std::string_view name) { return int(math::round(value(name))); }
   /// What an input holds now (−1 … 1), 0 when released.
   double input(std::string_view action) const;
   /// How often a `press` input was pressed since last asked.

@@ -190,10 +190,10 @@ class CAROM_API DynamicTree {
   int count_ = 0;
 };
 
-extern template class DynamicTree<Vec2d>;
-extern template class DynamicTree<Vec3d>;
-extern template class DynamicTree<Vec2f>;
-extern template class DynamicTree<Vec3f>;
+extern template class CAROM_API DynamicTree<Vec2d>;
+extern template class CAROM_API DynamicTree<Vec3d>;
+extern template class CAROM_API DynamicTree<Vec2f>;
+extern template class CAROM_API DynamicTree<Vec3f>;
 using DynamicTree2 = DynamicTree<Vec2d>;
 using DynamicTree3 = DynamicTree<Vec3d>;
 

@@ -144,8 +144,8 @@ template <class D> class CAROM_API World {
   std::unique_ptr<Implementation> self_;
 };
 
-extern template class World<Dim2>;
-extern template class World<Dim3>;
+extern template class CAROM_API World<Dim2>;
+extern template class CAROM_API World<Dim3>;
 using World2 = World<Dim2>;
 using World3 = World<Dim3>;
 
