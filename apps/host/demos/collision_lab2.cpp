@@ -86,7 +86,7 @@ class CollisionLab2 final : public Repeatable<CollisionLab2, Demo2> {
       (void)begin;
       met_ = true;
     }
-    if (met_ && stage.world().events().contact_end.size() > 0 && after_a_ == 0 && after_b_ == 0) {
+    if (met_ && !stage.world().events().contact_end.empty() && after_a_ == 0 && after_b_ == 0) {
       after_a_ = a.linear_velocity.x;
       after_b_ = b.linear_velocity.x;
       stage.say(format("after the impact: left %.3f m/s, right %.3f m/s, impulse %.3f N·s", after_a_, after_b_,
