@@ -66,7 +66,7 @@ struct ClipPoint {
 }  // namespace
 
 void clip_to_face(const Feature& ref, float radius_r, const Feature& inc, float radius_i, float margin,
-                  std::uint32_t tag, ContactPoints& out) {
+                  std::uint32_t tag, ContactPoints& out, float widen) {
   ClipPoint buffer[2][56];
   ClipPoint* in = buffer[0];
   ClipPoint* next = buffer[1];
@@ -76,7 +76,7 @@ void clip_to_face(const Feature& ref, float radius_r, const Feature& inc, float 
   for (int e = 0; e < ref.count && count > 0; ++e) {
     const Vec3f a = ref.point[e], b = ref.point[e + 1 < ref.count ? e + 1 : 0];
     const Vec3f side = cross(b - a, ref.normal);  // outward
-    const float tolerance = 1e-5f * dot(side, side);
+    const float tolerance = max(1e-5f * dot(side, side), widen * length(side));
     float offset[56];
     bool all = true;
     for (int i = 0; i < count; ++i) {

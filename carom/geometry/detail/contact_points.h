@@ -22,8 +22,9 @@ void write_points(const ContactPoints& points, Vec3f normal, Manifold3& out);
 
 /// Clips `incident` to the prism over the polygon `reference` and adds what lies within `margin` of its face.
 /// Separations are along reference.normal. `radius_r`, `radius_i` are swept off. `tag` marks the features' names.
+/// Corners up to `widen` m outside the prism count as inside.
 void clip_to_face(const Feature& reference, float radius_r, const Feature& incident, float radius_i, float margin,
-                  std::uint32_t tag, ContactPoints& out);
+                  std::uint32_t tag, ContactPoints& out, float widen = 0);
 
 /// The same manifold seen from the other shape: `a_in_b` is the pose of its frame in the other's.
 void flip(Manifold3& m, const Transform3f& a_in_b);
@@ -37,7 +38,10 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& b_in_a, 
 void collide_box_box(const Box& a, const Box& b, const Transform3f& b_in_a, float margin, PairCache& cache,
                      Manifold3& out);
 void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_a, float margin, Manifold3& out);
-void collide_triangle(const Convex& triangle, std::uint8_t flat_edges, const Convex& b, const Transform3f& b_in_a,
-                      float margin, Vec3f& normal, ContactPoints& out);
+/// One side of a surface's triangle (A): adds to `out` and sets its normal. Contacts that lean over an edge named in
+/// `flat_edges` (bits of EdgeFlags) are the neighbour's. `solid`: there is matter below, to any depth.
+/// False where there is none.
+bool collide_triangle(const Convex& triangle, std::uint8_t flat_edges, bool solid, const Convex& b,
+                      const Transform3f& b_in_a, float margin, ContactPoints& out, Vec3f& normal);
 
 }  // namespace carom::geometry::detail

@@ -200,6 +200,60 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   points_for(pair, found, 5e-4f * small, cache, out);
 }
 
+bool collide_triangle(const Convex& t, std::uint8_t flat_edges, bool solid, const Convex& b, const Transform3f& x,
+                      float margin, ContactPoints& out, Vec3f& normal) {
+  using namespace core_pair;
+  const Pair pair{t, b, x, margin};
+  const Vec3f center = transform_point(x, inner_point(b));
+  const float behind = dot(t.normal, center - t.corner[0]);
+  if (behind < (solid ? -2 * (outer_size(b) + b.radius) : 0.0f)) return false;
+  const FacePlane plane = face_plane(t, 0);
+  const float along_face = pair.along_a(plane);
+  if (along_face - pair.radius() > margin) return false;
+
+  const auto on_face = [&] {
+    Feature face, incident;
+    face_feature(t, 0, t.normal, face);
+    feature(b, -inverse_rotate(x.q, t.normal), incident);
+    place(incident, x);
+    // Between two faces that meet in a flat edge a ball's centre may be over neither: sin 1° of its radius.
+    const int before = out.count;
+    clip_to_face(face, 0, incident, b.radius, margin, 0, out, flat_edges != 0 ? 0.0175f * b.radius : 0.0f);
+    normal = t.normal;
+    return out.count > before;
+  };
+  const float small = max(inner_size(b), 1e-6f);
+  if ((flat_edges & 7) == 7 || along_face > -0.02f * small) {
+    // Nothing but the face may push, or it is shallow: where something stands over the face, the face it is.
+    if ((flat_edges & 7) == 7 || along_face <= 0)
+      if (on_face()) return true;
+    if ((flat_edges & 7) == 7) return false;
+  }
+  const Placed pa(t), pb(b, x);
+  CoreDistance found;
+  core_distance(pa, pb, double(pair.radius()) + double(margin), {}, found);
+  if (!found.overlap && found.distance > double(pair.radius()) + double(margin)) return false;
+  if (found.overlap && !core_depth(pa, pb, found)) return on_face();
+  const Vec3f n = normalize(Vec3f(found.normal)), p = Vec3f(found.point_a);
+  // The Gauss map of the surface, edge by edge: a direction that leans over a flat or concave edge is not on it.
+  bool legal = dot(n, t.normal) > -1e-3f;
+  for (int e = 0; e < 3; ++e) {
+    if ((flat_edges >> e & 1) == 0) continue;
+    const Vec3f a = t.corner[e], d = t.corner[e == 2 ? 0 : e + 1] - a;
+    const Vec3f outward = cross(d, t.normal);
+    const float l = length(outward);
+    if (dot(outward, p - a) < -1e-3f * l * l) continue;
+    if (dot(n, outward) > 1e-3f * l) legal = false;
+  }
+  if (!legal) return on_face();
+  PairCache cache;
+  Manifold3 m;
+  points_for(pair, found, 5e-4f * small, cache, m);
+  for (int i = 0; i < m.count; ++i) out.add(m.points[i].point, m.points[i].separation, m.points[i].feature);
+  normal = m.normal;
+  return m.count > 0;
+}
+
 void collide_plane(const Plane& plane, const Convex& b, const Transform3f& x, float margin, Manifold3& out) {
   const Vec3f n = plane.normal;
   const Vec3f down = -inverse_rotate(x.q, n);

@@ -1,0 +1,42 @@
+// Convex shapes of the plane as one to eight corners swept by a circle; all pairs are pairs of these.
+#pragma once
+
+#include "carom/geometry/shape2.h"
+
+namespace carom::geometry::detail {
+
+/// A line is a polygon of two corners with a normal to either side; a circle has one corner and no normal.
+struct Rounded2 {
+  Vec2f v[max_polygon_vertices];
+  Vec2f n[max_polygon_vertices];  ///< n[i] of the edge from v[i] to v[i + 1]
+  int count = 0;
+  float radius = 0;
+  int next(int i) const { return i + 1 < count ? i + 1 : 0; }
+  int before(int i) const { return i > 0 ? i - 1 : count - 1; }
+};
+Rounded2 rounded_of(const Shape2& shape);  ///< convex shapes and chain segments (both sides)
+Rounded2 placed(const Rounded2& shape, const Transform2f& t);
+Vec2f center_of(const Rounded2& shape);
+float size_of(const Rounded2& shape);  ///< half the smallest extent, roughly; 0 for a sharp line
+
+/// Where along n[edge] of `a` the corners of `b` begin.
+struct EdgeAxis {
+  int edge = 0;
+  float separation = -3.4e38f;
+};
+float separation_along(const Rounded2& a, int edge, const Rounded2& b);
+EdgeAxis best_edge(const Rounded2& a, const Rounded2& b);
+
+Vec2f closest_on_line(Vec2f a, Vec2f b, Vec2f p);
+/// The closest points of two lines that do not cross.
+void closest_of_lines(Vec2f a0, Vec2f a1, Vec2f b0, Vec2f b1, Vec2f& p, Vec2f& q);
+
+/// Distance of the cores (both in one frame), exact where they are apart; where they overlap, minus the depth along the
+/// best edge normal.
+struct CoreDistance2 {
+  float distance = 0;
+  Vec2f point_a{}, point_b{}, normal{};
+};
+CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b);
+
+}  // namespace carom::geometry::detail

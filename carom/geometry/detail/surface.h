@@ -1,0 +1,95 @@
+// The triangles of a mesh or height field near a box, each with what its edges are.
+#pragma once
+
+#include "carom/geometry/detail/tree_build.h"
+#include "carom/geometry/height_field.h"
+#include "carom/geometry/triangle_mesh.h"
+
+namespace carom::geometry::detail {
+
+struct SurfaceTriangle {
+  Vec3f corner[3];
+  std::uint8_t flat_edges = 0;  ///< bits edge0_flat …
+  std::uint32_t index = 0;
+};
+
+inline SurfaceTriangle triangle_of(const TriangleMesh& mesh, std::uint32_t i) {
+  SurfaceTriangle t;
+  for (std::uint32_t k = 0; k < 3; ++k) t.corner[k] = mesh.vertices[mesh.indices[3 * i + k]];
+  t.flat_edges = mesh.edge_flags[i] & 7;
+  t.index = i;
+  return t;
+}
+
+/// Triangle 2·cell is (i, j), (i + 1, j + 1), (i + 1, j); triangle 2·cell + 1 is (i, j), (i, j + 1), (i + 1, j + 1).
+struct HeightFieldCells {
+  const HeightField& field;
+
+  int columns() const { return field.columns - 1; }
+  int rows() const { return field.rows - 1; }
+  bool exists(int i, int j) const {
+    return i >= 0 && j >= 0 && i < columns() && j < rows() &&
+           (field.holes.empty() || field.holes[std::size_t(j) * std::size_t(columns()) + std::size_t(i)] == 0);
+  }
+  Vec3f vertex(int i, int j) const {
+    return {float(i) * field.cell.x, field.heights[std::size_t(j) * std::size_t(field.columns) + std::size_t(i)],
+            float(j) * field.cell.y};
+  }
+  SurfaceTriangle triangle(int i, int j, int k, bool with_edges) const {
+    SurfaceTriangle t;
+    t.index = 2 * (std::uint32_t(j) * std::uint32_t(columns()) + std::uint32_t(i)) + std::uint32_t(k);
+    t.corner[0] = vertex(i, j);
+    t.corner[1] = k == 0 ? vertex(i + 1, j + 1) : vertex(i, j + 1);
+    t.corner[2] = k == 0 ? vertex(i + 1, j) : vertex(i + 1, j + 1);
+    if (!with_edges) return t;
+    const Vec3f n = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+    // The far corners of the three neighbours, and the cells in which they lie.
+    const int far[2][3][2] = {{{i, j + 1}, {i + 2, j + 1}, {i, j - 1}}, {{i - 1, j}, {i + 1, j + 2}, {i + 1, j}}};
+    const int cell[2][3][2] = {{{i, j}, {i + 1, j}, {i, j - 1}}, {{i - 1, j}, {i, j + 1}, {i, j}}};
+    for (int e = 0; e < 3; ++e) {
+      if (!exists(cell[k][e][0], cell[k][e][1])) continue;
+      const Vec3f d = vertex(far[k][e][0], far[k][e][1]) - t.corner[e];
+      // Not below the plane by more than 1° of its distance.
+      if (dot(d, n) >= -0.0174524f * length(d) * length(n)) t.flat_edges = std::uint8_t(t.flat_edges | 1 << e);
+    }
+    return t;
+  }
+};
+
+/// Calls visit(triangle) → bool (false: stop) for the triangles whose boxes meet `box`.
+template <class Visit>
+void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges, Visit&& visit) {
+  if (surface.type == ShapeType3::mesh) {
+    const TriangleMesh& mesh = *surface.mesh;
+    query(mesh.tree, box, [&](std::uint32_t i) {
+      const SurfaceTriangle t = triangle_of(mesh, i);
+      const Bounds3f b{min(t.corner[0], min(t.corner[1], t.corner[2])),
+                       max(t.corner[0], max(t.corner[1], t.corner[2]))};
+      return boxes_meet(b, box) ? bool(visit(t)) : true;
+    });
+    return;
+  }
+  const HeightFieldCells cells{*surface.height_field};
+  const HeightField& f = cells.field;
+  if (box.low.y > f.high) return;
+  const auto cell_at = [](float x, float size, int count) {
+    return int(clamp(x / size, -1.0f, float(count)) + 1) - 1;  // rounds down, from −1 to count
+  };
+  const int i0 = max(cell_at(box.low.x, f.cell.x, cells.columns()), 0);
+  const int i1 = min(cell_at(box.high.x, f.cell.x, cells.columns()), cells.columns() - 1);
+  const int j0 = max(cell_at(box.low.z, f.cell.y, cells.rows()), 0);
+  const int j1 = min(cell_at(box.high.z, f.cell.y, cells.rows()), cells.rows() - 1);
+  for (int j = j0; j <= j1; ++j)
+    for (int i = i0; i <= i1; ++i) {
+      if (!cells.exists(i, j)) continue;
+      for (int k = 0; k < 2; ++k) {
+        const SurfaceTriangle t = cells.triangle(i, j, k, false);
+        if (min(t.corner[0].y, min(t.corner[1].y, t.corner[2].y)) > box.high.y ||
+            max(t.corner[0].y, max(t.corner[1].y, t.corner[2].y)) < box.low.y)
+          continue;
+        if (!visit(with_edges ? cells.triangle(i, j, k, true) : t)) return;
+      }
+    }
+}
+
+}  // namespace carom::geometry::detail

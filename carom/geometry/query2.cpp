@@ -1,0 +1,275 @@
+// Distance, overlap, casts and time of impact in the plane.
+#include "carom/geometry/query.h"
+
+#include "carom/geometry/detail/rounded2.h"
+
+namespace carom::geometry {
+namespace query2 {
+
+using detail::CoreDistance2;
+using detail::Rounded2;
+
+bool is_chain(const Shape2& s) { return s.type == ShapeType2::chain; }
+
+/// Calls use(segment, index) for every segment of a chain that may meet `box`; use returns false to stop.
+template <class Use>
+void segments_near(const Chain& chain, const Bounds2f& box, Use&& use) {
+  const int count = chain.segment_count();
+  for (int i = 0; i < count; ++i) {
+    const Vec2f p = chain.points[std::size_t(i)];
+    const Vec2f q = chain.points[std::size_t(i) + 1 < chain.points.size() ? std::size_t(i) + 1 : 0];
+    if (!overlaps(Bounds2f{min(p, q), max(p, q)}, box)) continue;
+    if (!use(Segment{p, q}, i)) return;
+  }
+}
+constexpr Bounds2f everywhere{{-3e38f, -3e38f}, {3e38f, 3e38f}};
+
+Distance2 between(const Rounded2& a, const Rounded2& b) {
+  const CoreDistance2 d = detail::core_distance(a, b);
+  Distance2 out;
+  const float distance = d.distance - a.radius - b.radius;
+  if (distance <= 0) {
+    out.point_a = out.point_b = (d.point_a + d.point_b) * 0.5f;
+    return out;
+  }
+  out.distance = distance;
+  out.normal = d.normal;
+  out.point_a = d.point_a + d.normal * a.radius;
+  out.point_b = d.point_b - d.normal * b.radius;
+  return out;
+}
+
+/// The corners of `moving` against `fixed`, and the reverse: a ray from p along d against one rounded edge.
+struct RayResult {
+  bool hit = false;
+  float t = 1;
+  Vec2f normal{};
+};
+
+void ray_circle(Vec2f center, float radius, Vec2f o, Vec2f d, RayResult& best) {
+  const Vec2d m = Vec2d(o) - Vec2d(center), w(d);
+  const double a = dot(w, w), b = dot(m, w), c = dot(m, m) - square(double(radius));
+  const double discriminant = b * b - a * c;
+  if (!(a > 0) || b >= 0 || c <= 0 || discriminant < 0) return;
+  const double t = c / (-b + math::sqrt(discriminant));
+  if (t > double(best.t)) return;
+  best.hit = true, best.t = float(t), best.normal = Vec2f(normalize(m + w * t));
+}
+
+/// A ray against the line a…b moved out by `radius` along n; only from the side of n.
+void ray_edge(Vec2f a, Vec2f b, Vec2f n, float radius, Vec2f o, Vec2f d, RayResult& best) {
+  const Vec2d nd(n), w(d), to = Vec2d(o) - Vec2d(a);
+  const double along = dot(nd, w), above = dot(nd, to) - double(radius);
+  if (!(along < 0) || above < 0) return;
+  const double t = -above / along;
+  if (t > double(best.t)) return;
+  const Vec2d e = Vec2d(b) - Vec2d(a), p = to + w * t;
+  const double u = dot(p, e);
+  if (u < 0 || u > dot(e, e)) return;
+  best.hit = true, best.t = float(t), best.normal = n;
+}
+
+bool contains_point(const Rounded2& s, Vec2f p) {
+  Rounded2 point;
+  point.count = 1, point.v[0] = p;
+  return detail::core_distance(s, point).distance - s.radius <= 0;
+}
+
+CastHit2 ray_rounded(const Rounded2& s, Vec2f o, Vec2f d) {
+  CastHit2 hit;
+  const bool solid = s.count > 2 || s.radius > 0;
+  if (solid && contains_point(s, o)) {
+    hit.hit = true;
+    hit.fraction = 0;
+    hit.point = o;
+    return hit;
+  }
+  RayResult best;
+  for (int i = 0; i < s.count; ++i) {
+    if (s.count > 1) ray_edge(s.v[i], s.v[s.next(i)], s.n[i], s.radius, o, d, best);
+    if (s.radius > 0) ray_circle(s.v[i], s.radius, o, d, best);
+  }
+  if (!best.hit) return hit;
+  hit.hit = true, hit.fraction = best.t, hit.normal = best.normal, hit.point = o + d * best.t;
+  return hit;
+}
+
+CastHit2 ray_chain_segment(Vec2f a, Vec2f b, Vec2f o, Vec2f d) {
+  const Vec2f t = normalize(b - a);
+  RayResult best;
+  ray_edge(a, b, {t.y, -t.x}, 0, o, d, best);
+  CastHit2 hit;
+  if (best.hit) hit.hit = true, hit.fraction = best.t, hit.normal = best.normal, hit.point = o + d * best.t;
+  return hit;
+}
+
+/// Conservative advancement without turning. `side`: a chain's segment, seen from its free side only.
+CastHit2 cast_rounded(const Rounded2& a, const Rounded2& b, Vec2f way, float limit, bool side) {
+  CastHit2 hit;
+  if (side && (dot(a.n[0], detail::center_of(b) - a.v[0]) < 0 || dot(a.n[0], way) > 0)) return hit;
+  const float radius = a.radius + b.radius;
+  const float tolerance = max(1e-5f, 2e-6f * (length(detail::center_of(b)) + length(way)));
+  Rounded2 moved = b;
+  float t = 0;
+  for (int i = 0; i < 48; ++i) {
+    for (int k = 0; k < b.count; ++k) moved.v[k] = b.v[k] + way * t;
+    const CoreDistance2 d = detail::core_distance(a, moved);
+    const float gap = d.distance - radius;
+    if (gap <= (i == 0 ? 0 : tolerance) || i == 47) {
+      hit.hit = true;
+      hit.fraction = t;
+      if (i > 0) hit.normal = d.normal;
+      hit.point = d.point_a + d.normal * a.radius;
+      return hit;
+    }
+    const float closing = -dot(d.normal, way);
+    if (!(closing > 0)) return hit;
+    t += max(gap - 0.5f * tolerance, 0.5f * tolerance) / closing;
+    if (t > limit) return hit;
+  }
+  return hit;
+}
+
+struct Motion {
+  Vec2d local_center, c0, way;
+  Rot2d q0, q1;
+  double rate = 0, reach = 0;
+
+  explicit Motion(const Sweep2& s)
+      : local_center(s.local_center),
+        c0(s.c0),
+        way(Vec2d(s.c1) - Vec2d(s.c0)),
+        q0(normalize(Rot2d(s.q0))),
+        q1(normalize(Rot2d(s.q1))) {
+    // A normalised linear interpolation turns fastest half way: 2 tan(θ/2) a unit of time for a turn by θ.
+    const Vec2d chord{q1.c - q0.c, q1.s - q0.s}, middle{(q1.c + q0.c) / 2, (q1.s + q0.s) / 2};
+    const double l = math::length(middle);
+    rate = l > 1e-6 ? math::length(chord) / l : 1e6;
+  }
+  void around(const Rounded2& core) {
+    for (int i = 0; i < core.count; ++i) reach = max(reach, math::length(Vec2d(core.v[i]) - local_center));
+  }
+  /// Seen from `origin`.
+  Transform2f at(double t, Vec2d origin) const {
+    const Rot2d q = normalize(Rot2d{q0.c + t * (q1.c - q0.c), q0.s + t * (q1.s - q0.s)});
+    return {Vec2f(c0 + way * t - rotate(q, local_center) - origin), Rot2f(q)};
+  }
+};
+
+TimeOfImpact impact(const Rounded2& ca, Motion a, const Rounded2& cb, Motion b, double target, bool side) {
+  a.around(ca);
+  b.around(cb);
+  const double radius = double(ca.radius) + double(cb.radius), tolerance = 0.25 * target;
+  double t = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec2d origin = a.c0 + a.way * t;
+    const Rounded2 pa = detail::placed(ca, a.at(t, origin)), pb = detail::placed(cb, b.at(t, origin));
+    // One-sided: what begins behind passes.
+    if (i == 0 && side && dot(pa.n[0], detail::center_of(pb) - pa.v[0]) < 0) return {};
+    const CoreDistance2 d = detail::core_distance(pa, pb);
+    const double gap = double(d.distance) - radius;
+    if (i == 0 && gap <= 0) return {ImpactState::overlapped, 0};
+    if (gap <= target + tolerance) return {ImpactState::hit, float(t)};
+    const double closing = dot(a.way - b.way, Vec2d(d.normal)) + a.rate * a.reach + b.rate * b.reach;
+    if (!(closing * (1 - t) > gap - target)) return {};
+    t += (gap - target) / closing;
+    if (t >= 1) return {};
+  }
+  // Still near after so many small steps: stop here rather than risk to pass.
+  return {ImpactState::hit, float(t)};
+}
+
+void keep_first(TimeOfImpact& first, const TimeOfImpact& t) {
+  if (t.state == ImpactState::separated) return;
+  if (first.state == ImpactState::separated || t.time < first.time) first = t;
+}
+
+}  // namespace query2
+
+Distance2 distance(const Shape2& a, const Shape2& b, const Transform2f& x) {
+  using namespace query2;
+  if (!is_chain(a) && !is_chain(b)) return between(detail::rounded_of(a), detail::placed(detail::rounded_of(b), x));
+  if (!is_chain(a)) {
+    Distance2 d = distance(b, a, inverse(x));
+    const Vec2f p = d.point_a;
+    d.point_a = transform_point(x, d.point_b);
+    d.point_b = transform_point(x, p);
+    d.normal = -rotate(x.q, d.normal);
+    return d;
+  }
+  Distance2 best;
+  best.distance = 3.4e38f;
+  segments_near(*a.chain, everywhere, [&](const Segment& s, int) {
+    const Distance2 d = distance(Shape2(s), b, x);
+    if (d.distance < best.distance) best = d;
+    return best.distance > 0;
+  });
+  return best;
+}
+
+bool overlap(const Shape2& a, const Shape2& b, const Transform2f& b_in_a) {
+  using namespace query2;
+  if (!is_chain(a) && !is_chain(b)) {
+    const detail::Rounded2 ra = detail::rounded_of(a), rb = detail::placed(detail::rounded_of(b), b_in_a);
+    return detail::core_distance(ra, rb).distance <= ra.radius + rb.radius;
+  }
+  return distance(a, b, b_in_a).distance <= 0;
+}
+
+CastHit2 ray_cast(const Shape2& s, Vec2f origin, Vec2f translation) {
+  using namespace query2;
+  if (s.type == ShapeType2::chain_segment)
+    return ray_chain_segment(s.chain_segment.a, s.chain_segment.b, origin, translation);
+  if (!is_chain(s)) return ray_rounded(detail::rounded_of(s), origin, translation);
+  CastHit2 best;
+  const Vec2f end = origin + translation;
+  segments_near(*s.chain, {min(origin, end), max(origin, end)}, [&](const Segment& e, int i) {
+    CastHit2 h = ray_chain_segment(e.a, e.b, origin, translation);
+    if (h.hit && (!best.hit || h.fraction < best.fraction)) h.child = std::uint32_t(i), best = h;
+    return true;
+  });
+  return best;
+}
+
+CastHit2 shape_cast(const Shape2& a, const Shape2& b, const Transform2f& x, Vec2f translation) {
+  using namespace query2;
+  if (is_chain(b)) return {};
+  const detail::Rounded2 moving = detail::placed(detail::rounded_of(b), x);
+  if (!is_chain(a)) {
+    const detail::Rounded2 fixed = detail::rounded_of(a);
+    return cast_rounded(fixed, moving, translation, 1, a.type == ShapeType2::chain_segment && fixed.count == 2);
+  }
+  const Bounds2f box = grow(bounds(b, x), 1e-4f);
+  CastHit2 best;
+  segments_near(*a.chain, merge(box, Bounds2f{box.low + translation, box.high + translation}),
+                [&](const Segment& e, int i) {
+                  const detail::Rounded2 line = detail::rounded_of(Shape2(e));
+                  CastHit2 h = cast_rounded(line, moving, translation, best.fraction, line.count == 2);
+                  if (h.hit && (!best.hit || h.fraction < best.fraction)) h.child = std::uint32_t(i), best = h;
+                  return true;
+                });
+  return best;
+}
+
+TimeOfImpact time_of_impact(const Shape2& a, const Sweep2& sweep_a, const Shape2& b, const Sweep2& sweep_b,
+                            float target) {
+  using namespace query2;
+  if (is_chain(a) || is_chain(b)) {
+    TimeOfImpact first;
+    const Chain& chain = is_chain(a) ? *a.chain : *b.chain;
+    if (is_chain(a) && is_chain(b)) return {ImpactState::failed, 1};
+    for (int i = 0; i < chain.segment_count(); ++i) {
+      const Shape2 s(chain.segment(i));
+      keep_first(first, is_chain(a) ? time_of_impact(s, sweep_a, b, sweep_b, target)
+                                    : time_of_impact(a, sweep_a, s, sweep_b, target));
+    }
+    return first;
+  }
+  const double near = max(double(target), 1e-6);
+  const detail::Rounded2 ra = detail::rounded_of(a), rb = detail::rounded_of(b);
+  if (b.type == ShapeType2::chain_segment && rb.count == 2)
+    return impact(rb, Motion(sweep_b), ra, Motion(sweep_a), near, true);
+  return impact(ra, Motion(sweep_a), rb, Motion(sweep_b), near, a.type == ShapeType2::chain_segment && ra.count == 2);
+}
+
+}  // namespace carom::geometry
