@@ -235,7 +235,9 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
     const WideVec2<W> n = load2<W>(c.normal);
     const F offset_turn = cross(load2<W>(c.center_offset), n);
-    for (int i = 0; i < 2; ++i) {
+    // The points of a face push each other back: repeat until they agree.
+    for (int pass = 0; pass < 16; ++pass) {
+      const int i = pass % 2;
       auto& point = c.point[i];
       const F speed = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
       const F turn_a = cross(load2<W>(point.r_a), n), turn_b = turn_a + offset_turn;
@@ -450,7 +452,9 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
     const WideVec3<W> n = load3<W>(c.normal), offset_turn = cross(load3<W>(c.center_offset), n);
-    for (int i = 0; i < 4; ++i) {
+    // The points of a face push each other back: repeat until they agree.
+    for (int pass = 0; pass < 32; ++pass) {
+      const int i = pass % 4;
       auto& point = c.point[i];
       const F speed = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
       const WideVec3<W> turn_a = cross(load3<W>(point.r_a), n), turn_b = add(turn_a, offset_turn);

@@ -32,6 +32,7 @@ template <class D> struct ContactRecord {
   std::uint16_t flags = 0;
   std::uint16_t manifold_count = 0;
   float extent = 0;                         ///< m: how far a turn of B by one radian moves its surface
+  float inner = 0;                          ///< m: half the thickness of the thinner shape
   float margin = 0;                         ///< m: contacts up to this separation are of interest
   float gap = 0;                            ///< m: without manifolds, the shapes were at least this far apart at `base`
   geometry::PairCache cache{};

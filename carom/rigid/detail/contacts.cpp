@@ -127,6 +127,7 @@ template <class D> void create_contact(WorldImplementation<D>& world, std::int32
   if (max(a->material.restitution, b->material.restitution) > 0) c.flags |= contact_bouncy;
   c.extent = b->outer_extent;
   const float inner = min(a->inner_extent, b->inner_extent);
+  c.inner = inner;
   c.margin = clamp(0.25f * inner, 0.001f, 0.02f);
   world.pairs.insert(PairSet::key(shape_a, shape_b));
   ++store.count;

@@ -32,18 +32,35 @@ template <class D> void mix_materials(WorldImplementation<D>& world, std::int32_
 template <class D> void activate_contact(WorldImplementation<D>& world, std::int32_t contact);
 template <class D> void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact);
 
-/// Carries impulses of `from` over to the points of `to` with the same features.
+/// Carries impulses of `from` over to the points of `to` with the same features; a point whose feature is new takes over
+/// from the nearest one that is left, if that is near (clipping renames corners when boxes turn by a hair).
 template <class D>
-inline void carry_impulses(const typename D::Manifold& from, const typename D::Manifold& to,
+inline void carry_impulses(const typename D::Manifold& from, const typename D::Manifold& to, float near,
                            ManifoldImpulses<D>& impulses) {
   float normal[D::max_points] = {}, total[D::max_points] = {};
+  bool matched[D::max_points] = {}, used[D::max_points] = {};
   for (int i = 0; i < to.count; ++i)
     for (int j = 0; j < from.count; ++j)
-      if (to.points[i].feature == from.points[j].feature) {
+      if (!used[j] && to.points[i].feature == from.points[j].feature) {
         normal[i] = impulses.normal[j];
         total[i] = impulses.total[j];
+        matched[i] = used[j] = true;
         break;
       }
+  for (int i = 0; i < to.count; ++i) {
+    if (matched[i]) continue;
+    int best = -1;
+    float best_distance = near * near;
+    for (int j = 0; j < from.count; ++j) {
+      if (used[j]) continue;
+      const float d = math::distance_squared(to.points[i].point, from.points[j].point);
+      if (d < best_distance) best = j, best_distance = d;
+    }
+    if (best < 0) continue;
+    normal[i] = impulses.normal[best];
+    total[i] = impulses.total[best];
+    used[best] = true;
+  }
   for (int i = 0; i < D::max_points; ++i) {
     impulses.normal[i] = normal[i];
     impulses.total[i] = total[i];

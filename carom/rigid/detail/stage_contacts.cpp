@@ -5,7 +5,7 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr int block_grain = 8;
-constexpr float anchor_rate = 0.2f;  ///< part of the slip that sticking friction takes back in a step
+constexpr float anchor_rate = 0.05f;  ///< part of the slip that sticking friction takes back in a step
 
 inline float angular_dot(float a, float b) { return a * b; }
 inline float angular_dot(const Vec3f& a, const Vec3f& b) { return dot(a, b); }
@@ -145,10 +145,12 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
     point.separation[lane] = g.separation[i];
     const float k = response(ra, rb, n);
     point.normal_mass[lane] = k > 0 ? 1 / k : 0;
-    point.impulse[lane] = m.impulses.normal[i];
+    // An impulse on its way to nothing is nothing: no denormals, no division by them.
+    const float impulse = m.impulses.normal[i] > 1e-12f ? m.impulses.normal[i] : 0;
+    point.impulse[lane] = impulse;
     point.total[lane] = 0;
-    weight += m.impulses.normal[i];
-    center += ra * m.impulses.normal[i];
+    weight += impulse;
+    center += ra * impulse;
     equal_center += ra;
     const float vn = dot(n, sb.linear_velocity + cross(sb.angular_velocity, rb) - sa.linear_velocity -
                                 cross(sa.angular_velocity, ra));
@@ -200,7 +202,7 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
     if (m.manifold.count > 1) {
       for (int i = 0; i < m.manifold.count; ++i) {
         const Vec3f r{block.point[i].r_a[0][lane], block.point[i].r_a[1][lane], block.point[i].r_a[2][lane]};
-        radius += math::length(r - center) * (weight > 0 ? m.impulses.normal[i] : 1);
+        radius += math::length(r - center) * (weight > 0 ? block.point[i].impulse[lane] : 1);
       }
       radius *= m.patch_factor / (weight > 0 ? weight : float(m.manifold.count));
     }

@@ -8,7 +8,7 @@ namespace {
 constexpr int contact_grain = 64;
 constexpr int max_manifolds = 8;            ///< of one pair
 constexpr float touch_distance = 0.005f;    ///< m: surfaces nearer than this touch, for events
-constexpr float recycle_distance = 0.002f;  ///< m: manifolds stay while the pair moved less
+constexpr float recycle_share = 0.02f;      ///< of the smaller half thickness: manifolds stay while the pair slid less
 
 enum ContactChange : std::uint8_t {
   change_apart = 1,      ///< fat bounds no longer overlap
@@ -88,6 +88,13 @@ float motion(const Transform3f& base, const Transform3f& now, float extent) {
   return math::length(now.p - base.p) + 2 * math::length(turn.vector()) * extent;
 }
 
+/// The same without what is along the normal: approach and parting change separations only.
+template <class T, class V> float slid(const T& base, const T& now, float extent, const V& normal) {
+  T straight = now;
+  straight.p = now.p - normal * dot(normal, now.p - base.p);
+  return motion(base, straight, extent);
+}
+
 float spin(const SolverBody<Dim2>& s) { return math::abs(s.angular_velocity); }
 float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity); }
 
@@ -144,13 +151,12 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
   if ((c.flags & contact_sensor) == 0) {
     const float margin = margin_now(world, c);
     // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
-    // separations follow. The bound is on the motion of any point of the pair, sliding included, and far below the
-    // size of features, so that nothing sticks to a stale edge.
+    // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and far
+    // below the size of features, so that nothing sticks to a stale edge.
     if (c.flags & contact_known) {
-      const float moved = motion(c.base, b_in_a, c.extent);
       if (c.first_manifold == none) {
-        if (moved + margin < c.gap) return 0;
-      } else if ((c.flags & contact_round) == 0 && moved < min(recycle_distance, 0.1f * c.margin)) {
+        if (motion(c.base, b_in_a, c.extent) + margin < c.gap) return 0;
+      } else if ((c.flags & contact_round) == 0 && slid(c.base, b_in_a, c.extent, store.manifold(c.first_manifold).manifold.normal) < recycle_share * c.inner) {
         c.flags |= contact_recycled;
         return 0;
       }
@@ -209,7 +215,7 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
       ManifoldRecord<D>& record = store.manifold(m);
       for (int i = 0; i < found.count; ++i)
         if (found.child[i] == record.child) {
-          carry_impulses<D>(record.manifold, found.manifold[i], record.impulses);
+          carry_impulses<D>(record.manifold, found.manifold[i], 0.2f * c.inner, record.impulses);
           record.manifold = found.manifold[i];
           break;
         }
@@ -238,7 +244,7 @@ void replace_manifolds(WorldImplementation<D>& world, std::int32_t contact, std:
       add_manifold(world, contact, f.manifold, f.child);
     } else {
       ManifoldRecord<D>& record = store.manifold(m);
-      carry_impulses<D>(record.manifold, f.manifold, record.impulses);
+      carry_impulses<D>(record.manifold, f.manifold, 0.2f * store.at(contact).inner, record.impulses);
       record.manifold = f.manifold;
     }
   }

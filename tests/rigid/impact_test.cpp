@@ -1,0 +1,122 @@
+// Restitution and momentum (mechanics.md 5; rigid-body.md 6.1, 12, 21).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/rigid/scene_pieces.h"
+
+namespace carom::rigid::test {
+namespace {
+
+template <class D> class Impact : public testing::Test {};
+using Dimensions = testing::Types<Dim2, Dim3>;
+TYPED_TEST_SUITE(Impact, Dimensions);
+
+// The apex after a bounce is e² of the height, and never above it.
+TYPED_TEST(Impact, BallReboundsToESquaredOfItsHeight) {
+  using D = TypeParam;
+  for (const float e : {0.2f, 0.5f, 0.8f, 1.0f})
+    for (const double height : {0.7, 1.0, 2.0, 5.0, 13.0}) {
+      World<D> world(world_with<D>());
+      add_ground(world, {0, e, 1000, 0});
+      const BodyId ball = add_ball<D>(world, at<D>(0, 0.5 + height), 0.5f, {0, e, 1000, 0});
+      double apex = 0, fall = std::sqrt(2 * 9.81 * height);
+      if (fall * e < 0.3) continue;
+      bool bounced = false;
+      for (int i = 0; i < 600; ++i) {
+        world.step(frame).value();
+        const BodyState<D> s = world.state(ball).value();
+        if (s.linear_velocity.y > 0) bounced = true;
+        if (bounced) apex = std::max(apex, s.pose.position.y - 0.5);
+        if (bounced && s.linear_velocity.y < 0) break;
+      }
+      const double expected = e * e * height;
+      EXPECT_NEAR(apex, expected, 0.01 * expected + 0.004) << "e " << e << " height " << height;
+      EXPECT_LE(apex, height + 1e-3) << "e " << e << " height " << height;
+    }
+}
+
+TYPED_TEST(Impact, BallWithoutRestitutionDoesNotRebound) {
+  using D = TypeParam;
+  for (const float v : {5.0f, 50.0f, 200.0f}) {
+    World<D> world(world_with<D>(0));
+    add_ground(world);
+    const BodyId ball = add_ball<D>(world, at<D>(0, 20), 0.25f, {}, along<D>(0, -v));
+    run(world, 360);
+    const BodyState<D> s = world.state(ball).value();
+    EXPECT_LT(s.linear_velocity.y, 0.01f) << "v " << v;
+    EXPECT_NEAR(s.pose.position.y, 0.25, 0.02) << "v " << v;
+  }
+}
+
+// Equal masses, e = 1, head on: the velocities change owners.
+TYPED_TEST(Impact, EqualBallsSwapVelocities) {
+  using D = TypeParam;
+  World<D> world(world_with<D>(0));
+  const Surface hard{0, 1, 1000, 0};
+  const BodyId a = add_ball<D>(world, at<D>(-2, 0), 0.5f, hard, along<D>(3, 0));
+  const BodyId b = add_ball<D>(world, at<D>(2, 0), 0.5f, hard, along<D>(-1, 0));
+  run(world, 120);
+  EXPECT_NEAR(world.state(a).value().linear_velocity.x, -1, 1e-4);
+  EXPECT_NEAR(world.state(b).value().linear_velocity.x, 3, 1e-4);
+}
+
+// v₁' = ((m₁ − e m₂) v₁ + (1 + e) m₂ v₂)/(m₁ + m₂), and v₂' with the indices exchanged.
+TYPED_TEST(Impact, UnequalMassesFollowTheLawOfImpact) {
+  using D = TypeParam;
+  const float e = 0.6f;
+  World<D> world(world_with<D>(0));
+  const BodyId a = add_ball<D>(world, at<D>(-2, 0), 0.5f, {0, e, 1000, 0}, along<D>(4, 0));
+  const BodyId b = add_ball<D>(world, at<D>(2, 0), 0.5f, {0, e, 3000, 0}, along<D>(-2, 0));
+  run(world, 120);
+  EXPECT_NEAR(world.state(a).value().linear_velocity.x, ((1 - e * 3) * 4 + (1 + e) * 3 * -2) / 4, 1e-3);
+  EXPECT_NEAR(world.state(b).value().linear_velocity.x, ((3 - e * 1) * -2 + (1 + e) * 1 * 4) / 4, 1e-3);
+}
+
+// Inner forces move no centre of mass: a cloud of bodies that collide keeps its momentum, whatever their masses.
+TYPED_TEST(Impact, MomentumOfACloudIsConstant) {
+  using D = TypeParam;
+  World<D> world(world_with<D>(0));
+  std::uint32_t r = 7;
+  const auto draw = [&] {
+    r = 1664525u * r + 1013904223u;
+    return float(r >> 8) / 16777216.0f - 0.5f;
+  };
+  double scale = 0;
+  for (int i = 0; i < 60; ++i) {
+    const float x = draw(), y = draw(), z = draw(), density = 10.0f + 2000.0f * (draw() + 0.5f);
+    const auto position = at<D>(8 * double(x), 8 * double(y), 8 * double(z));
+    const auto velocity = along<D>(-6 * x, -6 * y, -6 * z);
+    const Surface s{0.5f, 0.3f, density, 0};
+    const BodyId body = i % 2 == 0 ? add_ball<D>(world, position, 0.4f, s, velocity)
+                                   : add_body<D>(world, BodyType::dynamic, box_shape<D>(0.4f, 0.3f, 0.5f), position, s, velocity);
+    const BodyState<D> state = world.state(body).value();
+    scale += double(state.mass) * double(math::length(state.linear_velocity));
+  }
+  const Totals<D> before = world.totals();
+  run(world, 240);
+  const Totals<D> after = world.totals();
+  EXPECT_LT(math::length(after.momentum - before.momentum), 2e-6 * scale);
+  EXPECT_LE(after.kinetic_energy, before.kinetic_energy * (1 + 1e-3));
+}
+
+TYPED_TEST(Impact, EnergyOfAHeapNeverRises) {
+  using D = TypeParam;
+  World<D> world(world_with<D>());
+  add_ground(world, {0.5f, 0, 1000, 0});
+  add_heap(world, 4);
+  Totals<D> t = world.totals();
+  const double start = t.kinetic_energy + t.potential_energy;
+  double lowest = start;
+  for (int i = 0; i < 400; ++i) {
+    world.step(frame).value();
+    t = world.totals();
+    const double now = t.kinetic_energy + t.potential_energy;
+    // Soft contacts store and give back a little.
+    EXPECT_LE(now, lowest + 2e-3 * start) << "step " << i;
+    lowest = std::min(lowest, now);
+  }
+}
+
+}  // namespace
+}  // namespace carom::rigid::test
