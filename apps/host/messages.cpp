@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "carom/carom.h"
+#include "carom/math/units.h"
 
 namespace carom::host {
 
@@ -29,11 +30,25 @@ Json summary_json(const Declaration& d) {
           {"group", d.group}, {"chapter", d.chapter}, {"dimension", d.dimension}};
 }
 
+// shown = SI · factor + offset, so that a page needs no table of units. Units that cannot be read are shown in SI.
+struct DisplayScale {
+  double factor = 1, offset = 0;
+};
+DisplayScale display_scale(const std::string& unit) {
+  const math::QuantityResult zero = math::parse_quantity("0 " + unit), one = math::parse_quantity("1 " + unit);
+  if (unit.empty() || !zero.ok || !one.ok || one.si == zero.si) return {};
+  const double factor = 1 / (one.si - zero.si);
+  return {factor, -zero.si * factor};
+}
+
 Json parameter_json(const Parameter& p) {
+  const DisplayScale display = display_scale(p.display_unit);
   return {{"name", p.name},
           {"label", p.label},
           {"unit", p.unit},
           {"display_unit", p.display_unit.empty() ? p.unit : p.display_unit},
+          {"display_factor", display.factor},
+          {"display_offset", display.offset},
           {"description", p.description},
           {"minimum", p.minimum},
           {"maximum", p.maximum},

@@ -3,7 +3,6 @@ import {Hands} from './hands';
 import {Panel} from './panel';
 import {Plots} from './plots';
 import type {DemoSummary, Frame, HostMessage, Mesh, Opened} from './protocol';
-import {short} from './quantities';
 import {SocketSource, type Listener} from './source';
 import {Viewer} from './viewer';
 
@@ -19,6 +18,8 @@ class Page implements Listener {
   private hands = new Hands(this.canvas, this.viewer, this.send);
   private demos: DemoSummary[] = [];
   private opened?: Opened;
+  /** ms from the beginning of the load to the first frame of a simulation; read by the tests. */
+  firstPicture = 0;
   private running = true;
   private held = new Map<string, string>();  // key → action
 
@@ -46,8 +47,8 @@ class Page implements Listener {
     byId(button).setAttribute('aria-expanded', String(!hidden));
   }
 
-  private frameLoop = () => {
-    this.viewer.render();
+  private frameLoop = (now = performance.now()) => {
+    this.viewer.render(now);
     this.plots.draw();
     requestAnimationFrame(this.frameLoop);
   };
@@ -102,8 +103,9 @@ class Page implements Listener {
 
   frame(frame: Frame): void {
     this.viewer.apply(frame);
+    this.firstPicture ||= performance.now();
     for (const s of frame.samples) this.plots.add(s.plot, s.series, s.x, s.y);
-    byId('clock').textContent = `${short(frame.time, 6)} s · step ${frame.step}`;
+    byId('clock').textContent = `${frame.time.toFixed(2)} s · step ${frame.step}`;
     if (frame.stats) this.panel.numbers(frame.stats);
   }
 

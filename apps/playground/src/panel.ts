@@ -38,7 +38,7 @@ export class Panel {
 
   private slider(p: Parameter): HTMLElement {
     const id = `parameter-${p.name}`, unit = unitOf(p);
-    const shownStep = Math.abs(p.step * (p.display_factor ?? 1)) || 'any';
+    const shownStep = Math.abs(p.step * p.display_factor) || 'any';
     const range = element('input', {type: 'range', id, min: String(toDisplay(p, p.minimum)), max: String(toDisplay(p, p.maximum)), title: p.description});
     range.step = String(shownStep);
     const number = element('input', {type: 'number', className: 'number', min: range.min, max: range.max, title: p.description});

@@ -103,8 +103,8 @@ export class Plots {
       legend: {show: true, live: false}, cursor: {drag: {x: true, y: true}},
       axes: [axis(d.x, 46), axis(d.y, 62)],
       series: [{}, ...d.series.map((s, i): uPlot.Series => ({
-        label: s.name, facets: [{scale: 'x', auto: true}, {scale: 'y', auto: true}], stroke: COLORS[i % COLORS.length],
-        fill: s.style === 'points' ? COLORS[i % COLORS.length] : undefined, width: 1.75, paths: paths(s.style === 'points'),
+        label: s.name, facets: [{scale: 'x', auto: true}, {scale: 'y', auto: true}], stroke: s.color ?? COLORS[i % COLORS.length],
+        fill: s.style === 'points' ? s.color ?? COLORS[i % COLORS.length] : undefined, width: 1.75, paths: paths(s.style === 'points'),
       }))],
     }, this.data(), this.host);
   }

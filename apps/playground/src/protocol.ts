@@ -2,11 +2,11 @@
 
 export interface DemoSummary { id: string; title: string; summary: string; group: string; chapter: string; dimension: number }
 export interface Parameter {
-  name: string; label: string; unit: string; display_unit: string; display_factor?: number; display_offset?: number;
+  name: string; label: string; unit: string; display_unit: string; display_factor: number; display_offset: number;
   description: string; minimum: number; maximum: number; step: number; value: number; live: boolean;
 }
 export interface Axis { label: string; unit: string }
-export interface Series { name: string; style: 'line' | 'points'; points?: [number, number][] }
+export interface Series { name: string; style: 'line' | 'points'; color?: string; points?: [number, number][] }
 export interface PlotDeclaration { title: string; x: Axis; y: Axis; series: Series[] }
 export interface Camera { position: number[]; target: number[]; field_of_view?: number; height?: number; follow?: number }
 export interface Input { action: string; label: string; keys: string[]; kind: 'hold' | 'press'; value: number }
@@ -17,6 +17,7 @@ export interface Opened {
 export interface Shape {
   kind: string; local: number[]; radius?: number; half_length?: number; half_height?: number; half_extents?: number[];
   normal?: number[]; mesh?: number; points?: number[][]; loop?: boolean;
+  color?: string; opacity?: number; sensor?: boolean;
 }
 export interface Body {
   id: number; name: string; type: 'fixed' | 'kinematic' | 'dynamic'; color?: string; position: number[]; rotation: number[];

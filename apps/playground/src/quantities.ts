@@ -1,8 +1,8 @@
 // Numbers as people read them: display units, and as many digits as carry meaning.
 import type {Parameter} from './protocol';
 
-export const toDisplay = (p: Parameter, si: number) => si * (p.display_factor ?? 1) + (p.display_offset ?? 0);
-export const fromDisplay = (p: Parameter, shown: number) => (shown - (p.display_offset ?? 0)) / (p.display_factor ?? 1);
+export const toDisplay = (p: Parameter, si: number) => si * p.display_factor + p.display_offset;
+export const fromDisplay = (p: Parameter, shown: number) => (shown - p.display_offset) / p.display_factor;
 export const unitOf = (p: Parameter) => (p.display_unit || p.unit || '').replace('*', '·').replace('deg', '°').replace(/\^2/g, '²').replace(/\^3/g, '³');
 
 /** At most `digits` significant digits, without trailing zeros, never "-0". */

@@ -1,6 +1,9 @@
 // Draws the bodies of a scene with three.js: instanced shapes, soft shadows, a ground with a metric grid.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
+import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
+import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
 import {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
 import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Shape} from './protocol';
 import {Ground} from './ground';
@@ -56,7 +59,9 @@ class Batch {
   }
 }
 
-interface Part { batch: Batch; slot: number; local: THREE.Matrix4 }
+const SLEEP_TONE = new THREE.Color('#8a8f98');
+
+interface Part { batch: Batch; slot: number; local: THREE.Matrix4; color: THREE.Color }
 interface Drawn { body: Body; parts: Part[]; position: THREE.Vector3; rotation: THREE.Quaternion; color: THREE.Color; asleep: boolean }
 
 export class Viewer {
@@ -69,7 +74,7 @@ export class Viewer {
   private sun = new THREE.DirectionalLight('#fff4e0', 2.4);
   private sky = new THREE.HemisphereLight('#dfeaff', '#8a8072', 0.5);
   private ground = new Ground();
-  private lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({vertexColors: true, transparent: true}));
+  private lines = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({vertexColors: true, linewidth: 2.5}));
   private hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: '#ff2d55', depthTest: false}));
   private material = new THREE.MeshStandardMaterial({vertexColors: true, roughness: 0.72, metalness: 0});
   private material2 = new THREE.MeshBasicMaterial({vertexColors: true, side: THREE.DoubleSide});
@@ -81,6 +86,10 @@ export class Viewer {
   private follow = -1;
   private home: Camera = {position: [8, 6, 12], target: [0, 1, 0]};
   private pixel = 0.02;
+  private quality = 2;
+  private slowness = 16;
+  private lastFrame = 0;
+  private nextChange = 2000;
 
   constructor(private canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
@@ -210,12 +219,25 @@ export class Viewer {
       if (shape.kind === 'mesh') this.waiting.push({id: drawn.body.id, shape});
       return;
     }
-    let batch = this.batches.get(found.key);
-    if (!batch) this.batches.set(found.key, batch = new Batch(found.build(), this.dimension === 3 ? this.material : this.material2, this.root));
+    const opacity = shape.sensor ? Math.min(0.35, shape.opacity ?? 1) : shape.opacity ?? 1;
+    const key = `${found.key} ${opacity.toFixed(2)}`;
+    let batch = this.batches.get(key);
+    if (!batch) this.batches.set(key, batch = new Batch(found.build(), this.materialFor(opacity), this.root));
     const [px, py, pz, qw, qx, qy, qz] = shape.local;
     const local = new THREE.Matrix4().compose(new THREE.Vector3(px, py, pz), new THREE.Quaternion(qx, qy, qz, qw), found.scale);
     const pose = new THREE.Matrix4().compose(drawn.position, drawn.rotation, new THREE.Vector3(1, 1, 1));
-    drawn.parts.push({batch, local, slot: batch.add(drawn.body.id, pose.multiply(local), drawn.color)});
+    const color = shape.color ? new THREE.Color(shape.color) : drawn.color;
+    drawn.parts.push({batch, local, color, slot: batch.add(drawn.body.id, pose.multiply(local), color)});
+  }
+
+  private materialFor(opacity: number): THREE.Material {
+    const solid = this.dimension === 3 ? this.material : this.material2;
+    if (opacity > 0.99) return solid;
+    const glass = solid.clone();
+    glass.transparent = true;
+    glass.opacity = opacity;
+    glass.depthWrite = false;
+    return glass;
   }
 
   removeBodies(ids: number[]): void {
@@ -251,9 +273,9 @@ export class Viewer {
       drawn.rotation.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
       pose.compose(drawn.position, drawn.rotation, unit);
       const asleep = (word >>> 31) === 1;
-      for (const {batch, slot, local} of drawn.parts) {
+      for (const {batch, slot, local, color} of drawn.parts) {
         batch.mesh.setMatrixAt(slot, matrix.multiplyMatrices(pose, local));
-        if (asleep !== drawn.asleep) batch.mesh.setColorAt(slot, asleep ? tone.copy(drawn.color).lerp(new THREE.Color('#8a8f98'), 0.55) : drawn.color);
+        if (asleep !== drawn.asleep) batch.mesh.setColorAt(slot, asleep ? tone.copy(color).lerp(SLEEP_TONE, 0.35) : color);
         touched.add(batch);
       }
       drawn.asleep = asleep;
@@ -271,16 +293,17 @@ export class Viewer {
   }
 
   private setLines(points: Float32Array, colors: Uint32Array): void {
-    const rgba = new Float32Array(8 * colors.length);
+    this.lines.visible = colors.length > 0;
+    if (!this.lines.visible) return;
+    const rgb = new Float32Array(6 * colors.length), one = new THREE.Color();
     colors.forEach((c, i) => {
-      const rgb = new THREE.Color().setRGB((c >>> 24) / 255, (c >>> 16 & 255) / 255, (c >>> 8 & 255) / 255, THREE.SRGBColorSpace);
-      for (const k of [0, 4]) rgba.set([rgb.r, rgb.g, rgb.b, (c & 255) / 255], 8 * i + k);
+      one.setRGB((c >>> 24) / 255, (c >>> 16 & 255) / 255, (c >>> 8 & 255) / 255, THREE.SRGBColorSpace);
+      for (const k of [0, 3]) rgb.set([one.r, one.g, one.b], 6 * i + k);
     });
     this.lines.geometry.dispose();
-    this.lines.geometry = new THREE.BufferGeometry();
-    this.lines.geometry.setAttribute('position', new THREE.BufferAttribute(points, 3));
-    this.lines.geometry.setAttribute('color', new THREE.BufferAttribute(rgba, 4));
-    this.lines.visible = colors.length > 0;
+    this.lines.geometry = new LineSegmentsGeometry();
+    this.lines.geometry.setPositions(points);
+    this.lines.geometry.setColors(rgb);
     this.lines.position.z = this.dimension === 2 ? 1 : 0;
   }
 
@@ -336,7 +359,30 @@ export class Viewer {
     this.camera.updateProjectionMatrix();
   }
 
-  render(): void {
+  /** Where frames take too long for a second (no GPU, an old phone), draws less finely; never the other way, which would flicker. */
+  private adapt(now: number): void {
+    const took = now - this.lastFrame;
+    this.lastFrame = now;
+    if (took > 1000 || this.quality === 0) return;
+    this.slowness = 0.9 * this.slowness + 0.1 * took;
+    if (this.slowness < 45 || now < this.nextChange) return;
+    this.nextChange = now + 1500;
+    this.quality -= 1;
+    if (this.quality === 1) {
+      this.renderer.setPixelRatio(1);
+      this.sun.shadow.mapSize.set(1024, 1024);
+    } else {
+      this.renderer.setPixelRatio(0.6);
+      this.renderer.shadowMap.autoUpdate = false;
+      this.sun.castShadow = false;
+    }
+    this.sun.shadow.map?.dispose();
+    this.sun.shadow.map = null;
+    this.resize();
+  }
+
+  render(now: number): void {
+    this.adapt(now);
     this.controls.update();
     const reach = this.sun.userData.reach ?? 20;
     const center = this.controls.target;

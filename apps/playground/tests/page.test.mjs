@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
 import {existsSync, mkdirSync, readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
-import {after, before, test} from 'node:test';
+import {after, afterEach, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
 import {createRequire} from 'node:module';
 import {chromium} from 'playwright-core';
@@ -43,8 +43,13 @@ after(async () => {
 });
 
 /** A page with a demo open; fails the test on any error of the page. */
-async function open(demo, {viewport = {width: 1280, height: 800}, ...options} = {}) {
+const contexts = [];
+afterEach(async () => {
+  while (contexts.length > 0) await contexts.pop().close();
+});
+async function open(demo, {viewport = {width: 1000, height: 700}, ...options} = {}) {
   const context = await browser.newContext({viewport, ...options});
+  contexts.push(context);
   const page = await context.newPage();
   page.problems = [];
   page.on('pageerror', (error) => page.problems.push(String(error)));
@@ -53,7 +58,6 @@ async function open(demo, {viewport = {width: 1280, height: 800}, ...options} = 
   await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 15000});
   page.done = async () => {
     assert.deepEqual(page.problems, []);
-    await context.close();
   };
   return page;
 }
@@ -65,9 +69,9 @@ const screen = (page, id) => page.evaluate((i) => window.caromPage.viewer.screen
 async function demosOf(page) { return page.$$eval('#demos a', (links) => links.map((a) => a.dataset.demo)); }
 
 test('the first picture stands within two seconds of the load', async () => {
-  const start = Date.now();
   const page = await open('');
-  assert.ok(Date.now() - start < 2000 + 3000, `${Date.now() - start} ms under software rendering`);
+  const shown = await page.evaluate(() => window.caromPage.firstPicture);
+  assert.ok(shown < 2000, `first picture ${shown} ms after the page began to load`);
   assert.ok((await demosOf(page)).length >= 8);
   await page.done();
 });
@@ -79,7 +83,7 @@ test('every demo opens, moves or stands, shows its numbers, and is accessible', 
     await page.evaluate((d) => { location.hash = d; }, demo);
     await page.waitForFunction((d) => document.querySelector(`#demos a[aria-current]`)?.dataset.demo === d, demo);
     await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 5, null, {timeout: 20000});
-    await page.waitForTimeout(700);
+    await page.waitForTimeout(250);
     await page.screenshot({path: join(pictures, `${demo.replace(/\W/g, '_')}.png`)});
     assert.notEqual(await page.textContent('#numbers'), '', demo);
     assert.ok((await page.textContent('#about')).length > 20, `${demo} says what it shows`);
@@ -92,7 +96,7 @@ test('every demo opens, moves or stands, shows its numbers, and is accessible', 
 });
 
 test('pause holds, step advances by one, restart begins anew, run goes on', async () => {
-  const page = await open('wall_and_wrecking_ball');
+  const page = await open('wrecking-ball');
   await page.click('#run');
   await until(page, 'Run');
   await page.waitForTimeout(200);
@@ -107,7 +111,7 @@ test('pause holds, step advances by one, restart begins anew, run goes on', asyn
 });
 
 test('a body is grabbed with the mouse, follows it, and falls when let go', async () => {
-  const page = await open('twenty_pyramids');
+  const page = await open('pyramids');
   await page.waitForTimeout(400);
   const ids = await bodies(page, 'dynamic');
   // The nearest body whose middle lies under its own pixel: the pyramids' tops are free.
@@ -129,7 +133,7 @@ test('a body is grabbed with the mouse, follows it, and falls when let go', asyn
 });
 
 test('a slider changes its parameter and the plot fills', async () => {
-  const page = await open('collision_lab_2d');
+  const page = await open('collision-lab-2d');
   const slider = page.locator('#parameters input[type=range]').first();
   const number = page.locator('#parameters input[type=number]').first();
   const before = await number.inputValue();
@@ -154,7 +158,7 @@ test('the hovercraft is driven by keys', async () => {
 });
 
 test('a phone of 360 pixels shows the view, opens the menu and the panel', async () => {
-  const page = await open('wall_and_wrecking_ball', {viewport: {width: 360, height: 740}, hasTouch: true, isMobile: true});
+  const page = await open('wrecking-ball', {viewport: {width: 360, height: 740}, hasTouch: true, isMobile: true});
   const box = await page.locator('#view').boundingBox();
   assert.ok(box.width > 350 && box.height > 400);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing sticks out');
@@ -169,7 +173,7 @@ test('a phone of 360 pixels shows the view, opens the menu and the panel', async
 });
 
 test('dark theme', async () => {
-  const page = await open('wall_and_wrecking_ball', {colorScheme: 'dark'});
+  const page = await open('wrecking-ball', {colorScheme: 'dark'});
   await page.waitForTimeout(1500);
   await page.screenshot({path: join(pictures, 'dark.png')});
   await page.done();
@@ -179,6 +183,7 @@ test('a lost connection is said, and mended when the server is back', async () =
   const own = await serve();
   const context = await browser.newContext();
   const page = await context.newPage();
+  contexts.push(context);
   await page.goto(own.url);
   await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 15000});
   own.child.kill('SIGINT');
@@ -189,5 +194,4 @@ test('a lost connection is said, and mended when the server is back', async () =
   const step = await stepOf(page);
   await page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) !== n, step);
   again.child.kill('SIGINT');
-  await context.close();
 });
