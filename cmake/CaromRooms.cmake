@@ -60,6 +60,8 @@ function(carom_add_test NAME FLOOR)
   endif()
   carom_rooms_below(${FLOOR} rooms)
   add_executable(test_${NAME} ${sources})
+  # The assertions of GoogleTest are written with an else of their own: `if (x) EXPECT_EQ(a, b);` is no mistake.
+  target_compile_options(test_${NAME} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-else>)
   target_link_libraries(test_${NAME} PRIVATE ${rooms} carom_flags GTest::gtest_main Threads::Threads ${ARGN})
   set_target_properties(test_${NAME} PROPERTIES UNITY_BUILD ${CAROM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   target_compile_definitions(test_${NAME} PRIVATE CAROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

@@ -191,7 +191,7 @@ TEST(MeshFileTest, FormatsAreDetected) {
 }
 
 TEST(MeshFileTest, FilesAreReadAndNamedInErrors) {
-  const std::string path = testing::TempDir() + "carom_mesh_file_test.obj";
+  const std::string path = ::testing::TempDir() + "carom_mesh_file_test.obj";
   std::FILE* file = std::fopen(path.c_str(), "wb");
   ASSERT_TRUE(file);
   std::fputs(cube_obj, file);
@@ -199,7 +199,7 @@ TEST(MeshFileTest, FilesAreReadAndNamedInErrors) {
   EXPECT_DOUBLE_EQ(volume_of(read_mesh_file(path)), 1);
   std::remove(path.c_str());
   EXPECT_EQ(read_mesh_file(path).error().message, path + ": cannot be opened");
-  EXPECT_FALSE(read_mesh_file(testing::TempDir()).ok());
+  EXPECT_FALSE(read_mesh_file(::testing::TempDir()).ok());
 }
 
 bool reads_gltf() { return message_of("{}", MeshFormat::gltf).find("this build") == std::string::npos; }
@@ -247,7 +247,7 @@ TEST(MeshFileTest, GltfErrors) {
 
 TEST(MeshFileTest, GltfBuffersLieBesideTheFile) {
   if (!reads_gltf()) GTEST_SKIP() << "built without tinygltf";
-  const std::string folder = testing::TempDir();
+  const std::string folder = ::testing::TempDir();
   const auto write = [](const std::string& path, const std::string& bytes) {
     std::FILE* file = std::fopen(path.c_str(), "wb");
     ASSERT_TRUE(file);

@@ -1,11 +1,9 @@
 // Small pieces from which the tests of this folder build their scenes.
 #pragma once
 
-#include "carom/rigid/world.h"
+#include "mechanics_world.h"
 
 namespace carom::rigid::test {
-
-inline constexpr float frame = 1.0f / 60.0f;
 
 template <class D> typename D::Position at(double x, double y, double z = 0) {
   if constexpr (D::dimension == 2) return {x, y};

@@ -191,7 +191,7 @@ TEST_F(LiveServer, AMessageTooLongEndsOnlyItsOwnConnection) {
 }
 
 TEST_F(LiveServer, GarbageInsteadOfHttp) {
-  for (const std::string garbage :
+  for (const std::string& garbage :
        {std::string("\0\1\2\3\r\n\r\n", 8), std::string("GET\r\n\r\n"), std::string(100'000, 'A')}) {
     tcp::socket socket = connect();
     beast::error_code error;
