@@ -33,13 +33,13 @@ struct Polygon {
 struct Segment {
   Vec2f a, b;
 };
-/// One segment of a chain: collides on its right side (a chain that runs counterclockwise round a solid… see Chain),
-/// with the neighbours' far ends so that nothing catches on the joints.
+/// One segment of a chain: collides on its right side, and knows the neighbours' far ends so that nothing catches on the
+/// joints.
 struct ChainSegment {
   Vec2f ghost_before, a, b, ghost_after;
 };
 /// A line of at least two points, one-sided: solid lies to the left of the direction of travel, free space to the right.
-/// A closed loop that runs clockwise round a region keeps bodies inside it… the outside of a counterclockwise loop is free.
+/// A loop that runs counterclockwise is a solid island; one that runs clockwise is a wall round the space inside it.
 struct Chain {
   std::vector<Vec2f> points;
   bool loop = false;
