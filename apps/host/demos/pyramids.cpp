@@ -49,7 +49,7 @@ class Pyramids final : public Repeatable<Pyramids, Demo3> {
         for (int j = 0; j < base - i; ++j) {
           rigid::BodyDef<rigid::Dim3> body;
           body.name = "cube";
-          body.position = {-0.5 * (base - 1) + 0.5 * i + j, 0.5 + i, 3.0 * (k - pyramids / 2)};
+          body.position = {-0.5 * (base - 1) + 0.5 * i + j, 0.5 + i, 3.0 * (k - 0.5 * (pyramids - 1))};
           cubes_.push_back(stage.add(body, geometry::Box{}, shape, shades[k % 6]));
           start_.push_back(body.position);
         }
