@@ -61,7 +61,8 @@ template <class D, int W> struct alignas(64) ContactExtra {
   float rolling_lever[W];               ///< m: the torque is at most this times the normal force
   float rolling_mass[D::dimension == 2 ? 1 : 6][W];
   float rolling_impulse[angular][W];
-  float bounce_speed[D::max_points][W];  ///< m/s to leave with, 0: does not bounce
+  float bounce_speed[D::max_points][W];  ///< m/s to leave the surface with, 0: does not bounce
+  float closing_acceleration[W];        ///< m/s² along the normal
 };
 
 /// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.

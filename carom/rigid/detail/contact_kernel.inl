@@ -234,16 +234,28 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
     const WideVec2<W> n = load2<W>(c.normal);
-    const F offset_turn = cross(load2<W>(c.center_offset), n);
+    const WideVec2<W> offset = load2<W>(c.center_offset);
+    const F offset_turn = cross(offset, n);
+    F pa[4], pb[4];
+    gather<W>(bodies, c.read_a, 4, pa);
+    gather<W>(bodies, c.read_b, 4, pb);
+    const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
+    const WideVec2<W> na = {pa[2] * n.x + pa[3] * n.y - n.x, pa[2] * n.y - pa[3] * n.x - n.y};
+    const WideVec2<W> nb = {pb[2] * n.x + pb[3] * n.y - n.x, pb[2] * n.y - pb[3] * n.x - n.y};
+    const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
     // The points of a face push each other back: repeat until they agree.
     for (int pass = 0; pass < 16; ++pass) {
       const int i = pass % 2;
       auto& point = c.point[i];
-      const F speed = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
-      const F turn_a = cross(load2<W>(point.r_a), n), turn_b = turn_a + offset_turn;
+      const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
+      const WideVec2<W> ra = load2<W>(point.r_a);
+      const F s = F::load(point.separation) + shift + (dot(nb, add(ra, offset)) - dot(na, ra));
+      // Still s above the surface, the body has the energy of falling through it left.
+      const F speed = sqrt(max(full * full - acceleration * max(s, zero), zero));
+      const F turn_a = cross(ra, n), turn_b = turn_a + offset_turn;
       const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
       const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
-      const F delta = keep((speed > zero) & (total > zero), lambda - old);
+      const F delta = keep((full > zero) & (total > zero), lambda - old);
       (old + delta).store(point.impulse);
       (total + delta).store(point.total);
       const WideVec2<W> p = {delta * n.x, delta * n.y};
@@ -451,16 +463,25 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
-    const WideVec3<W> n = load3<W>(c.normal), offset_turn = cross(load3<W>(c.center_offset), n);
+    const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
+    F pa[8], pb[8];
+    gather<W>(bodies, c.read_a, 8, pa);
+    gather<W>(bodies, c.read_b, 8, pb);
+    const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
+    const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+    const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
     // The points of a face push each other back: repeat until they agree.
     for (int pass = 0; pass < 32; ++pass) {
       const int i = pass % 4;
       auto& point = c.point[i];
-      const F speed = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
-      const WideVec3<W> turn_a = cross(load3<W>(point.r_a), n), turn_b = add(turn_a, offset_turn);
+      const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
+      const WideVec3<W> ra = load3<W>(point.r_a);
+      const F s = F::load(point.separation) + shift + (dot(nb, add(ra, offset)) - dot(na, ra));
+      const F speed = sqrt(max(full * full - acceleration * max(s, zero), zero));
+      const WideVec3<W> turn_a = cross(ra, n), turn_b = add(turn_a, offset_turn);
       const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
       const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
-      const F delta = keep((speed > zero) & (total > zero), lambda - old);
+      const F delta = keep((full > zero) & (total > zero), lambda - old);
       (old + delta).store(point.impulse);
       (total + delta).store(point.total);
       const WideVec3<W> p = multiply(n, delta);

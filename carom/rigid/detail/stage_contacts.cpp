@@ -167,6 +167,7 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
     }
   }
   m.approach_speed = approach;
+  if (extra != nullptr) extra->closing_acceleration[lane] = max(dot(n, closing_acceleration), 0.0f);
   center = weight > 0 ? center * (1 / weight) : equal_center * (1.0f / float(m.manifold.count));
 
   block.friction[lane] = m.friction;

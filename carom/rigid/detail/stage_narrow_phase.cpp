@@ -98,14 +98,24 @@ template <class T, class V> float slid(const T& base, const T& now, float extent
 float spin(const SolverBody<Dim2>& s) { return math::abs(s.angular_velocity); }
 float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity); }
 
-/// Margin in this step: contacts that bounce are foreseen along the way of the step, so that the impact happens at the
-/// surface, with the energy the body has there.
-template <class D> float margin_now(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
-  if ((c.flags & contact_bouncy) == 0) return c.margin;
+/// How far the surfaces of the pair may come nearer in this step. Contacts are foreseen that far, so that impacts happen at
+/// the surface, with the energy a body has there; those that do not bounce look no farther than half their thickness.
+template <class D> float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
   const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
   const float turning = spin(a) * world.bodies.motion[std::size_t(c.body[0])].outer_extent +
                         spin(b) * world.bodies.motion[std::size_t(c.body[1])].outer_extent;
-  return c.margin + world.last_dt * (math::length(b.linear_velocity - a.linear_velocity) + min(turning, 100.0f));
+  const float way = world.last_dt * (math::length(b.linear_velocity - a.linear_velocity) + min(turning, 100.0f));
+  return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
+}
+/// How far a contact with this normal (in the frame of A's shape) closes in the step by the motion of the centres.
+template <class D>
+float closing_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Vector& normal) {
+  const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
+  typename D::Vector n = rotate(world.shapes.at(c.shape[0]).local.q, normal);
+  n = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, n);
+  const float turning = spin(a) * world.bodies.motion[std::size_t(c.body[0])].outer_extent +
+                        spin(b) * world.bodies.motion[std::size_t(c.body[1])].outer_extent;
+  return world.last_dt * max(0.0f, dot(n, a.linear_velocity - b.linear_velocity) + min(turning, 100.0f));
 }
 
 /// The touch flag, with hysteresis: begins within the touch distance, ends when the manifolds are gone or beyond twice it.
@@ -147,9 +157,10 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     b_in_a = relative(shape_pose(world, world.shapes.at(c.shape[0])), shape_pose(world, world.shapes.at(c.shape[1])));
 
   const bool many = (c.flags & contact_many) != 0;
-  float reach = 0;
+  float reach = 0, ahead = 0;
   if ((c.flags & contact_sensor) == 0) {
-    const float margin = margin_now(world, c);
+    ahead = look_ahead(world, c);
+    const float margin = c.margin + ahead;
     // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
     // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and far
     // below the size of features, so that nothing sticks to a stale edge.
@@ -161,7 +172,7 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
         return 0;
       }
     }
-    reach = 2 * margin;
+    reach = 2 * c.margin + ahead;
   }
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   if (c.flags & contact_sensor) return update_sensor(world, c, a, b, b_in_a);
@@ -181,7 +192,7 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
   for (int i = 0; i < found.count; ++i) {
     const float s = smallest_separation<D>(found.manifold[i]);
     separation = min(separation, s);
-    if (s > 0.5f * reach) continue;
+    if (s > c.margin && s > c.margin + min(ahead, closing_way(world, c, found.manifold[i].normal))) continue;
     if (kept != i) {
       found.manifold[kept] = found.manifold[i];
       found.child[kept] = found.child[i];
