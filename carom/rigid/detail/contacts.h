@@ -59,8 +59,17 @@ inline void carry_impulses(const typename D::Manifold& from, const typename D::M
     if (best < 0) continue;
     normal[i] = impulses.normal[best];
     total[i] = impulses.total[best];
-    used[best] = true;
+    matched[i] = used[best] = true;
   }
+  // What is left over (a disc that turns shows other points of its rim) is shared: the load stays the same.
+  float normal_left = 0, total_left = 0;
+  int old_left = 0, new_left = 0;
+  for (int j = 0; j < from.count; ++j)
+    if (!used[j]) normal_left += impulses.normal[j], total_left += impulses.total[j], ++old_left;
+  for (int i = 0; i < to.count; ++i) new_left += matched[i] ? 0 : 1;
+  const float share = old_left > 0 ? 1.0f / float(max(old_left, new_left)) : 0;
+  for (int i = 0; i < to.count; ++i)
+    if (!matched[i]) normal[i] = normal_left * share, total[i] = total_left * share;
   for (int i = 0; i < D::max_points; ++i) {
     impulses.normal[i] = normal[i];
     impulses.total[i] = total[i];
