@@ -9,7 +9,7 @@
 namespace carom::math {
 namespace {
 
-__extension__ typedef unsigned __int128 DoubleWord;
+__extension__ typedef unsigned __int128 DoubleWord;  // NOLINT(modernize-use-using): wants a typedef
 
 /// A natural number of any size, lowest word first, without leading zero words.
 class BigNatural {

@@ -15,7 +15,7 @@ struct Reduced {
 
 constexpr double rounding_shift = 6755399441055744.0;  // 1.5 · 2⁵²: adding it rounds to an integer, ties to even
 
-__extension__ typedef unsigned __int128 Unsigned128;
+__extension__ typedef unsigned __int128 Unsigned128;  // NOLINT(modernize-use-using): wants a typedef
 
 /// Payne and Hanek (1983): only those digits of 2/π that matter for x mod π/2 are multiplied.
 Reduced reduce_large(double x) {
