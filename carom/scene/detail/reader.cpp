@@ -322,7 +322,7 @@ std::vector<double> Reader::numbers(const Object& o, std::string_view key, int c
   const Field& f = field(o, key);
   const Node* node = failed_ ? nullptr : o.find(key);
   std::vector<double> out;
-  if (node == nullptr) return out;
+  if (node == nullptr) return out.resize(std::size_t(count < 0 ? 0 : count)), out;
   const std::string path = o.path_of(key);
   if (!node->is_array() || (count >= 0 && node->children.size() != std::size_t(count))) {
     expected(*node, path, count >= 0 ? "a list of " + std::to_string(count) : std::string("a list"));
