@@ -102,7 +102,8 @@ Recipe heap() {
   return r;
 }
 
-// 100 × 100 spheres in a net of 19 701 ball joints (none between two fixed ones) that hangs from its upper edge; nothing collides.
+// 100 × 100 spheres in a net of 19 701 ball joints (none between two fixed ones) that hangs from its upper edge;
+// nothing collides.
 Recipe joint_grid() {
   Recipe r;
   r.name = "joint_grid";

@@ -170,9 +170,15 @@ TEST(StateHash, TellsStatesApart) {
 
 TEST(Profiler, WritesAChromeTrace) {
   Profiler profiler(2, 3);
-  { ProfileScope scope(&profiler, "step"); }
-  { ProfileScope scope(&profiler, "solve", 1); }
-  { ProfileScope scope(nullptr, "nothing"); }
+  {
+    ProfileScope scope(&profiler, "step");
+  }
+  {
+    ProfileScope scope(&profiler, "solve", 1);
+  }
+  {
+    ProfileScope scope(nullptr, "nothing");
+  }
   EXPECT_EQ(profiler.recorded(), 2);
   const std::string trace = profiler.chrome_trace();
   EXPECT_NE(trace.find("{\"name\":\"step\",\"ph\":\"X\",\"pid\":1,\"tid\":0,\"ts\":0.000"), std::string::npos) << trace;

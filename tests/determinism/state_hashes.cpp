@@ -51,10 +51,14 @@ int main(int argc, char** argv) {
   int threads = 1, width = 0;
   bool demos = false, recipes = false;
   for (int i = 1; i < argc; ++i) {
-    if (!std::strcmp(argv[i], "--threads") && i + 1 < argc) threads = std::atoi(argv[++i]);
-    else if (!std::strcmp(argv[i], "--width") && i + 1 < argc) width = std::atoi(argv[++i]);
-    else if (!std::strcmp(argv[i], "--demos")) demos = true;
-    else if (!std::strcmp(argv[i], "--recipes")) recipes = true;
+    if (!std::strcmp(argv[i], "--threads") && i + 1 < argc)
+      threads = std::atoi(argv[++i]);
+    else if (!std::strcmp(argv[i], "--width") && i + 1 < argc)
+      width = std::atoi(argv[++i]);
+    else if (!std::strcmp(argv[i], "--demos"))
+      demos = true;
+    else if (!std::strcmp(argv[i], "--recipes"))
+      recipes = true;
     else {
       std::fprintf(stderr, "state_hashes: unknown option %s\n", argv[i]);
       return 2;

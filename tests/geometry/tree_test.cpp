@@ -94,9 +94,8 @@ TEST(DynamicTree, SelfPairsAndCrossPairsAreComplete) {
     b.insert(boxes_b.back(), i);
   }
   std::set<std::pair<std::uint32_t, std::uint32_t>> self, cross, expected_self, expected_cross;
-  a.self_pairs([&](std::uint32_t i, std::uint32_t j) {
-    EXPECT_TRUE(self.insert({math::min(i, j), math::max(i, j)}).second);
-  });
+  a.self_pairs(
+      [&](std::uint32_t i, std::uint32_t j) { EXPECT_TRUE(self.insert({math::min(i, j), math::max(i, j)}).second); });
   a.pairs(b, [&](std::uint32_t i, std::uint32_t j) { EXPECT_TRUE(cross.insert({i, j}).second); });
   for (std::uint32_t i = 0; i < 400; ++i)
     for (std::uint32_t j = 0; j < 400; ++j) {

@@ -236,17 +236,11 @@ TEST(Decimal, TakesTheLongestNumberAndNoMore) {
 }
 
 template <class A, class B>
-concept Addable = requires(A a, B b) {
-  a + b;
-};
+concept Addable = requires(A a, B b) { a + b; };
 template <class A, class B>
-concept Comparable = requires(A a, B b) {
-  a < b;
-};
+concept Comparable = requires(A a, B b) { a < b; };
 template <class A, class B>
-concept Assignable = requires(A a, B b) {
-  a = b;
-};
+concept Assignable = requires(A a, B b) { a = b; };
 
 // Mechanics reference 1.2: adding unlike dimensions fails to compile.
 TEST(Quantity, UnlikeDimensionsDoNotAdd) {

@@ -44,9 +44,8 @@ TEST(Integrators, ConvergeWithTheirOrderOnAnEquationThatDependsOnTime) {
     if (ode::needs_velocities(method)) continue;
     const auto error = [&](int steps) {
       double y = 1;
-      EXPECT_EQ(ode::integrate(
-                    method, [](double t, double x) { return x * std::cos(t); }, 0, 2, steps, y),
-                Outcome::done);
+      EXPECT_EQ(
+          ode::integrate(method, [](double t, double x) { return x * std::cos(t); }, 0, 2, steps, y), Outcome::done);
       return std::abs(y - std::exp(std::sin(2.0)));
     };
     const int n = ode::order(method) < 4 ? 256 : 48;  // coarse enough to stand clear of rounding
@@ -161,9 +160,7 @@ TEST(Integrators, TakeAnyStateWithPlusAndTimes) {
   EXPECT_NEAR(y.temperature, std::exp(2.0), 1e-7);
   ASSERT_EQ(ode::step(Method::implicit_midpoint, f, 0, y, 0.01), Outcome::done);
   Vec3d v{1, 2, 3};
-  ASSERT_EQ(ode::integrate(
-                Method::rk4, [](double, Vec3d x) { return -1.0 * x; }, 0, 1, 100, v),
-            Outcome::done);
+  ASSERT_EQ(ode::integrate(Method::rk4, [](double, Vec3d x) { return -1.0 * x; }, 0, 1, 100, v), Outcome::done);
   EXPECT_NEAR(v.z, 3 * std::exp(-1.0), 1e-9);
 }
 

@@ -42,9 +42,7 @@ TEST(Chapter01Units, PublishedFactors) {
 }
 
 template <class A, class B>
-concept Adds = requires(A a, B b) {
-  a + b;
-};
+concept Adds = requires(A a, B b) { a + b; };
 
 // 1.2: adding unlike dimensions fails to compile.
 TEST(Chapter01Units, UnlikeDimensionsDoNotAdd) {

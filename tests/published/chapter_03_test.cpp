@@ -130,8 +130,7 @@ TEST(Chapter03, PressureOnAClosedMesh) {
   EXPECT_LT(math::length(constant.force), 1e-9);
   EXPECT_LT(math::length(constant.moment), 1e-9);
   const Vec3d about{0.2, 0.3, -0.1};
-  const forces::Wrench3 water = forces::pressure_on_mesh(
-      v, t, [](Vec3d p) { return 1025 * 9.81 * (10 - p.y); }, about);
+  const forces::Wrench3 water = forces::pressure_on_mesh(v, t, [](Vec3d p) { return 1025 * 9.81 * (10 - p.y); }, about);
   const forces::Submerged3 whole = forces::submerged_mesh(v, t, {{0, 1, 0}, 10});
   EXPECT_LT(math::distance(water.force, Vec3d{0, forces::buoyant_force(1025, 9.81, whole.volume), 0}), 1e-8);
   EXPECT_LT(math::distance(water.moment, math::cross(whole.centroid - about, water.force)), 1e-8);

@@ -57,7 +57,8 @@ TEST(Friction, StopDistance) {
     ASSERT_TRUE(world.set_velocity(box, {float(5 * std::cos(th)), 0, float(5 * std::sin(th))}, {}).ok());
     run(world, 180);
     const Vec3d way = world.state(box).value().pose.position - begin;
-    const double along_way = way.x * std::cos(th) + way.z * std::sin(th), side = way.x * std::sin(th) - way.z * std::cos(th);
+    const double along_way = way.x * std::cos(th) + way.z * std::sin(th),
+                 side = way.x * std::sin(th) - way.z * std::cos(th);
     EXPECT_NEAR(along_way, 25 / (2 * 0.5 * g), 0.01 * 2.548);
     EXPECT_NEAR(side, 0, 2e-3);
     least = std::min(least, along_way);
@@ -107,7 +108,8 @@ TEST(Friction, SphereRollsDownAnIncline) {
 TEST(Friction, SpinningDiscStops) {
   World3 world(world_with<Dim3>());
   add_ground(world, {0.5f, 0, 1000, 0});
-  const BodyId disc = add_body<Dim3>(world, BodyType::dynamic, geometry::Cylinder{0.1f, 1.0f}, {0, 0.1, 0}, {0.5f, 0, 1000, 0});
+  const BodyId disc =
+      add_body<Dim3>(world, BodyType::dynamic, geometry::Cylinder{0.1f, 1.0f}, {0, 0.1, 0}, {0.5f, 0, 1000, 0});
   run(world, 60);
   ASSERT_TRUE(world.set_velocity(disc, {}, {0, 20, 0}).ok());
   int steps = 0;

@@ -8,7 +8,8 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> class Impact : public testing::Test {};
+template <class D>
+class Impact : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(Impact, Dimensions);
 
@@ -88,8 +89,9 @@ TYPED_TEST(Impact, MomentumOfACloudIsConstant) {
     const auto position = at<D>(8 * double(x), 8 * double(y), 8 * double(z));
     const auto velocity = along<D>(-6 * x, -6 * y, -6 * z);
     const Surface s{0.5f, 0.3f, density, 0};
-    const BodyId body = i % 2 == 0 ? add_ball<D>(world, position, 0.4f, s, velocity)
-                                   : add_body<D>(world, BodyType::dynamic, box_shape<D>(0.4f, 0.3f, 0.5f), position, s, velocity);
+    const BodyId body =
+        i % 2 == 0 ? add_ball<D>(world, position, 0.4f, s, velocity)
+                   : add_body<D>(world, BodyType::dynamic, box_shape<D>(0.4f, 0.3f, 0.5f), position, s, velocity);
     const BodyState<D> state = world.state(body).value();
     scale += double(state.mass) * double(math::length(state.linear_velocity));
   }

@@ -5,23 +5,36 @@
 
 namespace carom::rigid::test {
 
-template <class D> typename D::Position at(double x, double y, double z = 0) {
-  if constexpr (D::dimension == 2) return {x, y};
-  else return {x, y, z};
+template <class D>
+typename D::Position at(double x, double y, double z = 0) {
+  if constexpr (D::dimension == 2)
+    return {x, y};
+  else
+    return {x, y, z};
 }
-template <class D> typename D::Vector along(float x, float y, float z = 0) {
-  if constexpr (D::dimension == 2) return {x, y};
-  else return {x, y, z};
+template <class D>
+typename D::Vector along(float x, float y, float z = 0) {
+  if constexpr (D::dimension == 2)
+    return {x, y};
+  else
+    return {x, y, z};
 }
-template <class D> typename D::Shape box_shape(float x, float y, float z) {
-  if constexpr (D::dimension == 2) return geometry::make_box2({x, y});
-  else return geometry::Box{{x, y, z}};
+template <class D>
+typename D::Shape box_shape(float x, float y, float z) {
+  if constexpr (D::dimension == 2)
+    return geometry::make_box2({x, y});
+  else
+    return geometry::Box{{x, y, z}};
 }
-template <class D> typename D::Shape ball_shape(float radius) {
-  if constexpr (D::dimension == 2) return geometry::Circle{radius};
-  else return geometry::Sphere{radius};
+template <class D>
+typename D::Shape ball_shape(float radius) {
+  if constexpr (D::dimension == 2)
+    return geometry::Circle{radius};
+  else
+    return geometry::Sphere{radius};
 }
-template <class D> WorldDef<D> world_with(float gravity = 9.81f) {
+template <class D>
+WorldDef<D> world_with(float gravity = 9.81f) {
   WorldDef<D> d;
   d.gravity = along<D>(0, -gravity);
   return d;
@@ -46,7 +59,8 @@ BodyId add_body(World<D>& world, BodyType type, const typename D::Shape& shape, 
   world.add_shape(id, shape, d).value();
   return id;
 }
-template <class D> BodyId add_ground(World<D>& world, const Surface& surface = {}) {
+template <class D>
+BodyId add_ground(World<D>& world, const Surface& surface = {}) {
   return add_body<D>(world, BodyType::fixed, box_shape<D>(200, 1, 200), at<D>(0, -1), surface);
 }
 template <class D>
@@ -58,22 +72,26 @@ BodyId add_ball(World<D>& world, typename D::Position position, float radius, co
                 typename D::Vector velocity = {}) {
   return add_body<D>(world, BodyType::dynamic, ball_shape<D>(radius), position, surface, velocity);
 }
-template <class D> void run(World<D>& world, int steps) {
+template <class D>
+void run(World<D>& world, int steps) {
   for (int i = 0; i < steps; ++i) world.step(frame).value();
 }
-template <class D> float speed(const World<D>& world, BodyId body) {
+template <class D>
+float speed(const World<D>& world, BodyId body) {
   return math::length(world.state(body).value().linear_velocity);
 }
 
 /// Rows of boxes, each half a box further in.
-template <class D> std::vector<BodyId> add_pyramid(World<D>& world, int base, double z = 0) {
+template <class D>
+std::vector<BodyId> add_pyramid(World<D>& world, int base, double z = 0) {
   std::vector<BodyId> bodies;
   for (int row = 0; row < base; ++row)
     for (int i = 0; i < base - row; ++i) bodies.push_back(add_box<D>(world, at<D>(0.5 * row + i, 0.5 + row, z)));
   return bodies;
 }
 /// A mixed heap that is thrown together: what determinism is tested on.
-template <class D> std::vector<BodyId> add_heap(World<D>& world, int layers) {
+template <class D>
+std::vector<BodyId> add_heap(World<D>& world, int layers) {
   std::vector<BodyId> bodies;
   std::uint32_t r = 12345;
   const auto draw = [&] {
@@ -94,7 +112,8 @@ template <class D> std::vector<BodyId> add_heap(World<D>& world, int layers) {
         } else {
           if (kind == 2) shape = geometry::Capsule3{0.3f, 0.3f};
         }
-        bodies.push_back(add_body<D>(world, BodyType::dynamic, shape, position, {0.5f, 0.2f * float(kind == 1), 1000, 0}));
+        bodies.push_back(
+            add_body<D>(world, BodyType::dynamic, shape, position, {0.5f, 0.2f * float(kind == 1), 1000, 0}));
       }
   return bodies;
 }

@@ -6,7 +6,8 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> class Stack : public testing::Test {};
+template <class D>
+class Stack : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(Stack, Dimensions);
 
@@ -26,7 +27,8 @@ TYPED_TEST(Stack, ColumnOfTenStandsAndSleeps) {
   EXPECT_EQ(world.counters().awake_bodies, 0);
 }
 
-// The sag law (docs: quality): under k bodies a soft contact of frequency f closes by 2 k g/ω², the lowest by k g/(2ω)².
+// The sag law (docs: quality): under k bodies a soft contact of frequency f closes by 2 k g/ω², the lowest by k
+// g/(2ω)².
 TYPED_TEST(Stack, SinksAsTheSagLawSays) {
   using D = TypeParam;
   WorldDef<D> d = world_with<D>();
@@ -39,7 +41,8 @@ TYPED_TEST(Stack, SinksAsTheSagLawSays) {
   run(world, 600);
   const double omega = 2 * pi * 30, g = 9.81;
   const double sag = n * (n - 1) * g / (omega * omega) + n * g / (4 * omega * omega);
-  // The law takes half the mass as a contact's effective one. The two points of a square have 2·m/5, the four of a cube 4·m/8.
+  // The law takes half the mass as a contact's effective one. The two points of a square have 2·m/5, the four of a cube
+  // 4·m/8.
   const double expected = D::dimension == 2 ? 1.25 * sag : sag;
   EXPECT_NEAR(n - 0.5 - world.state(top).value().pose.position.y, expected, 0.1 * expected);
 }

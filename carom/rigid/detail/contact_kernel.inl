@@ -9,54 +9,70 @@ namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
 using namespace math;
 
-template <int W> struct WideVec2 {
+template <int W>
+struct WideVec2 {
   WideFloat<W> x, y;
 };
-template <int W> struct WideVec3 {
+template <int W>
+struct WideVec3 {
   WideFloat<W> x, y, z;
 };
-template <int W> CAROM_SIMD_INLINE WideVec2<W> load2(const float (&p)[2][W]) {
+template <int W>
+CAROM_SIMD_INLINE WideVec2<W> load2(const float (&p)[2][W]) {
   return {WideFloat<W>::load(p[0]), WideFloat<W>::load(p[1])};
 }
-template <int W> CAROM_SIMD_INLINE WideVec3<W> load3(const float (&p)[3][W]) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> load3(const float (&p)[3][W]) {
   return {WideFloat<W>::load(p[0]), WideFloat<W>::load(p[1]), WideFloat<W>::load(p[2])};
 }
-template <int W> CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec2<W>& a, const WideVec2<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec2<W>& a, const WideVec2<W>& b) {
   return a.x * b.x + a.y * b.y;
 }
-template <int W> CAROM_SIMD_INLINE WideFloat<W> cross(const WideVec2<W>& a, const WideVec2<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> cross(const WideVec2<W>& a, const WideVec2<W>& b) {
   return a.x * b.y - a.y * b.x;
 }
-template <int W> CAROM_SIMD_INLINE WideVec2<W> add(const WideVec2<W>& a, const WideVec2<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideVec2<W> add(const WideVec2<W>& a, const WideVec2<W>& b) {
   return {a.x + b.x, a.y + b.y};
 }
-template <int W> CAROM_SIMD_INLINE WideVec2<W> subtract(const WideVec2<W>& a, const WideVec2<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideVec2<W> subtract(const WideVec2<W>& a, const WideVec2<W>& b) {
   return {a.x - b.x, a.y - b.y};
 }
-template <int W> CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec3<W>& a, const WideVec3<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec3<W>& a, const WideVec3<W>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-template <int W> CAROM_SIMD_INLINE WideVec3<W> cross(const WideVec3<W>& a, const WideVec3<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> cross(const WideVec3<W>& a, const WideVec3<W>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-template <int W> CAROM_SIMD_INLINE WideVec3<W> add(const WideVec3<W>& a, const WideVec3<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> add(const WideVec3<W>& a, const WideVec3<W>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-template <int W> CAROM_SIMD_INLINE WideVec3<W> subtract(const WideVec3<W>& a, const WideVec3<W>& b) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> subtract(const WideVec3<W>& a, const WideVec3<W>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <int W> CAROM_SIMD_INLINE WideVec3<W> multiply(const WideVec3<W>& a, WideFloat<W> s) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> multiply(const WideVec3<W>& a, WideFloat<W> s) {
   return {a.x * s, a.y * s, a.z * s};
 }
 /// Symmetric matrix, xx, yy, zz, xy, xz, yz.
-template <int W> struct WideSymmetric {
+template <int W>
+struct WideSymmetric {
   WideFloat<W> xx, yy, zz, xy, xz, yz;
 };
-template <int W> CAROM_SIMD_INLINE WideSymmetric<W> load_symmetric(const float (&p)[6][W]) {
+template <int W>
+CAROM_SIMD_INLINE WideSymmetric<W> load_symmetric(const float (&p)[6][W]) {
   return {WideFloat<W>::load(p[0]), WideFloat<W>::load(p[1]), WideFloat<W>::load(p[2]),
           WideFloat<W>::load(p[3]), WideFloat<W>::load(p[4]), WideFloat<W>::load(p[5])};
 }
-template <int W> CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3<W>& v) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3<W>& v) {
   return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
@@ -70,11 +86,13 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 }
 
 // 2D -----------------------------------------------------------------------------------------------------------------
-template <int W> struct Velocity2 {
+template <int W>
+struct Velocity2 {
   WideVec2<W> v;
   WideFloat<W> w;
 };
-template <int W> CAROM_SIMD_INLINE Velocity2<W> read_velocity(const SolverBody<Dim2>* bodies, const std::int32_t* index) {
+template <int W>
+CAROM_SIMD_INLINE Velocity2<W> read_velocity(const SolverBody<Dim2>* bodies, const std::int32_t* index) {
   WideFloat<W> c[4];
   gather<W>(bodies, index, 0, c);
   return {{c[0], c[1]}, c[2]};
@@ -209,7 +227,8 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
       const F turn_a = cross(ra, t), turn_b = cross(rb, t);
       const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
       const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
-      const F lambda = clamp(old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target)), F::splat(0) - limit, limit);
+      const F lambda =
+          clamp(old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target)), F::splat(0) - limit, limit);
       const F delta = lambda - old;
       lambda.store(c.tangent_impulse);
       (F::load(c.tangent_total) + lambda).store(c.tangent_total);
@@ -268,10 +287,12 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
 }
 
 // 3D -----------------------------------------------------------------------------------------------------------------
-template <int W> struct Velocity3 {
+template <int W>
+struct Velocity3 {
   WideVec3<W> v, w;
 };
-template <int W> CAROM_SIMD_INLINE Velocity3<W> read_velocity(const SolverBody<Dim3>* bodies, const std::int32_t* index) {
+template <int W>
+CAROM_SIMD_INLINE Velocity3<W> read_velocity(const SolverBody<Dim3>* bodies, const std::int32_t* index) {
   WideFloat<W> c[8];
   gather<W>(bodies, index, 0, c);
   return {{c[0], c[1], c[2]}, {c[4], c[5], c[6]}};
@@ -327,7 +348,8 @@ void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int 
 }
 
 /// Rᵀn − n of the unit quaternion (w, x, y, z).
-template <int W> CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], const WideVec3<W>& n) {
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], const WideVec3<W>& n) {
   using F = WideFloat<W>;
   const WideVec3<W> u = {F::splat(0) - q[5], F::splat(0) - q[6], F::splat(0) - q[7]};
   const WideVec3<W> x = cross(u, n), t = add(x, x);
@@ -420,8 +442,7 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     const F cone = F::load(c.friction) * load;
     {
       const F old = F::load(c.twist_impulse), limit = cone * F::load(c.twist_radius);
-      const F lambda =
-          clamp(old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n), F::splat(0) - limit, limit);
+      const F lambda = clamp(old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n), F::splat(0) - limit, limit);
       lambda.store(c.twist_impulse);
       const WideVec3<W> turn = multiply(n, lambda - old);
       a.w = subtract(a.w, multiply(ia, turn));

@@ -7,7 +7,8 @@ namespace {
 
 constexpr int pair_grain = 64;
 
-template <class D> void find_pairs_of(WorldImplementation<D>& world, std::int32_t s, std::vector<FoundPair>& found) {
+template <class D>
+void find_pairs_of(WorldImplementation<D>& world, std::int32_t s, std::vector<FoundPair>& found) {
   const ShapeRecord<D>& shape = world.shapes.at(s);
   if (shape.leaf == none) return;
   const typename D::Bounds box = world.shapes.trees[shape.tree].bounds(shape.leaf);
@@ -29,7 +30,8 @@ template <class D> void find_pairs_of(WorldImplementation<D>& world, std::int32_
 
 }  // namespace
 
-template <class D> void find_pairs(WorldImplementation<D>& world) {
+template <class D>
+void find_pairs(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   if (scratch.moved.empty()) return;
   for (std::vector<FoundPair>& list : scratch.found_pairs) list.clear();
@@ -48,7 +50,8 @@ template <class D> void find_pairs(WorldImplementation<D>& world) {
   scratch.moved.clear();
 }
 
-template <class D> void update_trees(WorldImplementation<D>& world) {
+template <class D>
+void update_trees(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   bool enlarged[3] = {};
   for (std::size_t i = 0; i < world.bodies.awake.size(); ++i) {

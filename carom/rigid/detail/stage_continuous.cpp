@@ -7,7 +7,8 @@ namespace {
 
 using Sweep2 = geometry::Sweep2;
 using Sweep3 = geometry::Sweep3;
-template <class D> using Sweep = std::conditional_t<D::dimension == 2, Sweep2, Sweep3>;
+template <class D>
+using Sweep = std::conditional_t<D::dimension == 2, Sweep2, Sweep3>;
 
 Rot2f between(const Rot2f& a, const Rot2f& b, float t) {
   return normalize(Rot2f{a.c + t * (b.c - a.c), a.s + t * (b.s - a.s)});
@@ -18,16 +19,19 @@ Quatf between(const Quatf& a, const Quatf& b, float t) {
 }
 
 /// The same motion, of a shape that stands at `local` in what moves.
-template <class S, class T> S sweep_of_part(const S& s, const T& local) {
+template <class S, class T>
+S sweep_of_part(const S& s, const T& local) {
   return {inverse_rotate(local.q, s.local_center - local.p), s.c0, s.c1, s.q0 * local.q, s.q1 * local.q};
 }
-template <class S> auto transform_at_end(const S& s) {
+template <class S>
+auto transform_at_end(const S& s) {
   using T = std::conditional_t<std::is_same_v<S, Sweep2>, Transform2f, Transform3f>;
   return T{s.c1 - rotate(s.q1, s.local_center), s.q1};
 }
 
 // Time of impact between any two shapes: a moves, b stands in the frame in which both sweeps are given.
-geometry::TimeOfImpact impact(const geometry::Shape2& a, const Sweep2& sa, const geometry::Shape2& b, const Sweep2& sb) {
+geometry::TimeOfImpact impact(const geometry::Shape2& a, const Sweep2& sa, const geometry::Shape2& b,
+                              const Sweep2& sb) {
   if (b.type != geometry::ShapeType2::chain) return geometry::time_of_impact(a, sa, b, sb);
   geometry::TimeOfImpact first;
   for (int i = 0; i < b.chain->segment_count(); ++i) {
@@ -36,7 +40,8 @@ geometry::TimeOfImpact impact(const geometry::Shape2& a, const Sweep2& sa, const
   }
   return first;
 }
-geometry::TimeOfImpact impact(const geometry::Shape3& a, const Sweep3& sa, const geometry::Shape3& b, const Sweep3& sb) {
+geometry::TimeOfImpact impact(const geometry::Shape3& a, const Sweep3& sa, const geometry::Shape3& b,
+                              const Sweep3& sb) {
   const bool split_a = a.type == geometry::ShapeType3::compound;
   if (!split_a && b.type != geometry::ShapeType3::compound) return geometry::time_of_impact(a, sa, b, sb);
   geometry::TimeOfImpact first;
@@ -50,7 +55,8 @@ geometry::TimeOfImpact impact(const geometry::Shape3& a, const Sweep3& sa, const
 
 /// Does the end of the motion leave a shallow contact that the solver can put right by itself? Then nothing is to be
 /// stopped, and a body that slides fast along a floor loses none of its way.
-bool shallow_end(const geometry::Shape2& a, const Sweep2& sa, const geometry::Shape2& b, const Sweep2& sb, float depth) {
+bool shallow_end(const geometry::Shape2& a, const Sweep2& sa, const geometry::Shape2& b, const Sweep2& sb,
+                 float depth) {
   const Transform2f a_in_b = inverse(transform_at_end(sb)) * transform_at_end(sa);
   float deepest = 1;
   const auto look = [&](const geometry::Shape2& part) {
@@ -59,12 +65,14 @@ bool shallow_end(const geometry::Shape2& a, const Sweep2& sa, const geometry::Sh
     geometry::collide(part, a, a_in_b, depth, cache, m);
     for (int i = 0; i < m.count; ++i) deepest = min(deepest, m.points[i].separation);
   };
-  if (b.type != geometry::ShapeType2::chain) look(b);
+  if (b.type != geometry::ShapeType2::chain)
+    look(b);
   else
     for (int i = 0; i < b.chain->segment_count(); ++i) look(geometry::Shape2(b.chain->segment(i)));
   return deepest < 1 && deepest > -depth;
 }
-bool shallow_end(const geometry::Shape3& a, const Sweep3& sa, const geometry::Shape3& b, const Sweep3& sb, float depth) {
+bool shallow_end(const geometry::Shape3& a, const Sweep3& sa, const geometry::Shape3& b, const Sweep3& sb,
+                 float depth) {
   const Transform3f a_in_b = inverse(transform_at_end(sb)) * transform_at_end(sa);
   geometry::Manifold3 m[8];
   int count;
@@ -85,15 +93,17 @@ bool shallow_end(const geometry::Shape3& a, const Sweep3& sa, const geometry::Sh
 geometry::Shape2 core_shape(const Dim2*, float radius) { return geometry::Circle{radius}; }
 geometry::Shape3 core_shape(const Dim3*, float radius) { return geometry::Sphere{radius}; }
 
-template <class D> Sweep<D> sweep_of_body(const WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start,
-                                          const typename D::Position& base) {
+template <class D>
+Sweep<D> sweep_of_body(const WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start,
+                       const typename D::Position& base) {
   const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   return {m.local_center, typename D::Vector(start.center - base), typename D::Vector(m.center - base), start.rotation,
           world.bodies.pose[std::size_t(body)].rotation};
 }
 
 /// The fraction of its way that the body may go.
-template <class D> float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std::size_t place, bool moving_too) {
+template <class D>
+float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std::size_t place, bool moving_too) {
   const BodyRecord& record = world.bodies.record[std::size_t(body)];
   const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   const SweepStart<D>& start = world.scratch.swept[place];
@@ -139,7 +149,8 @@ template <class D> float free_fraction(const WorldImplementation<D>& world, std:
   return fraction;
 }
 
-template <class D> void move_to_fraction(WorldImplementation<D>& world, std::int32_t body, std::size_t place, float fraction) {
+template <class D>
+void move_to_fraction(WorldImplementation<D>& world, std::int32_t body, std::size_t place, float fraction) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   if (fraction < 1) {
     const SweepStart<D>& start = world.scratch.swept[place];
@@ -154,7 +165,8 @@ template <class D> void move_to_fraction(WorldImplementation<D>& world, std::int
 
 }  // namespace
 
-template <class D> void stop_fast_bodies(StepContext<D>& context) {
+template <class D>
+void stop_fast_bodies(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   StepScratch<D>& scratch = world.scratch;
   scratch.fast.clear();
@@ -162,7 +174,9 @@ template <class D> void stop_fast_bodies(StepContext<D>& context) {
     if (world.bodies.record[std::size_t(world.bodies.awake[i])].flags & body_fast)
       scratch.fast.push_back(std::int32_t(i));
   if (scratch.fast.empty()) return;
-  const auto is_bullet = [&](std::int32_t body) { return (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0; };
+  const auto is_bullet = [&](std::int32_t body) {
+    return (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;
+  };
   // Fixed geometry first, each body by itself.
   context.scheduler.parallel_for(int(scratch.fast.size()), 4, [&](int begin, int end, int) {
     for (int k = begin; k < end; ++k) {

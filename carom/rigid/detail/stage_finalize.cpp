@@ -10,13 +10,15 @@ float spin_of(const Vec3f& w) { return math::length(w); }
 float turn_of(const Rot2f& q) { return math::abs(q.s) + max(0.0f, -2 * q.c); }
 float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
 
-template <class D> void reset_delta(SolverBody<D>& s) {
+template <class D>
+void reset_delta(SolverBody<D>& s) {
   s.delta_position = {};
   s.delta_rotation = {};
 }
 
 /// Puts the body back where the step began, at rest and for good: one broken number must not spread.
-template <class D> void quarantine(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void quarantine(WorldImplementation<D>& world, std::int32_t body) {
   SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
   s = {};
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
@@ -27,7 +29,8 @@ template <class D> void quarantine(WorldImplementation<D>& world, std::int32_t b
 
 }  // namespace
 
-template <class D> bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   bool any = false;
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
@@ -39,7 +42,8 @@ template <class D> bool leave_bounds(WorldImplementation<D>& world, std::int32_t
   return any;
 }
 
-template <class D> void finalize_bodies(StepContext<D>& context) {
+template <class D>
+void finalize_bodies(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   StepScratch<D>& scratch = world.scratch;
   const std::size_t count = world.bodies.awake.size();
@@ -63,7 +67,8 @@ template <class D> void finalize_bodies(StepContext<D>& context) {
       const float travel = math::length(s.delta_position), turned = turn_of(s.delta_rotation);
       const bool bullet = (record.flags & body_bullet) != 0;
       if (context.world.definition.continuous && record.type == BodyType::dynamic &&
-          (record.flags & body_has_collider) != 0 && travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
+          (record.flags & body_has_collider) != 0 &&
+          travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
         record.flags |= body_fast;
       }
       scratch.swept[std::size_t(i)] = {pose.rotation, m.center};
@@ -93,7 +98,8 @@ template <class D> void finalize_bodies(StepContext<D>& context) {
     }
 }
 
-template <class D> void release_broken_bodies(WorldImplementation<D>& world) {
+template <class D>
+void release_broken_bodies(WorldImplementation<D>& world) {
   for (const std::int32_t body : world.scratch.broken) {
     deactivate_body(world, body);
     for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
@@ -109,7 +115,8 @@ template <class D> void release_broken_bodies(WorldImplementation<D>& world) {
   world.scratch.broken.clear();
 }
 
-template <class D> void gather_hit_events(StepContext<D>& context) {
+template <class D>
+void gather_hit_events(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
   for (const std::int32_t contact : world.contacts.awake) {
@@ -140,10 +147,10 @@ template <class D> void gather_hit_events(StepContext<D>& context) {
   }
 }
 
-#define CAROM_INSTANTIATE(D)                                        \
-  template void finalize_bodies<D>(StepContext<D>&);                \
-  template void release_broken_bodies<D>(WorldImplementation<D>&);  \
-  template void gather_hit_events<D>(StepContext<D>&);              \
+#define CAROM_INSTANTIATE(D)                                       \
+  template void finalize_bodies<D>(StepContext<D>&);               \
+  template void release_broken_bodies<D>(WorldImplementation<D>&); \
+  template void gather_hit_events<D>(StepContext<D>&);             \
   template bool leave_bounds<D>(WorldImplementation<D>&, std::int32_t);
 CAROM_INSTANTIATE(Dim2)
 CAROM_INSTANTIATE(Dim3)

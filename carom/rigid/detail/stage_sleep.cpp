@@ -18,11 +18,14 @@ std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t i) {
 void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
   a = find_root(parent, a);
   b = find_root(parent, b);
-  if (a < b) parent[std::size_t(b)] = a;
-  else if (b < a) parent[std::size_t(a)] = b;
+  if (a < b)
+    parent[std::size_t(b)] = a;
+  else if (b < a)
+    parent[std::size_t(a)] = b;
 }
 
-template <class D> std::int32_t dynamic_place(const WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+std::int32_t dynamic_place(const WorldImplementation<D>& world, std::int32_t body) {
   if (body == none || !world.bodies.is_dynamic(body)) return none;
   return world.bodies.record[std::size_t(body)].awake_index;
 }
@@ -54,7 +57,8 @@ void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t
 
 }  // namespace
 
-template <class D> void sleep_islands(StepContext<D>& context) {
+template <class D>
+void sleep_islands(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   if (!world.definition.allow_sleep || world.step_count % sleep_interval != 0) return;
   StepScratch<D>& scratch = world.scratch;
@@ -94,12 +98,15 @@ template <class D> void sleep_islands(StepContext<D>& context) {
   scratch.island_ends.push_back(std::int32_t(scratch.island_list.size()));
   std::int32_t begin = 0;
   for (const std::int32_t end : scratch.island_ends) {
-    put_to_sleep<D>(world, std::span<const std::int32_t>(scratch.island_bodies).subspan(std::size_t(begin), std::size_t(end - begin)));
+    put_to_sleep<D>(
+        world,
+        std::span<const std::int32_t>(scratch.island_bodies).subspan(std::size_t(begin), std::size_t(end - begin)));
     begin = end;
   }
 }
 
-template <class D> int count_islands(const WorldImplementation<D>& world) {
+template <class D>
+int count_islands(const WorldImplementation<D>& world) {
   std::vector<std::int32_t> parent;
   unite_islands(world, parent, [](std::int32_t) {});
   int count = world.sleeping.count();

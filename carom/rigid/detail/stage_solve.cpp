@@ -5,19 +5,23 @@ namespace {
 
 constexpr int solve_grain = 8;  ///< blocks to a task
 
-template <class D, class F> void run_blocks(StepContext<D>& context, int color, F&& f) {
+template <class D, class F>
+void run_blocks(StepContext<D>& context, int color, F&& f) {
   const ColorBlocks& blocks = context.world.scratch.blocks[color];
   if (blocks.count == 0) return;
-  if (color == overflow_color || blocks.count <= solve_grain) f(blocks, 0, blocks.count);
+  if (color == overflow_color || blocks.count <= solve_grain)
+    f(blocks, 0, blocks.count);
   else
-    context.scheduler.parallel_for(blocks.count, solve_grain,
-                                   [&](int begin, int end, int) { f(blocks, begin, end); });
+    context.scheduler.parallel_for(blocks.count, solve_grain, [&](int begin, int end, int) { f(blocks, begin, end); });
 }
 
 /// Calls f(color) for those with something in them: the overflow first, because what is solved last holds best.
-template <class D, class F> void for_colors(StepContext<D>& context, F&& f) {
+template <class D, class F>
+void for_colors(StepContext<D>& context, F&& f) {
   const ConstraintGraph& graph = context.world.graph;
-  const auto used = [&](int color) { return !graph.colors[color].manifolds.empty() || !graph.colors[color].joints.empty(); };
+  const auto used = [&](int color) {
+    return !graph.colors[color].manifolds.empty() || !graph.colors[color].joints.empty();
+  };
   if (used(overflow_color)) f(overflow_color);
   for (int color = 0; color < color_count; ++color)
     if (used(color)) f(color);
@@ -25,7 +29,8 @@ template <class D, class F> void for_colors(StepContext<D>& context, F&& f) {
 
 }  // namespace
 
-template <class D> void solve_constraints(StepContext<D>& context) {
+template <class D>
+void solve_constraints(StepContext<D>& context) {
   const ContactKernels<D>& kernels = context.world.kernels;
   const float inverse_h = context.inverse_h, push_speed = context.push_speed;
   SolverBody<D>* const bodies = context.bodies;
@@ -53,7 +58,8 @@ template <class D> void solve_constraints(StepContext<D>& context) {
   }
 }
 
-template <class D> void restitute_contacts(StepContext<D>& context) {
+template <class D>
+void restitute_contacts(StepContext<D>& context) {
   const ContactKernels<D>& kernels = context.world.kernels;
   for_colors(context, [&](int color) {
     if (!context.world.scratch.blocks[color].bounces) return;

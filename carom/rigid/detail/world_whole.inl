@@ -9,11 +9,13 @@ namespace carom::rigid {
 namespace detail {
 
 /// Slots of a pool in the order of their birth.
-template <class Slots> void by_birth(const Slots& slots, const std::vector<std::uint64_t>& birth, std::vector<std::int32_t>& out) {
+template <class Slots>
+void by_birth(const Slots& slots, const std::vector<std::uint64_t>& birth, std::vector<std::int32_t>& out) {
   out.clear();
   for (int i = 0; i < slots.capacity(); ++i)
     if (slots.in_use(i)) out.push_back(i);
-  std::sort(out.begin(), out.end(), [&](std::int32_t a, std::int32_t b) { return birth[std::size_t(a)] < birth[std::size_t(b)]; });
+  std::sort(out.begin(), out.end(),
+            [&](std::int32_t a, std::int32_t b) { return birth[std::size_t(a)] < birth[std::size_t(b)]; });
 }
 
 inline void hash_add(core::StateHash& h, const Vec2d& v) { h.add(v.x).add(v.y); }
@@ -24,7 +26,9 @@ inline void hash_add(core::StateHash& h, const Rot2f& q) { h.add(q.c).add(q.s); 
 inline void hash_add(core::StateHash& h, const Quatf& q) { h.add(q.w).add(q.x).add(q.y).add(q.z); }
 inline void hash_add(core::StateHash& h, float x) { h.add(x); }
 
-template <class D> double spin_energy(const BodyMotion<D>& m, const typename D::Rotation& q, const typename D::Angular& w, auto& momentum) {
+template <class D>
+double spin_energy(const BodyMotion<D>& m, const typename D::Rotation& q, const typename D::Angular& w,
+                   auto& momentum) {
   if constexpr (D::dimension == 2) {
     momentum += double(m.inertia) * double(w);
     return 0.5 * double(m.inertia) * double(w) * double(w);
@@ -37,8 +41,12 @@ template <class D> double spin_energy(const BodyMotion<D>& m, const typename D::
   }
 }
 
-template <class T> std::size_t bytes_of(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
-template <class D> std::size_t bytes_of_world(const WorldImplementation<D>& w) {
+template <class T>
+std::size_t bytes_of(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
+}
+template <class D>
+std::size_t bytes_of_world(const WorldImplementation<D>& w) {
   std::size_t n = sizeof(w);
   n += w.bodies.slots.bytes() + bytes_of(w.bodies.solver) + bytes_of(w.bodies.pose) + bytes_of(w.bodies.motion) +
        bytes_of(w.bodies.record) + bytes_of(w.bodies.names) + bytes_of(w.bodies.birth) + bytes_of(w.bodies.awake);
@@ -63,16 +71,25 @@ template <class D> std::size_t bytes_of_world(const WorldImplementation<D>& w) {
 
 }  // namespace detail
 
-template <class D> World<D>::World(const WorldDef<D>& definition) : self_(std::make_unique<Implementation>(definition)) {}
-template <class D> World<D>::~World() = default;
-template <class D> World<D>::World(World&&) noexcept = default;
-template <class D> World<D>& World<D>::operator=(World&&) noexcept = default;
-template <class D> Status World<D>::check(const WorldDef<D>& definition) {
+template <class D>
+World<D>::World(const WorldDef<D>& definition) : self_(std::make_unique<Implementation>(definition)) {}
+template <class D>
+World<D>::~World() = default;
+template <class D>
+World<D>::World(World&&) noexcept = default;
+template <class D>
+World<D>& World<D>::operator=(World&&) noexcept = default;
+template <class D>
+Status World<D>::check(const WorldDef<D>& definition) {
   return detail::check_definition<D>("World::check", definition);
 }
-template <class D> const WorldDef<D>& World<D>::definition() const { return self_->definition; }
+template <class D>
+const WorldDef<D>& World<D>::definition() const {
+  return self_->definition;
+}
 
-template <class D> Status World<D>::set_gravity(Vector gravity) {
+template <class D>
+Status World<D>::set_gravity(Vector gravity) {
   using namespace detail;
   Complaint complaint("World::set_gravity");
   check_size(complaint, "gravity", gravity, 1e6);
@@ -84,30 +101,43 @@ template <class D> Status World<D>::set_gravity(Vector gravity) {
   return {};
 }
 
-template <class D> Status World<D>::step(float dt) { return detail::step_world<D>(*self_, dt); }
-template <class D> std::uint64_t World<D>::step_count() const { return self_->step_count; }
-template <class D> double World<D>::time() const { return self_->time; }
+template <class D>
+Status World<D>::step(float dt) {
+  return detail::step_world<D>(*self_, dt);
+}
+template <class D>
+std::uint64_t World<D>::step_count() const {
+  return self_->step_count;
+}
+template <class D>
+double World<D>::time() const {
+  return self_->time;
+}
 
-template <class D> Events<D> World<D>::events() const {
+template <class D>
+Events<D> World<D>::events() const {
   const detail::StepScratch<D>& s = self_->scratch;
   return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin, s.sensor_end, s.fell_asleep, s.quarantined};
 }
 
-template <class D> void World<D>::bodies(std::vector<BodyId>& out) const {
+template <class D>
+void World<D>::bodies(std::vector<BodyId>& out) const {
   std::vector<std::int32_t> order;
   detail::by_birth(self_->bodies.slots, self_->bodies.birth, order);
   out.clear();
   for (const std::int32_t i : order) out.push_back(self_->bodies.slots.handle_at(i));
 }
-template <class D> void World<D>::shapes(BodyId body, std::vector<ShapeId>& out) const {
+template <class D>
+void World<D>::shapes(BodyId body, std::vector<ShapeId>& out) const {
   out.clear();
   if (!contains(body)) return;
-  for (std::int32_t s = self_->bodies.record[std::size_t(self_->bodies.slots.slot(body))].first_shape; s != detail::none;
-       s = self_->shapes.at(s).next)
+  for (std::int32_t s = self_->bodies.record[std::size_t(self_->bodies.slots.slot(body))].first_shape;
+       s != detail::none; s = self_->shapes.at(s).next)
     out.push_back(self_->shapes.slots.handle_at(s));
 }
 
-template <class D> void World<D>::contacts(std::vector<ContactView<D>>& out) const {
+template <class D>
+void World<D>::contacts(std::vector<ContactView<D>>& out) const {
   using namespace detail;
   out.clear();
   const ContactStore<D>& store = self_->contacts;
@@ -125,8 +155,7 @@ template <class D> void World<D>::contacts(std::vector<ContactView<D>>& out) con
       view.shape_a = self_->shapes.slots.handle_at(c.shape[0]);
       view.shape_b = self_->shapes.slots.handle_at(c.shape[1]);
       view.count = m.manifold.count;
-      for (int k = 0; k < m.manifold.count; ++k)
-        view.points[k] = {points[k], separations[k], m.impulses.total[k]};
+      for (int k = 0; k < m.manifold.count; ++k) view.points[k] = {points[k], separations[k], m.impulses.total[k]};
       view.friction_impulse = m.impulses.friction_total;
       view.color = m.place.color;
       out.push_back(view);
@@ -134,7 +163,8 @@ template <class D> void World<D>::contacts(std::vector<ContactView<D>>& out) con
   }
 }
 
-template <class D> Totals<D> World<D>::totals() const {
+template <class D>
+Totals<D> World<D>::totals() const {
   using namespace detail;
   Totals<D> t;
   Position weighted{};
@@ -150,15 +180,17 @@ template <class D> Totals<D> World<D>::totals() const {
     weighted += m.center * mass;
     t.momentum += p;
     t.angular_momentum += cross(m.center, p);
-    t.kinetic_energy += 0.5 * mass * math::length_squared(Position(s.linear_velocity)) +
-                        spin_energy<D>(m, self_->bodies.pose[std::size_t(i)].rotation, s.angular_velocity, t.angular_momentum);
+    t.kinetic_energy +=
+        0.5 * mass * math::length_squared(Position(s.linear_velocity)) +
+        spin_energy<D>(m, self_->bodies.pose[std::size_t(i)].rotation, s.angular_velocity, t.angular_momentum);
     t.potential_energy -= mass * double(m.gravity_scale) * dot(Position(self_->definition.gravity), m.center);
   }
   if (t.mass > 0) t.center_of_mass = weighted * (1 / t.mass);
   return t;
 }
 
-template <class D> Counters World<D>::counters() const {
+template <class D>
+Counters World<D>::counters() const {
   using namespace detail;
   Counters c;
   c.bodies = self_->bodies.slots.size();
@@ -168,7 +200,8 @@ template <class D> Counters World<D>::counters() const {
   c.effectors = self_->effectors.count();
   c.contacts = self_->contacts.count;
   for (const ContactRecord<D>& contact : self_->contacts.contacts)
-    if ((contact.flags & contact_in_use) != 0 && (contact.flags & contact_touching) != 0 && (contact.flags & contact_sensor) == 0)
+    if ((contact.flags & contact_in_use) != 0 && (contact.flags & contact_touching) != 0 &&
+        (contact.flags & contact_sensor) == 0)
       ++c.touching_contacts;
   for (const ManifoldRecord<D>& m : self_->contacts.manifolds)
     if (m.contact != none) c.contact_points += m.manifold.count;
@@ -181,9 +214,13 @@ template <class D> Counters World<D>::counters() const {
   return c;
 }
 
-template <class D> StepProfile World<D>::profile() const { return self_->profile; }
+template <class D>
+StepProfile World<D>::profile() const {
+  return self_->profile;
+}
 
-template <class D> float World<D>::worst_penetration() const {
+template <class D>
+float World<D>::worst_penetration() const {
   using namespace detail;
   float worst = 0;
   for (const ManifoldRecord<D>& m : self_->contacts.manifolds) {
@@ -197,7 +234,8 @@ template <class D> float World<D>::worst_penetration() const {
   return worst;
 }
 
-template <class D> std::uint64_t World<D>::state_hash() const {
+template <class D>
+std::uint64_t World<D>::state_hash() const {
   using namespace detail;
   core::StateHash hash;
   std::vector<std::int32_t> order;
