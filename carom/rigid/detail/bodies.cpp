@@ -20,41 +20,39 @@ template <class D> void joint_from_graph(WorldImplementation<D>& world, std::int
   j.place = {};
 }
 
-Mat3f world_inverse(const BodyMotion<Dim3>& m, const Quatf& q, std::uint8_t locks) {
-  if (m.inverse_inertia == Mat3f::zero()) return Mat3f::zero();
+Mat3f symmetric(const Mat3f& i) {
+  // To the last bit, so that both bodies of a pair see the same.
+  const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
+  return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
+}
+Mat3f world_inverse(const BodyMotion<Dim3>& m, const Quatf& q, const BodyRecord& record) {
+  const float scale = (m.inertia.cx.x + m.inertia.cy.y + m.inertia.cz.z) * (1.0f / 3.0f);
+  const int locked = record.locks >> 3 & 7;
+  if (record.type != BodyType::dynamic || !(scale > 0) || locked == 7) return Mat3f::zero();
+  if (locked == 0 && !m.gyroscopic) return Mat3f::diagonal({1 / scale, 1 / scale, 1 / scale});
+  // Scaled to order one, because a determinant of three small moments would underflow.
   const Mat3f r = to_matrix(q);
-  const int locked = locks >> 3 & 7;
-  if (locked == 7) return Mat3f::zero();
-  if (locked == 0) {
-    const Mat3f i = r * m.inverse_inertia * transpose(r);
-    // Symmetric to the last bit, so that both bodies of a pair see the same.
-    const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
-    return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
-  }
+  Mat3f i = r * ((1 / scale) * m.inertia) * transpose(r);
   // Only the free axes turn: the inverse of that part of the tensor.
-  Mat3f i = r * m.inertia * transpose(r);
   for (int k = 0; k < 3; ++k)
     if (locked >> k & 1)
       for (int l = 0; l < 3; ++l) {
         i.column(k)[l] = k == l ? 1.0f : 0.0f;
         i.column(l)[k] = k == l ? 1.0f : 0.0f;
       }
-  i = inverse(i);
+  i = inverse(i) * (1 / scale);
   for (int k = 0; k < 3; ++k)
     if (locked >> k & 1) i.column(k)[k] = 0;
-  const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
-  return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
+  return symmetric(i);
 }
-float world_inverse(const BodyMotion<Dim2>& m, const Rot2f&, std::uint8_t) { return m.inverse_inertia; }
+float world_inverse(const BodyMotion<Dim2>& m, const Rot2f&, const BodyRecord& record) {
+  return record.type == BodyType::dynamic && m.inertia > 0 && (record.locks & 32) == 0 ? 1 / m.inertia : 0;
+}
 
-void set_inertia(BodyMotion<Dim2>& m, double inertia, std::uint8_t locks) {
-  m.inertia = float(inertia);
-  m.inverse_inertia = inertia > 0 && (locks & 32) == 0 ? float(1 / inertia) : 0;
-}
-void set_inertia(BodyMotion<Dim3>& m, const Mat3d& inertia, std::uint8_t) {
-  m.inertia = Mat3f(inertia);
+void set_inertia(BodyMotion<Dim2>& m, double inertia) { m.inertia = float(inertia); }
+void set_inertia(BodyMotion<Dim3>& m, const Mat3d& inertia) {
+  m.inertia = symmetric(Mat3f(inertia));
   const double scale = (inertia.cx.x + inertia.cy.y + inertia.cz.z) / 3;
-  m.inverse_inertia = scale > 0 ? Mat3f(inverse(inertia / scale) / scale) : Mat3f::zero();
   const auto off = [&](double x) { return math::abs(x) > 1e-4 * scale; };
   m.gyroscopic = off(inertia.cx.y) || off(inertia.cx.z) || off(inertia.cy.z) || off(inertia.cx.x - scale) ||
                  off(inertia.cy.y - scale) || off(inertia.cz.z - scale);
@@ -161,7 +159,7 @@ template <class D> void wake_touching(WorldImplementation<D>& world, std::int32_
 template <class D> void update_world_inertia(WorldImplementation<D>& world, std::int32_t body) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   m.world_inverse_inertia = world_inverse(m, world.bodies.pose[std::size_t(body)].rotation,
-                                          world.bodies.record[std::size_t(body)].locks);
+                                          world.bodies.record[std::size_t(body)]);
 }
 
 template <class D> void pose_from_center(WorldImplementation<D>& world, std::int32_t body) {
@@ -199,14 +197,13 @@ template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t 
   if ((record.flags & body_mass_given) == 0) {
     m.mass = record.type == BodyType::dynamic ? float(sum.mass) : 0;
     m.local_center = typename D::Vector(sum.center);
-    set_inertia(m, sum.inertia, record.locks);
+    set_inertia(m, sum.inertia);
   } else {
     using InertiaD = decltype(sum.inertia);
-    set_inertia(m, InertiaD(m.inertia), record.locks);
+    set_inertia(m, InertiaD(m.inertia));
   }
   const bool translates = (record.locks & (D::dimension == 2 ? 3 : 7)) != (D::dimension == 2 ? 3 : 7);
   m.inverse_mass = record.type == BodyType::dynamic && m.mass > 0 && translates ? 1 / m.mass : 0;
-  if (record.type != BodyType::dynamic) m.inverse_inertia = no_inertia<typename D::Inertia>();
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     m.outer_extent = max(m.outer_extent, math::length(shape.local.p - m.local_center) + shape.outer_extent);

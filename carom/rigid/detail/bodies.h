@@ -23,7 +23,7 @@ template <class D> void put_to_sleep(WorldImplementation<D>& world, std::span<co
 /// Wakes whoever touches the body: what it rested on may be gone.
 template <class D> void wake_touching(WorldImplementation<D>& world, std::int32_t body);
 
-/// inverse_inertia turned into world axes, with locked axes taken out.
+/// The inverse of the tensor in world axes, with locked axes taken out.
 template <class D> void update_world_inertia(WorldImplementation<D>& world, std::int32_t body);
 /// The pose of the body's origin from its centre of mass.
 template <class D> void pose_from_center(WorldImplementation<D>& world, std::int32_t body);

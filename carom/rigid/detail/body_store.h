@@ -17,6 +17,11 @@ template <class Inertia> constexpr Inertia no_inertia() {
   else return 0;
 }
 
+/// Makes room for one more. Vectors double by themselves; a world of sleepers should pay for what it holds.
+template <class T> void grow_by_a_quarter(std::vector<T>& v) {
+  if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
+}
+
 /// Mass, forces and what the integrator needs. Read at the start and end of a step, not inside the contact solver.
 template <class D> struct BodyMotion {
   typename D::Position center{};             ///< m, centre of mass in the world
@@ -25,7 +30,6 @@ template <class D> struct BodyMotion {
   typename D::Angular torque{};              ///< N·m, about the centre of mass
   float mass = 0, inverse_mass = 0;          ///< 0 where forces do not move the body (inverse_mass), or it has none
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
-  typename D::Inertia inverse_inertia = no_inertia<typename D::Inertia>();  ///< body axes (2D: already with the rotation lock)
   typename D::Inertia world_inverse_inertia = no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;

@@ -109,6 +109,7 @@ template <class D> void create_contact(WorldImplementation<D>& world, std::int32
     store.at(index) = {};
   } else {
     index = std::int32_t(store.contacts.size());
+    grow_by_a_quarter(store.contacts);
     store.contacts.emplace_back();
   }
   ContactRecord<D>& c = store.at(index);
@@ -220,6 +221,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
     store.manifold(index) = {};
   } else {
     index = std::int32_t(store.manifolds.size());
+    grow_by_a_quarter(store.manifolds);
     store.manifolds.emplace_back();
   }
   ManifoldRecord<D>& m = store.manifold(index);

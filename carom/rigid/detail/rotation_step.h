@@ -23,15 +23,25 @@ inline Quatf turn(const Vec3f& angle) {
 
 /// Torque-free rotation of a body for the time h: attitude q and angular velocity (world axes), such that the world's
 /// angular momentum stays the same to rounding. Implicit midpoint on the rotation group, which is symmetric in time and
-/// so has no drift of energy. `inertia` and `inverse_inertia` in body axes. Returns the turn in the body's frame.
-inline Quatf torque_free_turn(const Mat3f& inertia, const Mat3f& inverse_inertia, const Quatf& q, float h, Vec3f& angular_velocity) {
-  const Vec3f w = inverse_rotate(q, angular_velocity);
-  const Vec3f momentum = inertia * w;
-  Vec3f middle = w;
-  for (int i = 0; i < 3; ++i) middle = inverse_inertia * inverse_rotate(turn((0.5f * h) * middle), momentum);
-  const Quatf r = turn(h * middle);
-  angular_velocity = rotate(q * r, inverse_inertia * inverse_rotate(r, momentum));
-  return r;
+/// so has no drift of energy. Inertia in body axes. In double, because a body near its intermediate axis feels every
+/// rounding. Returns the turn in the body's frame.
+inline Quatf torque_free_turn(const Mat3f& inertia, const Quatf& q, float h, Vec3d& angular_velocity) {
+  const auto turned = [](const Vec3d& angle) {
+    const Vec3d y = 0.5 * angle;
+    const double yy = dot(y, y);
+    const Vec3d t = y * ((105 - 10 * yy) / (105 - 45 * yy + yy * yy));
+    const double s = 1 / math::sqrt(1 + dot(t, t));
+    return Quatd{s, s * t};
+  };
+  const Quatd attitude = normalize(Quatd(q));
+  const double scale = double(inertia.cx.x);  // positive for every body that turns
+  const Mat3d tensor = Mat3d(inertia) / scale, inverse_tensor = inverse(tensor);
+  const Vec3d w = inverse_rotate(attitude, angular_velocity), momentum = tensor * w;
+  Vec3d middle = w;
+  for (int i = 0; i < 5; ++i) middle = inverse_tensor * inverse_rotate(turned((0.5 * double(h)) * middle), momentum);
+  const Quatd r = turned(double(h) * middle);
+  angular_velocity = rotate(attitude * r, inverse_tensor * inverse_rotate(r, momentum));
+  return Quatf(r);
 }
 
 }  // namespace carom::rigid::detail

@@ -23,11 +23,11 @@ template <> struct alignas(32) SolverBody<Dim2> {
 /// 64 bytes: linear velocity, angular velocity, displacement, rotation.
 template <> struct alignas(64) SolverBody<Dim3> {
   Vec3f linear_velocity{};
-  float unused0 = 0;
+  float spin_rest_x = 0;         ///< what the angular velocity of a freely turning body lost to rounding: lets a tumbling
   Vec3f angular_velocity{};      ///< rad/s, world axes
-  float unused1 = 0;
+  float spin_rest_y = 0;         ///< body keep its energy to seven digits more; contacts clear it
   Vec3f delta_position{};
-  float unused2 = 0;
+  float spin_rest_z = 0;
   Quatf delta_rotation{};        ///< w, x, y, z; rotation now = delta_rotation · rotation at the step's start
 };
 static_assert(sizeof(SolverBody<Dim2>) == 32 && sizeof(SolverBody<Dim3>) == 64);

@@ -215,7 +215,7 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
   if (extra != nullptr) {
     extra->rolling_lever[lane] = m.rolling_lever;
     if constexpr (D::dimension == 2) {
-      const float k = ma.inverse_inertia + mb.inverse_inertia;
+      const float k = ma.world_inverse_inertia + mb.world_inverse_inertia;
       extra->rolling_mass[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
       extra->rolling_impulse[0][lane] = m.rolling_lever > 0 ? m.impulses.rolling : 0;
     } else {

@@ -33,8 +33,14 @@ void turn_body(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Quatf& star
     s.delta_rotation = normalize(turn(h * s.angular_velocity) * s.delta_rotation);
     return;
   }
-  const Quatf q = s.delta_rotation * start;
-  const Quatf r = torque_free_turn(m.inertia, m.inverse_inertia, q, h, s.angular_velocity);
+  const Quatf q = normalize(s.delta_rotation * start);
+  Vec3d w = Vec3d(s.angular_velocity) + Vec3d(double(s.spin_rest_x), double(s.spin_rest_y), double(s.spin_rest_z));
+  const Quatf r = torque_free_turn(m.inertia, q, h, w);
+  s.angular_velocity = Vec3f(w);
+  const Vec3f rest(w - Vec3d(s.angular_velocity));
+  s.spin_rest_x = rest.x;
+  s.spin_rest_y = rest.y;
+  s.spin_rest_z = rest.z;
   s.delta_rotation = normalize(q * r * conjugate(start));
 }
 

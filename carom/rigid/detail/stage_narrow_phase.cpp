@@ -133,6 +133,12 @@ template <class D> bool pressed(const ManifoldRecord<D>& m) {
   return false;
 }
 
+template <class D> bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
+  for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next)
+    if (pressed(store.manifold(m))) return true;
+  return false;
+}
+
 template <class D>
 std::uint8_t update_sensor(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
                            const ShapeRecord<D>& b, const typename D::Transform& b_in_a) {
@@ -167,9 +173,13 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     if (c.flags & contact_known) {
       if (c.first_manifold == none) {
         if (motion(c.base, b_in_a, c.extent) + margin < c.gap) return 0;
-      } else if ((c.flags & contact_round) == 0 && slid(c.base, b_in_a, c.extent, store.manifold(c.first_manifold).manifold.normal) < recycle_share * c.inner) {
-        c.flags |= contact_recycled;
-        return 0;
+      } else if ((c.flags & contact_round) == 0) {
+        const typename D::Vector normal = store.manifold(c.first_manifold).manifold.normal;
+        const float separation = c.gap + dot(normal, b_in_a.p - c.base.p);
+        if (separation < c.margin && slid(c.base, b_in_a, c.extent, normal) < recycle_share * c.inner) {
+          c.flags |= contact_recycled;
+          return touch_change(c, separation, pressed_any(store, c));
+        }
       }
     }
     reach = 2 * c.margin + ahead;
@@ -210,17 +220,15 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
       change = change_empty;
     return std::uint8_t(change | touch_change(c, separation, false));
   }
-  bool press = false;
   int matched = 0;
   for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next) {
-    press = press || pressed(store.manifold(m));
     for (int i = 0; i < found.count; ++i)
       if (found.child[i] == store.manifold(m).child) {
         ++matched;
         break;
       }
   }
-  change = touch_change(c, separation, press);
+  change = touch_change(c, separation, pressed_any(store, c));
   if (matched == found.count && matched == c.manifold_count) {
     for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next) {
       ManifoldRecord<D>& record = store.manifold(m);

@@ -68,6 +68,31 @@ template <class D> void end_events(WorldImplementation<D>& world) {
   s.pending_sensor_end.clear();
 }
 
+/// A world in which everything sleeps gives back what only steps need. The first step after it allocates again.
+template <class D> void release_scratch(WorldImplementation<D>& world) {
+  StepScratch<D>& s = world.scratch;
+  world.arena = core::Arena();
+  const auto release = [](auto& v) { std::remove_reference_t<decltype(v)>().swap(v); };
+  for (auto& list : s.found_pairs) release(list);
+  for (auto& list : s.found_manifolds) release(list);
+  release(s.moved);
+  release(s.pairs);
+  release(s.swept);
+  release(s.body_changes);
+  release(s.contact_changes);
+  release(s.manifolds);
+  release(s.island_parent);
+  release(s.island_list);
+  release(s.island_bodies);
+  release(s.island_restless);
+  for (GraphColor& color : world.graph.colors) {
+    release(color.manifolds);
+    release(color.joints);
+  }
+  release(world.contacts.awake);
+  release(world.bodies.awake);
+}
+
 template <class D> StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
   StepContext<D> context{world, *world.scheduler, world.arena};
   const WorldDef<D>& definition = world.definition;
@@ -170,8 +195,10 @@ template <class D> Status step_world(WorldImplementation<D>& world, float dt) {
   profile.broad_phase += watch.lap();
   ++world.step_count;
   world.time += double(dt);
+  const bool moved = !world.bodies.awake.empty();
   sleep_islands(context);
   end_events(world);
+  if (moved && world.bodies.awake.empty() && world.contacts.awake.empty() && world.scratch.moved.empty()) release_scratch(world);
   profile.sleep = watch.lap();
   profile.total = whole.lap();
   world.profile = profile;

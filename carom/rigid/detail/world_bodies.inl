@@ -26,6 +26,14 @@ template <class D> void check_body(Complaint& c, const BodyDef<D>& d) {
   if (d.type != BodyType::fixed && d.type != BodyType::kinematic && d.type != BodyType::dynamic)
     c.say(core::text("type is ", int(d.type), ", expected fixed, kinematic or dynamic"));
 }
+/// Grows by a quarter, not to the double: a world of sleepers pays for what it holds.
+template <class D> void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
+  bodies.solver.reserve(count);
+  bodies.pose.reserve(count);
+  bodies.motion.reserve(count);
+  bodies.record.reserve(count);
+  bodies.birth.reserve(count);
+}
 template <class D> void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
   r.flags = std::uint16_t(on ? r.flags | flag : r.flags & ~flag);
 }
@@ -69,6 +77,7 @@ template <class D> Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   const BodyId id = bodies.slots.allocate();
   const std::size_t slot = std::size_t(bodies.slots.slot(id));
   if (slot == bodies.record.size()) {
+    if (slot == bodies.record.capacity()) reserve_bodies(bodies, slot + slot / 4 + 16);
     bodies.solver.emplace_back();
     bodies.pose.emplace_back();
     bodies.motion.emplace_back();

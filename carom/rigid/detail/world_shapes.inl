@@ -110,7 +110,10 @@ template <class D> Result<ShapeId> World<D>::add_shape(BodyId body, const Shape&
 
   const ShapeId id = self_->shapes.slots.allocate();
   const std::int32_t index = self_->shapes.slots.slot(id);
-  if (std::size_t(index) == self_->shapes.record.size()) self_->shapes.record.emplace_back();
+  if (std::size_t(index) == self_->shapes.record.size()) {
+    grow_by_a_quarter(self_->shapes.record);
+    self_->shapes.record.emplace_back();
+  }
   ShapeRecord<D>& s = self_->shapes.at(index);
   const std::uint8_t moved = s.flags & shape_moved;  // of a former owner of the slot, still in the list
   s = {};

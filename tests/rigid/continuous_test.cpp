@@ -1,0 +1,85 @@
+// Fast bodies and thin walls (rigid-body.md 6.1, 15).
+#include <gtest/gtest.h>
+
+#include "tests/rigid/scene_pieces.h"
+
+namespace carom::rigid::test {
+namespace {
+
+template <class D> class Continuous : public testing::Test {};
+using Dimensions = testing::Types<Dim2, Dim3>;
+TYPED_TEST_SUITE(Continuous, Dimensions);
+
+TYPED_TEST(Continuous, FastBallsStopAtAThinWall) {
+  using D = TypeParam;
+  int passed = 0;
+  for (int i = 0; i < 100; ++i) {
+    World<D> world(world_with<D>(0));
+    add_body<D>(world, BodyType::fixed, box_shape<D>(0.05f, 5, 5), at<D>(0, 0));
+    const double start = -3 - 0.037 * i;
+    const BodyId ball = add_ball<D>(world, at<D>(start, 0.01 * i), 0.05f, {}, along<D>(100.0f + 3 * float(i), 0));
+    run(world, 60);
+    if (world.state(ball).value().pose.position.x > 0) ++passed;
+  }
+  EXPECT_EQ(passed, 0);
+}
+
+TYPED_TEST(Continuous, BulletStopsAtAMovingWall) {
+  using D = TypeParam;
+  int passed = 0;
+  for (int i = 0; i < 30; ++i) {
+    World<D> world(world_with<D>(0));
+    const BodyId wall = add_body<D>(world, BodyType::dynamic, box_shape<D>(0.05f, 2, 2), at<D>(0, 0), {0.6f, 0, 1000, 0});
+    BodyDef<D> d;
+    d.position = at<D>(-3 - 0.11 * i, 0);
+    d.linear_velocity = along<D>(400, 0);
+    d.bullet = true;
+    const BodyId bullet = world.create_body(d).value();
+    ShapeDef<D> s;
+    s.density = 10;
+    ASSERT_TRUE(world.add_shape(bullet, ball_shape<D>(0.05f), s).ok());
+    run(world, 30);
+    if (world.state(bullet).value().pose.position.x > world.state(wall).value().pose.position.x) ++passed;
+  }
+  EXPECT_EQ(passed, 0);
+}
+
+TYPED_TEST(Continuous, ThinRodDoesNotTurnThroughTheGround) {
+  using D = TypeParam;
+  World<D> world(world_with<D>());
+  add_ground(world);
+  const BodyId rod = add_body<D>(world, BodyType::dynamic, box_shape<D>(1.0f, 0.02f, 0.02f), at<D>(0, 3));
+  typename D::Angular spin{};
+  if constexpr (D::dimension == 2) spin = 50;
+  else spin = {0, 0, 50};
+  ASSERT_TRUE(world.set_velocity(rod, along<D>(0, -30), spin).ok());
+  run(world, 240);
+  EXPECT_GT(world.state(rod).value().pose.position.y, 0);
+}
+
+// What slides fast along a floor loses none of its way: it is not stopped for touching.
+TYPED_TEST(Continuous, FastSlidingOnFlatGroundIsFree) {
+  using D = TypeParam;
+  World<D> world(world_with<D>());
+  add_ground(world, {0, 0, 1000, 0});
+  const BodyId box = add_box<D>(world, at<D>(-150, 0.25), 0.25f, {0, 0, 1000, 0});
+  run(world, 30);
+  const double begin = world.state(box).value().pose.position.x;
+  ASSERT_TRUE(world.set_velocity(box, along<D>(60, 0), {}).ok());
+  run(world, 240);
+  EXPECT_NEAR(world.state(box).value().pose.position.x - begin, 240, 0.05);
+}
+
+TYPED_TEST(Continuous, OffMeansOff) {
+  using D = TypeParam;
+  WorldDef<D> d = world_with<D>(0);
+  d.continuous = false;
+  World<D> world(d);
+  add_body<D>(world, BodyType::fixed, box_shape<D>(0.01f, 5, 5), at<D>(0, 0));
+  const BodyId ball = add_ball<D>(world, at<D>(-3.3, 0), 0.05f, {}, along<D>(400, 0));
+  run(world, 10);
+  EXPECT_GT(world.state(ball).value().pose.position.x, 10);
+}
+
+}  // namespace
+}  // namespace carom::rigid::test

@@ -1,0 +1,51 @@
+// The same bits for any number of threads and any width.
+#include <gtest/gtest.h>
+
+#include "tests/rigid/scene_pieces.h"
+
+namespace carom::rigid::test {
+namespace {
+
+template <class D> std::uint64_t heap_hash(int threads, int width, bool sleep) {
+  WorldDef<D> d = world_with<D>();
+  d.threads = threads;
+  d.simd_width = width;
+  d.allow_sleep = sleep;
+  World<D> world(d);
+  add_ground(world);
+  add_heap(world, D::dimension == 2 ? 40 : 12);
+  if constexpr (D::dimension == 3) add_pyramid(world, 6, 8);
+  run(world, 150);
+  return world.state_hash();
+}
+
+template <class D> class WorldDeterminism : public testing::Test {};
+using Dimensions = testing::Types<Dim2, Dim3>;
+TYPED_TEST_SUITE(WorldDeterminism, Dimensions);
+
+TYPED_TEST(WorldDeterminism, ThreadsDoNotMatter) {
+  using D = TypeParam;
+  const std::uint64_t one = heap_hash<D>(1, 0, true);
+  EXPECT_EQ(heap_hash<D>(2, 0, true), one);
+  EXPECT_EQ(heap_hash<D>(4, 0, true), one);
+}
+TYPED_TEST(WorldDeterminism, WidthsDoNotMatter) {
+  using D = TypeParam;
+  const std::uint64_t four = heap_hash<D>(1, 4, false);
+  EXPECT_EQ(heap_hash<D>(1, 8, false), four);
+  EXPECT_EQ(heap_hash<D>(2, 16, false), four);
+}
+TYPED_TEST(WorldDeterminism, ARunRepeatsInTheSameProcess) {
+  using D = TypeParam;
+  EXPECT_EQ(heap_hash<D>(1, 0, true), heap_hash<D>(1, 0, true));
+}
+TYPED_TEST(WorldDeterminism, HashSeesTheSmallestDifference) {
+  using D = TypeParam;
+  World<D> a(world_with<D>()), b(world_with<D>());
+  add_ball<D>(a, at<D>(0, 1), 0.5f);
+  add_ball<D>(b, at<D>(0, 1 + 1e-15), 0.5f);
+  EXPECT_NE(a.state_hash(), b.state_hash());
+}
+
+}  // namespace
+}  // namespace carom::rigid::test
