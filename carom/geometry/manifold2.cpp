@@ -132,6 +132,19 @@ void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cac
     }
   }
   clip_edges(r, axis.edge, s, of_b, margin, out);
+  // The deepest corner may stand beyond the end of the edge.
+  const float deepest = axis.separation - radius;
+  float least = out.count > 0 ? out.points[0].separation : 3.4e38f;
+  if (out.count > 1) least = min(least, out.points[1].separation);
+  if (deepest > margin || least <= deepest + 0.02f * abs(deepest) + slack) return;
+  const Vec2f n = r.n[axis.edge];
+  int corner = 0;
+  for (int i = 1; i < s.count; ++i)
+    if (dot(n, s.v[i]) < dot(n, s.v[corner])) corner = i;
+  out.normal = of_b ? -n : n;
+  int place = out.count < 2 ? out.count++ : (out.points[0].separation > out.points[1].separation ? 0 : 1);
+  out.points[place] = {s.v[corner] + n * (0.5f * (r.radius - s.radius - axis.separation)), deepest,
+                       1u << 26 | (of_b ? 1u << 24 : 0u) | std::uint32_t(corner)};
 }
 
 /// Which normals a chain segment may push along: its own, and over an end that stands out into free space those up to

@@ -111,6 +111,13 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
   });
   Deepest found{out};
   for (int i = 0; i < count; ++i) {
+    // The shape's own corners come before points cut by triangles' edges: in ties they are kept, with their names.
+    ContactPoints& points = patches[i].points;
+    ContactPoints sorted;
+    for (const bool own : {true, false})
+      for (int k = 0; k < points.count; ++k)
+        if ((points.point[k].feature <= 0xff) == own) sorted.point[sorted.count++] = points.point[k];
+    points = sorted;
     Manifold3 m;
     detail::write_points(patches[i].points, patches[i].normal, m);
     m.child = patches[i].child;

@@ -5,7 +5,7 @@ namespace carom::geometry::detail {
 void write_points(const ContactPoints& c, Vec3f normal, Manifold3& out) {
   out.normal = normal;
   out.count = 0;
-  if (c.count <= 4) {
+  if (c.count <= 2) {
     for (int i = 0; i < c.count; ++i) out.points[out.count++] = c.point[i];
     return;
   }
@@ -30,6 +30,27 @@ void write_points(const ContactPoints& c, Vec3f normal, Manifold3& out) {
     if (v > best * 1.002f) best = v, chosen[1] = i;
   }
   const Vec3f p1 = c.point[chosen[1]].point;
+  const Vec3f along = normalize(p1 - p0), across = cross(normal, along);
+  float low_t = 0, high_t = 0, width = 0;
+  int first = chosen[0], last = chosen[0];
+  for (int i = 0; i < c.count; ++i) {
+    const Vec3f d = c.point[i].point - p0;
+    const float t = dot(d, along);
+    if (t < low_t) low_t = t, first = i;
+    if (t > high_t) high_t = t, last = i;
+    width = max(width, abs(dot(d, across)));
+  }
+  if (width < 0.01f * (high_t - low_t)) {  // a line: its ends, and the deepest where it is neither
+    out.points[out.count++] = c.point[first];
+    out.points[out.count++] = c.point[last];
+    const float ends = min(c.point[first].separation, c.point[last].separation);
+    if (first != chosen[0] && last != chosen[0] && least < ends - tie) out.points[out.count++] = c.point[chosen[0]];
+    return;
+  }
+  if (c.count <= 4) {
+    for (int i = 0; i < c.count; ++i) out.points[out.count++] = c.point[i];
+    return;
+  }
   float most = 0, fewest = 0;
   int third = -1, fourth = -1;
   for (int i = 0; i < c.count; ++i) {

@@ -81,16 +81,16 @@ bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold
     return true;
   }
   if (s < -shallow) return false;
-  const Vec3f toward = of_a ? plane.normal : plane.normal;
   Feature face;
-  face_feature(c, int(cache.d), toward, face);
+  face_feature(c, int(cache.d), plane.normal, face);
   ContactPoints points;
   if (of_a)
     pair.clip_a(face, points);
   else
     pair.clip_b(face, points);
-  // Apart, the face tells the true distance only where the nearest corner is over it.
-  if (points.count == 0 || (s > 0 && least_separation(points) > s - pair.radius() + 1e-4f * shallow)) return false;
+  // It tells the true separation only where the nearest corner is over it.
+  if (points.count == 0 || least_separation(points) > s - pair.radius() + 0.05f * abs(s) + 0.01f * shallow)
+    return false;
   const Vec3f n = of_a ? face.normal : -rotate(pair.x.q, face.normal);
   write_points(points, n, out);
   return true;
@@ -130,6 +130,12 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
     else
       pair.clip_b(face, points);
     if (points.count == 0) continue;
+    // The deepest corner may stand outside the face, or belong to another face than the one clipped.
+    const float deepest = (of_a ? sa : sb) - pair.radius();
+    if (least_separation(points) > deepest + 0.05f * abs(deepest) + slack && deepest <= pair.margin) {
+      const Vec3f pa = Vec3f(found.point_a) + n * pair.a.radius, pb = Vec3f(found.point_b) - n * pair.b.radius;
+      points.add((pa + pb) * 0.5f, deepest, 0x20000000u);
+    }
     write_points(points, of_a ? face.normal : -rotate(pair.x.q, face.normal), out);
     cache.kind = of_a ? face_of_a : face_of_b;
     cache.d = std::uint32_t(of_a ? fa : fb);
