@@ -51,7 +51,7 @@ newest_clang() {
 }
 
 build_packages=(g++ cmake ninja-build make pkg-config ca-certificates libboost-dev libcairo2-dev libcli11-dev nlohmann-json3-dev
-  libtinyobjloader-dev)
+  libtinygltf-dev)
 node_ready() { command -v node >/dev/null && command -v npm >/dev/null && [ "$(node -p 'process.versions.node.split(".")[0]')" -ge 18 ]; }
 
 setup_build() {
