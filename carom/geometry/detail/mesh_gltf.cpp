@@ -334,11 +334,11 @@ core::Result<MeshFile> parse(std::string_view bytes, bool binary, Files files, c
   Model model;
   std::string errors, warnings;
   const std::string directory = files.directory ? *files.directory : std::string();
-  const unsigned length = unsigned(bytes.size());
   const bool ok =
       binary ? loader.LoadBinaryFromMemory(&model, &errors, &warnings,
-                                           reinterpret_cast<const unsigned char*>(bytes.data()), length, directory)
-             : loader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), length, directory);
+                                           reinterpret_cast<const unsigned char*>(bytes.data()), unsigned(bytes.size()),
+                                           directory)
+             : loader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), unsigned(bytes.size()), directory);
   if (!ok) {
     for (char& c : errors) c = c >= ' ' && c <= '~' ? c : ' ';
     while (!errors.empty() && errors.back() == ' ') errors.pop_back();
