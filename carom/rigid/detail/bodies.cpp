@@ -114,16 +114,16 @@ template <class D> void wake_body(WorldImplementation<D>& world, std::int32_t bo
   }
   const std::int32_t island = record.sleeping_island;
   SleepingIslands& sleeping = world.sleeping;
-  // The order in which they fell asleep, so that the same history always gives the same world.
-  std::vector<std::int32_t>& members = sleeping.islands[std::size_t(island)].bodies;
-  for (const std::int32_t member : members) {
+  for (std::int32_t member = sleeping.first[std::size_t(island)]; member != none;) {
     BodyRecord& other = world.bodies.record[std::size_t(member)];
+    const std::int32_t next = other.next_asleep;
     other.sleeping_island = none;
+    other.next_asleep = none;
     other.sleep_timer = 0;
     activate_body(world, member);
+    member = next;
   }
-  members.clear();
-  members.shrink_to_fit();
+  sleeping.first[std::size_t(island)] = none;
   sleeping.free.push_back(island);
 }
 
@@ -134,13 +134,16 @@ template <class D> void put_to_sleep(WorldImplementation<D>& world, std::span<co
     island = sleeping.free.back();
     sleeping.free.pop_back();
   } else {
-    island = std::int32_t(sleeping.islands.size());
-    sleeping.islands.emplace_back();
+    island = std::int32_t(sleeping.first.size());
+    sleeping.first.push_back(none);
   }
-  sleeping.islands[std::size_t(island)].bodies.assign(bodies.begin(), bodies.end());
+  std::int32_t* link = &sleeping.first[std::size_t(island)];
   for (const std::int32_t body : bodies) {
     deactivate_body(world, body);
-    world.bodies.record[std::size_t(body)].sleeping_island = island;
+    BodyRecord& record = world.bodies.record[std::size_t(body)];
+    record.sleeping_island = island;
+    *link = body;
+    link = &record.next_asleep;
     SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
     s.linear_velocity = {};
     s.angular_velocity = {};

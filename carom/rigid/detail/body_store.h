@@ -61,7 +61,8 @@ struct BodyRecord {
   std::int32_t constraint_count = 0;  ///< manifolds and joints of this body in the constraint graph: 0 is free flight
   std::int32_t awake_index = none;    ///< place in BodyStore::awake
   std::int32_t sleeping_island = none;
-  std::uint64_t color_mask = 0;       ///< colours of the constraint graph in which this body already is
+  std::int32_t next_asleep = none;    ///< of the same sleeping island
+  std::uint32_t color_mask = 0;       ///< colours of the constraint graph in which this body already is
   float sleep_speed = 0.05f;          ///< m/s
   float sleep_timer = 0;              ///< s below the sleep speed
   std::uint64_t user_data = 0;

@@ -35,16 +35,16 @@ struct ConstraintGraph {
   template <class D>
   GraphPlace add(ConstraintKind kind, std::int32_t item, std::int32_t a, std::int32_t b, BodyStore<D>& bodies) {
     const bool dynamic_a = a != none && bodies.is_dynamic(a), dynamic_b = b != none && bodies.is_dynamic(b);
-    std::uint64_t used = 0;
+    std::uint32_t used = 0;
     if (dynamic_a) used |= bodies.record[std::size_t(a)].color_mask;
     if (dynamic_b) used |= bodies.record[std::size_t(b)].color_mask;
-    const std::uint64_t free = ~used & ((std::uint64_t{1} << color_count) - 1);
+    const std::uint32_t free = ~used & ((std::uint32_t{1} << color_count) - 1);
     int color = overflow_color;
     if (free != 0)
-      color = dynamic_a && dynamic_b ? std::countr_zero(free) : 63 - std::countl_zero(free);
+      color = dynamic_a && dynamic_b ? std::countr_zero(free) : 31 - std::countl_zero(free);
     if (color != overflow_color) {
-      if (dynamic_a) bodies.record[std::size_t(a)].color_mask |= std::uint64_t{1} << color;
-      if (dynamic_b) bodies.record[std::size_t(b)].color_mask |= std::uint64_t{1} << color;
+      if (dynamic_a) bodies.record[std::size_t(a)].color_mask |= std::uint32_t{1} << color;
+      if (dynamic_b) bodies.record[std::size_t(b)].color_mask |= std::uint32_t{1} << color;
     }
     if (a != none) ++bodies.record[std::size_t(a)].constraint_count;
     if (b != none) ++bodies.record[std::size_t(b)].constraint_count;
@@ -58,7 +58,7 @@ struct ConstraintGraph {
   template <class D>
   std::int32_t remove(ConstraintKind kind, GraphPlace place, std::int32_t a, std::int32_t b, BodyStore<D>& bodies) {
     if (place.color != overflow_color) {
-      const std::uint64_t keep = ~(std::uint64_t{1} << place.color);
+      const std::uint32_t keep = ~(std::uint32_t{1} << place.color);
       if (a != none && bodies.is_dynamic(a)) bodies.record[std::size_t(a)].color_mask &= keep;
       if (b != none && bodies.is_dynamic(b)) bodies.record[std::size_t(b)].color_mask &= keep;
     }

@@ -69,6 +69,8 @@ template <class D, int W> struct alignas(64) ContactExtra {
 template <class D> struct ContactKernels {
   using Blocks = void*;
   int width = 4;
+  /// Effective masses from what the preparation wrote; normal_mass holds 1 for points that exist and 0 for others.
+  void (*prepare)(Blocks blocks, int begin, int end) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed) = nullptr;
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h) = nullptr;

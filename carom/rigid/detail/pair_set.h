@@ -21,7 +21,7 @@ class PairSet {
     }
   }
   void insert(std::uint64_t key) {
-    if (2 * (count_ + 1) > keys_.size()) grow();
+    if (4 * (count_ + 1) > 3 * keys_.size()) grow();
     std::size_t i = home(key);
     while (keys_[i] != empty) {
       if (keys_[i] == key) return;

@@ -7,14 +7,11 @@
 
 namespace carom::rigid::detail {
 
-/// Each island is a range of `members` while it sleeps; ranges of woken islands are reused by compaction.
+/// By number of the island: its first body, from which BodyRecord::next_asleep leads to the others; `none`: free.
 struct SleepingIslands {
-  struct Island {
-    std::vector<std::int32_t> bodies;  ///< slots; empty: free
-  };
-  std::vector<Island> islands;
+  std::vector<std::int32_t> first;
   std::vector<std::int32_t> free;
-  int count() const { return int(islands.size() - free.size()); }
+  int count() const { return int(first.size() - free.size()); }
 };
 
 }  // namespace carom::rigid::detail

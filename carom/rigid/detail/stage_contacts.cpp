@@ -7,9 +7,6 @@ namespace {
 constexpr int block_grain = 8;
 constexpr float anchor_rate = 0.05f;  ///< part of the slip that sticking friction takes back in a step
 
-inline float angular_dot(float a, float b) { return a * b; }
-inline float angular_dot(const Vec3f& a, const Vec3f& b) { return dot(a, b); }
-
 template <int W> void put(float (&to)[2][W], int lane, const Vec2f& v) {
   to[0][lane] = v.x;
   to[1][lane] = v.y;
@@ -121,13 +118,6 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
   const V offset = V(ma.center - mb.center);
   put(block.center_offset, lane, offset);
 
-  const float mass_sum = ma.inverse_mass + mb.inverse_mass;
-  const auto response = [&](const V& ra, const V& rb, const V& direction) {
-    const auto ta = cross(ra, direction), tb = cross(rb, direction);
-    const float k = mass_sum + angular_dot(ta, ma.world_inverse_inertia * ta) +
-                    angular_dot(tb, mb.world_inverse_inertia * tb);
-    return k;
-  };
   const V closing_acceleration = m.restitution > 0 ? acceleration_of(context, a) - acceleration_of(context, b) : V{};
   float weight = 0, approach = 0;
   V center{}, equal_center{};
@@ -143,8 +133,7 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
     const V ra = rotate(q, g.point[i]) + to_shape, rb = ra + offset;
     put(point.r_a, lane, ra);
     point.separation[lane] = g.separation[i];
-    const float k = response(ra, rb, n);
-    point.normal_mass[lane] = k > 0 ? 1 / k : 0;
+    point.normal_mass[lane] = 1;  // a mark: the wide part of the preparation puts the mass here
     // An impulse on its way to nothing is nothing: no denormals, no division by them.
     const float impulse = m.impulses.normal[i] > 1e-12f ? m.impulses.normal[i] : 0;
     point.impulse[lane] = impulse;
@@ -178,22 +167,12 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
   const float rate = -anchor_rate * context.inverse_dt;
   if constexpr (D::dimension == 2) {
     const Vec2f t{-n.y, n.x};
-    const float k = response(center, center_b, t);
-    block.tangent_mass[lane] = k > 0 ? 1 / k : 0;
     block.tangent_impulse[lane] = dot(m.impulses.friction, t);
     block.tangent_target[lane] = m.tangent_speed + rate * dot(slip, t);
     block.tangent_total[lane] = 0;
   } else {
     const Vec3f t = perpendicular(n), u = cross(n, t);
     put(block.tangent, lane, t);
-    const float k11 = response(center, center_b, t), k22 = response(center, center_b, u);
-    const Vec3f ta = cross(center, t), tb = cross(center_b, t), ua = cross(center, u), ub = cross(center_b, u);
-    const float k12 = dot(ta, ma.world_inverse_inertia * ua) + dot(tb, mb.world_inverse_inertia * ub);
-    const float d = k11 * k22 - k12 * k12;
-    const float s = d > 0 ? 1 / d : 0;
-    block.tangent_mass[0][lane] = k22 * s;
-    block.tangent_mass[1][lane] = k11 * s;
-    block.tangent_mass[2][lane] = -k12 * s;
     block.tangent_impulse[0][lane] = dot(m.impulses.friction, t);
     block.tangent_impulse[1][lane] = dot(m.impulses.friction, u);
     block.tangent_target[0][lane] = m.tangent_speed + rate * dot(slip, t);
@@ -207,8 +186,6 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
       }
       radius *= m.patch_factor / (weight > 0 ? weight : float(m.manifold.count));
     }
-    const float k = dot(n, (ma.world_inverse_inertia + mb.world_inverse_inertia) * n);
-    block.twist_mass[lane] = k > 0 ? 1 / k : 0;
     block.twist_radius[lane] = radius;
     block.twist_impulse[lane] = radius > 0 ? m.impulses.twist : 0;
   }
@@ -266,7 +243,27 @@ template <class D, int W> void store_lane(StepContext<D>& context, std::int32_t 
   if (math::length_squared(m.impulses.friction) >= limit * limit) m.anchored = false;
 }
 
-/// Calls f(first manifold, lanes, block) for the blocks of every colour, in parallel.
+/// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to its
+/// bodies, some lanes ahead of their use; preparing is bound by latency.
+template <class D> void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i) {
+  const auto lines = [](const void* p, std::size_t bytes) {
+    for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(p) + k);
+  };
+  if (i + 12 < list.size()) lines(&world.contacts.manifold(list[i + 12]), sizeof(ManifoldRecord<D>));
+  if (i + 8 < list.size())
+    lines(&world.contacts.at(world.contacts.manifold(list[i + 8]).contact), sizeof(ContactRecord<D>));
+  if (i + 4 < list.size()) {
+    const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[i + 4]).contact);
+    for (const std::int32_t body : c.body) {
+      lines(&world.bodies.motion[std::size_t(body)], sizeof(BodyMotion<D>));
+      __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
+      __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
+      __builtin_prefetch(&world.bodies.record[std::size_t(body)]);
+    }
+  }
+}
+
+/// Calls f(manifolds of the colour, first, lanes, block) for the blocks of every colour, in parallel.
 template <class D, int W, class F> void for_blocks(StepContext<D>& context, F&& f) {
   WorldImplementation<D>& world = context.world;
   for (int color = 0; color <= overflow_color; ++color) {
@@ -277,7 +274,7 @@ template <class D, int W, class F> void for_blocks(StepContext<D>& context, F&& 
     const auto run = [&](int begin, int end, int) {
       for (int k = begin; k < end; ++k) {
         const int first = k * lanes;
-        f(std::span(manifolds).subspan(std::size_t(first), std::size_t(min(lanes, int(manifolds.size()) - first))),
+        f(std::span<const std::int32_t>(manifolds), std::size_t(first), min(lanes, int(manifolds.size()) - first),
           static_cast<ContactBlock<D, W>*>(blocks.blocks)[k],
           blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k);
       }
@@ -300,20 +297,28 @@ template <class D, int W> void prepare_blocks(StepContext<D>& context) {
     if (c.extra > 0) blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
     blocks.bounces = c.extra > 0;
   }
-  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, ContactBlock<D, W>& block,
-                                ContactExtra<D, W>* extra) {
-    for (int lane = 0; lane < W; ++lane) {
-      if (lane < int(manifolds.size())) prepare_lane<D, W>(context, manifolds[std::size_t(lane)], block, extra, lane);
-      else clear_lane<D, W>(block, extra, lane);
+  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
+                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      prefetch_manifold(world, manifolds, first + std::size_t(lane));
+      prepare_lane<D, W>(context, manifolds[first + std::size_t(lane)], block, extra, lane);
     }
+    for (int lane = lanes; lane < W; ++lane) clear_lane<D, W>(block, extra, lane);
+    world.kernels.prepare(&block, 0, 1);
   });
 }
 
 template <class D, int W> void store_blocks(StepContext<D>& context) {
-  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, ContactBlock<D, W>& block,
-                                ContactExtra<D, W>* extra) {
-    for (int lane = 0; lane < int(manifolds.size()); ++lane)
-      store_lane<D, W>(context, manifolds[std::size_t(lane)], block, extra, lane);
+  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
+                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      const std::size_t i = first + std::size_t(lane);
+      if (i + 12 < manifolds.size()) {
+        const char* record = reinterpret_cast<const char*>(&context.world.contacts.manifold(manifolds[i + 12]));
+        for (std::size_t k = 0; k < sizeof(ManifoldRecord<D>); k += 64) __builtin_prefetch(record + k, 1);
+      }
+      store_lane<D, W>(context, manifolds[i], block, extra, lane);
+    }
   });
 }
 

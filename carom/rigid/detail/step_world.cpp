@@ -91,6 +91,15 @@ template <class D> void release_scratch(WorldImplementation<D>& world) {
   }
   release(world.contacts.awake);
   release(world.bodies.awake);
+  world.bodies.solver.shrink_to_fit();
+  world.bodies.pose.shrink_to_fit();
+  world.bodies.motion.shrink_to_fit();
+  world.bodies.record.shrink_to_fit();
+  world.bodies.birth.shrink_to_fit();
+  world.shapes.record.shrink_to_fit();
+  world.contacts.contacts.shrink_to_fit();
+  world.contacts.manifolds.shrink_to_fit();
+  world.sleeping.first.shrink_to_fit();
 }
 
 template <class D> StepContext<D> make_context(WorldImplementation<D>& world, float dt) {

@@ -26,6 +26,25 @@ template <class D> void check_body(Complaint& c, const BodyDef<D>& d) {
   if (d.type != BodyType::fixed && d.type != BodyType::kinematic && d.type != BodyType::dynamic)
     c.say(core::text("type is ", int(d.type), ", expected fixed, kinematic or dynamic"));
 }
+/// The awake bodies that contacts and joints tie to a body, with it.
+template <class D> std::vector<std::int32_t> island_of(const WorldImplementation<D>& world, std::int32_t body) {
+  std::vector<std::int32_t> island{body};
+  const auto visit = [&](std::int32_t other) {
+    if (other == none || !world.bodies.is_dynamic(other) || world.bodies.record[std::size_t(other)].awake_index == none) return;
+    for (const std::int32_t known : island)
+      if (known == other) return;
+    island.push_back(other);
+  };
+  for (std::size_t i = 0; i < island.size(); ++i) {
+    const BodyRecord& r = world.bodies.record[std::size_t(island[i])];
+    if (r.type != BodyType::dynamic) continue;
+    for (std::int32_t key = r.first_contact; key != none; key = world.contacts.at(key >> 1).next[key & 1])
+      if (world.contacts.at(key >> 1).first_manifold != none) visit(world.contacts.at(key >> 1).body[1 - (key & 1)]);
+    for (std::int32_t key = r.first_joint; key != none; key = world.joints.headers[std::size_t(key >> 1)].next[key & 1])
+      visit(world.joints.headers[std::size_t(key >> 1)].body[1 - (key & 1)]);
+  }
+  return island;
+}
 /// Grows by a quarter, not to the double: a world of sleepers pays for what it holds.
 template <class D> void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
   bodies.solver.reserve(count);
@@ -344,7 +363,7 @@ template <class D> Status World<D>::set_awake(BodyId body, bool awake) {
   if (!slot.ok()) return slot.error();
   const BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
   if (awake) wake_body(*self_, *slot);
-  else if (r.awake_index != none) put_to_sleep<D>(*self_, std::span<const std::int32_t>(&*slot, 1));
+  else if (r.awake_index != none) put_to_sleep<D>(*self_, island_of(*self_, *slot));
   return {};
 }
 

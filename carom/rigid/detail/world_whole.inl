@@ -56,8 +56,7 @@ std::size_t bytes_of_world(const WorldImplementation<D>& w) {
   n += bytes_of(w.contacts.contacts) + bytes_of(w.contacts.manifolds) + bytes_of(w.contacts.free_contacts) +
        bytes_of(w.contacts.free_manifolds) + bytes_of(w.contacts.awake) + w.pairs.bytes();
   for (const GraphColor& c : w.graph.colors) n += bytes_of(c.manifolds) + bytes_of(c.joints);
-  n += bytes_of(w.sleeping.islands) + bytes_of(w.sleeping.free);
-  for (const auto& island : w.sleeping.islands) n += bytes_of(island.bodies);
+  n += bytes_of(w.sleeping.first) + bytes_of(w.sleeping.free);
   const StepScratch<D>& s = w.scratch;
   for (const auto& list : s.found_pairs) n += bytes_of(list);
   for (const auto& list : s.found_manifolds) n += bytes_of(list);
