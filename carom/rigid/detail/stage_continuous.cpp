@@ -110,6 +110,7 @@ float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std:
   const Sweep<D> sweep = sweep_of_body(world, body, start, start.center);
   float fraction = 1;
   const float core_radius = 0.25f * m.inner_extent;
+  const float shallow = min(core_radius, 0.005f + 0.01f * m.inner_extent);
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none || (shape.flags & shape_sensor) != 0) continue;
@@ -134,7 +135,7 @@ float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std:
         const Sweep<D> core{{}, sweep.c0, sweep.c1, sweep.q0, sweep.q1};
         t = impact(core_shape(static_cast<const D*>(nullptr), core_radius), core, other.geometry, theirs);
         if (t.state != geometry::ImpactState::hit || t.time <= 0) return true;
-      } else if (shallow_end(shape.geometry, own, other.geometry, theirs, core_radius)) {
+      } else if (shallow_end(shape.geometry, own, other.geometry, theirs, shallow)) {
         return true;
       }
       fraction = min(fraction, t.time);

@@ -46,8 +46,18 @@ std::uint16_t next_world_number() {
   return std::uint16_t(last.fetch_add(1, std::memory_order_relaxed) % 0xFFFF + 1);
 }
 
+template <class T> void release_memory(std::vector<T>& v) { std::vector<T>().swap(v); }
+/// vector::shrink_to_fit does nothing where exceptions are off.
+template <class T> void fit_memory(std::vector<T>& v) {
+  std::vector<T> exact;
+  exact.reserve(v.size());
+  for (T& x : v) exact.push_back(std::move(x));
+  exact.swap(v);
+}
+
 template <class D> void begin_events(WorldImplementation<D>& world) {
   StepScratch<D>& s = world.scratch;
+  if (world.bodies.awake.empty()) release_memory(s.fell_asleep);
   s.contact_begin.clear();
   s.contact_hit.clear();
   s.sensor_begin.clear();
@@ -72,34 +82,34 @@ template <class D> void end_events(WorldImplementation<D>& world) {
 template <class D> void release_scratch(WorldImplementation<D>& world) {
   StepScratch<D>& s = world.scratch;
   world.arena = core::Arena();
-  const auto release = [](auto& v) { std::remove_reference_t<decltype(v)>().swap(v); };
-  for (auto& list : s.found_pairs) release(list);
-  for (auto& list : s.found_manifolds) release(list);
-  release(s.moved);
-  release(s.pairs);
-  release(s.swept);
-  release(s.body_changes);
-  release(s.contact_changes);
-  release(s.manifolds);
-  release(s.island_parent);
-  release(s.island_list);
-  release(s.island_bodies);
-  release(s.island_restless);
+  for (auto& list : s.found_pairs) release_memory(list);
+  for (auto& list : s.found_manifolds) release_memory(list);
+  release_memory(s.moved);
+  release_memory(s.pairs);
+  release_memory(s.swept);
+  release_memory(s.body_changes);
+  release_memory(s.contact_changes);
+  release_memory(s.manifolds);
+  release_memory(s.island_parent);
+  release_memory(s.island_list);
+  release_memory(s.island_bodies);
+  release_memory(s.island_restless);
   for (GraphColor& color : world.graph.colors) {
-    release(color.manifolds);
-    release(color.joints);
+    release_memory(color.manifolds);
+    release_memory(color.joints);
   }
-  release(world.contacts.awake);
-  release(world.bodies.awake);
-  world.bodies.solver.shrink_to_fit();
-  world.bodies.pose.shrink_to_fit();
-  world.bodies.motion.shrink_to_fit();
-  world.bodies.record.shrink_to_fit();
-  world.bodies.birth.shrink_to_fit();
-  world.shapes.record.shrink_to_fit();
-  world.contacts.contacts.shrink_to_fit();
-  world.contacts.manifolds.shrink_to_fit();
-  world.sleeping.first.shrink_to_fit();
+  if (s.contact_begin.empty()) release_memory(s.contact_begin);
+  release_memory(world.contacts.awake);
+  release_memory(world.bodies.awake);
+  fit_memory(world.bodies.solver);
+  fit_memory(world.bodies.pose);
+  fit_memory(world.bodies.motion);
+  fit_memory(world.bodies.record);
+  fit_memory(world.bodies.birth);
+  fit_memory(world.shapes.record);
+  fit_memory(world.contacts.contacts);
+  fit_memory(world.contacts.manifolds);
+  fit_memory(world.sleeping.first);
 }
 
 template <class D> StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
