@@ -262,9 +262,10 @@ TEST(WriteScene, KeepsEveryKindOfShape) {
       {"type": "height_field", "columns": 3, "rows": 2, "cell": [1, 0.5], "heights": [0, 0.1, 0, 0.2, 0.3, 0.1], "holes": [0, 1]}]},
     {"name": "hull", "position": [0.1, 5.3, 0.7], "awake": false, "user_data": "0xfedcba9876543210", "locks": ["x", "rotation_z"],
       "shape": {"type": "hull", "points": [[0,0,0],[1,0,0],[0,1.1,0],[0,0,1.3],[0.7,0.7,0.7]], "radius": 0.02, "filter": {"category": [1, 40], "mask": "0xff", "group": -3}}},
-    {"name": "compound", "position": [5, 5, 5], "rotation": {"yaw": "33 deg", "pitch": "12 deg"},
+    {"name": "compound", "position": [5, 5, 5], "velocity": [1, 2, 3], "angular_velocity": [0.3, 0.2, 0.1], "rotation": {"yaw": "33 deg", "pitch": "12 deg"},
       "shape": {"type": "compound", "children": [{"type": "cylinder", "height": 2}, {"type": "cone", "position": [0, 1, 0]}, {"type": "capsule", "length": 1, "radius": 0.2}]}},
     {"name": "box", "position": [-5, 5, 5], "shape": {"type": "box", "size": [1, 2, 3], "radius": 0.1, "sensor": true}}]})"));
+  EXPECT_EQ(read(space, "compound.velocity.y"), 2) << "of the centre of mass, which the cone puts off the origin";
   const std::string text = write_scene(space).value();
   const SceneWorld copy = start(parse(text));
   EXPECT_EQ(copy.state_hash(), space.state_hash());

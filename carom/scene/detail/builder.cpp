@@ -300,6 +300,10 @@ class Builder final : public BodyNames {
           !reader_.accept(world().set_mass_properties(*id, properties), *m.node, m.path))
         return;
     }
+    // Shapes move the centre of mass, and with it what the velocity is the velocity of.
+    if (def.type != BodyType::fixed && !(def.angular_velocity == typename D::Angular{}) &&
+        !reader_.accept(world().set_velocity(*id, def.linear_velocity, def.angular_velocity), node, path))
+      return;
     if (!def.awake) sleepers_.push_back(*id);
     names_.emplace(name, out_.bodies.size());
     out_.bodies.push_back({std::move(name), *id, color.value_or(0), color.has_value()});
