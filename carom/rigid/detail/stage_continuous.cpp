@@ -123,9 +123,11 @@ float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std:
       if (other.body == body || (other.flags & shape_sensor) != 0 || !may_collide(world, shape, other)) return true;
       if (joints_forbid_collision(world, body, other.body)) return true;
       const typename D::Pose& pose = world.bodies.pose[std::size_t(other.body)];
+      // One that was stopped stands where it stopped: its way no longer takes the whole step.
       SweepStart<D> other_start{pose.rotation, world.bodies.motion[std::size_t(other.body)].center};
       const std::int32_t other_place = world.bodies.record[std::size_t(other.body)].awake_index;
-      if (other_place != none) other_start = world.scratch.swept[std::size_t(other_place)];
+      if (other_place != none && !world.scratch.swept[std::size_t(other_place)].stopped)
+        other_start = world.scratch.swept[std::size_t(other_place)];
       Sweep<D> theirs = sweep_of_body(world, other.body, other_start, start.center);
       if (!other.at_origin) theirs = sweep_of_part(theirs, other.local);
       geometry::TimeOfImpact t = impact(shape.geometry, own, other.geometry, theirs);
@@ -154,7 +156,8 @@ template <class D>
 void move_to_fraction(WorldImplementation<D>& world, std::int32_t body, std::size_t place, float fraction) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   if (fraction < 1) {
-    const SweepStart<D>& start = world.scratch.swept[place];
+    SweepStart<D>& start = world.scratch.swept[place];
+    start.stopped = true;
     m.center = start.center + (m.center - start.center) * double(fraction);
     typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
     pose.rotation = between(start.rotation, pose.rotation, fraction);

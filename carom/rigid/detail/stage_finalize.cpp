@@ -71,7 +71,7 @@ void finalize_bodies(StepContext<D>& context) {
           travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
         record.flags |= body_fast;
       }
-      scratch.swept[std::size_t(i)] = {pose.rotation, m.center};
+      scratch.swept[std::size_t(i)] = {pose.rotation, m.center, false};
       pose.rotation = normalize(s.delta_rotation * pose.rotation);
       m.center = m.center + typename D::Position(s.delta_position);
       m.force = {};

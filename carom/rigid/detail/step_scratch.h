@@ -35,6 +35,7 @@ enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
 template <class D> struct SweepStart {
   typename D::Rotation rotation{};
   typename D::Position center{};
+  bool stopped = false;  ///< continuous collision cut its way
 };
 
 template <class D> struct StepScratch {
