@@ -3,6 +3,7 @@
 #include "carom/rigid/detail/world_shapes.inl"
 // Shapes first: what bodies ask of them.
 #include "carom/rigid/detail/world_bodies.inl"
+#include "carom/rigid/detail/world_body_settings.inl"
 #include "carom/rigid/detail/world_effectors.inl"
 #include "carom/rigid/detail/world_forces.inl"
 #include "carom/rigid/detail/world_joints.inl"

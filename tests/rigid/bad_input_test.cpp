@@ -9,16 +9,21 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> class BadInput : public testing::Test {};
+template <class D>
+class BadInput : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(BadInput, Dimensions);
 
-template <class R> bool refused(const R& r, std::string_view mention) {
+template <class R>
+bool refused(const R& r, std::string_view mention) {
   return !r.ok() && r.error().message.find(mention) != std::string::npos;
 }
-template <class D> typename D::Angular spin_of(float w) {
-  if constexpr (D::dimension == 2) return w;
-  else return {w, 0, 0};
+template <class D>
+typename D::Angular spin_of(float w) {
+  if constexpr (D::dimension == 2)
+    return w;
+  else
+    return {w, 0, 0};
 }
 
 TYPED_TEST(BadInput, NumbersThatAreNotNumbers) {
@@ -90,8 +95,10 @@ TYPED_TEST(BadInput, NumbersThatAreNotNumbers) {
   EXPECT_FALSE(world.step(0).ok());
   EXPECT_FALSE(world.step(-1).ok());
   EXPECT_FALSE(world.step(2).ok());
-  if constexpr (D::dimension == 2) turned = {0, 0};
-  else turned = {0, 0, 0, 0};
+  if constexpr (D::dimension == 2)
+    turned = {0, 0};
+  else
+    turned = {0, 0, 0, 0};
   EXPECT_FALSE(world.set_pose(box, at<D>(0, 0), turned).ok());
   WorldDef<D> d;
   d.substeps = 0;

@@ -6,7 +6,8 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> class Continuous : public testing::Test {};
+template <class D>
+class Continuous : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(Continuous, Dimensions);
 
@@ -29,7 +30,8 @@ TYPED_TEST(Continuous, BulletStopsAtAMovingWall) {
   int passed = 0;
   for (int i = 0; i < 30; ++i) {
     World<D> world(world_with<D>(0));
-    const BodyId wall = add_body<D>(world, BodyType::dynamic, box_shape<D>(0.05f, 2, 2), at<D>(0, 0), {0.6f, 0, 1000, 0});
+    const BodyId wall =
+        add_body<D>(world, BodyType::dynamic, box_shape<D>(0.05f, 2, 2), at<D>(0, 0), {0.6f, 0, 1000, 0});
     BodyDef<D> d;
     d.position = at<D>(-3 - 0.11 * i, 0);
     d.linear_velocity = along<D>(400, 0);
@@ -50,8 +52,10 @@ TYPED_TEST(Continuous, ThinRodDoesNotTurnThroughTheGround) {
   add_ground(world);
   const BodyId rod = add_body<D>(world, BodyType::dynamic, box_shape<D>(1.0f, 0.02f, 0.02f), at<D>(0, 3));
   typename D::Angular spin{};
-  if constexpr (D::dimension == 2) spin = 50;
-  else spin = {0, 0, 50};
+  if constexpr (D::dimension == 2)
+    spin = 50;
+  else
+    spin = {0, 0, 50};
   ASSERT_TRUE(world.set_velocity(rod, along<D>(0, -30), spin).ok());
   run(world, 240);
   EXPECT_GT(world.state(rod).value().pose.position.y, 0);

@@ -6,7 +6,8 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> class WorldEvents : public testing::Test {};
+template <class D>
+class WorldEvents : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(WorldEvents, Dimensions);
 

@@ -8,7 +8,8 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> class FreeMotion : public testing::Test {};
+template <class D>
+class FreeMotion : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(FreeMotion, Dimensions);
 
@@ -49,8 +50,10 @@ TYPED_TEST(FreeMotion, ImpulseAtAPointTurnsAndPushes) {
   const Totals<D> t = world.totals();
   EXPECT_NEAR(t.momentum.y, 1, 1e-6);
   const BodyState<D> s = world.state(box).value();
-  if constexpr (D::dimension == 2) EXPECT_NEAR(s.angular_velocity, 0.5 * 6, 1e-5);
-  else EXPECT_NEAR(s.angular_velocity.z, 0.5 * 6, 1e-5);
+  if constexpr (D::dimension == 2)
+    EXPECT_NEAR(s.angular_velocity, 0.5 * 6, 1e-5);
+  else
+    EXPECT_NEAR(s.angular_velocity.z, 0.5 * 6, 1e-5);
 }
 
 TYPED_TEST(FreeMotion, LockedAxesStandStill) {
@@ -65,8 +68,10 @@ TYPED_TEST(FreeMotion, LockedAxesStandStill) {
   const BodyState<D> s = world.state(box).value();
   EXPECT_EQ(s.pose.position.y, 10);
   EXPECT_GT(s.pose.position.x, 0.5);
-  if constexpr (D::dimension == 2) EXPECT_EQ(s.pose.rotation, Rot2f());
-  else EXPECT_EQ(s.pose.rotation, Quatf());
+  if constexpr (D::dimension == 2)
+    EXPECT_EQ(s.pose.rotation, Rot2f());
+  else
+    EXPECT_EQ(s.pose.rotation, Quatf());
 }
 
 // A fast wheel turns by exactly ω t: no small-angle error.
@@ -80,8 +85,8 @@ TEST(FreeRotation, FastSpinKeepsItsAngle) {
   EXPECT_NEAR(std::abs(q.w * std::cos(w / 2) + q.y * std::sin(w / 2)), 1, 1e-6);
 }
 
-// The intermediate-axis flip: I ∝ (.03333, .08667, .11333), ω (.01, 5, .01). By elliptic functions ω_y changes sign first
-// at 2.8426 s and then every 5.02479 s: 12 times in a minute. Energy and angular momentum are constant.
+// The intermediate-axis flip: I ∝ (.03333, .08667, .11333), ω (.01, 5, .01). By elliptic functions ω_y changes sign
+// first at 2.8426 s and then every 5.02479 s: 12 times in a minute. Energy and angular momentum are constant.
 TEST(FreeRotation, IntermediateAxisFlip) {
   World3 world(world_with<Dim3>(0));
   BodyDef<Dim3> d;

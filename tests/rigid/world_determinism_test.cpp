@@ -6,7 +6,8 @@
 namespace carom::rigid::test {
 namespace {
 
-template <class D> std::uint64_t heap_hash(int threads, int width, bool sleep) {
+template <class D>
+std::uint64_t heap_hash(int threads, int width, bool sleep) {
   WorldDef<D> d = world_with<D>();
   d.threads = threads;
   d.simd_width = width;
@@ -19,7 +20,8 @@ template <class D> std::uint64_t heap_hash(int threads, int width, bool sleep) {
   return world.state_hash();
 }
 
-template <class D> class WorldDeterminism : public testing::Test {};
+template <class D>
+class WorldDeterminism : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(WorldDeterminism, Dimensions);
 

@@ -3,16 +3,19 @@
 namespace carom::rigid::detail {
 namespace {
 
-template <class D> bool moves(const WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+bool moves(const WorldImplementation<D>& world, std::int32_t body) {
   return body != none && world.bodies.record[std::size_t(body)].awake_index != none;
 }
 
-template <class D> void joint_to_graph(WorldImplementation<D>& world, std::int32_t joint) {
+template <class D>
+void joint_to_graph(WorldImplementation<D>& world, std::int32_t joint) {
   JointHeader& j = world.joints.headers[std::size_t(joint)];
   if (j.place.color >= 0) return;
   j.place = world.graph.add(ConstraintKind::joint, joint, j.body[0], j.body[1], world.bodies);
 }
-template <class D> void joint_from_graph(WorldImplementation<D>& world, std::int32_t joint) {
+template <class D>
+void joint_from_graph(WorldImplementation<D>& world, std::int32_t joint) {
   JointHeader& j = world.joints.headers[std::size_t(joint)];
   if (j.place.color < 0) return;
   const std::int32_t moved = world.graph.remove(ConstraintKind::joint, j.place, j.body[0], j.body[1], world.bodies);
@@ -69,7 +72,8 @@ typename Dim3::Bounds placed(const Dim3::Shape& shape, const Pose3& pose) {
 
 }  // namespace
 
-template <class D> void activate_body(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void activate_body(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   if (record.awake_index != none || record.type == BodyType::fixed || !record.enabled() ||
       (record.flags & body_quarantined) != 0)
@@ -80,11 +84,13 @@ template <class D> void activate_body(WorldImplementation<D>& world, std::int32_
   update_world_inertia(world, body);
   for (std::int32_t key = record.first_contact; key != none; key = world.contacts.at(key >> 1).next[key & 1])
     activate_contact(world, key >> 1);
-  for (std::int32_t key = record.first_joint; key != none; key = world.joints.headers[std::size_t(key >> 1)].next[key & 1])
+  for (std::int32_t key = record.first_joint; key != none;
+       key = world.joints.headers[std::size_t(key >> 1)].next[key & 1])
     joint_to_graph(world, key >> 1);
 }
 
-template <class D> void deactivate_body(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void deactivate_body(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   if (record.awake_index == none) return;
   const std::int32_t last = world.bodies.awake.back();
@@ -103,7 +109,8 @@ template <class D> void deactivate_body(WorldImplementation<D>& world, std::int3
   }
 }
 
-template <class D> void wake_body(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void wake_body(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   record.sleep_timer = 0;
   if (record.awake_index != none || record.type == BodyType::fixed) return;
@@ -127,7 +134,8 @@ template <class D> void wake_body(WorldImplementation<D>& world, std::int32_t bo
   sleeping.free.push_back(island);
 }
 
-template <class D> void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies) {
+template <class D>
+void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies) {
   SleepingIslands& sleeping = world.sleeping;
   std::int32_t island;
   if (!sleeping.free.empty()) {
@@ -150,7 +158,8 @@ template <class D> void put_to_sleep(WorldImplementation<D>& world, std::span<co
   }
 }
 
-template <class D> void wake_touching(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void wake_touching(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
     const ContactRecord<D>& c = world.contacts.at(key >> 1);
     const std::int32_t next = c.next[key & 1];
@@ -159,23 +168,27 @@ template <class D> void wake_touching(WorldImplementation<D>& world, std::int32_
   }
 }
 
-template <class D> void update_world_inertia(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void update_world_inertia(WorldImplementation<D>& world, std::int32_t body) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
-  m.world_inverse_inertia = world_inverse(m, world.bodies.pose[std::size_t(body)].rotation,
-                                          world.bodies.record[std::size_t(body)]);
+  m.world_inverse_inertia =
+      world_inverse(m, world.bodies.pose[std::size_t(body)].rotation, world.bodies.record[std::size_t(body)]);
 }
 
-template <class D> void pose_from_center(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void pose_from_center(WorldImplementation<D>& world, std::int32_t body) {
   const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
   pose.position = m.center - typename D::Position(rotate(pose.rotation, m.local_center));
 }
-template <class D> void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   m.center = world_point(world.bodies.pose[std::size_t(body)], m.local_center);
 }
 
-template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void update_mass(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   const typename D::Vector old_center = m.local_center;
@@ -218,18 +231,21 @@ template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t 
   update_world_inertia(world, body);
 }
 
-template <class D> typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+template <class D>
+typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   return placed(shape.geometry, shape_pose(world, shape));
 }
 
-template <class D> typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+template <class D>
+typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   typename D::Bounds box = geometry::grow(shape_bounds(world, shape), double(shape.margin));
   using P = typename D::Position;
   const P ahead = P(world.bodies.solver[std::size_t(shape.body)].linear_velocity) * double(world.last_dt);
   return {box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
 }
 
-template <class D> void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
+template <class D>
+void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
   ShapeRecord<D>& shape = world.shapes.at(s);
   const BodyRecord& record = world.bodies.record[std::size_t(shape.body)];
   if (shape.leaf != none || !record.enabled()) return;
@@ -242,7 +258,8 @@ template <class D> void insert_into_tree(WorldImplementation<D>& world, std::int
   }
 }
 
-template <class D> void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
+template <class D>
+void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
   ShapeRecord<D>& shape = world.shapes.at(s);
   if (shape.leaf == none) return;
   world.shapes.trees[shape.tree].remove(shape.leaf);
@@ -250,7 +267,8 @@ template <class D> void remove_from_tree(WorldImplementation<D>& world, std::int
   shape.tree = tree_none;
 }
 
-template <class D> void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
@@ -262,7 +280,8 @@ template <class D> void refresh_bounds(WorldImplementation<D>& world, std::int32
   }
 }
 
-template <class D> void attach_joint(WorldImplementation<D>& world, std::int32_t joint) {
+template <class D>
+void attach_joint(WorldImplementation<D>& world, std::int32_t joint) {
   JointHeader& j = world.joints.headers[std::size_t(joint)];
   for (int side = 0; side < 2; ++side) {
     if (j.body[side] == none) continue;
@@ -270,7 +289,8 @@ template <class D> void attach_joint(WorldImplementation<D>& world, std::int32_t
     const std::int32_t key = 2 * joint + side;
     j.previous[side] = none;
     j.next[side] = body.first_joint;
-    if (body.first_joint != none) world.joints.headers[std::size_t(body.first_joint >> 1)].previous[body.first_joint & 1] = key;
+    if (body.first_joint != none)
+      world.joints.headers[std::size_t(body.first_joint >> 1)].previous[body.first_joint & 1] = key;
     body.first_joint = key;
     ++body.joint_count;
   }
@@ -282,15 +302,18 @@ template <class D> void attach_joint(WorldImplementation<D>& world, std::int32_t
     destroy_contacts_between(world, j.body[0], j.body[1]);
 }
 
-template <class D> void detach_joint(WorldImplementation<D>& world, std::int32_t joint) {
+template <class D>
+void detach_joint(WorldImplementation<D>& world, std::int32_t joint) {
   joint_from_graph(world, joint);
   JointHeader& j = world.joints.headers[std::size_t(joint)];
   for (int side = 0; side < 2; ++side) {
     if (j.body[side] == none) continue;
     BodyRecord& body = world.bodies.record[std::size_t(j.body[side])];
     const std::int32_t previous = j.previous[side], next = j.next[side];
-    if (previous != none) world.joints.headers[std::size_t(previous >> 1)].next[previous & 1] = next;
-    else body.first_joint = next;
+    if (previous != none)
+      world.joints.headers[std::size_t(previous >> 1)].next[previous & 1] = next;
+    else
+      body.first_joint = next;
     if (next != none) world.joints.headers[std::size_t(next >> 1)].previous[next & 1] = previous;
     --body.joint_count;
   }
@@ -301,7 +324,8 @@ template <class D> void detach_joint(WorldImplementation<D>& world, std::int32_t
     }
 }
 
-template <class D> bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
+template <class D>
+bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
   const BodyRecord &ra = world.bodies.record[std::size_t(a)], &rb = world.bodies.record[std::size_t(b)];
   const bool use_a = ra.joint_count <= rb.joint_count;
   const std::int32_t other = use_a ? b : a;
@@ -313,23 +337,23 @@ template <class D> bool joints_forbid_collision(const WorldImplementation<D>& wo
   return false;
 }
 
-#define CAROM_INSTANTIATE(D)                                                                           \
-  template void activate_body<D>(WorldImplementation<D>&, std::int32_t);                               \
-  template void deactivate_body<D>(WorldImplementation<D>&, std::int32_t);                             \
-  template void wake_body<D>(WorldImplementation<D>&, std::int32_t);                                   \
-  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<const std::int32_t>);               \
-  template void wake_touching<D>(WorldImplementation<D>&, std::int32_t);                               \
-  template void update_world_inertia<D>(WorldImplementation<D>&, std::int32_t);                        \
-  template void pose_from_center<D>(WorldImplementation<D>&, std::int32_t);                            \
-  template void center_from_pose<D>(WorldImplementation<D>&, std::int32_t);                            \
-  template void update_mass<D>(WorldImplementation<D>&, std::int32_t);                                 \
-  template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);            \
-  template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);              \
-  template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                            \
-  template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                            \
-  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t);                              \
-  template void attach_joint<D>(WorldImplementation<D>&, std::int32_t);                                \
-  template void detach_joint<D>(WorldImplementation<D>&, std::int32_t);                                \
+#define CAROM_INSTANTIATE(D)                                                                \
+  template void activate_body<D>(WorldImplementation<D>&, std::int32_t);                    \
+  template void deactivate_body<D>(WorldImplementation<D>&, std::int32_t);                  \
+  template void wake_body<D>(WorldImplementation<D>&, std::int32_t);                        \
+  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<const std::int32_t>);    \
+  template void wake_touching<D>(WorldImplementation<D>&, std::int32_t);                    \
+  template void update_world_inertia<D>(WorldImplementation<D>&, std::int32_t);             \
+  template void pose_from_center<D>(WorldImplementation<D>&, std::int32_t);                 \
+  template void center_from_pose<D>(WorldImplementation<D>&, std::int32_t);                 \
+  template void update_mass<D>(WorldImplementation<D>&, std::int32_t);                      \
+  template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&); \
+  template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);   \
+  template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
+  template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
+  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t);                   \
+  template void attach_joint<D>(WorldImplementation<D>&, std::int32_t);                     \
+  template void detach_joint<D>(WorldImplementation<D>&, std::int32_t);                     \
   template bool joints_forbid_collision<D>(const WorldImplementation<D>&, std::int32_t, std::int32_t);
 CAROM_INSTANTIATE(Dim2)
 CAROM_INSTANTIATE(Dim3)

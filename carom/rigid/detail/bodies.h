@@ -14,29 +14,41 @@ inline MotionLocks locks_of(std::uint8_t b) {
 }
 
 /// Puts the body among those that move (or does nothing, for fixed and disabled ones), with its contacts and joints.
-template <class D> void activate_body(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void activate_body(WorldImplementation<D>& world, std::int32_t body);
 /// The opposite. Contacts and joints stay active where the other body is awake.
-template <class D> void deactivate_body(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void deactivate_body(WorldImplementation<D>& world, std::int32_t body);
 /// Puts bodies that are awake to sleep together.
-template <class D> void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies);
+template <class D>
+void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies);
 
 /// Wakes whoever touches the body: what it rested on may be gone.
-template <class D> void wake_touching(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void wake_touching(WorldImplementation<D>& world, std::int32_t body);
 
 /// The inverse of the tensor in world axes, with locked axes taken out.
-template <class D> void update_world_inertia(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void update_world_inertia(WorldImplementation<D>& world, std::int32_t body);
 /// The pose of the body's origin from its centre of mass.
-template <class D> void pose_from_center(WorldImplementation<D>& world, std::int32_t body);
-template <class D> void center_from_pose(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void pose_from_center(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void center_from_pose(WorldImplementation<D>& world, std::int32_t body);
 
 /// Tight bounds of a shape where it stands.
-template <class D> typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
+template <class D>
+typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
 /// Tight bounds grown by the margin, and along the motion of one step where that is more.
-template <class D> typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
+template <class D>
+typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
 /// Puts the shape into the tree of its body's type (disabled bodies: none) and lets the broad phase look at it.
-template <class D> void insert_into_tree(WorldImplementation<D>& world, std::int32_t shape);
-template <class D> void remove_from_tree(WorldImplementation<D>& world, std::int32_t shape);
+template <class D>
+void insert_into_tree(WorldImplementation<D>& world, std::int32_t shape);
+template <class D>
+void remove_from_tree(WorldImplementation<D>& world, std::int32_t shape);
 /// After a teleport or a change of size.
-template <class D> void refresh_bounds(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void refresh_bounds(WorldImplementation<D>& world, std::int32_t body);
 
 }  // namespace carom::rigid::detail

@@ -12,30 +12,36 @@ namespace carom::rigid::detail {
 
 inline constexpr std::int32_t none = -1;  ///< no slot, no list entry
 
-template <class Inertia> constexpr Inertia no_inertia() {
-  if constexpr (requires { Inertia::zero(); }) return Inertia::zero();  // a default matrix is the identity
-  else return 0;
+template <class Inertia>
+constexpr Inertia no_inertia() {
+  if constexpr (requires { Inertia::zero(); })
+    return Inertia::zero();  // a default matrix is the identity
+  else
+    return 0;
 }
 
 /// Makes room for one more. Vectors double by themselves; a world of sleepers should pay for what it holds.
-template <class T> void grow_by_a_quarter(std::vector<T>& v) {
+template <class T>
+void grow_by_a_quarter(std::vector<T>& v) {
   if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
 }
 
 /// Mass, forces and what the integrator needs. Read at the start and end of a step, not inside the contact solver.
-template <class D> struct BodyMotion {
-  typename D::Position center{};             ///< m, centre of mass in the world
-  typename D::Vector local_center{};         ///< m, centre of mass in the body's frame
-  typename D::Vector force{};                ///< N, gathered for the next step
-  typename D::Angular torque{};              ///< N·m, about the centre of mass
-  float mass = 0, inverse_mass = 0;          ///< 0 where forces do not move the body (inverse_mass), or it has none
+template <class D>
+struct BodyMotion {
+  typename D::Position center{};      ///< m, centre of mass in the world
+  typename D::Vector local_center{};  ///< m, centre of mass in the body's frame
+  typename D::Vector force{};         ///< N, gathered for the next step
+  typename D::Angular torque{};       ///< N·m, about the centre of mass
+  float mass = 0, inverse_mass = 0;   ///< 0 where forces do not move the body (inverse_mass), or it has none
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
-  typename D::Inertia world_inverse_inertia = no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
+  typename D::Inertia world_inverse_inertia =
+      no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
-  float inner_extent = 0;                    ///< m: half the smallest extent of its shapes; how far is "fast"
-  float outer_extent = 0;                    ///< m: farthest point of its shapes from the centre of mass
-  bool gyroscopic = false;                   ///< 3D: inertia is not isotropic
+  float inner_extent = 0;   ///< m: half the smallest extent of its shapes; how far is "fast"
+  float outer_extent = 0;   ///< m: farthest point of its shapes from the centre of mass
+  bool gyroscopic = false;  ///< 3D: inertia is not isotropic
 };
 
 enum BodyFlag : std::uint16_t {
@@ -43,17 +49,17 @@ enum BodyFlag : std::uint16_t {
   body_enabled = 2,
   body_bullet = 4,
   body_allow_sleep = 8,
-  body_mass_given = 16,      ///< set_mass_properties overrides the shapes
+  body_mass_given = 16,  ///< set_mass_properties overrides the shapes
   body_quarantined = 32,
-  body_fast = 64,            ///< moved far in this step: continuous collision looks at it
-  body_has_collider = 128,   ///< a shape that collides (not a sensor)
+  body_fast = 64,           ///< moved far in this step: continuous collision looks at it
+  body_has_collider = 128,  ///< a shape that collides (not a sensor)
 };
 
 /// Links, settings and bookkeeping.
 struct BodyRecord {
   BodyType type = BodyType::dynamic;
-  std::uint8_t locks = 0;             ///< bits 0…5: x, y, z, rotation x, y, z
-  std::uint16_t flags = 0;            ///< BodyFlag
+  std::uint8_t locks = 0;   ///< bits 0…5: x, y, z, rotation x, y, z
+  std::uint16_t flags = 0;  ///< BodyFlag
   std::int32_t first_shape = none;
   std::int32_t first_contact = none;  ///< edge key: 2·contact + side
   std::int32_t first_joint = none;    ///< edge key: 2·joint + side
@@ -61,26 +67,27 @@ struct BodyRecord {
   std::int32_t constraint_count = 0;  ///< manifolds and joints of this body in the constraint graph: 0 is free flight
   std::int32_t awake_index = none;    ///< place in BodyStore::awake
   std::int32_t sleeping_island = none;
-  std::int32_t next_asleep = none;    ///< of the same sleeping island
-  std::uint32_t color_mask = 0;       ///< colours of the constraint graph in which this body already is
-  float sleep_speed = 0.05f;          ///< m/s
-  float sleep_timer = 0;              ///< s below the sleep speed
+  std::int32_t next_asleep = none;  ///< of the same sleeping island
+  std::uint32_t color_mask = 0;     ///< colours of the constraint graph in which this body already is
+  float sleep_speed = 0.05f;        ///< m/s
+  float sleep_timer = 0;            ///< s below the sleep speed
   std::uint64_t user_data = 0;
 
   bool awake() const { return (flags & body_awake) != 0; }
   bool enabled() const { return (flags & body_enabled) != 0; }
 };
 
-template <class D> struct BodyStore {
+template <class D>
+struct BodyStore {
   core::SlotPool<BodyTag> slots;
   // All indexed by slot.
   std::vector<SolverBody<D>> solver;
-  std::vector<typename D::Pose> pose;   ///< of the body's origin, at the start of the step (final after it)
+  std::vector<typename D::Pose> pose;  ///< of the body's origin, at the start of the step (final after it)
   std::vector<BodyMotion<D>> motion;
   std::vector<BodyRecord> record;
-  std::vector<std::string> names;       ///< empty until the first body with a name
-  std::vector<std::uint64_t> birth;     ///< counts up with every creation: the order in which bodies are listed
-  std::vector<std::int32_t> awake;      ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
+  std::vector<std::string> names;    ///< empty until the first body with a name
+  std::vector<std::uint64_t> birth;  ///< counts up with every creation: the order in which bodies are listed
+  std::vector<std::int32_t> awake;   ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
 
   explicit BodyStore(std::uint16_t world) : slots(world) {}
   /// Does the solver move this body (dynamic or kinematic) or is it like the ground?

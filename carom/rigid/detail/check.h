@@ -17,11 +17,13 @@ inline constexpr double max_force = 1e18;       ///< N, N·m, N·s
 inline void check_range(Complaint& c, std::string_view field, double x, double low, double high) {
   if (!(x >= low && x <= high)) c.say(core::refused(field, x, core::text("a number from ", low, " to ", high)));
 }
-template <class T> void check_size(Complaint& c, std::string_view field, Vec2<T> v, double limit) {
+template <class T>
+void check_size(Complaint& c, std::string_view field, Vec2<T> v, double limit) {
   check_range(c, core::text(field, ".x"), double(v.x), -limit, limit);
   check_range(c, core::text(field, ".y"), double(v.y), -limit, limit);
 }
-template <class T> void check_size(Complaint& c, std::string_view field, Vec3<T> v, double limit) {
+template <class T>
+void check_size(Complaint& c, std::string_view field, Vec3<T> v, double limit) {
   check_range(c, core::text(field, ".x"), double(v.x), -limit, limit);
   check_range(c, core::text(field, ".y"), double(v.y), -limit, limit);
   check_range(c, core::text(field, ".z"), double(v.z), -limit, limit);

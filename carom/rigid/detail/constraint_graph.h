@@ -9,14 +9,14 @@
 
 namespace carom::rigid::detail {
 
-inline constexpr int color_count = 24;               ///< colours solved in parallel
-inline constexpr int overflow_color = color_count;   ///< solved one after the other
+inline constexpr int color_count = 24;              ///< colours solved in parallel
+inline constexpr int overflow_color = color_count;  ///< solved one after the other
 
 enum class ConstraintKind : std::uint8_t { manifold, joint };
 
 /// Where a constraint is in the graph.
 struct GraphPlace {
-  std::int16_t color = -1;      ///< −1: not in the graph
+  std::int16_t color = -1;       ///< −1: not in the graph
   std::int32_t position = none;  ///< in the colour's list
 };
 
@@ -40,8 +40,7 @@ struct ConstraintGraph {
     if (dynamic_b) used |= bodies.record[std::size_t(b)].color_mask;
     const std::uint32_t free = ~used & ((std::uint32_t{1} << color_count) - 1);
     int color = overflow_color;
-    if (free != 0)
-      color = dynamic_a && dynamic_b ? std::countr_zero(free) : 31 - std::countl_zero(free);
+    if (free != 0) color = dynamic_a && dynamic_b ? std::countr_zero(free) : 31 - std::countl_zero(free);
     if (color != overflow_color) {
       if (dynamic_a) bodies.record[std::size_t(a)].color_mask |= std::uint32_t{1} << color;
       if (dynamic_b) bodies.record[std::size_t(b)].color_mask |= std::uint32_t{1} << color;

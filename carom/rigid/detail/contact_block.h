@@ -10,16 +10,18 @@ namespace carom::rigid::detail {
 
 /// Masses in 1/kg and 1/(kg·m²); r are vectors from the centres of mass to the contact, world axes at the step's start.
 /// One softness class bit per lane would do, but three floats keep the loop free of branches.
-template <class D, int W> struct ContactBlock;
+template <class D, int W>
+struct ContactBlock;
 
-template <int W> struct alignas(64) ContactBlock<Dim2, W> {
+template <int W>
+struct alignas(64) ContactBlock<Dim2, W> {
   static constexpr int points = 2;
   std::int32_t read_a[W], read_b[W];    ///< body slots
   std::int32_t write_a[W], write_b[W];  ///< the same, or −1 for bodies that impulses do not move
   float normal[2][W];
   float inverse_mass_a[W], inverse_mass_b[W], inverse_inertia_a[W], inverse_inertia_b[W];
   float bias_rate[W], mass_scale[W], impulse_scale[W];
-  float center_offset[2][W];            ///< r_B = r_A + this, for every point of the manifold
+  float center_offset[2][W];  ///< r_B = r_A + this, for every point of the manifold
   struct Point {
     float r_a[2][W];
     float separation[W];
@@ -28,15 +30,16 @@ template <int W> struct alignas(64) ContactBlock<Dim2, W> {
     float total[W];
   } point[points];
   float friction[W];
-  float patch_r_a[2][W];                ///< where friction acts
+  float patch_r_a[2][W];  ///< where friction acts
   float tangent_mass[W], tangent_target[W], tangent_impulse[W], tangent_total[W];
 };
 
-template <int W> struct alignas(64) ContactBlock<Dim3, W> {
+template <int W>
+struct alignas(64) ContactBlock<Dim3, W> {
   static constexpr int points = 4;
   std::int32_t read_a[W], read_b[W];
   std::int32_t write_a[W], write_b[W];
-  float normal[3][W], tangent[3][W];    ///< the second tangent is normal × tangent
+  float normal[3][W], tangent[3][W];  ///< the second tangent is normal × tangent
   float inverse_mass_a[W], inverse_mass_b[W];
   float inverse_inertia_a[6][W], inverse_inertia_b[6][W];  ///< xx, yy, zz, xy, xz, yz, world axes
   float bias_rate[W], mass_scale[W], impulse_scale[W];
@@ -50,23 +53,25 @@ template <int W> struct alignas(64) ContactBlock<Dim3, W> {
   } point[points];
   float friction[W];
   float patch_r_a[3][W];
-  float tangent_mass[3][W];             ///< inverse of the 2×2 matrix of both tangents: 11, 22, 12
+  float tangent_mass[3][W];  ///< inverse of the 2×2 matrix of both tangents: 11, 22, 12
   float tangent_target[2][W], tangent_impulse[2][W], tangent_total[2][W];
   float twist_mass[W], twist_radius[W], twist_impulse[W];
 };
 
 /// Only where a contact of the colour rolls with resistance or bounces.
-template <class D, int W> struct alignas(64) ContactExtra {
+template <class D, int W>
+struct alignas(64) ContactExtra {
   static constexpr int angular = D::dimension == 2 ? 1 : 3;
-  float rolling_lever[W];               ///< m: the torque is at most this times the normal force
+  float rolling_lever[W];  ///< m: the torque is at most this times the normal force
   float rolling_mass[D::dimension == 2 ? 1 : 6][W];
   float rolling_impulse[angular][W];
   float bounce_speed[D::max_points][W];  ///< m/s to leave the surface with, 0: does not bounce
-  float closing_acceleration[W];        ///< m/s² along the normal
+  float closing_acceleration[W];         ///< m/s² along the normal
 };
 
 /// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.
-template <class D> struct ContactKernels {
+template <class D>
+struct ContactKernels {
   using Blocks = void*;
   int width = 4;
   /// Effective masses from what the preparation wrote; normal_mass holds 1 for points that exist and 0 for others.
@@ -80,16 +85,16 @@ template <class D> struct ContactKernels {
 namespace contact_kernels_baseline {
 ContactKernels<Dim2> kernels2();
 ContactKernels<Dim3> kernels3();
-}
+}  // namespace contact_kernels_baseline
 #if defined(__x86_64__)
 namespace contact_kernels_avx2 {
 ContactKernels<Dim2> kernels2();
 ContactKernels<Dim3> kernels3();
-}
+}  // namespace contact_kernels_avx2
 namespace contact_kernels_avx512 {
 ContactKernels<Dim2> kernels2();
 ContactKernels<Dim3> kernels3();
-}
+}  // namespace contact_kernels_avx512
 #endif
 
 }  // namespace carom::rigid::detail

@@ -8,67 +8,71 @@
 namespace carom::rigid::detail {
 
 enum ContactFlag : std::uint16_t {
-  contact_touching = 1,     ///< surfaces met (an end event is due when they part), or, for sensors, overlap
+  contact_touching = 1,  ///< surfaces met (an end event is due when they part), or, for sensors, overlap
   contact_sensor = 2,
-  contact_many = 4,         ///< mesh, height field, compound or chain: several manifolds
-  contact_events = 8,       ///< begin and end events wanted
+  contact_many = 4,    ///< mesh, height field, compound or chain: several manifolds
+  contact_events = 8,  ///< begin and end events wanted
   contact_hit_events = 16,
-  contact_recycled = 32,    ///< `base` and the manifolds come from an earlier step
-  contact_known = 64,       ///< `base`, `gap` and the manifolds are of a full update
+  contact_recycled = 32,  ///< `base` and the manifolds come from an earlier step
+  contact_known = 64,     ///< `base`, `gap` and the manifolds are of a full update
   contact_in_use = 128,
-  contact_round = 256,      ///< a sphere or circle takes part: always computed anew, it costs little
-  contact_bouncy = 512,     ///< restitution above zero: looks ahead along the velocity
+  contact_round = 256,       ///< a sphere or circle takes part: always computed anew, it costs little
+  contact_bouncy = 512,      ///< restitution above zero: looks ahead along the velocity
   contact_at_origin = 1024,  ///< both shapes stand unmoved in their bodies
 };
 
 /// A pair of shapes. `shape[0]` is A: normals point from it to B.
-template <class D> struct ContactRecord {
+template <class D>
+struct ContactRecord {
   std::int32_t shape[2] = {none, none};
   std::int32_t body[2] = {none, none};
-  std::int32_t next[2] = {none, none};      ///< edge keys (2·contact + side) in the lists of the bodies
+  std::int32_t next[2] = {none, none};  ///< edge keys (2·contact + side) in the lists of the bodies
   std::int32_t previous[2] = {none, none};
-  std::int32_t awake_index = none;          ///< place in ContactStore::awake
+  std::int32_t awake_index = none;  ///< place in ContactStore::awake
   std::int32_t first_manifold = none;
   std::uint16_t flags = 0;
   std::uint16_t manifold_count = 0;
-  float extent = 0;                         ///< m: how far a turn of B by one radian moves its surface
-  float inner = 0;                          ///< m: half the thickness of the thinner shape
-  float margin = 0;                         ///< m: contacts up to this separation are of interest
-  float gap = 0;                            ///< m: without manifolds, the shapes were at least this far apart at `base`
+  float extent = 0;  ///< m: how far a turn of B by one radian moves its surface
+  float inner = 0;   ///< m: half the thickness of the thinner shape
+  float margin = 0;  ///< m: contacts up to this separation are of interest
+  float gap = 0;     ///< m: without manifolds, the shapes were at least this far apart at `base`
   geometry::PairCache cache{};
-  typename D::Transform base{};             ///< B in A when the manifolds were last computed in full
+  typename D::Transform base{};  ///< B in A when the manifolds were last computed in full
 };
 
 /// What the solver did for a manifold, kept for warm starting, events and pictures.
-template <class D> struct ManifoldImpulses {
-  float normal[D::max_points] = {};  ///< N·s, of the last substep
-  float total[D::max_points] = {};   ///< N·s, over the last step
-  typename D::Vector friction{};     ///< N·s on B, world axes, of the last substep
+template <class D>
+struct ManifoldImpulses {
+  float normal[D::max_points] = {};     ///< N·s, of the last substep
+  float total[D::max_points] = {};      ///< N·s, over the last step
+  typename D::Vector friction{};        ///< N·s on B, world axes, of the last substep
   typename D::Vector friction_total{};  ///< N·s on B over the last step
-  float twist = 0;                   ///< N·m·s about the normal (3D)
-  typename D::Angular rolling{};     ///< N·m·s on B
+  float twist = 0;                      ///< N·m·s about the normal (3D)
+  typename D::Angular rolling{};        ///< N·m·s on B
 };
 
 /// One patch of contact: a unit of the constraint graph.
-template <class D> struct ManifoldRecord {
+template <class D>
+struct ManifoldRecord {
   std::int32_t contact = none;
-  std::int32_t next = none;          ///< of the same contact
+  std::int32_t next = none;  ///< of the same contact
   GraphPlace place{};
   std::uint32_t child = 0;
   float friction = 0, restitution = 0, rolling_lever = 0, tangent_speed = 0;
-  float patch_factor = 0;            ///< radius of the patch for the twist over the mean distance of its points
-  typename D::Manifold manifold{};   ///< in A's shape frame, at the contact's `base`
+  float patch_factor = 0;           ///< radius of the patch for the twist over the mean distance of its points
+  typename D::Manifold manifold{};  ///< in A's shape frame, at the contact's `base`
   ManifoldImpulses<D> impulses{};
   typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass
-  float approach_speed = 0;          ///< m/s at the start of the step, for hit events
+  float approach_speed = 0;                   ///< m/s at the start of the step, for hit events
   bool anchored = false;
 };
 
-template <class D> struct ContactStore {
+template <class D>
+struct ContactStore {
   std::vector<ContactRecord<D>> contacts;
   std::vector<ManifoldRecord<D>> manifolds;
   std::vector<std::int32_t> free_contacts, free_manifolds;
-  std::vector<std::int32_t> awake;   ///< contacts with an awake body, updated every step
+  std::vector<std::int32_t> awake;  ///< contacts with an awake body, updated every step
   int count = 0;
 
   ContactRecord<D>& at(std::int32_t i) { return contacts[std::size_t(i)]; }

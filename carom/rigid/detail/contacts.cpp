@@ -3,7 +3,8 @@
 namespace carom::rigid::detail {
 namespace {
 
-template <class D> void link_contact(WorldImplementation<D>& world, std::int32_t contact, int side) {
+template <class D>
+void link_contact(WorldImplementation<D>& world, std::int32_t contact, int side) {
   ContactRecord<D>& c = world.contacts.at(contact);
   BodyRecord& body = world.bodies.record[std::size_t(c.body[side])];
   const std::int32_t key = 2 * contact + side;
@@ -14,24 +15,32 @@ template <class D> void link_contact(WorldImplementation<D>& world, std::int32_t
   ++body.contact_count;
 }
 
-template <class D> void unlink_contact(WorldImplementation<D>& world, std::int32_t contact, int side) {
+template <class D>
+void unlink_contact(WorldImplementation<D>& world, std::int32_t contact, int side) {
   ContactRecord<D>& c = world.contacts.at(contact);
   BodyRecord& body = world.bodies.record[std::size_t(c.body[side])];
   const std::int32_t previous = c.previous[side], next = c.next[side];
-  if (previous != none) world.contacts.at(previous >> 1).next[previous & 1] = next;
-  else body.first_contact = next;
+  if (previous != none)
+    world.contacts.at(previous >> 1).next[previous & 1] = next;
+  else
+    body.first_contact = next;
   if (next != none) world.contacts.at(next >> 1).previous[next & 1] = previous;
   --body.contact_count;
 }
 
-template <class D> bool is_awake(const WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+bool is_awake(const WorldImplementation<D>& world, std::int32_t body) {
   const BodyRecord& record = world.bodies.record[std::size_t(body)];
   return record.awake_index != none && record.type != BodyType::fixed;
 }
 
-template <class D> bool needs_extra(const ManifoldRecord<D>& m) { return m.restitution > 0 || m.rolling_lever > 0; }
+template <class D>
+bool needs_extra(const ManifoldRecord<D>& m) {
+  return m.restitution > 0 || m.rolling_lever > 0;
+}
 
-template <class D> void enter_graph(WorldImplementation<D>& world, std::int32_t manifold) {
+template <class D>
+void enter_graph(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   if (m.place.color >= 0) return;
@@ -39,12 +48,12 @@ template <class D> void enter_graph(WorldImplementation<D>& world, std::int32_t 
   if (needs_extra(m)) ++world.graph.colors[m.place.color].extra;
 }
 
-template <class D> void leave_graph(WorldImplementation<D>& world, std::int32_t manifold) {
+template <class D>
+void leave_graph(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
   if (m.place.color < 0) return;
   const ContactRecord<D>& c = world.contacts.at(m.contact);
-  const std::int32_t moved =
-      world.graph.remove(ConstraintKind::manifold, m.place, c.body[0], c.body[1], world.bodies);
+  const std::int32_t moved = world.graph.remove(ConstraintKind::manifold, m.place, c.body[0], c.body[1], world.bodies);
   if (moved != none) world.contacts.manifold(moved).place = m.place;
   if (needs_extra(m)) --world.graph.colors[m.place.color].extra;
   m.place = {};
@@ -52,20 +61,30 @@ template <class D> void leave_graph(WorldImplementation<D>& world, std::int32_t 
 
 float round_radius(const geometry::Shape2& s) {
   switch (s.type) {
-    case geometry::ShapeType2::circle: return s.circle.radius;
-    case geometry::ShapeType2::capsule: return s.capsule.radius;
-    case geometry::ShapeType2::polygon: return s.polygon.radius;
-    default: return 0;
+    case geometry::ShapeType2::circle:
+      return s.circle.radius;
+    case geometry::ShapeType2::capsule:
+      return s.capsule.radius;
+    case geometry::ShapeType2::polygon:
+      return s.polygon.radius;
+    default:
+      return 0;
   }
 }
 float round_radius(const geometry::Shape3& s) {
   switch (s.type) {
-    case geometry::ShapeType3::sphere: return s.sphere.radius;
-    case geometry::ShapeType3::capsule: return s.capsule.radius;
-    case geometry::ShapeType3::cylinder: return s.cylinder.radius;
-    case geometry::ShapeType3::cone: return s.cone.radius;
-    case geometry::ShapeType3::box: return s.box.radius;
-    default: return 0;
+    case geometry::ShapeType3::sphere:
+      return s.sphere.radius;
+    case geometry::ShapeType3::capsule:
+      return s.capsule.radius;
+    case geometry::ShapeType3::cylinder:
+      return s.cylinder.radius;
+    case geometry::ShapeType3::cone:
+      return s.cone.radius;
+    case geometry::ShapeType3::box:
+      return s.box.radius;
+    default:
+      return 0;
   }
 }
 bool has_round_base(const geometry::Shape2&) { return false; }
@@ -91,7 +110,8 @@ bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, c
   return (a.filter.category & b.filter.mask) != 0 && (b.filter.category & a.filter.mask) != 0;
 }
 
-template <class D> void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b) {
+template <class D>
+void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b) {
   const ShapeRecord<D>*a = &world.shapes.at(shape_a), *b = &world.shapes.at(shape_b);
   // A is the one in whose frame little changes: the surface of many parts, then the fixed body, then the larger shape.
   const auto rank = [&](const ShapeRecord<D>& s) {
@@ -137,7 +157,8 @@ template <class D> void create_contact(WorldImplementation<D>& world, std::int32
   if (is_awake(world, c.body[0]) || is_awake(world, c.body[1])) activate_contact(world, index);
 }
 
-template <class D> void destroy_contact(WorldImplementation<D>& world, std::int32_t contact, bool wake) {
+template <class D>
+void destroy_contact(WorldImplementation<D>& world, std::int32_t contact, bool wake) {
   ContactStore<D>& store = world.contacts;
   if ((store.at(contact).flags & contact_touching) != 0) {
     const ContactRecord<D>& c = store.at(contact);
@@ -166,7 +187,8 @@ template <class D> void destroy_contact(WorldImplementation<D>& world, std::int3
   }
 }
 
-template <class D> void destroy_contacts_of_shape(WorldImplementation<D>& world, std::int32_t shape) {
+template <class D>
+void destroy_contacts_of_shape(WorldImplementation<D>& world, std::int32_t shape) {
   const std::int32_t body = world.shapes.at(shape).body;
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
     const ContactRecord<D>& c = world.contacts.at(key >> 1);
@@ -176,7 +198,8 @@ template <class D> void destroy_contacts_of_shape(WorldImplementation<D>& world,
   }
 }
 
-template <class D> void destroy_contacts_between(WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
+template <class D>
+void destroy_contacts_between(WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
   for (std::int32_t key = world.bodies.record[std::size_t(a)].first_contact; key != none;) {
     const ContactRecord<D>& c = world.contacts.at(key >> 1);
     const std::int32_t next = c.next[key & 1];
@@ -185,7 +208,8 @@ template <class D> void destroy_contacts_between(WorldImplementation<D>& world, 
   }
 }
 
-template <class D> void find_pairs_again(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void find_pairs_again(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none || (shape.flags & shape_moved) != 0) continue;
@@ -194,7 +218,8 @@ template <class D> void find_pairs_again(WorldImplementation<D>& world, std::int
   }
 }
 
-template <class D> void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
+template <class D>
+void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
@@ -236,7 +261,8 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
   if (c.awake_index != none) enter_graph(world, index);
 }
 
-template <class D> void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold) {
+template <class D>
+void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold) {
   leave_graph(world, manifold);
   ContactStore<D>& store = world.contacts;
   ContactRecord<D>& c = store.at(store.manifold(manifold).contact);
@@ -248,7 +274,8 @@ template <class D> void remove_manifold(WorldImplementation<D>& world, std::int3
   store.free_manifolds.push_back(manifold);
 }
 
-template <class D> void activate_contact(WorldImplementation<D>& world, std::int32_t contact) {
+template <class D>
+void activate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   ContactRecord<D>& c = world.contacts.at(contact);
   if (c.awake_index != none) return;
   c.awake_index = std::int32_t(world.contacts.awake.size());
@@ -256,7 +283,8 @@ template <class D> void activate_contact(WorldImplementation<D>& world, std::int
   for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) enter_graph(world, m);
 }
 
-template <class D> void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
+template <class D>
+void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   ContactRecord<D>& c = world.contacts.at(contact);
   if (c.awake_index == none) return;
   for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) leave_graph(world, m);
@@ -268,17 +296,17 @@ template <class D> void deactivate_contact(WorldImplementation<D>& world, std::i
   c.awake_index = none;
 }
 
-#define CAROM_INSTANTIATE(D)                                                                                      \
-  template bool may_collide<D>(const WorldImplementation<D>&, const ShapeRecord<D>&, const ShapeRecord<D>&);      \
-  template void create_contact<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);                           \
-  template void destroy_contact<D>(WorldImplementation<D>&, std::int32_t, bool);                                  \
-  template void destroy_contacts_of_shape<D>(WorldImplementation<D>&, std::int32_t);                              \
-  template void destroy_contacts_between<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);                 \
-  template void find_pairs_again<D>(WorldImplementation<D>&, std::int32_t);                                       \
-  template void mix_materials<D>(WorldImplementation<D>&, std::int32_t);                                          \
-  template void add_manifold<D>(WorldImplementation<D>&, std::int32_t, const D::Manifold&, std::uint32_t);        \
-  template void remove_manifold<D>(WorldImplementation<D>&, std::int32_t);                                        \
-  template void activate_contact<D>(WorldImplementation<D>&, std::int32_t);                                       \
+#define CAROM_INSTANTIATE(D)                                                                                 \
+  template bool may_collide<D>(const WorldImplementation<D>&, const ShapeRecord<D>&, const ShapeRecord<D>&); \
+  template void create_contact<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);                      \
+  template void destroy_contact<D>(WorldImplementation<D>&, std::int32_t, bool);                             \
+  template void destroy_contacts_of_shape<D>(WorldImplementation<D>&, std::int32_t);                         \
+  template void destroy_contacts_between<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);            \
+  template void find_pairs_again<D>(WorldImplementation<D>&, std::int32_t);                                  \
+  template void mix_materials<D>(WorldImplementation<D>&, std::int32_t);                                     \
+  template void add_manifold<D>(WorldImplementation<D>&, std::int32_t, const D::Manifold&, std::uint32_t);   \
+  template void remove_manifold<D>(WorldImplementation<D>&, std::int32_t);                                   \
+  template void activate_contact<D>(WorldImplementation<D>&, std::int32_t);                                  \
   template void deactivate_contact<D>(WorldImplementation<D>&, std::int32_t);
 CAROM_INSTANTIATE(Dim2)
 CAROM_INSTANTIATE(Dim3)

@@ -6,7 +6,8 @@
 namespace carom::rigid::detail {
 
 /// The shape's frame in the world.
-template <class D> inline typename D::Pose shape_pose(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+template <class D>
+inline typename D::Pose shape_pose(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   const typename D::Pose& pose = world.bodies.pose[std::size_t(shape.body)];
   return shape.at_origin ? pose : pose * shape.local;
 }
@@ -15,25 +16,32 @@ template <class D> inline typename D::Pose shape_pose(const WorldImplementation<
 template <class D>
 bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, const ShapeRecord<D>& b);
 
-template <class D> void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b);
+template <class D>
+void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b);
 /// Sends the end event that is due. Wakes the bodies where `wake` and they touched.
-template <class D> void destroy_contact(WorldImplementation<D>& world, std::int32_t contact, bool wake);
-template <class D> void destroy_contacts_of_shape(WorldImplementation<D>& world, std::int32_t shape);
+template <class D>
+void destroy_contact(WorldImplementation<D>& world, std::int32_t contact, bool wake);
+template <class D>
+void destroy_contacts_of_shape(WorldImplementation<D>& world, std::int32_t shape);
 
 /// Takes over a found manifold; it enters the graph.
 template <class D>
 void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typename D::Manifold& manifold,
                   std::uint32_t child);
-template <class D> void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold);
+template <class D>
+void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold);
 /// Friction, restitution and so on of a pair, from its shapes.
-template <class D> void mix_materials(WorldImplementation<D>& world, std::int32_t manifold);
+template <class D>
+void mix_materials(WorldImplementation<D>& world, std::int32_t manifold);
 
 /// For waking and falling asleep: the contact joins or leaves those that are updated, its manifolds the graph.
-template <class D> void activate_contact(WorldImplementation<D>& world, std::int32_t contact);
-template <class D> void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact);
+template <class D>
+void activate_contact(WorldImplementation<D>& world, std::int32_t contact);
+template <class D>
+void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact);
 
-/// Carries impulses of `from` over to the points of `to` with the same features; a point whose feature is new takes over
-/// from the nearest one that is left, if that is near (clipping renames corners when boxes turn by a hair).
+/// Carries impulses of `from` over to the points of `to` with the same features; a point whose feature is new takes
+/// over from the nearest one that is left, if that is near (clipping renames corners when boxes turn by a hair).
 template <class D>
 inline void carry_impulses(const typename D::Manifold& from, const typename D::Manifold& to, float near,
                            ManifoldImpulses<D>& impulses) {

@@ -6,8 +6,8 @@
 namespace carom::rigid::detail {
 
 struct JointHeader {
-  std::int32_t body[2] = {none, none};      ///< slots of A and B; A may be `none` (mouse joint)
-  std::int32_t next[2] = {none, none};      ///< edge keys (2·joint + side) in the lists of A and B
+  std::int32_t body[2] = {none, none};  ///< slots of A and B; A may be `none` (mouse joint)
+  std::int32_t next[2] = {none, none};  ///< edge keys (2·joint + side) in the lists of A and B
   std::int32_t previous[2] = {none, none};
   GraphPlace place{};
   bool collide_connected = false;

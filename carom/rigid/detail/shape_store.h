@@ -13,36 +13,38 @@ enum ShapeFlag : std::uint8_t {
   shape_sensor = 1,
   shape_contact_events = 2,
   shape_hit_events = 4,
-  shape_many = 8,        ///< collides with several manifolds
-  shape_moved = 16,      ///< its fat bounds changed: look for new pairs
-  shape_round = 32,      ///< a sphere or circle
-  shape_outgrown = 64,   ///< left its fat bounds in this step
+  shape_many = 8,       ///< collides with several manifolds
+  shape_moved = 16,     ///< its fat bounds changed: look for new pairs
+  shape_round = 32,     ///< a sphere or circle
+  shape_outgrown = 64,  ///< left its fat bounds in this step
 };
 
 /// The tree in which a shape is: after its body's type.
 enum TreeIndex : std::int8_t { tree_fixed = 0, tree_kinematic = 1, tree_dynamic = 2, tree_none = -1 };
 
-template <class D> struct ShapeRecord {
+template <class D>
+struct ShapeRecord {
   typename D::Shape geometry{};
-  typename D::Transform local{};         ///< shape → body
+  typename D::Transform local{};  ///< shape → body
   std::int32_t body = none;
-  std::int32_t next = none;              ///< of the same body, in order of creation
-  std::int32_t leaf = none;              ///< in the tree
-  std::int8_t tree = tree_none;          ///< TreeIndex
-  std::uint8_t flags = 0;                ///< ShapeFlag
-  bool at_origin = true;                 ///< local is the identity
-  float outer_extent = 0;                ///< m: farthest point from the origin of its own frame
-  float inner_extent = 0;                ///< m: half its smallest thickness
-  float margin = 0;                      ///< m by which fat bounds exceed the tight ones
-  float density = 0;                     ///< kg/m³ or kg/m²
+  std::int32_t next = none;      ///< of the same body, in order of creation
+  std::int32_t leaf = none;      ///< in the tree
+  std::int8_t tree = tree_none;  ///< TreeIndex
+  std::uint8_t flags = 0;        ///< ShapeFlag
+  bool at_origin = true;         ///< local is the identity
+  float outer_extent = 0;        ///< m: farthest point from the origin of its own frame
+  float inner_extent = 0;        ///< m: half its smallest thickness
+  float margin = 0;              ///< m by which fat bounds exceed the tight ones
+  float density = 0;             ///< kg/m³ or kg/m²
   Material material{};
   Filter filter{};
   std::uint64_t user_data = 0;
 };
 
-template <class D> struct ShapeStore {
+template <class D>
+struct ShapeStore {
   core::SlotPool<ShapeTag> slots;
-  std::vector<ShapeRecord<D>> record;            ///< by slot
+  std::vector<ShapeRecord<D>> record;                    ///< by slot
   geometry::DynamicTree<typename D::Position> trees[3];  ///< items are slots of shapes
 
   explicit ShapeStore(std::uint16_t world) : slots(world) {}

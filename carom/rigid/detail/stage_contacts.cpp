@@ -7,16 +7,19 @@ namespace {
 constexpr int block_grain = 8;
 constexpr float anchor_rate = 0.05f;  ///< part of the slip that sticking friction takes back in a step
 
-template <int W> void put(float (&to)[2][W], int lane, const Vec2f& v) {
+template <int W>
+void put(float (&to)[2][W], int lane, const Vec2f& v) {
   to[0][lane] = v.x;
   to[1][lane] = v.y;
 }
-template <int W> void put(float (&to)[3][W], int lane, const Vec3f& v) {
+template <int W>
+void put(float (&to)[3][W], int lane, const Vec3f& v) {
   to[0][lane] = v.x;
   to[1][lane] = v.y;
   to[2][lane] = v.z;
 }
-template <int W> void put(float (&to)[6][W], int lane, const Mat3f& m) {
+template <int W>
+void put(float (&to)[6][W], int lane, const Mat3f& m) {
   to[0][lane] = m.cx.x;
   to[1][lane] = m.cy.y;
   to[2][lane] = m.cz.z;
@@ -24,10 +27,14 @@ template <int W> void put(float (&to)[6][W], int lane, const Mat3f& m) {
   to[4][lane] = m.cz.x;
   to[5][lane] = m.cz.y;
 }
-template <int W> void put(float (&to)[W], int lane, float v) { to[lane] = v; }
+template <int W>
+void put(float (&to)[W], int lane, float v) {
+  to[lane] = v;
+}
 
 /// A contact as it stands now: in the shape frame of A.
-template <class D> struct Geometry {
+template <class D>
+struct Geometry {
   typename D::Vector point[D::max_points];
   float separation[D::max_points];
 };
@@ -56,7 +63,8 @@ void current_geometry(const WorldImplementation<D>& world, const ContactRecord<D
   }
 }
 
-template <class D> typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t body) {
+template <class D>
+typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t body) {
   if (!context.world.bodies.is_dynamic(body)) return {};
   const BodyMotion<D>& m = context.world.bodies.motion[std::size_t(body)];
   return context.world.definition.gravity * m.gravity_scale + m.force * m.inverse_mass;
@@ -141,8 +149,8 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
     weight += impulse;
     center += ra * impulse;
     equal_center += ra;
-    const float vn = dot(n, sb.linear_velocity + cross(sb.angular_velocity, rb) - sa.linear_velocity -
-                                cross(sa.angular_velocity, ra));
+    const float vn = dot(
+        n, sb.linear_velocity + cross(sb.angular_velocity, rb) - sa.linear_velocity - cross(sa.angular_velocity, ra));
     approach = max(approach, -vn);
     if (extra != nullptr) {
       // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
@@ -204,8 +212,10 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
 }
 
 /// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
-template <class D, int W> void clear_lane(ContactBlock<D, W>& block, ContactExtra<D, W>* extra, int lane) {
-  for (std::size_t i = 0; i < sizeof(block) / (4 * W); ++i) reinterpret_cast<float*>(&block)[i * W + std::size_t(lane)] = 0;
+template <class D, int W>
+void clear_lane(ContactBlock<D, W>& block, ContactExtra<D, W>* extra, int lane) {
+  for (std::size_t i = 0; i < sizeof(block) / (4 * W); ++i)
+    reinterpret_cast<float*>(&block)[i * W + std::size_t(lane)] = 0;
   block.read_a[lane] = block.read_a[0];
   block.read_b[lane] = block.read_b[0];
   block.write_a[lane] = block.write_b[lane] = none;
@@ -214,8 +224,9 @@ template <class D, int W> void clear_lane(ContactBlock<D, W>& block, ContactExtr
       reinterpret_cast<float*>(extra)[i * W + std::size_t(lane)] = 0;
 }
 
-template <class D, int W> void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
-                                          const ContactExtra<D, W>* extra, int lane) {
+template <class D, int W>
+void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
+                const ContactExtra<D, W>* extra, int lane) {
   ManifoldRecord<D>& m = context.world.contacts.manifold(index);
   float load = 0;
   for (int i = 0; i < m.manifold.count; ++i) {
@@ -243,9 +254,10 @@ template <class D, int W> void store_lane(StepContext<D>& context, std::int32_t 
   if (math::length_squared(m.impulses.friction) >= limit * limit) m.anchored = false;
 }
 
-/// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to its
-/// bodies, some lanes ahead of their use; preparing is bound by latency.
-template <class D> void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i) {
+/// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
+/// its bodies, some lanes ahead of their use; preparing is bound by latency.
+template <class D>
+void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i) {
   const auto lines = [](const void* p, std::size_t bytes) {
     for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(p) + k);
   };
@@ -264,7 +276,8 @@ template <class D> void prefetch_manifold(const WorldImplementation<D>& world, s
 }
 
 /// Calls f(manifolds of the colour, first, lanes, block) for the blocks of every colour, in parallel.
-template <class D, int W, class F> void for_blocks(StepContext<D>& context, F&& f) {
+template <class D, int W, class F>
+void for_blocks(StepContext<D>& context, F&& f) {
   WorldImplementation<D>& world = context.world;
   for (int color = 0; color <= overflow_color; ++color) {
     const std::vector<std::int32_t>& manifolds = world.graph.colors[color].manifolds;
@@ -279,12 +292,15 @@ template <class D, int W, class F> void for_blocks(StepContext<D>& context, F&& 
           blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k);
       }
     };
-    if (blocks.count <= block_grain) run(0, blocks.count, 0);
-    else context.scheduler.parallel_for(blocks.count, block_grain, run);
+    if (blocks.count <= block_grain)
+      run(0, blocks.count, 0);
+    else
+      context.scheduler.parallel_for(blocks.count, block_grain, run);
   }
 }
 
-template <class D, int W> void prepare_blocks(StepContext<D>& context) {
+template <class D, int W>
+void prepare_blocks(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   for (int color = 0; color <= overflow_color; ++color) {
     const GraphColor& c = world.graph.colors[color];
@@ -294,7 +310,8 @@ template <class D, int W> void prepare_blocks(StepContext<D>& context) {
     blocks.count = (int(c.manifolds.size()) + lanes - 1) / lanes;
     if (blocks.count == 0) continue;
     blocks.blocks = context.arena.template allocate<ContactBlock<D, W>>(std::size_t(blocks.count)).data();
-    if (c.extra > 0) blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
+    if (c.extra > 0)
+      blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
     blocks.bounces = c.extra > 0;
   }
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
@@ -308,7 +325,8 @@ template <class D, int W> void prepare_blocks(StepContext<D>& context) {
   });
 }
 
-template <class D, int W> void store_blocks(StepContext<D>& context) {
+template <class D, int W>
+void store_blocks(StepContext<D>& context) {
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
                                 ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
     for (int lane = 0; lane < lanes; ++lane) {
@@ -324,18 +342,26 @@ template <class D, int W> void store_blocks(StepContext<D>& context) {
 
 }  // namespace
 
-template <class D> void prepare_contacts(StepContext<D>& context) {
+template <class D>
+void prepare_contacts(StepContext<D>& context) {
   switch (context.world.kernels.width) {
-    case 16: return prepare_blocks<D, 16>(context);
-    case 8: return prepare_blocks<D, 8>(context);
-    default: return prepare_blocks<D, 4>(context);
+    case 16:
+      return prepare_blocks<D, 16>(context);
+    case 8:
+      return prepare_blocks<D, 8>(context);
+    default:
+      return prepare_blocks<D, 4>(context);
   }
 }
-template <class D> void store_contacts(StepContext<D>& context) {
+template <class D>
+void store_contacts(StepContext<D>& context) {
   switch (context.world.kernels.width) {
-    case 16: return store_blocks<D, 16>(context);
-    case 8: return store_blocks<D, 8>(context);
-    default: return store_blocks<D, 4>(context);
+    case 16:
+      return store_blocks<D, 16>(context);
+    case 8:
+      return store_blocks<D, 8>(context);
+    default:
+      return store_blocks<D, 4>(context);
   }
 }
 

@@ -46,7 +46,8 @@ void turn_body(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Quatf& star
 
 }  // namespace
 
-template <class D> void integrate_velocities(StepContext<D>& context) {
+template <class D>
+void integrate_velocities(StepContext<D>& context) {
   auto& bodies = context.world.bodies;
   const float h = context.h;
   const typename D::Vector gravity = context.world.definition.gravity;
@@ -74,7 +75,8 @@ template <class D> void integrate_velocities(StepContext<D>& context) {
   });
 }
 
-template <class D> void integrate_positions(StepContext<D>& context) {
+template <class D>
+void integrate_positions(StepContext<D>& context) {
   auto& bodies = context.world.bodies;
   const float h = context.h;
   context.scheduler.parallel_for(int(bodies.awake.size()), body_grain, [&](int begin, int end, int) {

@@ -6,9 +6,9 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr int contact_grain = 64;
-constexpr int max_manifolds = 8;            ///< of one pair
-constexpr float touch_distance = 0.005f;    ///< m: surfaces nearer than this touch, for events
-constexpr float recycle_share = 0.02f;      ///< of the smaller half thickness: manifolds stay while the pair slid less
+constexpr int max_manifolds = 8;          ///< of one pair
+constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
+constexpr float recycle_share = 0.02f;    ///< of the smaller half thickness: manifolds stay while the pair slid less
 
 enum ContactChange : std::uint8_t {
   change_apart = 1,      ///< fat bounds no longer overlap
@@ -18,7 +18,8 @@ enum ContactChange : std::uint8_t {
   change_end = 16,
 };
 
-template <class D> struct Found {
+template <class D>
+struct Found {
   typename D::Manifold manifold[max_manifolds];
   std::uint32_t child[max_manifolds];
   int count = 0;
@@ -70,7 +71,8 @@ void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Tra
   for (int i = 0; i < found.count; ++i) found.child[i] = found.manifold[i].child;
 }
 
-template <class D> float smallest_separation(const typename D::Manifold& m) {
+template <class D>
+float smallest_separation(const typename D::Manifold& m) {
   float s = m.points[0].separation;
   for (int i = 1; i < m.count; ++i) s = min(s, m.points[i].separation);
   return s;
@@ -89,7 +91,8 @@ float motion(const Transform3f& base, const Transform3f& now, float extent) {
 }
 
 /// The same without what is along the normal: approach and parting change separations only.
-template <class T, class V> float slid(const T& base, const T& now, float extent, const V& normal) {
+template <class T, class V>
+float slid(const T& base, const T& now, float extent, const V& normal) {
   T straight = now;
   straight.p = now.p - normal * dot(normal, now.p - base.p);
   return motion(base, straight, extent);
@@ -98,9 +101,11 @@ template <class T, class V> float slid(const T& base, const T& now, float extent
 float spin(const SolverBody<Dim2>& s) { return math::abs(s.angular_velocity); }
 float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity); }
 
-/// How far the surfaces of the pair may come nearer in this step. Contacts are foreseen that far, so that impacts happen at
-/// the surface, with the energy a body has there; those that do not bounce look no farther than half their thickness.
-template <class D> float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+/// How far the surfaces of the pair may come nearer in this step. Contacts are foreseen that far, so that impacts
+/// happen at the surface, with the energy a body has there; those that do not bounce look no farther than half their
+/// thickness.
+template <class D>
+float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
   const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
   const float turning = spin(a) * world.bodies.motion[std::size_t(c.body[0])].outer_extent +
                         spin(b) * world.bodies.motion[std::size_t(c.body[1])].outer_extent;
@@ -118,8 +123,10 @@ float closing_way(const WorldImplementation<D>& world, const ContactRecord<D>& c
   return world.last_dt * max(0.0f, dot(n, a.linear_velocity - b.linear_velocity) + min(turning, 100.0f));
 }
 
-/// The touch flag, with hysteresis: begins within the touch distance, ends when the manifolds are gone or beyond twice it.
-template <class D> std::uint8_t touch_change(ContactRecord<D>& c, float separation, bool pressed) {
+/// The touch flag, with hysteresis: begins within the touch distance, ends when the manifolds are gone or beyond twice
+/// it.
+template <class D>
+std::uint8_t touch_change(ContactRecord<D>& c, float separation, bool pressed) {
   const bool was = (c.flags & contact_touching) != 0;
   const bool is = separation < (was ? 2 * touch_distance : touch_distance) || pressed;
   if (is == was) return 0;
@@ -127,13 +134,15 @@ template <class D> std::uint8_t touch_change(ContactRecord<D>& c, float separati
   return is ? change_begin : change_end;
 }
 
-template <class D> bool pressed(const ManifoldRecord<D>& m) {
+template <class D>
+bool pressed(const ManifoldRecord<D>& m) {
   for (int i = 0; i < D::max_points; ++i)
     if (m.impulses.normal[i] > 0) return true;
   return false;
 }
 
-template <class D> bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
+template <class D>
+bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
   for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next)
     if (pressed(store.manifold(m))) return true;
   return false;
@@ -168,8 +177,8 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     ahead = look_ahead(world, c);
     const float margin = c.margin + ahead;
     // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
-    // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and far
-    // below the size of features, so that nothing sticks to a stale edge.
+    // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and
+    // far below the size of features, so that nothing sticks to a stale edge.
     if (c.flags & contact_known) {
       if (c.first_manifold == none) {
         if (motion(c.base, b_in_a, c.extent) + margin < c.gap) return 0;
@@ -269,19 +278,23 @@ void replace_manifolds(WorldImplementation<D>& world, std::int32_t contact, std:
   }
 }
 
-template <class D> void send_touch_event(WorldImplementation<D>& world, const ContactRecord<D>& c, bool begin) {
+template <class D>
+void send_touch_event(WorldImplementation<D>& world, const ContactRecord<D>& c, bool begin) {
   const ShapeId a = world.shapes.slots.handle_at(c.shape[0]), b = world.shapes.slots.handle_at(c.shape[1]);
   StepScratch<D>& scratch = world.scratch;
   if (c.flags & contact_sensor) {
     const bool first = (world.shapes.at(c.shape[0]).flags & shape_sensor) != 0;
     (begin ? scratch.sensor_begin : scratch.sensor_end).push_back(first ? SensorEvent{a, b} : SensorEvent{b, a});
   } else if (c.flags & contact_events) {
-    if (begin) scratch.contact_begin.push_back({a, b});
-    else scratch.contact_end.push_back({a, b});
+    if (begin)
+      scratch.contact_begin.push_back({a, b});
+    else
+      scratch.contact_end.push_back({a, b});
   }
 }
 
-template <class D> void apply_change(WorldImplementation<D>& world, std::size_t i, std::size_t& next_found) {
+template <class D>
+void apply_change(WorldImplementation<D>& world, std::size_t i, std::size_t& next_found) {
   StepScratch<D>& scratch = world.scratch;
   const std::uint8_t change = scratch.contact_changes[i];
   const std::int32_t contact = world.contacts.awake[i];
@@ -303,7 +316,8 @@ template <class D> void apply_change(WorldImplementation<D>& world, std::size_t 
 
 }  // namespace
 
-template <class D> void update_contacts(WorldImplementation<D>& world) {
+template <class D>
+void update_contacts(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   const std::size_t count = world.contacts.awake.size();
   scratch.contact_changes.resize((count + 7) / 8 * 8);
@@ -312,8 +326,7 @@ template <class D> void update_contacts(WorldImplementation<D>& world) {
   world.scheduler->parallel_for(int(count), contact_grain, [&](int begin, int end, int worker) {
     for (int i = begin; i < end; ++i) {
       if (i + 4 < end) __builtin_prefetch(&world.contacts.at(world.contacts.awake[std::size_t(i) + 4]));
-      scratch.contact_changes[std::size_t(i)] =
-          update_contact(world, i, scratch.found_manifolds[std::size_t(worker)]);
+      scratch.contact_changes[std::size_t(i)] = update_contact(world, i, scratch.found_manifolds[std::size_t(worker)]);
     }
   });
   scratch.manifolds.clear();

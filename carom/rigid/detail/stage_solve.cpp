@@ -3,7 +3,7 @@
 namespace carom::rigid::detail {
 namespace {
 
-constexpr int solve_grain = 8;  ///< blocks to a task
+constexpr int solve_grain = 4;  ///< blocks to a task
 
 template <class D, class F>
 void run_blocks(StepContext<D>& context, int color, F&& f) {

@@ -6,41 +6,59 @@
 namespace carom::rigid::detail {
 
 /// New pairs of shapes whose fat bounds came to overlap get a contact.
-template <class D> void find_pairs(WorldImplementation<D>& world);
+template <class D>
+void find_pairs(WorldImplementation<D>& world);
 /// Manifolds of all awake contacts; begin and end events; contacts that drifted apart are destroyed.
-template <class D> void update_contacts(WorldImplementation<D>& world);
+template <class D>
+void update_contacts(WorldImplementation<D>& world);
 /// Contact blocks from manifolds, and back.
-template <class D> void prepare_contacts(StepContext<D>& context);
-template <class D> void store_contacts(StepContext<D>& context);
+template <class D>
+void prepare_contacts(StepContext<D>& context);
+template <class D>
+void store_contacts(StepContext<D>& context);
 /// Where a manifold's points are now, in the world.
 template <class D>
 void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecord<D>& manifold,
                         typename D::Position (&points)[D::max_points], float (&separations)[D::max_points],
                         typename D::Vector& normal);
 /// Everything with a substep in it.
-template <class D> void solve_constraints(StepContext<D>& context);
-template <class D> void restitute_contacts(StepContext<D>& context);
-template <class D> void integrate_velocities(StepContext<D>& context);
-template <class D> void integrate_positions(StepContext<D>& context);
+template <class D>
+void solve_constraints(StepContext<D>& context);
+template <class D>
+void restitute_contacts(StepContext<D>& context);
+template <class D>
+void integrate_velocities(StepContext<D>& context);
+template <class D>
+void integrate_positions(StepContext<D>& context);
 /// New poses from displacements; bounds; sleep timers; quarantine; who is fast.
-template <class D> void finalize_bodies(StepContext<D>& context);
+template <class D>
+void finalize_bodies(StepContext<D>& context);
 /// Marks the shapes that no longer fit their fat bounds.
-template <class D> bool leave_bounds(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+bool leave_bounds(WorldImplementation<D>& world, std::int32_t body);
 /// Bodies whose state became NaN or infinite are frozen and taken out of everything.
-template <class D> void release_broken_bodies(WorldImplementation<D>& world);
+template <class D>
+void release_broken_bodies(WorldImplementation<D>& world);
 /// Fast bodies stop where they first meet fixed geometry (bullets: any).
-template <class D> void stop_fast_bodies(StepContext<D>& context);
+template <class D>
+void stop_fast_bodies(StepContext<D>& context);
 /// Trees take over the bounds that changed.
-template <class D> void update_trees(WorldImplementation<D>& world);
+template <class D>
+void update_trees(WorldImplementation<D>& world);
 /// Islands that have been slow for long enough fall asleep.
-template <class D> void sleep_islands(StepContext<D>& context);
+template <class D>
+void sleep_islands(StepContext<D>& context);
 /// The number of islands: awake ones are counted afresh.
-template <class D> int count_islands(const WorldImplementation<D>& world);
+template <class D>
+int count_islands(const WorldImplementation<D>& world);
 /// Hit events of this step, after the impulses are known.
-template <class D> void gather_hit_events(StepContext<D>& context);
+template <class D>
+void gather_hit_events(StepContext<D>& context);
 
 /// What is wrong with a definition, beginning with `call`.
-template <class D> Status check_definition(std::string_view call, const WorldDef<D>& definition);
-template <class D> Status step_world(WorldImplementation<D>& world, float dt);
+template <class D>
+Status check_definition(std::string_view call, const WorldDef<D>& definition);
+template <class D>
+Status step_world(WorldImplementation<D>& world, float dt);
 
 }  // namespace carom::rigid::detail

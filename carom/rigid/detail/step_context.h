@@ -7,7 +7,8 @@
 
 namespace carom::rigid::detail {
 
-template <class D> struct WorldImplementation;
+template <class D>
+struct WorldImplementation;
 
 /// A soft constraint's constants for a substep h (implicit spring and damper, Catto, "Soft constraints", GDC 2011;
 /// "Solver2D" 2024): Δλ = −mass_scale·m_eff·(v + bias_rate·C) − impulse_scale·λ.
@@ -21,15 +22,16 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
   return {omega / a1, a2 * a3, a3};
 }
 
-template <class D> struct StepContext {
+template <class D>
+struct StepContext {
   WorldImplementation<D>& world;
   core::TaskScheduler& scheduler;
-  core::Arena& arena;          ///< of this step, for the calling thread only
+  core::Arena& arena;  ///< of this step, for the calling thread only
   float dt = 0, inverse_dt = 0;
   float h = 0, inverse_h = 0;  ///< of a substep
   int substeps = 1;
   Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
-  float push_speed = 0;        ///< m/s, limit of the speed at which overlaps separate
+  float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
   SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones
 };
 

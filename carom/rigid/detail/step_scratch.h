@@ -9,7 +9,8 @@
 namespace carom::rigid::detail {
 
 /// A manifold found by the narrow phase that its contact does not hold yet.
-template <class D> struct FoundManifold {
+template <class D>
+struct FoundManifold {
   std::int32_t awake_index;  ///< of the contact
   std::int32_t ordinal;      ///< among those of the contact
   std::uint32_t child;
@@ -32,22 +33,24 @@ struct ColorBlocks {
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
 
 /// Where a fast body was when the step began.
-template <class D> struct SweepStart {
+template <class D>
+struct SweepStart {
   typename D::Rotation rotation{};
   typename D::Position center{};
   bool stopped = false;  ///< continuous collision cut its way
 };
 
-template <class D> struct StepScratch {
+template <class D>
+struct StepScratch {
   ColorBlocks blocks[color_count + 1];
-  std::vector<std::int32_t> moved;                          ///< shapes whose fat bounds changed
-  std::vector<std::vector<FoundPair>> found_pairs;          ///< by worker
+  std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
+  std::vector<std::vector<FoundPair>> found_pairs;  ///< by worker
   std::vector<FoundPair> pairs;
-  std::vector<SweepStart<D>> swept;                         ///< by place in BodyStore::awake
-  std::vector<std::int32_t> fast;                           ///< places in BodyStore::awake
-  std::vector<std::int32_t> broken;                         ///< bodies to be quarantined
-  std::vector<std::uint8_t> body_changes;                    ///< by place in BodyStore::awake
-  std::vector<std::uint8_t> contact_changes;                ///< by place in ContactStore::awake
+  std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
+  std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake
+  std::vector<std::int32_t> broken;                            ///< bodies to be quarantined
+  std::vector<std::uint8_t> body_changes;                      ///< by place in BodyStore::awake
+  std::vector<std::uint8_t> contact_changes;                   ///< by place in ContactStore::awake
   std::vector<std::vector<FoundManifold<D>>> found_manifolds;  ///< by worker
   std::vector<FoundManifold<D>> manifolds;
   std::vector<std::int32_t> island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches;

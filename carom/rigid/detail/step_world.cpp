@@ -23,21 +23,28 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-template <class D> ContactKernels<D> kernels_of(math::InstructionSet set) {
+template <class D>
+ContactKernels<D> kernels_of(math::InstructionSet set) {
 #if defined(__x86_64__)
   if (set == math::InstructionSet::avx512) {
-    if constexpr (D::dimension == 2) return contact_kernels_avx512::kernels2();
-    else return contact_kernels_avx512::kernels3();
+    if constexpr (D::dimension == 2)
+      return contact_kernels_avx512::kernels2();
+    else
+      return contact_kernels_avx512::kernels3();
   }
   if (set == math::InstructionSet::avx2) {
-    if constexpr (D::dimension == 2) return contact_kernels_avx2::kernels2();
-    else return contact_kernels_avx2::kernels3();
+    if constexpr (D::dimension == 2)
+      return contact_kernels_avx2::kernels2();
+    else
+      return contact_kernels_avx2::kernels3();
   }
 #else
   (void)set;
 #endif
-  if constexpr (D::dimension == 2) return contact_kernels_baseline::kernels2();
-  else return contact_kernels_baseline::kernels3();
+  if constexpr (D::dimension == 2)
+    return contact_kernels_baseline::kernels2();
+  else
+    return contact_kernels_baseline::kernels3();
 }
 
 /// Tells handles of different worlds apart. The only thing that worlds share; no result depends on it.
@@ -46,16 +53,21 @@ std::uint16_t next_world_number() {
   return std::uint16_t(last.fetch_add(1, std::memory_order_relaxed) % 0xFFFF + 1);
 }
 
-template <class T> void release_memory(std::vector<T>& v) { std::vector<T>().swap(v); }
+template <class T>
+void release_memory(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
 /// vector::shrink_to_fit does nothing where exceptions are off.
-template <class T> void fit_memory(std::vector<T>& v) {
+template <class T>
+void fit_memory(std::vector<T>& v) {
   std::vector<T> exact;
   exact.reserve(v.size());
   for (T& x : v) exact.push_back(std::move(x));
   exact.swap(v);
 }
 
-template <class D> void begin_events(WorldImplementation<D>& world) {
+template <class D>
+void begin_events(WorldImplementation<D>& world) {
   StepScratch<D>& s = world.scratch;
   if (world.bodies.awake.empty()) release_memory(s.fell_asleep);
   s.contact_begin.clear();
@@ -70,7 +82,8 @@ template <class D> void begin_events(WorldImplementation<D>& world) {
   s.pending_sensor_end.clear();
 }
 /// What ended while the stages ran (contacts whose bounds parted) belongs to this step too.
-template <class D> void end_events(WorldImplementation<D>& world) {
+template <class D>
+void end_events(WorldImplementation<D>& world) {
   StepScratch<D>& s = world.scratch;
   s.contact_end.insert(s.contact_end.end(), s.pending_contact_end.begin(), s.pending_contact_end.end());
   s.sensor_end.insert(s.sensor_end.end(), s.pending_sensor_end.begin(), s.pending_sensor_end.end());
@@ -79,7 +92,8 @@ template <class D> void end_events(WorldImplementation<D>& world) {
 }
 
 /// A world in which everything sleeps gives back what only steps need. The first step after it allocates again.
-template <class D> void release_scratch(WorldImplementation<D>& world) {
+template <class D>
+void release_scratch(WorldImplementation<D>& world) {
   StepScratch<D>& s = world.scratch;
   world.arena = core::Arena();
   for (auto& list : s.found_pairs) release_memory(list);
@@ -112,7 +126,8 @@ template <class D> void release_scratch(WorldImplementation<D>& world) {
   fit_memory(world.sleeping.first);
 }
 
-template <class D> StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
+template <class D>
+StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
   StepContext<D> context{world, *world.scheduler, world.arena};
   const WorldDef<D>& definition = world.definition;
   context.dt = dt;
@@ -152,7 +167,8 @@ WorldImplementation<D>::WorldImplementation(const WorldDef<D>& d)
   scratch.found_manifolds.resize(std::size_t(scheduler->thread_count()));
 }
 
-template <class D> Status check_definition(std::string_view call, const WorldDef<D>& d) {
+template <class D>
+Status check_definition(std::string_view call, const WorldDef<D>& d) {
   Complaint c(call);
   c.vector("gravity", d.gravity);
   const auto range = [&](std::string_view field, double x, double low, double high) {
@@ -175,8 +191,10 @@ template <class D> Status check_definition(std::string_view call, const WorldDef
   return c.error();
 }
 
-template <class D> Status step_world(WorldImplementation<D>& world, float dt) {
-  if (!(dt > 0 && dt <= 1)) return core::Error{core::text("World::step: ", core::refused("dt", dt, "a time above 0 and at most 1 s"))};
+template <class D>
+Status step_world(WorldImplementation<D>& world, float dt) {
+  if (!(dt > 0 && dt <= 1))
+    return core::Error{core::text("World::step: ", core::refused("dt", dt, "a time above 0 and at most 1 s"))};
   if (world.step_count == 0) {
     const Status status = check_definition<D>("World::step: definition", world.definition);
     if (!status.ok()) return status.error();
@@ -217,7 +235,8 @@ template <class D> Status step_world(WorldImplementation<D>& world, float dt) {
   const bool moved = !world.bodies.awake.empty();
   sleep_islands(context);
   end_events(world);
-  if (moved && world.bodies.awake.empty() && world.contacts.awake.empty() && world.scratch.moved.empty()) release_scratch(world);
+  if (moved && world.bodies.awake.empty() && world.contacts.awake.empty() && world.scratch.moved.empty())
+    release_scratch(world);
   profile.sleep = watch.lap();
   profile.total = whole.lap();
   world.profile = profile;

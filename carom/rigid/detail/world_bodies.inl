@@ -14,7 +14,8 @@ Result<std::int32_t> slot_of(const WorldImplementation<D>& world, std::string_vi
   if (!status.ok()) return core::Error{core::text("World::", call, ": ", status.error().message)};
   return std::int32_t(world.bodies.slots.slot(body));
 }
-template <class D> void check_body(Complaint& c, const BodyDef<D>& d) {
+template <class D>
+void check_body(Complaint& c, const BodyDef<D>& d) {
   check_size(c, "position", d.position, max_coordinate);
   c.rotation("rotation", d.rotation);
   check_size(c, "linear_velocity", d.linear_velocity, max_velocity);
@@ -27,10 +28,12 @@ template <class D> void check_body(Complaint& c, const BodyDef<D>& d) {
     c.say(core::text("type is ", int(d.type), ", expected fixed, kinematic or dynamic"));
 }
 /// The awake bodies that contacts and joints tie to a body, with it.
-template <class D> std::vector<std::int32_t> island_of(const WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+std::vector<std::int32_t> island_of(const WorldImplementation<D>& world, std::int32_t body) {
   std::vector<std::int32_t> island{body};
   const auto visit = [&](std::int32_t other) {
-    if (other == none || !world.bodies.is_dynamic(other) || world.bodies.record[std::size_t(other)].awake_index == none) return;
+    if (other == none || !world.bodies.is_dynamic(other) || world.bodies.record[std::size_t(other)].awake_index == none)
+      return;
     for (const std::int32_t known : island)
       if (known == other) return;
     island.push_back(other);
@@ -46,19 +49,22 @@ template <class D> std::vector<std::int32_t> island_of(const WorldImplementation
   return island;
 }
 /// Grows by a quarter, not to the double: a world of sleepers pays for what it holds.
-template <class D> void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
+template <class D>
+void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
   bodies.solver.reserve(count);
   bodies.pose.reserve(count);
   bodies.motion.reserve(count);
   bodies.record.reserve(count);
   bodies.birth.reserve(count);
 }
-template <class D> void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
+template <class D>
+void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
   r.flags = std::uint16_t(on ? r.flags | flag : r.flags & ~flag);
 }
 
 /// Takes the body out of trees, contacts and the set of movers, or puts it back.
-template <class D> void take_out(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void take_out(WorldImplementation<D>& world, std::int32_t body) {
   wake_body(world, body);
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
     const std::int32_t next = world.contacts.at(key >> 1).next[key & 1];
@@ -69,13 +75,15 @@ template <class D> void take_out(WorldImplementation<D>& world, std::int32_t bod
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
     remove_from_tree(world, s);
 }
-template <class D> void put_back(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void put_back(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
     insert_into_tree(world, s);
   activate_body(world, body);
 }
 /// Detaches the joints of a body while `change` alters what the graph depends on.
-template <class D, class F> void with_joints_detached(WorldImplementation<D>& world, std::int32_t body, F&& change) {
+template <class D, class F>
+void with_joints_detached(WorldImplementation<D>& world, std::int32_t body, F&& change) {
   std::vector<std::int32_t> joints;
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none;
        key = world.joints.headers[std::size_t(key >> 1)].next[key & 1])
@@ -87,7 +95,8 @@ template <class D, class F> void with_joints_detached(WorldImplementation<D>& wo
 
 }  // namespace detail
 
-template <class D> Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
+template <class D>
+Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   using namespace detail;
   Complaint complaint("World::create_body");
   check_body(complaint, d);
@@ -133,7 +142,8 @@ template <class D> Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   return id;
 }
 
-template <class D> Status World<D>::destroy_body(BodyId body) {
+template <class D>
+Status World<D>::destroy_body(BodyId body) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "destroy_body", body);
   if (!slot.ok()) return slot.error();
@@ -159,9 +169,13 @@ template <class D> Status World<D>::destroy_body(BodyId body) {
   return {};
 }
 
-template <class D> bool World<D>::contains(BodyId body) const { return self_->bodies.slots.contains(body); }
+template <class D>
+bool World<D>::contains(BodyId body) const {
+  return self_->bodies.slots.contains(body);
+}
 
-template <class D> Result<BodyState<D>> World<D>::state(BodyId body) const {
+template <class D>
+Result<BodyState<D>> World<D>::state(BodyId body) const {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "state", body);
   if (!slot.ok()) return slot.error();
@@ -180,7 +194,8 @@ template <class D> Result<BodyState<D>> World<D>::state(BodyId body) const {
   return s;
 }
 
-template <class D> Result<BodyDef<D>> World<D>::body_definition(BodyId body) const {
+template <class D>
+Result<BodyDef<D>> World<D>::body_definition(BodyId body) const {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "body_definition", body);
   if (!slot.ok()) return slot.error();
@@ -208,7 +223,8 @@ template <class D> Result<BodyDef<D>> World<D>::body_definition(BodyId body) con
 }
 
 namespace detail {
-template <class D> typename D::MassProperties mass_of(const WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+typename D::MassProperties mass_of(const WorldImplementation<D>& world, std::int32_t body) {
   const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   typename D::MassProperties p;
   p.mass = m.mass;
@@ -228,13 +244,17 @@ inline bool sound_inertia(const Mat3d& i) {
 }  // namespace detail
 
 template <class D>
-Result<geometry::MassProperties2> World<D>::mass_properties2(BodyId body) const requires(D::dimension == 2) {
+Result<geometry::MassProperties2> World<D>::mass_properties2(BodyId body) const
+  requires(D::dimension == 2)
+{
   const Result<std::int32_t> slot = detail::slot_of(*self_, "mass_properties2", body);
   if (!slot.ok()) return slot.error();
   return detail::mass_of(*self_, *slot);
 }
 template <class D>
-Result<geometry::MassProperties3> World<D>::mass_properties3(BodyId body) const requires(D::dimension == 3) {
+Result<geometry::MassProperties3> World<D>::mass_properties3(BodyId body) const
+  requires(D::dimension == 3)
+{
   const Result<std::int32_t> slot = detail::slot_of(*self_, "mass_properties3", body);
   if (!slot.ok()) return slot.error();
   return detail::mass_of(*self_, *slot);
@@ -261,164 +281,9 @@ Status World<D>::set_mass_properties(BodyId body, const typename D::MassProperti
   m.local_center = Vector(p.center);
   m.inertia = typename D::Inertia(p.inertia);
   SolverBody<D>& s = self_->bodies.solver[std::size_t(*slot)];
-  s.linear_velocity += cross(s.angular_velocity,
-                             rotate(self_->bodies.pose[std::size_t(*slot)].rotation, m.local_center - old_center));
+  s.linear_velocity +=
+      cross(s.angular_velocity, rotate(self_->bodies.pose[std::size_t(*slot)].rotation, m.local_center - old_center));
   update_mass(*self_, *slot);
-  return {};
-}
-
-template <class D> Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_pose", body);
-  if (!slot.ok()) return slot.error();
-  Complaint complaint("World::set_pose");
-  check_size(complaint, "position", position, max_coordinate);
-  complaint.rotation("rotation", rotation);
-  if (!complaint.none_yet()) return complaint.error();
-  wake_body(*self_, *slot);
-  wake_touching(*self_, *slot);
-  self_->bodies.pose[std::size_t(*slot)] = {position, unit_rotation(rotation)};
-  center_from_pose(*self_, *slot);
-  update_world_inertia(*self_, *slot);
-  refresh_bounds(*self_, *slot);
-  return {};
-}
-
-template <class D> Status World<D>::set_velocity(BodyId body, Vector linear, Angular angular) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_velocity", body);
-  if (!slot.ok()) return slot.error();
-  Complaint complaint("World::set_velocity");
-  check_size(complaint, "linear", linear, max_velocity);
-  check_size(complaint, "angular", angular, max_velocity);
-  if (!complaint.none_yet()) return complaint.error();
-  if (self_->bodies.is_fixed(*slot)) return core::Error{"World::set_velocity: the body is fixed, expected one that moves"};
-  if (!(linear == Vector{} && angular == Angular{})) wake_body(*self_, *slot);
-  self_->bodies.solver[std::size_t(*slot)].linear_velocity = linear;
-  self_->bodies.solver[std::size_t(*slot)].angular_velocity = angular;
-  return {};
-}
-
-namespace detail {
-inline float turn_between(const Rot2f& from, const Rot2f& to) {
-  const Rot2f d = to * conjugate(from);
-  return math::atan2(d.s, d.c);
-}
-inline Vec3f turn_between(const Quatf& from, const Quatf& to) {
-  Quatf d = to * conjugate(from);
-  if (d.w < 0) d = -d;
-  const float s = math::length(d.vector());
-  return s < 1e-12f ? 2.0f * d.vector() : d.vector() * (2 * math::atan2(s, d.w) / s);
-}
-}  // namespace detail
-
-template <class D>
-Status World<D>::set_target_pose(BodyId body, Position position, Rotation rotation, float dt) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_target_pose", body);
-  if (!slot.ok()) return slot.error();
-  Complaint complaint("World::set_target_pose");
-  check_size(complaint, "position", position, max_coordinate);
-  complaint.rotation("rotation", rotation);
-  if (!(dt > 0 && dt <= 1e6f)) complaint.say(core::refused("dt", dt, "a time above 0 and at most 1e6 s"));
-  if (!complaint.none_yet()) return complaint.error();
-  if (self_->bodies.record[std::size_t(*slot)].type != BodyType::kinematic)
-    return core::Error{"World::set_target_pose: the body is not kinematic, expected a kinematic body"};
-  const Pose& now = self_->bodies.pose[std::size_t(*slot)];
-  const BodyMotion<D>& m = self_->bodies.motion[std::size_t(*slot)];
-  const Rotation q = normalize(rotation);
-  const Position center = position + Position(rotate(q, m.local_center));
-  const Vector linear = Vector((center - m.center) / double(dt));
-  const Angular angular = turn_between(now.rotation, q) * (1 / dt);
-  check_size(complaint, "speed to the target", linear, max_velocity);
-  if (!complaint.none_yet()) return complaint.error();
-  return set_velocity(body, linear, angular);
-}
-
-template <class D> Status World<D>::set_type(BodyId body, BodyType type) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_type", body);
-  if (!slot.ok()) return slot.error();
-  if (type != BodyType::fixed && type != BodyType::kinematic && type != BodyType::dynamic)
-    return core::Error{core::text("World::set_type: type is ", int(type), ", expected fixed, kinematic or dynamic")};
-  BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
-  if (r.type == type) return {};
-  if (type != BodyType::fixed || r.first_shape != none)
-    for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next)
-      if (type == BodyType::dynamic && surface_only(self_->shapes.at(s).geometry))
-        return core::Error{"World::set_type: the body has a plane, mesh or height field, expected only shapes that can be dynamic"};
-  with_joints_detached(*self_, *slot, [&] {
-    take_out(*self_, *slot);
-    self_->bodies.record[std::size_t(*slot)].type = type;
-    if (type == BodyType::fixed) self_->bodies.solver[std::size_t(*slot)] = {};
-    update_mass(*self_, *slot);
-    put_back(*self_, *slot);
-  });
-  return {};
-}
-
-template <class D> Status World<D>::set_awake(BodyId body, bool awake) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_awake", body);
-  if (!slot.ok()) return slot.error();
-  const BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
-  if (awake) wake_body(*self_, *slot);
-  else if (r.awake_index != none) put_to_sleep<D>(*self_, island_of(*self_, *slot));
-  return {};
-}
-
-template <class D> Status World<D>::set_enabled(BodyId body, bool enabled) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_enabled", body);
-  if (!slot.ok()) return slot.error();
-  if (self_->bodies.record[std::size_t(*slot)].enabled() == enabled) return {};
-  with_joints_detached(*self_, *slot, [&] {
-    if (!enabled) take_out(*self_, *slot);
-    set_flag<D>(self_->bodies.record[std::size_t(*slot)], body_enabled, enabled);
-    if (enabled) put_back(*self_, *slot);
-  });
-  return {};
-}
-
-template <class D> Status World<D>::set_locks(BodyId body, MotionLocks locks) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_locks", body);
-  if (!slot.ok()) return slot.error();
-  wake_body(*self_, *slot);
-  self_->bodies.record[std::size_t(*slot)].locks = lock_bits(locks);
-  update_mass(*self_, *slot);
-  return {};
-}
-
-template <class D> Status World<D>::set_damping(BodyId body, float linear, float angular) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_damping", body);
-  if (!slot.ok()) return slot.error();
-  Complaint complaint("World::set_damping");
-  check_range(complaint, "linear", linear, 0, 1e6);
-  check_range(complaint, "angular", angular, 0, 1e6);
-  if (!complaint.none_yet()) return complaint.error();
-  self_->bodies.motion[std::size_t(*slot)].linear_damping = linear;
-  self_->bodies.motion[std::size_t(*slot)].angular_damping = angular;
-  return {};
-}
-
-template <class D> Status World<D>::set_gravity_scale(BodyId body, float scale) {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "set_gravity_scale", body);
-  if (!slot.ok()) return slot.error();
-  Complaint complaint("World::set_gravity_scale");
-  check_range(complaint, "scale", scale, -1e6, 1e6);
-  if (!complaint.none_yet()) return complaint.error();
-  wake_body(*self_, *slot);
-  self_->bodies.motion[std::size_t(*slot)].gravity_scale = scale;
-  return {};
-}
-
-template <class D> Status World<D>::set_user_data(BodyId body, std::uint64_t data) {
-  const Result<std::int32_t> slot = detail::slot_of(*self_, "set_user_data", body);
-  if (!slot.ok()) return slot.error();
-  self_->bodies.record[std::size_t(*slot)].user_data = data;
   return {};
 }
 

@@ -75,22 +75,28 @@ Status add_kick(WorldImplementation<D>& world, std::string_view call, BodyId bod
 
 }  // namespace detail
 
-template <class D> Status World<D>::add_force(BodyId body, Vector force) {
+template <class D>
+Status World<D>::add_force(BodyId body, Vector force) {
   return detail::add_load<D, Vector>(*self_, "add_force", body, &force, nullptr, nullptr, "force");
 }
-template <class D> Status World<D>::add_force_at(BodyId body, Vector force, Position point) {
+template <class D>
+Status World<D>::add_force_at(BodyId body, Vector force, Position point) {
   return detail::add_load<D, Vector>(*self_, "add_force_at", body, &force, nullptr, &point, "force");
 }
-template <class D> Status World<D>::add_torque(BodyId body, Angular torque) {
+template <class D>
+Status World<D>::add_torque(BodyId body, Angular torque) {
   return detail::add_load<D, Vector>(*self_, "add_torque", body, nullptr, &torque, nullptr, "torque");
 }
-template <class D> Status World<D>::add_impulse(BodyId body, Vector impulse) {
+template <class D>
+Status World<D>::add_impulse(BodyId body, Vector impulse) {
   return detail::add_kick(*self_, "add_impulse", body, &impulse, nullptr, nullptr);
 }
-template <class D> Status World<D>::add_impulse_at(BodyId body, Vector impulse, Position point) {
+template <class D>
+Status World<D>::add_impulse_at(BodyId body, Vector impulse, Position point) {
   return detail::add_kick(*self_, "add_impulse_at", body, &impulse, nullptr, &point);
 }
-template <class D> Status World<D>::add_angular_impulse(BodyId body, Angular impulse) {
+template <class D>
+Status World<D>::add_angular_impulse(BodyId body, Angular impulse) {
   return detail::add_kick(*self_, "add_angular_impulse", body, static_cast<const Vector*>(nullptr), &impulse,
                           static_cast<const Position*>(nullptr));
 }

@@ -17,7 +17,8 @@
 
 namespace carom::rigid::detail {
 
-template <class D> struct WorldImplementation {
+template <class D>
+struct WorldImplementation {
   explicit WorldImplementation(const WorldDef<D>& definition);
 
   WorldDef<D> definition;
@@ -28,8 +29,8 @@ template <class D> struct WorldImplementation {
   JointStore<D> joints;
   EffectorStore<D> effectors;
   ContactStore<D> contacts;
-  PairSet pairs;               ///< keys of all contacts
-  ConstraintGraph graph;       ///< of awake constraints
+  PairSet pairs;          ///< keys of all contacts
+  ConstraintGraph graph;  ///< of awake constraints
   SleepingIslands sleeping;
 
   std::unique_ptr<core::TaskScheduler> own_scheduler;
@@ -38,7 +39,7 @@ template <class D> struct WorldImplementation {
   StepScratch<D> scratch;
   ContactKernels<D> kernels;
 
-  int hit_event_shapes = 0;    ///< shapes that want hit events
+  int hit_event_shapes = 0;  ///< shapes that want hit events
   std::uint64_t step_count = 0, births = 0;
   double time = 0;
   float last_dt = 0;
@@ -47,41 +48,56 @@ template <class D> struct WorldImplementation {
 
 // bodies.cpp ------------------------------------------------------------------------------------------------------
 /// Makes an enabled body awake, with all of its sleeping island, and resets its sleep timer.
-template <class D> void wake_body(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void wake_body(WorldImplementation<D>& world, std::int32_t body);
 /// Recomputes mass, centre and inertia from the shapes (or from what was given), keeping the velocity of the origin.
-template <class D> void update_mass(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void update_mass(WorldImplementation<D>& world, std::int32_t body);
 
 // contacts.cpp ----------------------------------------------------------------------------------------------------
 /// Destroys all contacts between two bodies (after a joint that forbids them was made).
-template <class D> void destroy_contacts_between(WorldImplementation<D>& world, std::int32_t a, std::int32_t b);
+template <class D>
+void destroy_contacts_between(WorldImplementation<D>& world, std::int32_t a, std::int32_t b);
 /// Lets the broad phase look for the body's pairs again (after such a joint was destroyed, or a filter changed).
-template <class D> void find_pairs_again(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void find_pairs_again(WorldImplementation<D>& world, std::int32_t body);
 
 // joint_links.cpp -------------------------------------------------------------------------------------------------
 /// Puts the joint into the lists of its bodies, wakes them, and puts it into the graph. Drops contacts between them
 /// if they are not to collide.
-template <class D> void attach_joint(WorldImplementation<D>& world, std::int32_t joint);
+template <class D>
+void attach_joint(WorldImplementation<D>& world, std::int32_t joint);
 /// The opposite. Wakes both bodies.
-template <class D> void detach_joint(WorldImplementation<D>& world, std::int32_t joint);
+template <class D>
+void detach_joint(WorldImplementation<D>& world, std::int32_t joint);
 /// True if a joint between the bodies says that they do not collide.
-template <class D> bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b);
+template <class D>
+bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b);
 
 // joint_solve.cpp, effect.cpp (the joints' and effectors' part) ----------------------------------------------------
-template <class D> void prepare_joints(StepContext<D>& context);
-template <class D> void warm_start_joints(StepContext<D>& context, int color);
-template <class D> void solve_joints(StepContext<D>& context, int color, bool use_bias);
-template <class D> void store_joints(StepContext<D>& context);
+template <class D>
+void prepare_joints(StepContext<D>& context);
+template <class D>
+void warm_start_joints(StepContext<D>& context, int color);
+template <class D>
+void solve_joints(StepContext<D>& context, int color, bool use_bias);
+template <class D>
+void store_joints(StepContext<D>& context);
 /// Destroys every joint of a body (detaching each), before the body goes.
-template <class D> void destroy_joints_of(WorldImplementation<D>& world, std::int32_t body);
+template <class D>
+void destroy_joints_of(WorldImplementation<D>& world, std::int32_t body);
 /// Adds to the bodies' forces and torques, once a step. Does not wake anyone.
-template <class D> void apply_effectors(WorldImplementation<D>& world, float dt);
+template <class D>
+void apply_effectors(WorldImplementation<D>& world, float dt);
 /// Lets effectors and joints forget a body that is about to be destroyed.
-template <class D> void forget_body_in_effectors(WorldImplementation<D>& world, BodyId body);
+template <class D>
+void forget_body_in_effectors(WorldImplementation<D>& world, BodyId body);
 
 }  // namespace carom::rigid::detail
 
 namespace carom::rigid {
-template <class D> struct World<D>::Implementation : detail::WorldImplementation<D> {
+template <class D>
+struct World<D>::Implementation : detail::WorldImplementation<D> {
   using detail::WorldImplementation<D>::WorldImplementation;
 };
 }  // namespace carom::rigid

@@ -1,8 +1,8 @@
 // World's members about shapes.
 #pragma once
 
-#include "carom/rigid/detail/bodies.h"
 #include "carom/geometry/hull.h"
+#include "carom/rigid/detail/bodies.h"
 #include "carom/rigid/detail/check.h"
 
 namespace carom::rigid {
@@ -19,14 +19,21 @@ Result<std::int32_t> slot_of(const WorldImplementation<D>& world, std::string_vi
 struct Extents {
   float inner = 0, outer = 0;
 };
-template <class V> float farthest(const geometry::Bounds<V>& b) { return math::length(math::max(math::abs(b.low), math::abs(b.high))); }
+template <class V>
+float farthest(const geometry::Bounds<V>& b) {
+  return math::length(math::max(math::abs(b.low), math::abs(b.high)));
+}
 inline Extents extents_of(const geometry::Shape2& s) {
   Extents e;
   const geometry::Bounds2f b = geometry::bounds(s, {});
   e.outer = farthest(b);
   switch (s.type) {
-    case geometry::ShapeType2::circle: e.inner = s.circle.radius; break;
-    case geometry::ShapeType2::capsule: e.inner = s.capsule.radius; break;
+    case geometry::ShapeType2::circle:
+      e.inner = s.circle.radius;
+      break;
+    case geometry::ShapeType2::capsule:
+      e.inner = s.capsule.radius;
+      break;
     case geometry::ShapeType2::polygon: {
       e.inner = 1e30f;
       for (int i = 0; i < s.polygon.count; ++i)
@@ -34,17 +41,23 @@ inline Extents extents_of(const geometry::Shape2& s) {
       e.inner += s.polygon.radius;
       break;
     }
-    default: e.inner = e.outer; break;
+    default:
+      e.inner = e.outer;
+      break;
   }
   return e;
 }
 inline Extents extents_of(const geometry::Shape3& s) {
   Extents e;
   switch (s.type) {
-    case geometry::ShapeType3::plane: return {1e6f, 1e6f};
-    case geometry::ShapeType3::sphere: return {s.sphere.radius, s.sphere.radius};
-    case geometry::ShapeType3::capsule: return {s.capsule.radius, s.capsule.radius + s.capsule.half_length};
-    default: break;
+    case geometry::ShapeType3::plane:
+      return {1e6f, 1e6f};
+    case geometry::ShapeType3::sphere:
+      return {s.sphere.radius, s.sphere.radius};
+    case geometry::ShapeType3::capsule:
+      return {s.capsule.radius, s.capsule.radius + s.capsule.half_length};
+    default:
+      break;
   }
   const geometry::Bounds3f b = geometry::bounds(s, {});
   e.outer = farthest(b);
@@ -67,7 +80,8 @@ inline bool surface_only(const geometry::Shape3& s) {
 }
 
 /// Contacts hold a copy of what they need of the shape: make them anew.
-template <class D> void renew_contacts(WorldImplementation<D>& world, std::int32_t shape) {
+template <class D>
+void renew_contacts(WorldImplementation<D>& world, std::int32_t shape) {
   destroy_contacts_of_shape(world, shape);
   ShapeRecord<D>& s = world.shapes.at(shape);
   if (s.leaf != none && (s.flags & shape_moved) == 0) {
@@ -76,7 +90,8 @@ template <class D> void renew_contacts(WorldImplementation<D>& world, std::int32
   }
 }
 
-template <class D> void update_collider_flag(WorldImplementation<D>& world, std::int32_t body) {
+template <class D>
+void update_collider_flag(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& r = world.bodies.record[std::size_t(body)];
   r.flags &= std::uint16_t(~body_has_collider);
   for (std::int32_t s = r.first_shape; s != none; s = world.shapes.at(s).next)
@@ -85,7 +100,8 @@ template <class D> void update_collider_flag(WorldImplementation<D>& world, std:
 
 }  // namespace detail
 
-template <class D> Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const ShapeDef<D>& d) {
+template <class D>
+Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const ShapeDef<D>& d) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "add_shape", body);
   if (!slot.ok()) return slot.error();
@@ -101,10 +117,12 @@ template <class D> Result<ShapeId> World<D>::add_shape(BodyId body, const Shape&
     complaint.say("the shape is a surface without inside, expected one that a dynamic body can have");
   const Extents extents = extents_of(shape);
   if (type == BodyType::dynamic && !(extents.outer <= max_size))
-    complaint.say(core::refused("size of the shape", extents.outer, core::text("at most ", max_size, " m on a dynamic body")));
+    complaint.say(
+        core::refused("size of the shape", extents.outer, core::text("at most ", max_size, " m on a dynamic body")));
   if (complaint.none_yet() && type == BodyType::dynamic && d.density > 0) {
     const double mass = geometry::mass_properties(shape, double(d.density)).mass;
-    if (!(mass <= max_body_mass)) complaint.say(core::refused("mass of the shape", mass, core::text("at most ", max_body_mass, " kg")));
+    if (!(mass <= max_body_mass))
+      complaint.say(core::refused("mass of the shape", mass, core::text("at most ", max_body_mass, " kg")));
   }
   if (!complaint.none_yet()) return complaint.error();
 
@@ -149,7 +167,8 @@ template <class D> Result<ShapeId> World<D>::add_shape(BodyId body, const Shape&
   return id;
 }
 
-template <class D> Status World<D>::destroy_shape(ShapeId shape) {
+template <class D>
+Status World<D>::destroy_shape(ShapeId shape) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "destroy_shape", shape);
   if (!slot.ok()) return slot.error();
@@ -171,19 +190,25 @@ template <class D> Status World<D>::destroy_shape(ShapeId shape) {
   return {};
 }
 
-template <class D> bool World<D>::contains(ShapeId shape) const { return self_->shapes.slots.contains(shape); }
+template <class D>
+bool World<D>::contains(ShapeId shape) const {
+  return self_->shapes.slots.contains(shape);
+}
 
-template <class D> Result<BodyId> World<D>::body_of(ShapeId shape) const {
+template <class D>
+Result<BodyId> World<D>::body_of(ShapeId shape) const {
   const Result<std::int32_t> slot = detail::slot_of(*self_, "body_of", shape);
   if (!slot.ok()) return slot.error();
   return self_->bodies.slots.handle_at(self_->shapes.at(*slot).body);
 }
-template <class D> Result<typename D::Shape> World<D>::shape_geometry(ShapeId shape) const {
+template <class D>
+Result<typename D::Shape> World<D>::shape_geometry(ShapeId shape) const {
   const Result<std::int32_t> slot = detail::slot_of(*self_, "shape_geometry", shape);
   if (!slot.ok()) return slot.error();
   return self_->shapes.at(*slot).geometry;
 }
-template <class D> Result<ShapeDef<D>> World<D>::shape_definition(ShapeId shape) const {
+template <class D>
+Result<ShapeDef<D>> World<D>::shape_definition(ShapeId shape) const {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "shape_definition", shape);
   if (!slot.ok()) return slot.error();
@@ -200,7 +225,8 @@ template <class D> Result<ShapeDef<D>> World<D>::shape_definition(ShapeId shape)
   return d;
 }
 
-template <class D> Status World<D>::set_material(ShapeId shape, const Material& material) {
+template <class D>
+Status World<D>::set_material(ShapeId shape, const Material& material) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "set_material", shape);
   if (!slot.ok()) return slot.error();
@@ -214,7 +240,8 @@ template <class D> Status World<D>::set_material(ShapeId shape, const Material& 
   for (std::int32_t key = self_->bodies.record[std::size_t(s.body)].first_contact; key != none;) {
     ContactRecord<D>& c = self_->contacts.at(key >> 1);
     if (c.shape[key & 1] == *slot) {
-      const float e = max(self_->shapes.at(c.shape[0]).material.restitution, self_->shapes.at(c.shape[1]).material.restitution);
+      const float e =
+          max(self_->shapes.at(c.shape[0]).material.restitution, self_->shapes.at(c.shape[1]).material.restitution);
       c.flags = std::uint16_t(e > 0 ? c.flags | contact_bouncy : c.flags & ~contact_bouncy);
       for (std::int32_t m = c.first_manifold; m != none; m = self_->contacts.manifold(m).next) mix_materials(*self_, m);
     }
@@ -223,7 +250,8 @@ template <class D> Status World<D>::set_material(ShapeId shape, const Material& 
   return {};
 }
 
-template <class D> Status World<D>::set_filter(ShapeId shape, const Filter& filter) {
+template <class D>
+Status World<D>::set_filter(ShapeId shape, const Filter& filter) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "set_filter", shape);
   if (!slot.ok()) return slot.error();

@@ -1,0 +1,233 @@
+// The contact kernels of the plane: part of contact_kernel.inl.
+
+namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
+
+template <int W>
+struct Velocity2 {
+  WideVec2<W> v;
+  WideFloat<W> w;
+};
+template <int W>
+CAROM_SIMD_INLINE Velocity2<W> read_velocity(const SolverBody<Dim2>* bodies, const std::int32_t* index) {
+  WideFloat<W> c[4];
+  gather<W>(bodies, index, 0, c);
+  return {{c[0], c[1]}, c[2]};
+}
+template <int W>
+CAROM_SIMD_INLINE void write_velocity(SolverBody<Dim2>* bodies, const std::int32_t* index, const Velocity2<W>& a) {
+  const WideFloat<W> c[4] = {a.v.x, a.v.y, a.w, WideFloat<W>::splat(0)};
+  scatter_rows<8, 4, W>(reinterpret_cast<float*>(bodies), index, c);
+}
+/// The impulse (x, y) at r on a body, `s` its sign times the inverse masses.
+template <int W>
+CAROM_SIMD_INLINE void push(Velocity2<W>& a, WideFloat<W> m, WideFloat<W> i, const WideVec2<W>& p, WideFloat<W> turn) {
+  a.v.x += m * p.x;
+  a.v.y += m * p.y;
+  a.w += i * turn;
+}
+template <int W>
+CAROM_SIMD_INLINE void push_back(Velocity2<W>& a, WideFloat<W> m, WideFloat<W> i, const WideVec2<W>& p,
+                                 WideFloat<W> turn) {
+  a.v.x -= m * p.x;
+  a.v.y -= m * p.y;
+  a.w -= i * turn;
+}
+
+/// flag/k, or 0 where nothing responds.
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> inverse_or_zero(WideFloat<W> flag, WideFloat<W> k) {
+  const WideFloat<W> zero = WideFloat<W>::splat(0);
+  return keep(k > zero, flag / select(k > zero, k, WideFloat<W>::splat(1)));
+}
+
+template <int W>
+void prepare2(void* blocks, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
+    const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+    const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
+    const WideVec2<W> t = {F::splat(0) - n.y, n.x};
+    for (int i = 0; i < 2; ++i) {
+      const WideVec2<W> ra = load2<W>(c.point[i].r_a);
+      const F ta = cross(ra, n), tb = cross(add(ra, offset), n);
+      inverse_or_zero(F::load(c.point[i].normal_mass), mass + ia * ta * ta + ib * tb * tb)
+          .store(c.point[i].normal_mass);
+    }
+    const WideVec2<W> ra = load2<W>(c.patch_r_a);
+    const F ta = cross(ra, t), tb = cross(add(ra, offset), t);
+    inverse_or_zero(F::splat(1), mass + ia * ta * ta + ib * tb * tb).store(c.tangent_mass);
+  }
+}
+
+template <int W>
+void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    const ContactBlock<Dim2, W>& c = static_cast<const ContactBlock<Dim2, W>*>(blocks)[k];
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
+    const WideVec2<W> t = {F::splat(0) - n.y, n.x};
+    WideFloat<W> sum = F::splat(0), turn_a = F::splat(0);
+    for (int i = 0; i < 2; ++i) {
+      const F lambda = F::load(c.point[i].impulse);
+      sum += lambda;
+      turn_a += lambda * cross(load2<W>(c.point[i].r_a), n);
+    }
+    const F friction = F::load(c.tangent_impulse);
+    const WideVec2<W> p = {sum * n.x + friction * t.x, sum * n.y + friction * t.y};
+    turn_a += friction * cross(load2<W>(c.patch_r_a), t);
+    F turn_b = turn_a + cross(offset, p);
+    if (extra != nullptr) {
+      const F rolling = F::load(static_cast<const ContactExtra<Dim2, W>*>(extra)[k].rolling_impulse[0]);
+      turn_a += rolling;
+      turn_b += rolling;
+    }
+    push_back(a, F::load(c.inverse_mass_a), F::load(c.inverse_inertia_a), p, turn_a);
+    push(b, F::load(c.inverse_mass_b), F::load(c.inverse_inertia_b), p, turn_b);
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W, bool UseBias>
+CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
+                                      Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
+                                      WideFloat<W> push_speed) {
+  using F = WideFloat<W>;
+  const F zero = F::splat(0), one = F::splat(1);
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+  const WideVec2<W> offset = load2<W>(c.center_offset);
+  const F offset_turn = cross(offset, n);
+  F pa[4], pb[4];
+  gather<W>(bodies, c.read_a, 4, pa);
+  gather<W>(bodies, c.read_b, 4, pb);
+  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
+  // n·(R r) − n·r = (Rᵀn − n)·r: the change only, so that no precision is lost for large r.
+  const WideVec2<W> na = {pa[2] * n.x + pa[3] * n.y - n.x, pa[2] * n.y - pa[3] * n.x - n.y};
+  const WideVec2<W> nb = {pb[2] * n.x + pb[3] * n.y - n.x, pb[2] * n.y - pb[3] * n.x - n.y};
+  for (int i = 0; i < 2; ++i) {
+    auto& point = c.point[i];
+    const WideVec2<W> ra = load2<W>(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    const F turn_a = cross(ra, n), turn_b = turn_a + offset_turn;
+    const F old = F::load(point.impulse);
+    F bias, mass_scale = one, impulse_scale = zero;
+    const auto apart = s > zero;
+    if constexpr (UseBias) {
+      bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
+      mass_scale = select(apart, one, F::load(c.mass_scale));
+      impulse_scale = select(apart, zero, F::load(c.impulse_scale));
+    } else {
+      bias = keep(apart, s * inverse_h);
+    }
+    const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
+    const F mass = F::load(point.normal_mass);
+    const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
+    const F delta = lambda - old;
+    lambda.store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + lambda).store(point.total);
+    const WideVec2<W> p = {delta * n.x, delta * n.y};
+    push_back(a, ma, ia, p, delta * turn_a);
+    push(b, mb, ib, p, delta * turn_b);
+  }
+}
+
+template <int W>
+void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+    const WideVec2<W> n = load2<W>(c.normal);
+    const WideVec2<W> t = {F::splat(0) - n.y, n.x};
+    const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
+    if (extra != nullptr) {
+      ContactExtra<Dim2, W>& e = static_cast<ContactExtra<Dim2, W>*>(extra)[k];
+      const F old = F::load(e.rolling_impulse[0]), limit = F::load(e.rolling_lever) * load;
+      const F lambda = clamp(old - F::load(e.rolling_mass[0]) * (b.w - a.w), F::splat(0) - limit, limit);
+      lambda.store(e.rolling_impulse[0]);
+      a.w -= ia * (lambda - old);
+      b.w += ib * (lambda - old);
+    }
+    {
+      const WideVec2<W> ra = load2<W>(c.patch_r_a), rb = add(ra, load2<W>(c.center_offset));
+      const F turn_a = cross(ra, t), turn_b = cross(rb, t);
+      const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
+      const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
+      const F lambda =
+          clamp(old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target)), F::splat(0) - limit, limit);
+      const F delta = lambda - old;
+      lambda.store(c.tangent_impulse);
+      (F::load(c.tangent_total) + lambda).store(c.tangent_total);
+      const WideVec2<W> p = {delta * t.x, delta * t.y};
+      push_back(a, ma, ia, p, delta * turn_a);
+      push(b, mb, ib, p, delta * turn_b);
+    }
+    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    const ContactExtra<Dim2, W>& e = static_cast<const ContactExtra<Dim2, W>*>(extra)[k];
+    const F zero = F::splat(0);
+    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+    const WideVec2<W> n = load2<W>(c.normal);
+    const WideVec2<W> offset = load2<W>(c.center_offset);
+    const F offset_turn = cross(offset, n);
+    F pa[4], pb[4];
+    gather<W>(bodies, c.read_a, 4, pa);
+    gather<W>(bodies, c.read_b, 4, pb);
+    const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
+    const WideVec2<W> na = {pa[2] * n.x + pa[3] * n.y - n.x, pa[2] * n.y - pa[3] * n.x - n.y};
+    const WideVec2<W> nb = {pb[2] * n.x + pb[3] * n.y - n.x, pb[2] * n.y - pb[3] * n.x - n.y};
+    const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
+    // The points of a face push each other back: repeat until they agree.
+    for (int pass = 0; pass < 16; ++pass) {
+      const int i = pass % 2;
+      auto& point = c.point[i];
+      const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
+      const WideVec2<W> ra = load2<W>(point.r_a);
+      const F s = F::load(point.separation) + shift + (dot(nb, add(ra, offset)) - dot(na, ra));
+      // Still s above the surface, the body has the energy of falling through it left.
+      const F speed = sqrt(max(full * full - acceleration * max(s, zero), zero));
+      const F turn_a = cross(ra, n), turn_b = turn_a + offset_turn;
+      const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
+      const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
+      const F delta = keep((full > zero) & (total > zero), lambda - old);
+      (old + delta).store(point.impulse);
+      (total + delta).store(point.total);
+      const WideVec2<W> p = {delta * n.x, delta * n.y};
+      push_back(a, ma, ia, p, delta * turn_a);
+      push(b, mb, ib, p, delta * turn_b);
+    }
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+}  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -1,0 +1,259 @@
+// The contact kernels of space: part of contact_kernel.inl.
+
+namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
+
+template <int W>
+struct Velocity3 {
+  WideVec3<W> v, w;
+};
+template <int W>
+CAROM_SIMD_INLINE Velocity3<W> read_velocity(const SolverBody<Dim3>* bodies, const std::int32_t* index) {
+  WideFloat<W> c[8];
+  gather<W>(bodies, index, 0, c);
+  return {{c[0], c[1], c[2]}, {c[4], c[5], c[6]}};
+}
+template <int W>
+CAROM_SIMD_INLINE void write_velocity(SolverBody<Dim3>* bodies, const std::int32_t* index, const Velocity3<W>& a) {
+  const WideFloat<W> zero = WideFloat<W>::splat(0);
+  const WideFloat<W> c[8] = {a.v.x, a.v.y, a.v.z, zero, a.w.x, a.w.y, a.w.z, zero};
+  scatter_rows<16, 8, W>(reinterpret_cast<float*>(bodies), index, c);
+}
+template <int W>
+CAROM_SIMD_INLINE void push(Velocity3<W>& a, WideFloat<W> m, const WideSymmetric<W>& i, const WideVec3<W>& p,
+                            const WideVec3<W>& turn) {
+  a.v = add(a.v, multiply(p, m));
+  a.w = add(a.w, multiply(i, turn));
+}
+template <int W>
+CAROM_SIMD_INLINE void push_back(Velocity3<W>& a, WideFloat<W> m, const WideSymmetric<W>& i, const WideVec3<W>& p,
+                                 const WideVec3<W>& turn) {
+  a.v = subtract(a.v, multiply(p, m));
+  a.w = subtract(a.w, multiply(i, turn));
+}
+
+template <int W>
+void prepare3(void* blocks, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
+    const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
+    const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset);
+    for (int i = 0; i < 4; ++i) {
+      const WideVec3<W> ra = load3<W>(c.point[i].r_a), ta = cross(ra, n), tb = cross(add(ra, offset), n);
+      const F response = mass + dot(ta, multiply(ia, ta)) + dot(tb, multiply(ib, tb));
+      inverse_or_zero(F::load(c.point[i].normal_mass), response).store(c.point[i].normal_mass);
+    }
+    const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t), ra = load3<W>(c.patch_r_a), rb = add(ra, offset);
+    const WideVec3<W> ta = cross(ra, t), tb = cross(rb, t), ua = cross(ra, u), ub = cross(rb, u);
+    const WideVec3<W> ita = multiply(ia, ta), itb = multiply(ib, tb), iua = multiply(ia, ua), iub = multiply(ib, ub);
+    const F k11 = mass + dot(ta, ita) + dot(tb, itb), k22 = mass + dot(ua, iua) + dot(ub, iub);
+    const F k12 = dot(ua, ita) + dot(ub, itb);
+    const F s = inverse_or_zero(F::splat(1), k11 * k22 - k12 * k12);
+    (k22 * s).store(c.tangent_mass[0]);
+    (k11 * s).store(c.tangent_mass[1]);
+    (F::splat(0) - k12 * s).store(c.tangent_mass[2]);
+    const WideVec3<W> spin = add(multiply(ia, n), multiply(ib, n));
+    inverse_or_zero(F::splat(1), dot(n, spin)).store(c.twist_mass);
+  }
+}
+
+template <int W>
+void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    const ContactBlock<Dim3, W>& c = static_cast<const ContactBlock<Dim3, W>*>(blocks)[k];
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const WideVec3<W> n = load3<W>(c.normal), t = load3<W>(c.tangent), u = cross(n, t);
+    const F f1 = F::load(c.tangent_impulse[0]), f2 = F::load(c.tangent_impulse[1]);
+    WideVec3<W> lever = {F::splat(0), F::splat(0), F::splat(0)};
+    F sum = F::splat(0);
+    for (int i = 0; i < 4; ++i) {
+      const F lambda = F::load(c.point[i].impulse);
+      sum += lambda;
+      lever = add(lever, multiply(load3<W>(c.point[i].r_a), lambda));
+    }
+    const WideVec3<W> f = add(multiply(t, f1), multiply(u, f2)), p = add(multiply(n, sum), f);
+    const F twist = F::load(c.twist_impulse);
+    WideVec3<W> turn_a = add(add(cross(lever, n), cross(load3<W>(c.patch_r_a), f)), multiply(n, twist));
+    WideVec3<W> turn_b = add(turn_a, cross(load3<W>(c.center_offset), p));
+    if (extra != nullptr) {
+      const WideVec3<W> rolling = load3<W>(static_cast<const ContactExtra<Dim3, W>*>(extra)[k].rolling_impulse);
+      turn_a = add(turn_a, rolling);
+      turn_b = add(turn_b, rolling);
+    }
+    push_back(a, F::load(c.inverse_mass_a), load_symmetric<W>(c.inverse_inertia_a), p, turn_a);
+    push(b, F::load(c.inverse_mass_b), load_symmetric<W>(c.inverse_inertia_b), p, turn_b);
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+/// Rᵀn − n of the unit quaternion (w, x, y, z).
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], const WideVec3<W>& n) {
+  using F = WideFloat<W>;
+  const WideVec3<W> u = {F::splat(0) - q[5], F::splat(0) - q[6], F::splat(0) - q[7]};
+  const WideVec3<W> x = cross(u, n), t = add(x, x);
+  return add(multiply(t, q[4]), cross(u, t));
+}
+
+template <int W, bool UseBias>
+CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
+                                      Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
+                                      const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed) {
+  using F = WideFloat<W>;
+  const F zero = F::splat(0), one = F::splat(1);
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const WideVec3<W> offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
+  F pa[8], pb[8];
+  gather<W>(bodies, c.read_a, 8, pa);
+  gather<W>(bodies, c.read_b, 8, pb);
+  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
+  const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+  for (int i = 0; i < 4; ++i) {
+    auto& point = c.point[i];
+    const WideVec3<W> ra = load3<W>(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    const WideVec3<W> turn_a = cross(ra, n), turn_b = add(turn_a, offset_turn);
+    const F old = F::load(point.impulse);
+    F bias, mass_scale = one, impulse_scale = zero;
+    const auto apart = s > zero;
+    if constexpr (UseBias) {
+      bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
+      mass_scale = select(apart, one, F::load(c.mass_scale));
+      impulse_scale = select(apart, zero, F::load(c.impulse_scale));
+    } else {
+      bias = keep(apart, s * inverse_h);
+    }
+    const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
+    const F mass = F::load(point.normal_mass);
+    const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
+    const F delta = lambda - old;
+    lambda.store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + lambda).store(point.total);
+    const WideVec3<W> p = multiply(n, delta);
+    push_back(a, ma, ia, p, multiply(turn_a, delta));
+    push(b, mb, ib, p, multiply(turn_b, delta));
+  }
+}
+
+template <int W>
+void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
+                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a, Velocity3<W>& b, WideFloat<W> load,
+                                      const WideSymmetric<W>& ia, const WideSymmetric<W>& ib) {
+  using F = WideFloat<W>;
+  const WideVec3<W> old = load3<W>(e.rolling_impulse);
+  const WideVec3<W> step = multiply(load_symmetric<W>(e.rolling_mass), subtract(b.w, a.w));
+  WideVec3<W> lambda = subtract(old, step);
+  const F limit = F::load(e.rolling_lever) * load, size = sqrt(dot(lambda, lambda));
+  const F scale = select(size > limit, limit / max(size, F::splat(1e-30f)), F::splat(1));
+  lambda = multiply(lambda, scale);
+  lambda.x.store(e.rolling_impulse[0]);
+  lambda.y.store(e.rolling_impulse[1]);
+  lambda.z.store(e.rolling_impulse[2]);
+  const WideVec3<W> delta = subtract(lambda, old);
+  a.w = subtract(a.w, multiply(ia, delta));
+  b.w = add(b.w, multiply(ib, delta));
+}
+
+template <int W>
+void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
+    const WideVec3<W> n = load3<W>(c.normal);
+    const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse) + F::load(c.point[2].impulse) +
+                   F::load(c.point[3].impulse);
+    if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, ia, ib);
+    const F cone = F::load(c.friction) * load;
+    {
+      const F old = F::load(c.twist_impulse), limit = cone * F::load(c.twist_radius);
+      const F lambda = clamp(old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n), F::splat(0) - limit, limit);
+      lambda.store(c.twist_impulse);
+      const WideVec3<W> turn = multiply(n, lambda - old);
+      a.w = subtract(a.w, multiply(ia, turn));
+      b.w = add(b.w, multiply(ib, turn));
+    }
+    {
+      const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t);
+      const WideVec3<W> ra = load3<W>(c.patch_r_a), rb = add(ra, load3<W>(c.center_offset));
+      const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
+      const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
+      const F m11 = F::load(c.tangent_mass[0]), m22 = F::load(c.tangent_mass[1]), m12 = F::load(c.tangent_mass[2]);
+      const F old1 = F::load(c.tangent_impulse[0]), old2 = F::load(c.tangent_impulse[1]);
+      F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
+      const F size = sqrt(l1 * l1 + l2 * l2);
+      const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
+      l1 *= scale;
+      l2 *= scale;
+      l1.store(c.tangent_impulse[0]);
+      l2.store(c.tangent_impulse[1]);
+      (F::load(c.tangent_total[0]) + l1).store(c.tangent_total[0]);
+      (F::load(c.tangent_total[1]) + l2).store(c.tangent_total[1]);
+      const WideVec3<W> p = add(multiply(t, l1 - old1), multiply(u, l2 - old2));
+      push_back(a, ma, ia, p, cross(ra, p));
+      push(b, mb, ib, p, cross(rb, p));
+    }
+    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0));
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+template <int W>
+void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    const ContactExtra<Dim3, W>& e = static_cast<const ContactExtra<Dim3, W>*>(extra)[k];
+    const F zero = F::splat(0);
+    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+    const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
+    const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
+    F pa[8], pb[8];
+    gather<W>(bodies, c.read_a, 8, pa);
+    gather<W>(bodies, c.read_b, 8, pb);
+    const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
+    const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+    const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
+    // The points of a face push each other back: repeat until they agree.
+    for (int pass = 0; pass < 32; ++pass) {
+      const int i = pass % 4;
+      auto& point = c.point[i];
+      const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
+      const WideVec3<W> ra = load3<W>(point.r_a);
+      const F s = F::load(point.separation) + shift + (dot(nb, add(ra, offset)) - dot(na, ra));
+      const F speed = sqrt(max(full * full - acceleration * max(s, zero), zero));
+      const WideVec3<W> turn_a = cross(ra, n), turn_b = add(turn_a, offset_turn);
+      const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
+      const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
+      const F delta = keep((full > zero) & (total > zero), lambda - old);
+      (old + delta).store(point.impulse);
+      (total + delta).store(point.total);
+      const WideVec3<W> p = multiply(n, delta);
+      push_back(a, ma, ia, p, multiply(turn_a, delta));
+      push(b, mb, ib, p, multiply(turn_b, delta));
+    }
+    write_velocity<W>(bodies, c.write_a, a);
+    write_velocity<W>(bodies, c.write_b, b);
+  }
+}
+
+}  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -1,0 +1,177 @@
+// World's members that change a body after its making.
+#pragma once
+
+#include "carom/math/elementary.h"
+#include "carom/rigid/detail/world_bodies.inl"
+
+namespace carom::rigid {
+
+template <class D>
+Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_pose", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_pose");
+  check_size(complaint, "position", position, max_coordinate);
+  complaint.rotation("rotation", rotation);
+  if (!complaint.none_yet()) return complaint.error();
+  wake_body(*self_, *slot);
+  wake_touching(*self_, *slot);
+  self_->bodies.pose[std::size_t(*slot)] = {position, unit_rotation(rotation)};
+  center_from_pose(*self_, *slot);
+  update_world_inertia(*self_, *slot);
+  refresh_bounds(*self_, *slot);
+  return {};
+}
+
+template <class D>
+Status World<D>::set_velocity(BodyId body, Vector linear, Angular angular) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_velocity", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_velocity");
+  check_size(complaint, "linear", linear, max_velocity);
+  check_size(complaint, "angular", angular, max_velocity);
+  if (!complaint.none_yet()) return complaint.error();
+  if (self_->bodies.is_fixed(*slot))
+    return core::Error{"World::set_velocity: the body is fixed, expected one that moves"};
+  if (!(linear == Vector{} && angular == Angular{})) wake_body(*self_, *slot);
+  self_->bodies.solver[std::size_t(*slot)].linear_velocity = linear;
+  self_->bodies.solver[std::size_t(*slot)].angular_velocity = angular;
+  return {};
+}
+
+namespace detail {
+inline float turn_between(const Rot2f& from, const Rot2f& to) {
+  const Rot2f d = to * conjugate(from);
+  return math::atan2(d.s, d.c);
+}
+inline Vec3f turn_between(const Quatf& from, const Quatf& to) {
+  Quatf d = to * conjugate(from);
+  if (d.w < 0) d = -d;
+  const float s = math::length(d.vector());
+  return s < 1e-12f ? 2.0f * d.vector() : d.vector() * (2 * math::atan2(s, d.w) / s);
+}
+}  // namespace detail
+
+template <class D>
+Status World<D>::set_target_pose(BodyId body, Position position, Rotation rotation, float dt) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_target_pose", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_target_pose");
+  check_size(complaint, "position", position, max_coordinate);
+  complaint.rotation("rotation", rotation);
+  if (!(dt > 0 && dt <= 1e6f)) complaint.say(core::refused("dt", dt, "a time above 0 and at most 1e6 s"));
+  if (!complaint.none_yet()) return complaint.error();
+  if (self_->bodies.record[std::size_t(*slot)].type != BodyType::kinematic)
+    return core::Error{"World::set_target_pose: the body is not kinematic, expected a kinematic body"};
+  const Pose& now = self_->bodies.pose[std::size_t(*slot)];
+  const BodyMotion<D>& m = self_->bodies.motion[std::size_t(*slot)];
+  const Rotation q = normalize(rotation);
+  const Position center = position + Position(rotate(q, m.local_center));
+  const Vector linear = Vector((center - m.center) / double(dt));
+  const Angular angular = turn_between(now.rotation, q) * (1 / dt);
+  check_size(complaint, "speed to the target", linear, max_velocity);
+  if (!complaint.none_yet()) return complaint.error();
+  return set_velocity(body, linear, angular);
+}
+
+template <class D>
+Status World<D>::set_type(BodyId body, BodyType type) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_type", body);
+  if (!slot.ok()) return slot.error();
+  if (type != BodyType::fixed && type != BodyType::kinematic && type != BodyType::dynamic)
+    return core::Error{core::text("World::set_type: type is ", int(type), ", expected fixed, kinematic or dynamic")};
+  BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
+  if (r.type == type) return {};
+  if (type != BodyType::fixed || r.first_shape != none)
+    for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next)
+      if (type == BodyType::dynamic && surface_only(self_->shapes.at(s).geometry))
+        return core::Error{
+            "World::set_type: the body has a plane, mesh or height field, expected only shapes that can be dynamic"};
+  with_joints_detached(*self_, *slot, [&] {
+    take_out(*self_, *slot);
+    self_->bodies.record[std::size_t(*slot)].type = type;
+    if (type == BodyType::fixed) self_->bodies.solver[std::size_t(*slot)] = {};
+    update_mass(*self_, *slot);
+    put_back(*self_, *slot);
+  });
+  return {};
+}
+
+template <class D>
+Status World<D>::set_awake(BodyId body, bool awake) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_awake", body);
+  if (!slot.ok()) return slot.error();
+  const BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
+  if (awake)
+    wake_body(*self_, *slot);
+  else if (r.awake_index != none)
+    put_to_sleep<D>(*self_, island_of(*self_, *slot));
+  return {};
+}
+
+template <class D>
+Status World<D>::set_enabled(BodyId body, bool enabled) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_enabled", body);
+  if (!slot.ok()) return slot.error();
+  if (self_->bodies.record[std::size_t(*slot)].enabled() == enabled) return {};
+  with_joints_detached(*self_, *slot, [&] {
+    if (!enabled) take_out(*self_, *slot);
+    set_flag<D>(self_->bodies.record[std::size_t(*slot)], body_enabled, enabled);
+    if (enabled) put_back(*self_, *slot);
+  });
+  return {};
+}
+
+template <class D>
+Status World<D>::set_locks(BodyId body, MotionLocks locks) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_locks", body);
+  if (!slot.ok()) return slot.error();
+  wake_body(*self_, *slot);
+  self_->bodies.record[std::size_t(*slot)].locks = lock_bits(locks);
+  update_mass(*self_, *slot);
+  return {};
+}
+
+template <class D>
+Status World<D>::set_damping(BodyId body, float linear, float angular) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_damping", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_damping");
+  check_range(complaint, "linear", linear, 0, 1e6);
+  check_range(complaint, "angular", angular, 0, 1e6);
+  if (!complaint.none_yet()) return complaint.error();
+  self_->bodies.motion[std::size_t(*slot)].linear_damping = linear;
+  self_->bodies.motion[std::size_t(*slot)].angular_damping = angular;
+  return {};
+}
+
+template <class D>
+Status World<D>::set_gravity_scale(BodyId body, float scale) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_gravity_scale", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_gravity_scale");
+  check_range(complaint, "scale", scale, -1e6, 1e6);
+  if (!complaint.none_yet()) return complaint.error();
+  wake_body(*self_, *slot);
+  self_->bodies.motion[std::size_t(*slot)].gravity_scale = scale;
+  return {};
+}
+
+template <class D>
+Status World<D>::set_user_data(BodyId body, std::uint64_t data) {
+  const Result<std::int32_t> slot = detail::slot_of(*self_, "set_user_data", body);
+  if (!slot.ok()) return slot.error();
+  self_->bodies.record[std::size_t(*slot)].user_data = data;
+  return {};
+}
+
+}  // namespace carom::rigid
