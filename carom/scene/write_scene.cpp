@@ -72,6 +72,18 @@ std::string points_text(std::span<const V> points) {
   return out + "]";
 }
 
+/// The half extents where the polygon is what make_box2 makes of them; zero where it is not. A box may be thinner than
+/// a polygon of the same points, which make_polygon would take for a line.
+math::Vec2f box_extents(const geometry::Polygon& p) {
+  math::Vec2f half;
+  for (int i = 0; i < p.count; ++i) half = math::max(half, p.vertices[i]);
+  if (p.count != 4 || !(half.x > 0 && half.y > 0)) return {};
+  const geometry::Polygon box = geometry::make_box2(half, p.radius);
+  for (int i = 0; i < 4; ++i)
+    if (!(box.vertices[i] == p.vertices[i])) return {};
+  return half;
+}
+
 void put_geometry(const geometry::Shape2& s, Fields& f) {
   switch (s.type) {
     case geometry::ShapeType2::circle:
@@ -81,6 +93,10 @@ void put_geometry(const geometry::Shape2& s, Fields& f) {
       f.put("type", quote("capsule")).put("half_length", s.capsule.half_length).put("radius", s.capsule.radius);
       return;
     case geometry::ShapeType2::polygon:
+      if (const math::Vec2f half = box_extents(s.polygon); half.x > 0) {
+        f.put("type", quote("box")).put("half_extents", vector_text(half)).unless("radius", s.polygon.radius, 0.0f);
+        return;
+      }
       f.put("type", quote("polygon"))
           .put("points", points_text(std::span<const math::Vec2f>(s.polygon.vertices, std::size_t(s.polygon.count))))
           .unless("radius", s.polygon.radius, 0.0f);
