@@ -46,7 +46,9 @@ TYPED_TEST(BadInput, NumbersThatAreNotNumbers) {
     EXPECT_FALSE(world.set_velocity(box, {}, spin_of<D>(bad)).ok());
     EXPECT_TRUE(refused(world.add_force(box, v), "World::add_force: force.x"));
     EXPECT_FALSE(world.add_force_at(box, v, at<D>(0, 0)).ok());
-    if (nan) EXPECT_FALSE(world.add_force_at(box, along<D>(1, 0), p).ok());
+    if (nan) {
+      EXPECT_FALSE(world.add_force_at(box, along<D>(1, 0), p).ok());
+    }
     EXPECT_FALSE(world.add_torque(box, spin_of<D>(bad)).ok());
     EXPECT_FALSE(world.add_impulse(box, v).ok());
     EXPECT_FALSE(world.add_impulse_at(box, v, at<D>(0, 0)).ok());
