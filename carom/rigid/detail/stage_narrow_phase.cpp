@@ -5,7 +5,7 @@
 namespace carom::rigid::detail {
 namespace {
 
-constexpr int contact_grain = 64;
+constexpr int contact_grain = 128;
 constexpr int max_manifolds = 8;          ///< of one pair
 constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
 constexpr float recycle_share = 0.02f;    ///< of the smaller half thickness: manifolds stay while the pair slid less
