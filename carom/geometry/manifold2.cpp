@@ -23,6 +23,12 @@ void point_point(Vec2f a, float ra, Vec2f b, float rb, float margin, std::uint32
   single(a, ra, b, rb, l > 1e-12f ? d * (1 / l) : Vec2f{0, 1}, l, id, out);
 }
 
+/// A round shape that passes over the end of an edge without dipping below it is pushed along the edge's normal, so
+/// that it does not catch on the joint of two level edges (the same rule as in space, detail/contact_points.h).
+Vec2f over_border(Vec2f n, Vec2f edge_normal, float above, float radius) {
+  return above - radius > -min(0.005f * radius, 0.001f) && dot(n, edge_normal) > 0.85f ? edge_normal : n;
+}
+
 /// One corner of b against the polygon or line a.
 void against_point(const Rounded2& a, Vec2f p, float radius, float margin, Manifold2& out) {
   if (a.count == 2) return point_point(detail::closest_on_line(a.v[0], a.v[1], p), a.radius, p, radius, margin, 0, out);
@@ -36,8 +42,11 @@ void against_point(const Rounded2& a, Vec2f p, float radius, float margin, Manif
   if (best > 0) {
     const Vec2f q = detail::closest_on_line(a.v[edge], a.v[a.next(edge)], p);
     const Vec2f d = p - q;
-    if (dot(d, d) > 1e-12f * best && distance_squared(q, p) > best * best * 1.000001f)
-      return point_point(q, a.radius, p, radius, margin, 0, out);  // round a corner
+    if (dot(d, d) > 1e-12f * best && distance_squared(q, p) > best * best * 1.000001f) {  // round a corner
+      point_point(q, a.radius, p, radius, margin, 0, out);
+      if (out.count > 0 && a.radius == 0) out.normal = over_border(out.normal, a.n[edge], best, a.radius + radius);
+      return;
+    }
   }
   single(p - a.n[edge] * best, a.radius, p, radius, a.n[edge], best, 0, out);
 }
@@ -128,6 +137,8 @@ void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cac
     if (d.distance - radius > margin) return;
     if (dot(d.normal, of_b ? -r.n[axis.edge] : r.n[axis.edge]) < 0.9999f && d.distance > 1e-6f) {
       single(d.point_a, a.radius, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
+      const Vec2f n = of_b ? -r.n[axis.edge] : r.n[axis.edge];
+      if (radius > 0 && r.radius == 0) out.normal = over_border(d.normal, n, axis.separation, radius);
       return;
     }
   }

@@ -73,10 +73,19 @@ void box_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, float ma
   const Vec3f d = c - q;
   const float l2 = dot(d, d), r = b.sphere.radius, reach = a.box.radius + r + margin;
   if (l2 > reach * reach) return;
-  if (l2 > 1e-12f * dot(h, h)) return point_point(q, a.box.radius, c, r, margin, 0, out);
-  // The centre is in the box: out by the nearest face.
   const Vec3f gap = abs(c) - h;
   const int axis = gap.x >= gap.y && gap.x >= gap.z ? 0 : (gap.y >= gap.z ? 1 : 2);
+  if (l2 > 1e-12f * dot(h, h)) {
+    point_point(q, a.box.radius, c, r, margin, 0, out);
+    const float radius = a.box.radius + r;
+    if (out.count > 0 && a.box.radius == 0 && gap[axis] - radius > -detail::border_tolerance(radius) &&
+        gap[axis] * gap[axis] > detail::border_cosine * detail::border_cosine * l2) {
+      out.normal = {};
+      out.normal[axis] = c[axis] < 0 ? -1.0f : 1.0f;
+    }
+    return;
+  }
+  // The centre is in the box: out by the nearest face.
   Vec3f n{};
   n[axis] = c[axis] < 0 ? -1.0f : 1.0f;
   const float s = gap[axis] - a.box.radius - r;

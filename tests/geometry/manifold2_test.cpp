@@ -65,7 +65,11 @@ TEST(Manifold2, SeparationAgreesWithTheDistanceAndMirrors) {
           if (ka == 2 && kb == 2 && m.count == 0) continue;
           ASSERT_GT(m.count, 0) << ka << " " << kb << " " << truth.distance << " " << k;
           EXPECT_NEAR(least2(m), truth.distance, 2e-3f) << ka << " " << kb << " " << k;
-          EXPECT_GT(dot(m.normal, truth.normal), 0.99f) << ka << " " << kb << " " << k << " d " << truth.distance;
+          // Round shapes over the end of a sharp edge are pushed along the edge's normal, up to 32° from the nearest
+          // way.
+          const bool border = (ka == 2 || ka >= 4) != (kb == 2 || kb >= 4);
+          EXPECT_GT(dot(m.normal, truth.normal), border ? 0.849f : 0.99f)
+              << ka << " " << kb << " " << k << " d " << truth.distance;
         } else {
           ++touching;
           if (ka == 5 && kb == 5) continue;

@@ -194,6 +194,30 @@ TEST(Manifold3, FlushTilesDoNotCatchABoxThatSlidesOverThem) {
   }
 }
 
+TEST(Manifold3, FlushTilesDoNotCatchRoundShapes) {
+  // Sunk by what a resting body sinks, or a little above: the neighbour's border never pushes sideways.
+  const Box tile{{0.5f, 0.5f, 0.5f}};
+  const Quatf across = normalize(Quatf{1, 1, 0, 0}), along = normalize(Quatf{1, 0, 0, 1});
+  struct Case {
+    Shape3 shape;
+    float height;
+    Quatf q;
+  };
+  const Case cases[] = {{Sphere{0.3f}, 0.3f, {}},
+                        {Capsule3{0.3f, 0.3f}, 0.3f, across},
+                        {Capsule3{0.3f, 0.3f}, 0.3f, along},
+                        {Cylinder{0.3f, 0.3f}, 0.3f, across}};
+  for (const Case& c : cases) {
+    PairCache cache;
+    for (int k = 0; k < 2400; ++k)
+      for (const float sink : {-0.002f, 0.0f, 0.0005f}) {
+        Manifold3 m;
+        collide(tile, c.shape, {{-1.2f + 0.001f * float(k), 0.5f + c.height - sink, 0.1f}, c.q}, 0.02f, cache, m);
+        if (m.count > 0) ASSERT_GT(m.normal.y, 0.9999f) << int(c.shape.type) << " " << k << " " << sink;
+      }
+  }
+}
+
 TEST(Manifold3, HardCasesStayFinite) {
   Draw draw;
   for (int ka = 0; ka < convex_kinds; ++ka)

@@ -29,6 +29,13 @@ void clip_to_face(const Feature& reference, float radius_r, const Feature& incid
 /// The same manifold seen from the other shape: `a_in_b` is the pose of its frame in the other's.
 void flip(Manifold3& m, const Transform3f& a_in_b);
 
+/// A round surface that passes over a face's border without dipping below the face by more than this (for a total
+/// radius r) is pushed along the face's normal, not the tilted one of the border: so nothing round catches on the joint
+/// of two level faces, and the distance stays the true one. Only where the two normals are within 32°: what falls past
+/// the border is not held by a face that it is not over.
+inline float border_tolerance(float r) { return min(0.005f * r, 0.001f); }
+inline constexpr float border_cosine = 0.85f;
+
 /// The closest parameters of two segments, clamped to them (Ericson 2005, §5.1.9).
 void closest_on_segments(Vec3f p1, Vec3f d1, Vec3f p2, Vec3f d2, float& s, float& t);
 

@@ -143,6 +143,20 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
   }
   cache.kind = direction;
   cache.d = pack(n);
+  // Over the border of a face: see border_tolerance.
+  const auto roundness = [](const Convex& c) { return is_round(c) ? c.half.x : c.radius; };
+  const float border = border_tolerance(roundness(pair.a) + roundness(pair.b));
+  Vec3f pushed = n;
+  if (border > 0 && d - pair.radius() > -border) {
+    if (fa >= 0 && pair.a.radius == 0 && sa - pair.radius() > -border) {
+      const Vec3f f = face_plane(pair.a, fa).normal;
+      if (dot(f, n) > border_cosine) pushed = f;
+    }
+    if (fb >= 0 && pair.b.radius == 0 && sb - pair.radius() > -border && pushed == n) {
+      const Vec3f f = -rotate(pair.x.q, face_plane(pair.b, fb).normal);
+      if (dot(f, n) > border_cosine) pushed = f;
+    }
+  }
   // Two straight sides along each other touch in two points.
   Vec3f la[2], lb[2];
   if (side_line(pair.a, n, la) && side_line(pair.b, -inverse_rotate(pair.x.q, n), lb)) {
@@ -154,7 +168,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
       float t0 = dot(lb[0] - la[0], t), t1 = dot(lb[1] - la[0], t);
       const float low = max(0.0f, min(t0, t1)), high = min(length_a, max(t0, t1));
       if (high - low > 1e-3f * length_a) {
-        out.normal = n;
+        out.normal = pushed;
         out.count = 0;
         for (int k = 0; k < 2; ++k) {
           const float u = k == 0 ? low : high;
@@ -171,7 +185,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
   const float s = d - pair.radius();
   if (s > pair.margin) return;
   const Vec3f pa = Vec3f(found.point_a) + n * pair.a.radius, pb = Vec3f(found.point_b) - n * pair.b.radius;
-  out.normal = n;
+  out.normal = pushed;
   out.count = 1;
   out.points[0] = {(pa + pb) * 0.5f, s, 0x20000000u};
 }
