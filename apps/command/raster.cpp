@@ -291,7 +291,9 @@ Image render(const RasterScene& scene, int width, int height) {
     else
       glass.push_back({view.local((t.corner[0] + t.corner[1] + t.corner[2]) / 3.0).z, &t});
   }
-  std::stable_sort(glass.begin(), glass.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::sort(glass.begin(), glass.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second < b.second;  // of the same depth: as they came
+  });
   for (const auto& [depth, t] : glass) paint(*t, view, shadows, buffer);
   for (const host::Line& line : scene.lines) stroke(line, view, buffer);
 

@@ -154,10 +154,12 @@ class ShapeWriter {
   static void field_triangles(const geometry::HeightField& f, Triangles& t) {
     for (int j = 0; j < f.rows; ++j)
       for (int i = 0; i < f.columns; ++i)
-        t.vertices.emplace_back(float(i) * f.cell.x, f.heights[std::size_t(j * f.columns + i)], float(j) * f.cell.y);
+        t.vertices.emplace_back(float(i) * f.cell.x,
+                                f.heights[std::size_t(j) * std::size_t(f.columns) + std::size_t(i)],
+                                float(j) * f.cell.y);
     for (int j = 0; j + 1 < f.rows; ++j) {
       for (int i = 0; i + 1 < f.columns; ++i) {
-        if (!f.holes.empty() && f.holes[std::size_t(j * (f.columns - 1) + i)] != 0) continue;
+        if (!f.holes.empty() && f.holes[std::size_t(j) * std::size_t(f.columns - 1) + std::size_t(i)] != 0) continue;
         const std::uint32_t a = std::uint32_t(j * f.columns + i), b = a + 1, c = a + std::uint32_t(f.columns),
                             d = c + 1;
         t.indices.insert(t.indices.end(), {a, c, d, a, d, b});

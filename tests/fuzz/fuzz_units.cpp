@@ -48,7 +48,7 @@ void check_quantity(std::string_view text, std::string_view unit) {
   if (!again.ok) return;  // the value has no finite expression in that unit
   const double size = found.si < 0 ? -found.si : found.si;
   const double error = again.si < found.si ? found.si - again.si : again.si - found.si;
-  const bool offset = found.dimension == dimensions::temperature;  // degC and degF begin at 273.15 K and 255.37 K
+  const bool offset = again.dimension == dimensions::temperature;  // degC and degF begin at 273.15 K and 255.37 K
   if (size > 1e-280 && error > 1e-14 * (size + (offset ? 300 : 0))) broken("written and read it is another", written);
   (void)format_quantity(found.si, unit, 3);
   (void)convert(found.si, unit, "kg");

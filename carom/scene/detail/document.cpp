@@ -166,9 +166,10 @@ core::Result<Node> parse_document(std::string_view text, std::string_view name, 
                        std::to_string(limits.bytes)};
   ReadPosition position;
   TreeBuilder builder(name, file, limits, position);
-  const bool parsed = nlohmann::json::sax_parse(CountingIterator(text.data(), &position),
-                                                CountingIterator(text.data() + text.size(), &position), &builder,
-                                                nlohmann::json::input_format_t::json, true, true);
+  const char* const first = text.data();
+  const bool parsed =
+      nlohmann::json::sax_parse(CountingIterator(first, &position), CountingIterator(first + text.size(), &position),
+                                &builder, nlohmann::json::input_format_t::json, true, true);
   if (!parsed || !builder.error().empty()) {
     if (builder.error().empty()) builder.fail("not valid JSON");
     return core::Error{std::move(builder.error())};
