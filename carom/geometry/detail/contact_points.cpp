@@ -88,9 +88,9 @@ struct ClipPoint {
 
 void clip_to_face(const Feature& ref, float radius_r, const Feature& inc, float radius_i, float margin,
                   std::uint32_t tag, ContactPoints& out, float widen) {
-  ClipPoint buffer[2][56];
-  ClipPoint* in = buffer[0];
-  ClipPoint* next = buffer[1];
+  RawArray<ClipPoint, 56> buffer[2];
+  ClipPoint* in = buffer[0].items;
+  ClipPoint* next = buffer[1].items;
   int count = inc.count;
   for (int i = 0; i < count; ++i) in[i] = {inc.point[i], inc.id[i]};
   const bool closed = count > 2;

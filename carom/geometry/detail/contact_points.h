@@ -10,7 +10,7 @@ namespace carom::geometry::detail {
 struct ContactPoints {
   static constexpr int capacity = 64;
   int count = 0;
-  ManifoldPoint3 point[capacity];
+  RawArray<ManifoldPoint3, capacity> point;
   void add(Vec3f p, float separation, std::uint32_t feature) {
     if (count < capacity) point[count++] = {p, separation, feature};
   }

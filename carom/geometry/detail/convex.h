@@ -5,6 +5,17 @@
 
 namespace carom::geometry::detail {
 
+/// Room for N values that are written before they are read: clearing it in every call costs more than the work done.
+template <class T, int N>
+struct RawArray {
+  union {
+    T items[N];
+  };
+  RawArray() {}
+  T& operator[](int i) { return items[i]; }
+  const T& operator[](int i) const { return items[i]; }
+};
+
 enum class CoreKind : std::uint8_t { point, segment, box, cylinder, cone, hull, triangle };
 
 /// A convex core, in its own frame, swept by a sphere of `radius`.
@@ -44,8 +55,8 @@ FacePlane face_plane(const Convex& c, int face);
 struct Feature {
   static constexpr int capacity = 24;
   int count = 0;
-  Vec3f point[capacity];
-  std::uint8_t id[capacity];
+  RawArray<Vec3f, capacity> point;
+  RawArray<std::uint8_t, capacity> id;
   Vec3f normal{};  ///< of the polygon, outward
   void add(Vec3f p, int name) {
     if (count < capacity) point[count] = p, id[count] = std::uint8_t(name), ++count;

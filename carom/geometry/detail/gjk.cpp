@@ -88,7 +88,7 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
   out.overlap = false;
   if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
   if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
-  SimplexVertex* s = out.simplex;
+  SimplexVertex* s = out.simplex.items;
   s[0] = gjk::support_of(a, b, guess);
   out.count = 1;
   gjk::Reduced r = gjk::reduce(s, 1);
@@ -111,10 +111,10 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
     for (int i = 0; i < out.count; ++i) known = known || next.w == s[i].w;
     if (known) break;
     scale = max(scale, length_squared(next.w));
-    SimplexVertex grown[4];
+    RawArray<SimplexVertex, 4> grown;
     for (int i = 0; i < out.count; ++i) grown[i] = s[i];
     grown[out.count] = next;
-    const gjk::Reduced smaller = gjk::reduce(grown, out.count + 1);
+    const gjk::Reduced smaller = gjk::reduce(grown.items, out.count + 1);
     const double nearer = length_squared(smaller.closest);
     if (smaller.count < 4 && !(nearer < vv)) break;  // rounding: no nearer any more
     r = smaller;
@@ -141,8 +141,8 @@ struct Face {
   bool alive;
 };
 struct Polytope {
-  SimplexVertex vertex[max_vertices];
-  Face face[max_faces];
+  RawArray<SimplexVertex, max_vertices> vertex;
+  RawArray<Face, max_faces> face;
   int vertices = 0, faces = 0;
   Vec3d inside{};
 

@@ -27,7 +27,7 @@ struct CoreDistance {
   Vec3d point_a{}, point_b{};
   Vec3d normal{};  ///< unit, from A to B
   int count = 0;   ///< of the last simplex
-  SimplexVertex simplex[4];
+  RawArray<SimplexVertex, 4> simplex;
 };
 /// Gilbert, Johnson & Keerthi 1988. Stops early, with a lower bound as the distance and no points, once the cores are
 /// known to be farther apart than `cutoff`. `guess` is a direction from A to B to begin with (zero: the centres').

@@ -45,7 +45,8 @@ void clip_faces(Vec3f hr, const Vec3f* r, Vec3f hi, const Vec3f* q, Vec3f c, int
   const float uu = dot(eu, U), uv = dot(eu, V), uw = dot(eu, n);
   const float vu = dot(ev, U), vv = dot(ev, V), vw = dot(ev, n);
   const std::uint32_t base = sign > 0 ? 1u << j : 0u;
-  Corner x[16], y[16];
+  RawArray<Corner, 16> room[2];
+  Corner *const x = room[0].items, *const y = room[1].items;
   constexpr int turn[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
   for (int k = 0; k < 4; ++k) {
     const float su = float(turn[k][0]), sv = float(turn[k][1]);

@@ -97,9 +97,17 @@ bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold
 }
 
 int face_index(const Convex& c, Vec3f n) {
-  const int count = face_count(c);
-  int best = -1;
   float most = -2;
+  int best = -1;
+  if (c.kind == CoreKind::hull) {
+    const std::vector<HullPlane>& planes = c.hull->planes;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const float d = dot(planes[i].normal, n);
+      if (d > most) most = d, best = int(i);
+    }
+    return best;
+  }
+  const int count = face_count(c);
   for (int i = 0; i < count; ++i) {
     const float d = dot(face_plane(c, i).normal, n);
     if (d > most) most = d, best = i;
