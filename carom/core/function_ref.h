@@ -15,8 +15,8 @@ template <class R, class... Arguments>
 class FunctionRef<R(Arguments...)> {
  public:
   template <class F>
-  requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Arguments...>)
-      FunctionRef(F&& callable)
+    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Arguments...>)
+  FunctionRef(F&& callable)
       : call_([](Target target, Arguments... arguments) -> R {
           using Callable = std::remove_reference_t<F>;
           if constexpr (std::is_function_v<Callable>)

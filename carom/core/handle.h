@@ -6,7 +6,8 @@
 namespace carom::core {
 
 /// Names one object of one world. Zero is the null handle. Copy it freely; 8 bytes.
-template <class Tag> struct Handle {
+template <class Tag>
+struct Handle {
   std::uint32_t index = 0;       ///< slot + 1
   std::uint16_t generation = 0;  ///< of the slot, when the object was created
   std::uint16_t world = 0;       ///< of the world that made it

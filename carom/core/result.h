@@ -17,7 +17,8 @@ struct Error {
 
 /// A value of type T, or the error that prevented it. Test it before use; value() of an error ends the program
 /// with the message, which is the right thing in examples and tests and nowhere else.
-template <class T> class [[nodiscard]] Result {
+template <class T>
+class [[nodiscard]] Result {
  public:
   Result(T value) : value_(std::move(value)) {}
   Result(Error error) : error_(std::move(error)) {}
@@ -26,9 +27,18 @@ template <class T> class [[nodiscard]] Result {
   explicit operator bool() const { return ok(); }
   const Error& error() const { return error_; }
 
-  T& value() & { require(); return *value_; }
-  const T& value() const& { require(); return *value_; }
-  T&& value() && { require(); return std::move(*value_); }
+  T& value() & {
+    require();
+    return *value_;
+  }
+  const T& value() const& {
+    require();
+    return *value_;
+  }
+  T&& value() && {
+    require();
+    return std::move(*value_);
+  }
   T value_or(T fallback) const { return ok() ? *value_ : std::move(fallback); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
@@ -47,14 +57,18 @@ template <class T> class [[nodiscard]] Result {
 };
 
 /// Success, or the error that prevented it.
-template <> class [[nodiscard]] Result<void> {
+template <>
+class [[nodiscard]] Result<void> {
  public:
   Result() = default;
   Result(Error error) : error_(std::move(error)) {}
 
   bool ok() const { return !error_.has_value(); }
   explicit operator bool() const { return ok(); }
-  const Error& error() const { assert(!ok()); return *error_; }
+  const Error& error() const {
+    assert(!ok());
+    return *error_;
+  }
   void value() const {
     if (ok()) return;
     std::fprintf(stderr, "carom: value() of an error: %s\n", error_->message.c_str());

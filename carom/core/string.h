@@ -15,8 +15,8 @@ inline void append_piece(std::string& out, const std::string& piece) { out.appen
 inline void append_piece(std::string& out, char piece) { out.push_back(piece); }
 inline void append_piece(std::string& out, bool piece) { out.append(piece ? "true" : "false"); }
 template <class T>
-requires(std::is_arithmetic_v<T> && !std::is_same_v<T, char> &&
-         !std::is_same_v<T, bool>) void append_piece(std::string& out, T number) {
+  requires(std::is_arithmetic_v<T> && !std::is_same_v<T, char> && !std::is_same_v<T, bool>)
+void append_piece(std::string& out, T number) {
   char buffer[64];
   const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, number);
   out.append(buffer, end.ptr);

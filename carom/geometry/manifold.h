@@ -7,9 +7,9 @@
 namespace carom::geometry {
 
 struct ManifoldPoint2 {
-  Vec2f point{};                ///< m, midway between the two surfaces, in the frame of A
-  float separation = 0;         ///< m, negative where the shapes overlap
-  std::uint32_t feature = 0;    ///< names the pair of features, so that impulses carry over to the next step
+  Vec2f point{};              ///< m, midway between the two surfaces, in the frame of A
+  float separation = 0;       ///< m, negative where the shapes overlap
+  std::uint32_t feature = 0;  ///< names the pair of features, so that impulses carry over to the next step
 };
 struct Manifold2 {
   Vec2f normal{};  ///< unit, from A to B, in the frame of A

@@ -7,9 +7,9 @@
 namespace carom::geometry {
 
 struct Distance2 {
-  float distance = 0;            ///< m, 0 where the shapes overlap
-  Vec2f point_a{}, point_b{};    ///< closest points, in the frame of A
-  Vec2f normal{};                ///< unit, from A to B; zero where they overlap
+  float distance = 0;          ///< m, 0 where the shapes overlap
+  Vec2f point_a{}, point_b{};  ///< closest points, in the frame of A
+  Vec2f normal{};              ///< unit, from A to B; zero where they overlap
 };
 struct Distance3 {
   float distance = 0;
@@ -22,7 +22,8 @@ CAROM_API Distance3 distance(const Shape3& a, const Shape3& b, const Transform3f
 CAROM_API bool overlap(const Shape2& a, const Shape2& b, const Transform2f& b_in_a);
 CAROM_API bool overlap(const Shape3& a, const Shape3& b, const Transform3f& b_in_a);
 
-template <class V> struct CastHit {
+template <class V>
+struct CastHit {
   bool hit = false;
   float fraction = 1;  ///< of the way, 0…1
   V point{};           ///< in the frame of the (first) shape
@@ -32,7 +33,8 @@ template <class V> struct CastHit {
 using CastHit2 = CastHit<Vec2f>;
 using CastHit3 = CastHit<Vec3f>;
 
-/// The ray from `origin` to `origin + translation`, in the shape's frame. A ray that starts inside a solid shape hits at 0.
+/// The ray from `origin` to `origin + translation`, in the shape's frame. A ray that starts inside a solid shape hits
+/// at 0.
 CAROM_API CastHit2 ray_cast(const Shape2& shape, Vec2f origin, Vec2f translation);
 CAROM_API CastHit3 ray_cast(const Shape3& shape, Vec3f origin, Vec3f translation);
 
@@ -43,7 +45,7 @@ CAROM_API CastHit3 shape_cast(const Shape3& a, const Shape3& b, const Transform3
 /// A motion over one step: the centre of mass moves on a straight line, the attitude turns evenly.
 struct Sweep2 {
   Vec2f local_center{};
-  Vec2f c0{}, c1{};   ///< centre of mass at time 0 and 1
+  Vec2f c0{}, c1{};  ///< centre of mass at time 0 and 1
   Rot2f q0{}, q1{};
 };
 struct Sweep3 {

@@ -33,13 +33,14 @@ struct Polygon {
 struct Segment {
   Vec2f a, b;
 };
-/// One segment of a chain: collides on its right side, and knows the neighbours' far ends so that nothing catches on the
-/// joints.
+/// One segment of a chain: collides on its right side, and knows the neighbours' far ends so that nothing catches on
+/// the joints.
 struct ChainSegment {
   Vec2f ghost_before, a, b, ghost_after;
 };
-/// A line of at least two points, one-sided: solid lies to the left of the direction of travel, free space to the right.
-/// A loop that runs counterclockwise is a solid island; one that runs clockwise is a wall round the space inside it.
+/// A line of at least two points, one-sided: solid lies to the left of the direction of travel, free space to the
+/// right. A loop that runs counterclockwise is a solid island; one that runs clockwise is a wall round the space inside
+/// it.
 struct Chain {
   std::vector<Vec2f> points;
   bool loop = false;

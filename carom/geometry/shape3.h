@@ -45,7 +45,18 @@ struct Plane {
   Vec3f normal{0, 1, 0};
 };
 
-enum class ShapeType3 : std::uint8_t { sphere, capsule, box, cylinder, cone, hull, plane, mesh, height_field, compound };
+enum class ShapeType3 : std::uint8_t {
+  sphere,
+  capsule,
+  box,
+  cylinder,
+  cone,
+  hull,
+  plane,
+  mesh,
+  height_field,
+  compound
+};
 
 /// Any shape of space.
 struct Shape3 {
@@ -57,7 +68,7 @@ struct Shape3 {
     Cylinder cylinder;
     Cone cone;
     Plane plane;
-    const Hull* hull;                  ///< kept alive by `data`, like the next three
+    const Hull* hull;  ///< kept alive by `data`, like the next three
     const TriangleMesh* mesh;
     const HeightField* height_field;
     const Compound* compound;
@@ -82,8 +93,8 @@ inline bool is_convex(const Shape3& s) { return s.type <= ShapeType3::hull; }
 
 /// Says what is wrong with a shape that a user filled in by hand (a radius that is not positive and finite, …).
 CAROM_API core::Status validate(const Shape3& shape);
-/// The tight bounds of the shape placed by t (for a mesh or height field: the bounds of its placed local box). A plane is
-/// ±infinity except where it is axis-aligned.
+/// The tight bounds of the shape placed by t (for a mesh or height field: the bounds of its placed local box). A plane
+/// is ±infinity except where it is axis-aligned.
 CAROM_API Bounds3f bounds(const Shape3& shape, const Transform3f& t);
 /// The point farthest along `direction`, in the shape's frame, including its radius. Convex shapes only.
 CAROM_API Vec3f support(const Shape3& shape, Vec3f direction);

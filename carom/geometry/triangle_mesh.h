@@ -7,13 +7,19 @@
 namespace carom::geometry {
 
 /// What the shape of the surface is along a triangle's edge, so that flat and concave edges never push sideways.
-enum EdgeFlags : std::uint8_t { edge0_flat = 1, edge1_flat = 2, edge2_flat = 4,  ///< flat or concave: no edge contact
-                                edge0_open = 8, edge1_open = 16, edge2_open = 32 };
+enum EdgeFlags : std::uint8_t {
+  edge0_flat = 1,
+  edge1_flat = 2,
+  edge2_flat = 4,  ///< flat or concave: no edge contact
+  edge0_open = 8,
+  edge1_open = 16,
+  edge2_open = 32
+};
 
 /// Triangles are one-sided: counterclockwise seen from free space.
 struct TriangleMesh {
   std::vector<Vec3f> vertices;
-  std::vector<std::uint32_t> indices;   ///< three a triangle
+  std::vector<std::uint32_t> indices;    ///< three a triangle
   std::vector<std::uint8_t> edge_flags;  ///< one a triangle; edge i runs from corner i to corner i + 1
   StaticTree tree;                       ///< over the triangles
   Bounds3f bounds;

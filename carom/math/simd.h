@@ -84,10 +84,8 @@ struct WideInt {
   CAROM_SIMD_INLINE void store(std::int32_t* p) const { __builtin_memcpy(p, &v, sizeof v); }
   /// 0, 1, 2, …
   CAROM_SIMD_INLINE static WideInt lanes() {
-    return [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
-      return WideInt{Vector{I...}};
-    }
-    (std::make_integer_sequence<int, W>{});
+    return [&]<int... I>(std::integer_sequence<int, I...>)
+               __attribute__((always_inline)) { return WideInt{Vector{I...}}; }(std::make_integer_sequence<int, W>{});
   }
   CAROM_SIMD_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
   CAROM_SIMD_INLINE friend WideInt operator+(WideInt a, WideInt b) { return {a.v + b.v}; }
@@ -119,8 +117,7 @@ struct WideFloat {
 #endif
     return [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
       return WideFloat{Vector{(static_cast<void>(I), x)...}};
-    }
-    (std::make_integer_sequence<int, W>{});
+    }(std::make_integer_sequence<int, W>{});
   }
   /// W floats from any address.
   CAROM_SIMD_INLINE static WideFloat load(const float* p) {
@@ -315,8 +312,8 @@ struct Index {
 /// f(Index<0>), …, f(Index<N−1>) as straight code, so that arrays of registers stay registers.
 template <int N, class F>
 CAROM_SIMD_INLINE void unrolled(F f) {
-  [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) { (f(Index<I>{}), ...); }
-  (std::make_integer_sequence<int, N>{});
+  [&]<int... I>(std::integer_sequence<int, I...>)
+      __attribute__((always_inline)) { (f(Index<I>{}), ...); }(std::make_integer_sequence<int, N>{});
 }
 
 CAROM_SIMD_INLINE Four load_four(const float* p) {

@@ -151,7 +151,9 @@ class DormandPrince {
     detail::add(out, x * x1 * x, states_[dense_end]);
     detail::add(out, x * x1 * x * x1, states_[dense_middle]);
   }
-  S dense(double time) const requires(!std::is_same_v<S, std::span<double>>) {
+  S dense(double time) const
+    requires(!std::is_same_v<S, std::span<double>>)
+  {
     S out{};
     dense(time, out);
     return out;

@@ -202,8 +202,8 @@ Outcome step_in(Method method, const F& f, double t, S& y, double h, S* k, const
 
 /// One step of length h (s, any sign) from (t, y). On any outcome but `done`, y is unchanged.
 template <class S, class F>
-requires(!std::is_same_v<S, std::span<double>>) [[nodiscard]] Outcome
-    step(Method method, const F& f, double t, S& y, double h, const ImplicitOptions& options = {}) {
+  requires(!std::is_same_v<S, std::span<double>>)
+[[nodiscard]] Outcome step(Method method, const F& f, double t, S& y, double h, const ImplicitOptions& options = {}) {
   S k[detail::max_stages];
   constexpr std::size_t n = std::size_t(components<S>);
   double newton[detail::newton_size(n) + 1];
@@ -267,8 +267,9 @@ Motion<Q> velocity_verlet(const F& f, double t, Motion<Q> y, double h) {
 
 /// From t₀ to t₁ in `steps` equal steps.
 template <class S, class F>
-requires(!std::is_same_v<S, std::span<double>>) [[nodiscard]] Outcome
-    integrate(Method method, const F& f, double t0, double t1, int steps, S& y, const ImplicitOptions& options = {}) {
+  requires(!std::is_same_v<S, std::span<double>>)
+[[nodiscard]] Outcome integrate(Method method, const F& f, double t0, double t1, int steps, S& y,
+                                const ImplicitOptions& options = {}) {
   if (steps < 1) return Outcome::bad_argument;
   const double h = (t1 - t0) / steps;
   for (int i = 0; i < steps; ++i) {

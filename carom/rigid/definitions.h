@@ -18,63 +18,68 @@ using ShapeId = core::Handle<struct ShapeTag>;
 using JointId = core::Handle<struct JointTag>;
 using EffectorId = core::Handle<struct EffectorTag>;
 
-template <class D> constexpr typename D::Vector default_gravity() {
-  if constexpr (D::dimension == 2) return {0, -9.80665f};
-  else return {0, -9.80665f, 0};
+template <class D>
+constexpr typename D::Vector default_gravity() {
+  if constexpr (D::dimension == 2)
+    return {0, -9.80665f};
+  else
+    return {0, -9.80665f, 0};
 }
 
-template <class D> struct WorldDef {
+template <class D>
+struct WorldDef {
   typename D::Vector gravity = default_gravity<D>();  ///< m/s², uniform
-  int substeps = 4;                    ///< solver substeps in a step, 1 … 64
-  int threads = 1;                     ///< worker threads the world makes for itself, 1 … 64 (the caller's included)
+  int substeps = 4;                                   ///< solver substeps in a step, 1 … 64
+  int threads = 1;  ///< worker threads the world makes for itself, 1 … 64 (the caller's included)
   core::TaskScheduler* scheduler = nullptr;  ///< the caller's own, instead; must outlive the world
-  int simd_width = 0;                  ///< lanes of the contact solver: 4, 8 or 16, or 0 for the widest the machine has; same results
+  int simd_width = 0;  ///< lanes of the contact solver: 4, 8 or 16, or 0 for the widest the machine has; same results
   bool allow_sleep = true;
   bool continuous = true;              ///< fast bodies never pass through static geometry
   float restitution_threshold = 1.0f;  ///< m/s: slower impacts do not bounce
   float contact_hertz = 30.0f;         ///< stiffness of contacts, capped at 1/8 of the substep rate
   float contact_damping_ratio = 10.0f;
-  float contact_push_speed = 3.0f;     ///< m/s: overlapping bodies separate no faster
-  float joint_hertz = 60.0f;           ///< stiffness of joints, capped at 1/4 of the substep rate
+  float contact_push_speed = 3.0f;  ///< m/s: overlapping bodies separate no faster
+  float joint_hertz = 60.0f;        ///< stiffness of joints, capped at 1/4 of the substep rate
   float joint_damping_ratio = 2.0f;
   float maximum_linear_speed = 4.0e3f;  ///< m/s
-  float sleep_time = 0.5f;             ///< s below the sleep speed before an island sleeps
+  float sleep_time = 0.5f;              ///< s below the sleep speed before an island sleeps
 };
 
 enum class BodyType : std::uint8_t { fixed, kinematic, dynamic };
 
 /// Degrees of freedom that do not move, in world axes.
 struct MotionLocks {
-  bool x = false, y = false, z = false;                    ///< translation (z: 3D only)
+  bool x = false, y = false, z = false;                             ///< translation (z: 3D only)
   bool rotation_x = false, rotation_y = false, rotation_z = false;  ///< 2D has rotation_z only
   friend bool operator==(const MotionLocks&, const MotionLocks&) = default;
 };
 
-template <class D> struct BodyDef {
+template <class D>
+struct BodyDef {
   BodyType type = BodyType::dynamic;
-  typename D::Position position{};          ///< m, of the body's origin
+  typename D::Position position{};  ///< m, of the body's origin
   typename D::Rotation rotation{};
-  typename D::Vector linear_velocity{};     ///< m/s, of the centre of mass
-  typename D::Angular angular_velocity{};   ///< rad/s, world axes
-  float linear_damping = 0;                 ///< 1/s
-  float angular_damping = 0;                ///< 1/s
+  typename D::Vector linear_velocity{};    ///< m/s, of the centre of mass
+  typename D::Angular angular_velocity{};  ///< rad/s, world axes
+  float linear_damping = 0;                ///< 1/s
+  float angular_damping = 0;               ///< 1/s
   float gravity_scale = 1;
-  float sleep_speed = 0.05f;                ///< m/s; 0: never sleeps
+  float sleep_speed = 0.05f;  ///< m/s; 0: never sleeps
   MotionLocks locks{};
   bool awake = true;
   bool allow_sleep = true;
-  bool bullet = false;                      ///< continuous against moving bodies too
+  bool bullet = false;  ///< continuous against moving bodies too
   bool enabled = true;
   std::uint64_t user_data = 0;
-  std::string_view name{};                  ///< for reports and pictures; copied
+  std::string_view name{};  ///< for reports and pictures; copied
 };
 
 /// How a surface behaves. Mixed for a pair: friction √(ab), restitution max(a, b), resistance max(a, b).
 struct Material {
-  float friction = 0.6f;            ///< Coulomb's μ, ≥ 0
-  float restitution = 0;            ///< 0 … 1
-  float rolling_resistance = 0;     ///< lever arm / radius, ≥ 0
-  float tangent_speed = 0;          ///< m/s along the surface (2D), a conveyor
+  float friction = 0.6f;         ///< Coulomb's μ, ≥ 0
+  float restitution = 0;         ///< 0 … 1
+  float rolling_resistance = 0;  ///< lever arm / radius, ≥ 0
+  float tangent_speed = 0;       ///< m/s along the surface (2D), a conveyor
   std::uint32_t user_id = 0;
   friend bool operator==(const Material&, const Material&) = default;
 };
@@ -88,27 +93,29 @@ struct Filter {
   friend bool operator==(const Filter&, const Filter&) = default;
 };
 
-template <class D> struct ShapeDef {
+template <class D>
+struct ShapeDef {
   typename D::Transform local{};  ///< shape → body
   float density = 1000;           ///< kg/m³ (2D: kg/m²), ≥ 0
   Material material{};
   Filter filter{};
-  bool sensor = false;            ///< reports overlaps, pushes nothing
-  bool contact_events = true;     ///< begin and end events
-  bool hit_events = false;        ///< an event with impulse and speed on every hard impact
+  bool sensor = false;         ///< reports overlaps, pushes nothing
+  bool contact_events = true;  ///< begin and end events
+  bool hit_events = false;     ///< an event with impulse and speed on every hard impact
   std::uint64_t user_data = 0;
 };
 
 enum class JointType : std::uint8_t { distance, ball, hinge, slider, weld, motor, mouse };
 
-template <class D> struct JointFrames {
+template <class D>
+struct JointFrames {
   BodyId body_a{}, body_b{};
   typename D::Transform frame_a{}, frame_b{};  ///< joint frame in each body's frame
   bool collide_connected = false;
 };
 
-/// A spring toward the joint's rest state: natural frequency (Hz, 0: none) and damping ratio of what moves on it. Exact in
-/// time, frequency and decay, up to about a tenth of the substep rate; stiffer springs are stable but damp more.
+/// A spring toward the joint's rest state: natural frequency (Hz, 0: none) and damping ratio of what moves on it. Exact
+/// in time, frequency and decay, up to about a tenth of the substep rate; stiffer springs are stable but damp more.
 struct JointSpring {
   float hertz = 0;
   float damping_ratio = 0;
@@ -128,7 +135,8 @@ struct JointMotor {
 
 /// Keeps the frames' origins `length` apart. With a spring: a spring about `length` between the limits.
 /// A rope: limit {true, 0, length} with spring hertz 0 and `rope` set.
-template <class D> struct DistanceJointDef : JointFrames<D> {
+template <class D>
+struct DistanceJointDef : JointFrames<D> {
   float length = 1;
   bool rope = false;  ///< only ever pulls
   JointSpring spring{};
@@ -136,33 +144,38 @@ template <class D> struct DistanceJointDef : JointFrames<D> {
   JointMotor motor{};
 };
 /// Keeps the frames' origins together; turns freely (3D), within a cone about frame z of A and a twist range.
-template <class D> struct BallJointDef : JointFrames<D> {
-  JointSpring spring{};       ///< toward frames aligned
-  float cone_angle = -1;      ///< rad, < 0: no limit
+template <class D>
+struct BallJointDef : JointFrames<D> {
+  JointSpring spring{};   ///< toward frames aligned
+  float cone_angle = -1;  ///< rad, < 0: no limit
   JointLimit twist{};
   float friction_torque = 0;  ///< N·m
 };
 /// Turns about z of the frames only (2D: the revolute joint).
-template <class D> struct HingeJointDef : JointFrames<D> {
+template <class D>
+struct HingeJointDef : JointFrames<D> {
   JointSpring spring{};
   float target_angle = 0;  ///< rad, of the spring
   JointLimit limit{};
   JointMotor motor{};
 };
 /// Slides along x of frame A only (the prismatic joint).
-template <class D> struct SliderJointDef : JointFrames<D> {
+template <class D>
+struct SliderJointDef : JointFrames<D> {
   JointSpring spring{};
   float target_translation = 0;  ///< m, of the spring
   JointLimit limit{};
   JointMotor motor{};
 };
 /// Frames stay together; a spring of 0 Hz is rigid.
-template <class D> struct WeldJointDef : JointFrames<D> {
+template <class D>
+struct WeldJointDef : JointFrames<D> {
   JointSpring linear{};
   JointSpring angular{};
 };
 /// Drives B toward a pose relative to A with limited force and torque.
-template <class D> struct MotorJointDef : JointFrames<D> {
+template <class D>
+struct MotorJointDef : JointFrames<D> {
   JointSpring linear{2.0f, 1.0f};
   JointSpring angular{2.0f, 1.0f};
   float max_force = 1e3f;   ///< N
@@ -170,7 +183,8 @@ template <class D> struct MotorJointDef : JointFrames<D> {
 };
 /// Pulls a point of B toward a target in the world: the hand of a user. body_a is ignored; frame_b.p is the point.
 /// Slows the body's turning too, at the rate ½ hertz · damping_ratio (1/s).
-template <class D> struct MouseJointDef : JointFrames<D> {
+template <class D>
+struct MouseJointDef : JointFrames<D> {
   typename D::Position target{};
   JointSpring spring{5.0f, 1.0f};
   float max_force = 1e4f;  ///< N

@@ -10,11 +10,11 @@ using namespace math;
 
 struct Dim2 {
   static constexpr int dimension = 2;
-  using Vector = Vec2f;       ///< local: m, m/s, N
-  using Position = Vec2d;     ///< world: m
+  using Vector = Vec2f;    ///< local: m, m/s, N
+  using Position = Vec2d;  ///< world: m
   using Rotation = Rot2f;
-  using Angular = float;      ///< rad/s, N·m, about z
-  using Inertia = float;      ///< kg·m²
+  using Angular = float;  ///< rad/s, N·m, about z
+  using Inertia = float;  ///< kg·m²
   using Pose = Pose2;
   using Transform = Transform2f;
   using Bounds = geometry::Bounds2d;

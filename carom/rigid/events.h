@@ -12,7 +12,8 @@ struct ContactEndEvent {
   ShapeId shape_a, shape_b;  ///< may no longer exist
 };
 /// An impact above the world's hit threshold, with the impulse that the solver really applied.
-template <class D> struct ContactHitEvent {
+template <class D>
+struct ContactHitEvent {
   ShapeId shape_a, shape_b;
   typename D::Position point{};
   typename D::Vector normal{};  ///< from A to B
@@ -26,7 +27,8 @@ struct SleepEvent {
   BodyId body;
 };
 
-template <class D> struct Events {
+template <class D>
+struct Events {
   std::span<const ContactBeginEvent> contact_begin;
   std::span<const ContactEndEvent> contact_end;
   std::span<const ContactHitEvent<D>> contact_hit;

@@ -8,7 +8,8 @@
 
 namespace carom::rigid {
 
-template <class D> struct BodyState {
+template <class D>
+struct BodyState {
   typename D::Pose pose{};                 ///< of the body's origin
   typename D::Position center_of_mass{};   ///< m, world
   typename D::Vector linear_velocity{};    ///< m/s, of the centre of mass
@@ -20,22 +21,24 @@ template <class D> struct BodyState {
   std::uint64_t user_data = 0;
 };
 
-template <class D> struct JointState {
+template <class D>
+struct JointState {
   JointType type{};
   BodyId body_a{}, body_b{};
   typename D::Vector force{};    ///< N, on B, over the last step
   typename D::Angular torque{};  ///< N·m, on B
   float coordinate = 0;          ///< angle (hinge) or translation (slider, distance)
   float speed = 0;
-  float linear_error = 0;        ///< m by which the joint is pulled apart
-  float angular_error = 0;       ///< rad
+  float linear_error = 0;   ///< m by which the joint is pulled apart
+  float angular_error = 0;  ///< rad
 };
 
 template <class D>
 using AnyJointDef = std::variant<DistanceJointDef<D>, BallJointDef<D>, HingeJointDef<D>, SliderJointDef<D>,
                                  WeldJointDef<D>, MotorJointDef<D>, MouseJointDef<D>>;
 
-template <class D> struct ContactView {
+template <class D>
+struct ContactView {
   ShapeId shape_a{}, shape_b{};
   typename D::Vector normal{};  ///< from A to B, world
   int count = 0;
@@ -45,16 +48,17 @@ template <class D> struct ContactView {
     float normal_impulse = 0;  ///< N·s over the step
   } points[D::max_points];
   typename D::Vector friction_impulse{};  ///< N·s on B over the step
-  int color = -1;                          ///< of the constraint graph
+  int color = -1;                         ///< of the constraint graph
 };
 
-template <class D> struct Totals {
-  double mass = 0;                       ///< kg, dynamic bodies
+template <class D>
+struct Totals {
+  double mass = 0;  ///< kg, dynamic bodies
   typename D::Position center_of_mass{};
-  typename D::Position momentum{};       ///< kg·m/s
+  typename D::Position momentum{};                                          ///< kg·m/s
   std::conditional_t<D::dimension == 2, double, Vec3d> angular_momentum{};  ///< kg·m²/s about the origin
-  double kinetic_energy = 0;             ///< J
-  double potential_energy = 0;           ///< J, in uniform gravity, zero at the origin's height
+  double kinetic_energy = 0;                                                ///< J
+  double potential_energy = 0;  ///< J, in uniform gravity, zero at the origin's height
 };
 
 struct Counters {

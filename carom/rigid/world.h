@@ -20,7 +20,8 @@ struct QueryFilter {
   std::uint64_t category = ~std::uint64_t{0};
   std::uint64_t mask = ~std::uint64_t{0};
 };
-template <class D> struct RayHit {
+template <class D>
+struct RayHit {
   ShapeId shape{};
   typename D::Position point{};
   typename D::Vector normal{};
@@ -31,7 +32,8 @@ template <class D> struct RayHit {
 /// Bodies, shapes, joints and effectors, and their motion in time. Not copyable; two worlds in two threads are
 /// independent. Every function that takes a handle or a number from outside returns an error for a stale, foreign or
 /// null handle and for a number that is not finite or out of range, and leaves the world as it was.
-template <class D> class CAROM_API World {
+template <class D>
+class CAROM_API World {
  public:
   using Vector = typename D::Vector;
   using Position = typename D::Position;
@@ -54,10 +56,12 @@ template <class D> class CAROM_API World {
   bool contains(BodyId body) const;
   Result<BodyState<D>> state(BodyId body) const;
   Result<BodyDef<D>> body_definition(BodyId body) const;  ///< as it is now: definition and state in one
-  Result<geometry::MassProperties2> mass_properties2(BodyId body) const requires(D::dimension == 2);
-  Result<geometry::MassProperties3> mass_properties3(BodyId body) const requires(D::dimension == 3);
+  Result<geometry::MassProperties2> mass_properties2(BodyId body) const
+    requires(D::dimension == 2);
+  Result<geometry::MassProperties3> mass_properties3(BodyId body) const
+    requires(D::dimension == 3);
   Status set_mass_properties(BodyId body, const typename D::MassProperties& properties);  ///< instead of the shapes'
-  Status set_pose(BodyId body, Position position, Rotation rotation);                      ///< teleports
+  Status set_pose(BodyId body, Position position, Rotation rotation);                     ///< teleports
   Status set_velocity(BodyId body, Vector linear, Angular angular);
   Status set_target_pose(BodyId body, Position position, Rotation rotation, float dt);  ///< kinematic: be there in dt
   Status set_type(BodyId body, BodyType type);
@@ -98,9 +102,9 @@ template <class D> class CAROM_API World {
   bool contains(JointId joint) const;
   Result<JointState<D>> joint_state(JointId joint) const;
   Result<AnyJointDef<D>> joint_definition(JointId joint) const;  ///< as it is now
-  Status set_motor(JointId joint, const JointMotor& motor);    ///< distance, hinge, slider
-  Status set_limit(JointId joint, const JointLimit& limit);    ///< distance, ball (its twist), hinge, slider
-  Status set_spring(JointId joint, const JointSpring& spring);  ///< both springs of a weld or motor joint
+  Status set_motor(JointId joint, const JointMotor& motor);      ///< distance, hinge, slider
+  Status set_limit(JointId joint, const JointLimit& limit);      ///< distance, ball (its twist), hinge, slider
+  Status set_spring(JointId joint, const JointSpring& spring);   ///< both springs of a weld or motor joint
   Status set_mouse_target(JointId joint, Position target);
 
   // Effectors: forces that act on their own every step (effector.h).
@@ -118,7 +122,8 @@ template <class D> class CAROM_API World {
   Events<D> events() const;
 
   // Queries. Rays and casts go from `origin` by `translation`.
-  Result<RayHit<D>> ray_cast(Position origin, Vector translation, QueryFilter filter = {}) const;  ///< closest; null shape: none
+  Result<RayHit<D>> ray_cast(Position origin, Vector translation,
+                             QueryFilter filter = {}) const;  ///< closest; null shape: none
   Status ray_cast_all(Position origin, Vector translation, std::vector<RayHit<D>>& hits, QueryFilter filter = {}) const;
   Result<RayHit<D>> shape_cast(const Shape& shape, const Pose& pose, Vector translation, QueryFilter filter = {}) const;
   Status overlap(const Shape& shape, const Pose& pose, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
@@ -131,11 +136,11 @@ template <class D> class CAROM_API World {
   void effectors(std::vector<EffectorId>& out) const;
   void contacts(std::vector<ContactView<D>>& out) const;  ///< touching contacts with points and impulses
 
-  Totals<D> totals() const;          ///< mass, momentum, angular momentum, energies
-  Counters counters() const;         ///< bodies, awake, shapes, contacts, joints, islands, colours, bytes
-  StepProfile profile() const;       ///< ms of the last step, by stage
-  float worst_penetration() const;   ///< m, over touching contacts after the last step
-  float worst_joint_error() const;   ///< m
+  Totals<D> totals() const;         ///< mass, momentum, angular momentum, energies
+  Counters counters() const;        ///< bodies, awake, shapes, contacts, joints, islands, colours, bytes
+  StepProfile profile() const;      ///< ms of the last step, by stage
+  float worst_penetration() const;  ///< m, over touching contacts after the last step
+  float worst_joint_error() const;  ///< m
   /// 64-bit hash of every body's pose, velocity and sleep state, in creation order.
   std::uint64_t state_hash() const;
 
