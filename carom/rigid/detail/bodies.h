@@ -51,4 +51,17 @@ void remove_from_tree(WorldImplementation<D>& world, std::int32_t shape);
 template <class D>
 void refresh_bounds(WorldImplementation<D>& world, std::int32_t body);
 
+/// Locked degrees of freedom do not move: their velocities go to zero.
+inline void apply_locks(SolverBody<Dim2>& s, std::uint8_t locks) {
+  if (locks & 1) s.linear_velocity.x = 0;
+  if (locks & 2) s.linear_velocity.y = 0;
+  if (locks & 32) s.angular_velocity = 0;
+}
+inline void apply_locks(SolverBody<Dim3>& s, std::uint8_t locks) {
+  for (int i = 0; i < 3; ++i) {
+    if (locks >> i & 1) s.linear_velocity[i] = 0;
+    if (locks >> (3 + i) & 1) s.angular_velocity[i] = 0;
+  }
+}
+
 }  // namespace carom::rigid::detail

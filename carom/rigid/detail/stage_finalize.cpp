@@ -58,6 +58,7 @@ void finalize_bodies(StepContext<D>& context) {
       typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
       scratch.body_changes[std::size_t(i)] = 0;
       record.flags &= std::uint16_t(~body_fast);
+      if (record.locks != 0) apply_locks(s, record.locks);  // the last relaxation may have moved them
       if (!(is_finite(s.linear_velocity) && is_finite(s.angular_velocity) && is_finite(s.delta_position) &&
             is_finite(s.delta_rotation))) {
         quarantine(world, body);

@@ -6,17 +6,6 @@ namespace {
 
 constexpr int body_grain = 256;
 
-void apply_locks(SolverBody<Dim2>& s, std::uint8_t locks) {
-  if (locks & 1) s.linear_velocity.x = 0;
-  if (locks & 2) s.linear_velocity.y = 0;
-  if (locks & 32) s.angular_velocity = 0;
-}
-void apply_locks(SolverBody<Dim3>& s, std::uint8_t locks) {
-  for (int i = 0; i < 3; ++i) {
-    if (locks >> i & 1) s.linear_velocity[i] = 0;
-    if (locks >> (3 + i) & 1) s.angular_velocity[i] = 0;
-  }
-}
 float speed_of(float w) { return math::abs(w); }
 float speed_of(const Vec3f& w) { return math::length(w); }
 
