@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import type {Viewer} from './viewer';
 
-interface Hold { plane: THREE.Plane; held: boolean; local?: THREE.Vector3; point: THREE.Vector3; target: THREE.Vector3 }
+interface Hold { plane: THREE.Plane; held: boolean; point: THREE.Vector3; target: THREE.Vector3; x: number; y: number }
 
 export class Hands {
   private holds = new Map<number, Hold>();
@@ -21,7 +21,7 @@ export class Hands {
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.classList.add('grabbing');
     const ray = this.viewer.ray(event.clientX, event.clientY);
-    const hold = {plane: new THREE.Plane(), held: false, point: new THREE.Vector3(), target: new THREE.Vector3()};
+    const hold = {plane: new THREE.Plane(), held: false, point: new THREE.Vector3(), target: new THREE.Vector3(), x: event.clientX, y: event.clientY};
     this.holds.set(event.pointerId, hold);
     this.send({type: 'grab', pointer: event.pointerId, origin: ray.origin.toArray(), direction: ray.direction.toArray()});
   }
@@ -34,6 +34,12 @@ export class Hands {
     hold.point.set(point[0], point[1], point[2]);
     hold.target.copy(hold.point);
     hold.plane.setFromNormalAndCoplanarPoint(this.viewer.viewDirection, hold.point);
+    this.drag(pointer, hold);  // the pointer may have moved before the host answered
+  }
+
+  private drag(pointer: number, hold: Hold): void {
+    const hit = this.viewer.ray(hold.x, hold.y).intersectPlane(hold.plane, hold.target);
+    if (hit) this.send({type: 'drag', pointer, target: hold.target.toArray()});
   }
 
   private move(event: PointerEvent): void {
@@ -43,9 +49,9 @@ export class Hands {
         this.canvas.classList.toggle('grab', this.viewer.dynamicBodyAt(event.clientX, event.clientY));
       return;
     }
-    if (!hold.held) return;
-    const hit = this.viewer.ray(event.clientX, event.clientY).intersectPlane(hold.plane, hold.target);
-    if (hit) this.send({type: 'drag', pointer: event.pointerId, target: hold.target.toArray()});
+    hold.x = event.clientX;
+    hold.y = event.clientY;
+    if (hold.held) this.drag(event.pointerId, hold);
   }
 
   private up(pointer: number): void {

@@ -18,8 +18,6 @@ class Page implements Listener {
   private hands = new Hands(this.canvas, this.viewer, this.send);
   private demos: DemoSummary[] = [];
   private opened?: Opened;
-  /** ms from the beginning of the load to the first frame of a simulation; read by the tests. */
-  firstPicture = 0;
   private running = true;
   private held = new Map<string, string>();  // key → action
 
@@ -103,7 +101,6 @@ class Page implements Listener {
 
   frame(frame: Frame): void {
     this.viewer.apply(frame);
-    this.firstPicture ||= performance.now();
     for (const s of frame.samples) this.plots.add(s.plot, s.series, s.x, s.y);
     byId('clock').textContent = `${frame.time.toFixed(2)} s · step ${frame.step}`;
     if (frame.stats) this.panel.numbers(frame.stats);

@@ -129,7 +129,11 @@ export class Viewer {
     this.clear();
     this.meshes.clear();
     this.dimension = dimension;
-    this.home = camera;
+    // Far from the world's origin everything is drawn about the camera's target: the GPU computes in float.
+    const target = new THREE.Vector3(...(camera.target as [number, number, number]));
+    this.origin.copy(target.length() > 1e4 ? target : new THREE.Vector3());
+    const near = (p: number[]) => p.map((x, i) => x - this.origin.getComponent(i));
+    this.home = {...camera, position: near(camera.position), target: near(camera.target)};
     this.resetView();
   }
 
@@ -177,7 +181,7 @@ export class Viewer {
   }
 
   setGround(level: number | undefined): void {
-    if (this.dimension === 3) this.ground.showGround(level);
+    if (this.dimension === 3) this.ground.showGround(level === undefined ? undefined : level - this.origin.y);
   }
 
   enableOrbit(enabled: boolean): void { this.controls.enabled = enabled; }
@@ -189,7 +193,6 @@ export class Viewer {
     this.waiting = [];
     this.setLines(new Float32Array(), new Uint32Array());
     this.showHand();
-    this.origin.set(0, 0, 0);
   }
 
   setBodies(bodies: Body[]): void {
@@ -260,7 +263,8 @@ export class Viewer {
   }
 
   apply(frame: Frame): void {
-    this.origin.set(...frame.origin);
+    // Positions come relative to the frame's origin; what is drawn is relative to the view's own.
+    const shift = new THREE.Vector3(frame.origin[0] - this.origin.x, frame.origin[1] - this.origin.y, frame.origin[2] - this.origin.z);
     const pose = new THREE.Matrix4(), matrix = new THREE.Matrix4(), unit = new THREE.Vector3(1, 1, 1), tone = new THREE.Color();
     const touched = new Set<Batch>();
     const view = frame.bodies;
@@ -269,7 +273,7 @@ export class Viewer {
       const word = view.getUint32(at, true);
       const drawn = this.drawn.get(word & 0x7fffffff);
       if (!drawn) continue;
-      drawn.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true));
+      drawn.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true)).add(shift);
       drawn.rotation.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
       pose.compose(drawn.position, drawn.rotation, unit);
       const asleep = (word >>> 31) === 1;
@@ -283,6 +287,8 @@ export class Viewer {
     }
     for (const batch of touched) batch.touch();
     this.setLines(frame.lines, frame.lineColors);
+    this.lines.position.copy(shift);
+    if (this.dimension === 2) this.lines.position.z = 1;
   }
 
   private moveWith(position: THREE.Vector3): void {
@@ -304,7 +310,6 @@ export class Viewer {
     this.lines.geometry = new LineSegmentsGeometry();
     this.lines.geometry.setPositions(points);
     this.lines.geometry.setColors(rgb);
-    this.lines.position.z = this.dimension === 2 ? 1 : 0;
   }
 
   /** The ray through a place of the canvas (CSS pixels), in world coordinates. */
