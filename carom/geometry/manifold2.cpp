@@ -25,8 +25,13 @@ void point_point(Vec2f a, float ra, Vec2f b, float rb, float margin, std::uint32
 
 /// A round shape that passes over the end of an edge without dipping below it is pushed along the edge's normal, so
 /// that it does not catch on the joint of two level edges (the same rule as in space, detail/contact_points.h).
-Vec2f over_border(Vec2f n, Vec2f edge_normal, float above, float radius) {
-  return above - radius > -min(0.005f * radius, 0.001f) && dot(n, edge_normal) > 0.85f ? edge_normal : n;
+/// Well beside the edge there is nothing to meet yet.
+void over_border(Manifold2& m, Vec2f edge_normal, float above, float radius) {
+  if (m.count == 0 || above - radius <= -min(0.005f * radius, 0.001f)) return;
+  if (dot(m.normal, edge_normal) > 0.85f)
+    m.normal = edge_normal;
+  else if (m.points[0].separation > 0)
+    m.count = 0;
 }
 
 /// One corner of b against the polygon or line a.
@@ -44,7 +49,7 @@ void against_point(const Rounded2& a, Vec2f p, float radius, float margin, Manif
     const Vec2f d = p - q;
     if (dot(d, d) > 1e-12f * best && distance_squared(q, p) > best * best * 1.000001f) {  // round a corner
       point_point(q, a.radius, p, radius, margin, 0, out);
-      if (out.count > 0 && a.radius == 0) out.normal = over_border(out.normal, a.n[edge], best, a.radius + radius);
+      if (a.radius == 0) over_border(out, a.n[edge], best, a.radius + radius);
       return;
     }
   }
@@ -138,7 +143,7 @@ void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cac
     if (dot(d.normal, of_b ? -r.n[axis.edge] : r.n[axis.edge]) < 0.9999f && d.distance > 1e-6f) {
       single(d.point_a, a.radius, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
       const Vec2f n = of_b ? -r.n[axis.edge] : r.n[axis.edge];
-      if (radius > 0 && r.radius == 0) out.normal = over_border(d.normal, n, axis.separation, radius);
+      if (radius > 0 && r.radius == 0) over_border(out, n, axis.separation, radius);
       return;
     }
   }

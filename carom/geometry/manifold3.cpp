@@ -78,10 +78,13 @@ void box_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, float ma
   if (l2 > 1e-12f * dot(h, h)) {
     point_point(q, a.box.radius, c, r, margin, 0, out);
     const float radius = a.box.radius + r;
-    if (out.count > 0 && a.box.radius == 0 && gap[axis] - radius > -detail::border_tolerance(radius) &&
-        gap[axis] * gap[axis] > detail::border_cosine * detail::border_cosine * l2) {
-      out.normal = {};
-      out.normal[axis] = c[axis] < 0 ? -1.0f : 1.0f;
+    if (out.count > 0 && a.box.radius == 0 && gap[axis] - radius > -detail::border_tolerance(radius)) {
+      if (gap[axis] * gap[axis] > detail::border_cosine * detail::border_cosine * l2) {
+        out.normal = {};
+        out.normal[axis] = c[axis] < 0 ? -1.0f : 1.0f;
+      } else if (out.points[0].separation > 0) {
+        out.count = 0;  // above the face's level and well beside it: nothing to meet yet
+      }
     }
     return;
   }

@@ -55,7 +55,10 @@ TEST(Manifold3, DepthAgreesWithTheReferenceAndMirrors) {
           ++apart;
           // Sharp boxes that are apart at a corner may be left out; what is reported is never nearer than the truth by
           // more than the slant of a face's normal allows.
-          if (ka == 2 && kb == 2 && m.count == 0) continue;
+          // So may round shapes well beside a sharp face whose level they are above.
+          const auto sharp = [](int kind) { return kind >= 2 && kind <= 5; };
+          const auto round = [](int kind) { return kind != 2 && kind != 5; };
+          if (m.count == 0 && ((ka == 2 && kb == 2) || (sharp(ka) && round(kb)) || (sharp(kb) && round(ka)))) continue;
         } else {
           ++touching;
         }
@@ -206,13 +209,14 @@ TEST(Manifold3, FlushTilesDoNotCatchRoundShapes) {
   const Case cases[] = {{Sphere{0.3f}, 0.3f, {}},
                         {Capsule3{0.3f, 0.3f}, 0.3f, across},
                         {Capsule3{0.3f, 0.3f}, 0.3f, along},
-                        {Cylinder{0.3f, 0.3f}, 0.3f, across}};
+                        {Cylinder{0.3f, 0.3f}, 0.3f, across},
+                        {Cylinder{0.3f, 0.3f}, 0.3f, {}}};
   for (const Case& c : cases) {
     PairCache cache;
     for (int k = 0; k < 2400; ++k)
       for (const float sink : {-0.002f, 0.0f, 0.0005f}) {
         Manifold3 m;
-        collide(tile, c.shape, {{-1.2f + 0.001f * float(k), 0.5f + c.height - sink, 0.1f}, c.q}, 0.02f, cache, m);
+        collide(tile, c.shape, {{-1.2f + 0.001f * float(k), 0.5f + c.height - sink, 0.1f}, c.q}, 0.16f, cache, m);
         if (m.count > 0) ASSERT_GT(m.normal.y, 0.9999f) << int(c.shape.type) << " " << k << " " << sink;
       }
   }

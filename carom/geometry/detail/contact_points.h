@@ -32,7 +32,7 @@ void flip(Manifold3& m, const Transform3f& a_in_b);
 /// A round surface that passes over a face's border without dipping below the face by more than this (for a total
 /// radius r) is pushed along the face's normal, not the tilted one of the border: so nothing round catches on the joint
 /// of two level faces, and the distance stays the true one. Only where the two normals are within 32°: what falls past
-/// the border is not held by a face that it is not over.
+/// the border is not held by a face that it is not over; there, while apart, it has no contact yet.
 inline float border_tolerance(float r) { return min(0.005f * r, 0.001f); }
 inline constexpr float border_cosine = 0.85f;
 

@@ -115,6 +115,22 @@ int face_index(const Convex& c, Vec3f n) {
   return best;
 }
 
+// Sharp shapes side by side with a flat face of each level with the other's (an upright cylinder before the next tile):
+// where they meet only in a strip narrower than a small tolerance, a contact across the row would catch on the joint.
+bool grazes(const Convex& a, const Convex& b, const Transform3f& b_in_a, Vec3f n, float tolerance) {
+  if (face_count(a) > 12) return false;
+  const Pair pair{a, b, b_in_a, 0};
+  for (int i = 0; i < face_count(a); ++i) {
+    const FacePlane plane = face_plane(a, i);
+    if (abs(dot(plane.normal, n)) > 0.3f) continue;
+    const Vec3f facing = -inverse_rotate(b_in_a.q, plane.normal);
+    const int k = face_index(b, facing);
+    if (k < 0 || dot(face_plane(b, k).normal, facing) < 0.9998f) continue;
+    if (pair.along_a(plane) > -tolerance) return true;
+  }
+  return false;
+}
+
 // Contacts for the normal n (A to B, in A's frame) with core separation d. Returns the cache entry.
 void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCache& cache, Manifold3& out) {
   const Vec3f n = normalize(Vec3f(found.normal));
@@ -123,6 +139,15 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
   float sa = -1e30f, sb = -1e30f;
   if (fa >= 0) sa = pair.along_a(face_plane(pair.a, fa));
   if (fb >= 0) sb = pair.along_b(face_plane(pair.b, fb));
+  if (pair.radius() == 0 && pair.a.kind != CoreKind::triangle && slack > 0) {
+    const float graze = min(40 * slack, 0.005f);  // 2 % of the smaller shape
+    if (d > -graze && (grazes(pair.a, pair.b, pair.x, n, graze) ||
+                       grazes(pair.b, pair.a, inverse(pair.x), inverse_rotate(pair.x.q, n), graze))) {
+      cache.kind = direction;
+      cache.d = pack(n);
+      return;
+    }
+  }
   const float tolerance = d > 0 ? 0.01f * d + 0.02f * slack : 0.05f * -d + slack;
   const bool use_a = sa >= d - tolerance, use_b = sb >= d - tolerance;
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -155,16 +180,24 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
   const auto roundness = [](const Convex& c) { return is_round(c) ? c.half.x : c.radius; };
   const float border = border_tolerance(roundness(pair.a) + roundness(pair.b));
   Vec3f pushed = n;
+  bool beyond = false;  // above the face's level and well beside it: nothing to meet yet
   if (border > 0 && d - pair.radius() > -border) {
     if (fa >= 0 && pair.a.radius == 0 && sa - pair.radius() > -border) {
       const Vec3f f = face_plane(pair.a, fa).normal;
-      if (dot(f, n) > border_cosine) pushed = f;
+      if (dot(f, n) > border_cosine)
+        pushed = f;
+      else
+        beyond = d > pair.radius();
     }
     if (fb >= 0 && pair.b.radius == 0 && sb - pair.radius() > -border && pushed == n) {
       const Vec3f f = -rotate(pair.x.q, face_plane(pair.b, fb).normal);
-      if (dot(f, n) > border_cosine) pushed = f;
+      if (dot(f, n) > border_cosine)
+        pushed = f;
+      else
+        beyond = beyond || d > pair.radius();
     }
   }
+  if (beyond) return;
   // Two straight sides along each other touch in two points.
   Vec3f la[2], lb[2];
   if (side_line(pair.a, n, la) && side_line(pair.b, -inverse_rotate(pair.x.q, n), lb)) {
