@@ -74,7 +74,7 @@ class Session : public std::enable_shared_from_this<Session> {
   }
   ~Session() { --server_.clients; }
 
-  void start(http::request<http::empty_body> request) {
+  void start(const http::request<http::empty_body>& request) {
     // From here on the WebSocket has timeouts of its own.
     beast::get_lowest_layer(stream_).expires_never();
     websocket::stream_base::timeout timeouts{};
@@ -282,7 +282,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   template <class Response>
-  void send(std::shared_ptr<Response> response) {
+  void send(const std::shared_ptr<Response>& response) {
     stream_.expires_after(std::chrono::seconds(30));
     const auto serializer = std::make_shared<http::response_serializer<typename Response::body_type>>(*response);
     if (head_) serializer->split(true);

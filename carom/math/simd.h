@@ -49,8 +49,9 @@ inline constexpr int native_width = CAROM_SIMD_NATIVE_WIDTH;
 template <int W>
 struct WideVectors {
   static_assert(W == 4 || W == 8 || W == 16, "a width is 4, 8 or 16 lanes");
-  typedef float Floats __attribute__((vector_size(4 * W)));
-  typedef std::int32_t Ints __attribute__((vector_size(4 * W)));
+  // gcc takes this attribute with a dependent size on a typedef only.
+  typedef float Floats __attribute__((vector_size(4 * W)));       // NOLINT(modernize-use-using)
+  typedef std::int32_t Ints __attribute__((vector_size(4 * W)));  // NOLINT(modernize-use-using)
 };
 
 /// One truth value per lane: all bits set or none.

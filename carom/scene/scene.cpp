@@ -9,7 +9,6 @@
 
 namespace carom::scene {
 namespace {
-using detail::Measure;
 using detail::Node;
 using detail::Object;
 using detail::Quantity;

@@ -114,6 +114,8 @@ test('a body is grabbed with the mouse, follows it, and falls when let go', asyn
   const ids = await bodies(page, 'dynamic');
   // The highest body: nothing stands in front of a pyramid's top.
   const top = await page.evaluate((all) => all.map((i) => [i, window.caromPage.viewer.bodyPosition(i)])
+    .filter(([i]) => { const s = window.caromPage.viewer.screenOf(i), b = document.querySelector('#view').getBoundingClientRect();
+      return s.x > b.left + 40 && s.x < b.right - 40 && s.y > b.top + 120 && s.y < b.bottom - 80; })
     .sort((a, b) => (b[1][1] - a[1][1]) || (b[1][2] - a[1][2]))[0][0], ids);
   const at = await screen(page, top), before = await place(page, top);
   await page.mouse.move(at.x, at.y);
