@@ -74,8 +74,11 @@ TEST_P(EverySceneFile, LoadsAndRunsAndDescribesItself) {
 
 TEST_P(EverySceneFile, ComesBackFromAFileWithTheSameStateHash) {
   const Scene scene = load(GetParam());
-  if (scene.kind == Kind::flight) GTEST_SKIP() << "a flight is not a world of bodies";
   SceneWorld world = start(scene);
+  if (scene.kind == Kind::flight) {
+    EXPECT_FALSE(write_scene(world).ok()) << "a flight is not a world of bodies";
+    return;
+  }
   for (int i = 0; i < 25; ++i) ASSERT_TRUE(world.step().ok());
   const Result<std::string> text = write_scene(world);
   ASSERT_TRUE(text.ok()) << text.error().message;
