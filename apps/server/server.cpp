@@ -221,7 +221,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         server_.sessions.push_back(session);
       }
       server_.log("page connected");
-      return session->start(std::move(upgrade));
+      return session->start(upgrade);
     }
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return answer(http::status::method_not_allowed, "only GET and HEAD\n");
