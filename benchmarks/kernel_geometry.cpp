@@ -182,8 +182,10 @@ BENCHMARK(tree_ray)->Arg(10000);
 void ray_on_hull(benchmark::State& state) {
   const Shape3 hull = kernel_hull(32);
   KernelDraw draw;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(ray_cast(hull, {draw.in(-1, 1), 2, draw.in(-1, 1)}, {draw.in(-1, 1), -3, draw.in(-1, 1)}));
+  for (auto _ : state) {
+    const Vec3f from{draw.in(-1, 1), 2, draw.in(-1, 1)}, way{draw.in(-1, 1), -3, draw.in(-1, 1)};
+    benchmark::DoNotOptimize(ray_cast(hull, from, way));
+  }
 }
 BENCHMARK(ray_on_hull);
 void impact_of_a_rod(benchmark::State& state) {

@@ -126,7 +126,20 @@ void box_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, float m
   // Lying nearly level it is a face contact wherever it overhangs; steep, only if the lower end is over the face.
   const bool level = abs(slope) < 0.02f * b.capsule.half_length;
   const bool shallow = s[face] > -0.5f * min(h.x, min(h.y, h.z));
-  if (t0 <= t1 && shallow && (nearest_is_over || (level && s[face] > -1e-3f * h[face]))) {
+  // Where the core is inside, a way out across the capsule and an edge of the box may be shorter than out by the face.
+  const auto edge_is_nearer = [&] {
+    if (s[face] >= 0) return false;
+    float best = -1e30f;
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+      const float l2 = axis[j] * axis[j] + axis[k] * axis[k];
+      if (l2 < 1e-4f) continue;
+      const float apart = abs(x.p[j] * axis[k] - x.p[k] * axis[j]) - h[j] * abs(axis[k]) - h[k] * abs(axis[j]);
+      best = max(best, apart / math::sqrt(l2));
+    }
+    return best > s[face] * 0.95f;
+  };
+  if (t0 <= t1 && shallow && (nearest_is_over || (level && s[face] > -1e-3f * h[face])) && !edge_is_nearer()) {
     out.normal = n;
     for (int k = 0; k < 2; ++k) {
       const float t = k == 0 ? t0 : t1;

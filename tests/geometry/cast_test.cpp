@@ -47,7 +47,7 @@ TEST(RayCast, AgreesWithACastOfAPointOnEveryConvexShape) {
   for (int kind = 0; kind < convex_kinds; ++kind)
     for (int k = 0; k < 400; ++k) {
       const Shape3 shape = random_convex(draw, kind);
-      const Vec3f from = draw.direction() * draw.in(1.8, 4), to = draw.direction() * draw.in(0, 1.2);
+      const Vec3f from = draw.vector(1.8, 4), to = draw.vector(0, 1.2);
       const Vec3f way = (to - from) * draw.in(0.7, 2);
       const CastHit3 ray = ray_cast(shape, from, way);
       const CastHit3 slow = shape_cast(shape, Sphere{1e-6f}, {from, {}}, way);
@@ -120,7 +120,7 @@ TEST(Distance3, NoSampleIsNearerAndTheWitnessesAreThatFarApart) {
     for (int kb = 0; kb < convex_kinds; ++kb)
       for (int k = 0; k < 10; ++k) {
         const Shape3 a = random_convex(draw, ka), b = random_convex(draw, kb);
-        const Transform3f x{draw.direction() * draw.in(2, 4), draw.rotation()};
+        const Transform3f x{draw.vector(2, 4), draw.rotation()};
         const Distance3 d = distance(a, b, x);
         if (d.distance <= 0) continue;
         EXPECT_NEAR(length(d.point_b - d.point_a), d.distance, 1e-4f);
@@ -180,8 +180,9 @@ TEST(ShapeCast, EndsTouchingWhateverTheShapes) {
     for (int kb = 0; kb < convex_kinds; ++kb)
       for (int k = 0; k < 20; ++k) {
         const Shape3 a = random_convex(draw, ka), b = random_convex(draw, kb);
-        Transform3f x{draw.direction() * draw.in(3, 6), draw.rotation()};
-        const Vec3f way = (draw.direction() * 0.8f - x.p) * draw.in(0.5, 1.5);
+        Transform3f x{draw.vector(3, 6), draw.rotation()};
+        const Vec3f goal = draw.direction() * 0.8f;
+        const Vec3f way = (goal - x.p) * draw.in(0.5, 1.5);
         const CastHit3 h = shape_cast(a, b, x, way);
         const Vec3f from = x.p;
         x.p = from + way * h.fraction;

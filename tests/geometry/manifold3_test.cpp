@@ -43,7 +43,7 @@ TEST(Manifold3, DepthAgreesWithTheReferenceAndMirrors) {
     for (int kb = 0; kb < convex_kinds; ++kb)
       for (int k = 0; k < 60; ++k) {
         const Shape3 a = random_convex(draw, ka), b = random_convex(draw, kb);
-        const Transform3f x{draw.direction() * draw.in(0.8, 2.5), draw.rotation()};
+        const Transform3f x{draw.vector(0.8, 2.5), draw.rotation()};
         const double truth = reference(a, b, x);
         const Manifold3 m = contact(a, b, x, 0.1f), r = contact(b, a, inverse(x), 0.1f);
         ASSERT_TRUE(finite(m)) << kind_name(ka) << " " << kind_name(kb) << " " << k;
@@ -76,13 +76,25 @@ TEST(Manifold3, DepthAgreesWithTheReferenceAndMirrors) {
   EXPECT_GT(apart, 100);
 }
 
+// The axis of the capsule lies in the box; the way out across it and an edge is 10 % shorter than out by a face.
+TEST(Manifold3, ACapsuleDeepInARoundedBoxLeavesByTheShorterWay) {
+  const Capsule3 capsule{0.580056489f, 0.970398307f};
+  const Box box{{0.683759511f, 0.982914686f, 0.771261513f}, 0.2f};
+  const Transform3f x{{-0.40512982f, 1.14727855f, -0.652188599f},
+                      normalize(Quatf{-0.402345091f, 0.275888145f, -0.815039098f, -0.312594801f})};
+  const double truth = reference(capsule, box, x);
+  EXPECT_NEAR(truth, -1.2749, 1e-4);
+  EXPECT_NEAR(least(contact(capsule, box, x, 0.1f)), truth, 1e-3);
+  EXPECT_NEAR(least(contact(box, capsule, inverse(x), 0.1f)), truth, 1e-3);
+}
+
 TEST(Manifold3, PushingOutByTheDepthSeparates) {
   Draw draw;
   for (int ka = 0; ka < convex_kinds; ++ka)
     for (int kb = 0; kb < convex_kinds; ++kb)
       for (int k = 0; k < 40; ++k) {
         const Shape3 a = random_convex(draw, ka), b = random_convex(draw, kb);
-        Transform3f x{draw.direction() * draw.in(0.1, 1.2), draw.rotation()};
+        Transform3f x{draw.vector(0.1, 1.2), draw.rotation()};
         const Manifold3 m = contact(a, b, x, 0);
         if (m.count == 0) continue;
         const float depth = -least(m);
@@ -98,7 +110,7 @@ TEST(Manifold3, DoesNotChangeWithTheFrame) {
   Draw draw;
   for (int k = 0; k < 300; ++k) {
     const Box a{{0.5f, 0.5f, 0.5f}}, b{{draw.in(0.2, 1), draw.in(0.2, 1), draw.in(0.2, 1)}};
-    const Transform3f x{draw.direction() * draw.in(0.5, 1.5), draw.rotation()};
+    const Transform3f x{draw.vector(0.5, 1.5), draw.rotation()};
     const Quatf quarter = normalize(Quatf{1, 0, 1, 0});
     const Transform3f y{rotate(quarter, x.p), normalize(quarter * x.q)};
     const Manifold3 m = contact(a, b, x, 0.02f), r = contact(a, b, y, 0.02f);

@@ -24,6 +24,12 @@ struct Draw {
       if (l > 0.1f && l < 1) return v * (1 / l);
     }
   }
+  /// In any direction, its length between a and b. Two draws in one expression would come in an order that the language
+  /// leaves open: so they stand in statements of their own, everywhere.
+  Vec3f vector(double a, double b) {
+    const Vec3f d = direction();
+    return d * in(a, b);
+  }
   Quatf rotation() {
     while (true) {
       const Quatf q{in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1)};
@@ -39,7 +45,7 @@ struct Draw {
 
 inline std::shared_ptr<const Hull> random_hull(Draw& draw, int points, float size, float radius = 0) {
   std::vector<Vec3f> cloud;
-  for (int i = 0; i < points; ++i) cloud.push_back(draw.direction() * (size * draw.in(0.8, 1)));
+  for (int i = 0; i < points; ++i) cloud.push_back(draw.vector(0.8, 1) * size);
   HullOptions options;
   options.radius = radius;
   return make_hull(cloud, options).value();

@@ -61,7 +61,8 @@ TEST(TimeOfImpact3, NothingTunnelsThroughThinWalls) {
     const Vec3f from{draw.in(-4, -0.7), draw.in(-2, 2), draw.in(-2, 2)};
     const Vec3f velocity = normalize(Vec3f{1, draw.in(-0.4, 0.4), draw.in(-0.4, 0.4)}) * 400.0f;
     const Quatf q0 = draw.rotation();
-    const Quatf q1 = turned(q0, draw.direction(), draw.in(0, 50) * dt);
+    const Vec3f axis = draw.direction();
+    const Quatf q1 = turned(q0, axis, draw.in(0, 50) * dt);
     const Sweep3 sweep{{0, draw.in(-0.05, 0.05), 0}, from, from + velocity * dt, q0, q1};
     const TimeOfImpact t = time_of_impact(shape, sweep, wall, still());
     ASSERT_NE(t.state, ImpactState::failed);
@@ -88,11 +89,8 @@ TEST(TimeOfImpact3, TwoMovingRodsMeet) {
     const auto sweep = [&](float side) {
       const Vec3f from{side * draw.in(1, 2), draw.in(-0.3, 0.3), draw.in(-0.3, 0.3)};
       const Quatf q = draw.rotation();
-      return Sweep3{{},
-                    from,
-                    from + Vec3f{-side * 3.5f, draw.in(-0.2, 0.2), draw.in(-0.2, 0.2)},
-                    q,
-                    turned(q, draw.direction(), draw.in(0, 0.83))};
+      const Vec3f way{-side * 3.5f, draw.in(-0.2, 0.2), draw.in(-0.2, 0.2)}, axis = draw.direction();
+      return Sweep3{{}, from, from + way, q, turned(q, axis, draw.in(0, 0.83))};
     };
     const Sweep3 sa = sweep(-1), sb = sweep(1);
     const TimeOfImpact t = time_of_impact(a, sa, b, sb);

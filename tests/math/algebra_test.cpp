@@ -21,7 +21,10 @@ double absolute(Quad x) { return static_cast<double>(x < 0 ? -x : x); }
 
 struct Draw {
   Random random{20250101};
-  double number() { return random.uniform(-1.0, 1.0) * exp2(random.uniform(-20.0, 20.0)); }
+  double number() {
+    const double mantissa = random.uniform(-1.0, 1.0);
+    return mantissa * exp2(random.uniform(-20.0, 20.0));
+  }
   Vec3d vector() {
     const double x = number();
     const double y = number();

@@ -167,7 +167,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
     const float deepest = (of_a ? sa : sb) - pair.radius();
     if (least_separation(points) > deepest + 0.05f * abs(deepest) + slack && deepest <= pair.margin) {
       const Vec3f pa = Vec3f(found.point_a) + n * pair.a.radius, pb = Vec3f(found.point_b) - n * pair.b.radius;
-      points.add((pa + pb) * 0.5f, deepest, 0x20000000u);
+      points.add((pa + pb) * 0.5f, d - pair.radius(), 0x20000000u);
     }
     write_points(points, of_a ? face.normal : -rotate(pair.x.q, face.normal), out);
     cache.kind = of_a ? face_of_a : face_of_b;
