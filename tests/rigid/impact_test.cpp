@@ -102,6 +102,35 @@ TYPED_TEST(Impact, MomentumOfACloudIsConstant) {
   EXPECT_LE(after.kinetic_energy, before.kinetic_energy * (1 + 1e-3));
 }
 
+// A ball thrown at a floor at a slant (mechanics.md 5.4): friction is an impulse of at most μ times the normal one,
+// both of the blow and of the rebound, and stops the slip if it can. J_t = min(μ (1 + e) m v_n, m v_t/(1 + 1/β)) with
+// I = β m r², whatever part of a step is left when they touch. Steps are short, because a contact that is foreseen acts
+// between the surfaces: its lever is longer than the radius by half the gap.
+TYPED_TEST(Impact, FrictionOfABounceFollowsTheWholeBlow) {
+  using D = TypeParam;
+  constexpr double beta = D::dimension == 2 ? 0.5 : 0.4, radius = 0.2, along_speed = 10, fall = 5;
+  for (const float e : {0.3f, 0.8f, 1.0f})
+    for (const float mu : {0.1f, 0.3f, 0.9f})
+      for (const double gap : {0.30, 0.32, 0.345, 0.37}) {
+        World<D> world(world_with<D>(0));
+        add_ground(world, {mu, e, 1000, 0});
+        const BodyId ball = add_ball<D>(world, at<D>(0, radius + gap), float(radius), {mu, e, 1000, 0},
+                                        along<D>(float(along_speed), -float(fall)));
+        for (int i = 0; i < 96; ++i) world.step(frame / 8).value();
+        const BodyState<D> s = world.state(ball).value();
+        double spin = 0;
+        if constexpr (D::dimension == 2)
+          spin = s.angular_velocity;
+        else
+          spin = s.angular_velocity.z;
+        const double lost = std::min(double(mu) * (1 + double(e)) * fall, along_speed / (1 + 1 / beta));
+        EXPECT_NEAR(s.linear_velocity.y, double(e) * fall, 0.01 * fall) << "e " << e << " μ " << mu << " gap " << gap;
+        EXPECT_NEAR(s.linear_velocity.x, along_speed - lost, 0.01 * along_speed)
+            << "e " << e << " μ " << mu << " gap " << gap;
+        EXPECT_NEAR(-spin * radius, lost / beta, 0.02 * along_speed) << "e " << e << " μ " << mu << " gap " << gap;
+      }
+}
+
 TYPED_TEST(Impact, EnergyOfAHeapNeverRises) {
   using D = TypeParam;
   World<D> world(world_with<D>());

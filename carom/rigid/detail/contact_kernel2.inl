@@ -225,6 +225,30 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
       push_back(a, ma, ia, p, delta * turn_a);
       push(b, mb, ib, p, delta * turn_b);
     }
+    // The blow presses the surfaces together: friction of the whole step stays within the cone of its whole load. It
+    // acts where the surfaces meet; the points were foreseen half a gap before that.
+    const F total0 = F::load(c.point[0].total), total1 = F::load(c.point[1].total), load = total0 + total1;
+    const F bounced =
+        max(keep(total0 > zero, F::load(e.bounce_speed[0])), keep(total1 > zero, F::load(e.bounce_speed[1])));
+    const F gap =
+        F::splat(0.5f) *
+        (total0 * max(F::load(c.point[0].separation), zero) + total1 * max(F::load(c.point[1].separation), zero)) /
+        max(load, F::splat(1e-30f));
+    const WideVec2<W> t = {zero - n.y, n.x}, middle = load2<W>(c.patch_r_a), to_surface = {n.x * gap, n.y * gap};
+    const WideVec2<W> ra = subtract(middle, to_surface), rb = add(add(middle, offset), to_surface);
+    const F turn_a = cross(ra, t), turn_b = cross(rb, t), limit = F::load(c.friction) * load;
+    // The mass is that of the foreseen place: a second round takes what the first one left.
+    for (int round = 0; round < 2; ++round) {
+      const F slip = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a - F::load(c.tangent_target);
+      const F old = F::load(c.tangent_total);
+      const F lambda = clamp(old - F::load(c.tangent_mass) * slip, zero - limit, limit);
+      const F delta = keep(bounced > zero, lambda - old);
+      (old + delta).store(c.tangent_total);
+      (F::load(c.tangent_impulse) + delta).store(c.tangent_impulse);
+      const WideVec2<W> p = {delta * t.x, delta * t.y};
+      push_back(a, ma, ia, p, delta * turn_a);
+      push(b, mb, ib, p, delta * turn_b);
+    }
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }

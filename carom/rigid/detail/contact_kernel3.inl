@@ -251,6 +251,38 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
       push_back(a, ma, ia, p, multiply(turn_a, delta));
       push(b, mb, ib, p, multiply(turn_b, delta));
     }
+    // The blow presses the surfaces together: friction of the whole step stays within the cone of its whole load. It
+    // acts where the surfaces meet; the points were foreseen half a gap before that.
+    F load = zero, bounced = zero, gap = zero;
+    for (int i = 0; i < 4; ++i) {
+      const F total = F::load(c.point[i].total);
+      load += total;
+      gap += total * max(F::load(c.point[i].separation), zero);
+      bounced = max(bounced, keep(total > zero, F::load(e.bounce_speed[i])));
+    }
+    gap = F::splat(0.5f) * gap / max(load, F::splat(1e-30f));
+    const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t), middle = load3<W>(c.patch_r_a),
+                      to_surface = multiply(n, gap);
+    const WideVec3<W> ra = subtract(middle, to_surface), rb = add(add(middle, offset), to_surface);
+    const F cone = F::load(c.friction) * load;
+    const F m11 = F::load(c.tangent_mass[0]), m22 = F::load(c.tangent_mass[1]), m12 = F::load(c.tangent_mass[2]);
+    // The masses are those of the foreseen place: a second round takes what the first one left.
+    for (int round = 0; round < 2; ++round) {
+      const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
+      const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
+      const F old1 = F::load(c.tangent_total[0]), old2 = F::load(c.tangent_total[1]);
+      const F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
+      const F size = sqrt(l1 * l1 + l2 * l2);
+      const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
+      const F delta1 = keep(bounced > zero, scale * l1 - old1), delta2 = keep(bounced > zero, scale * l2 - old2);
+      (old1 + delta1).store(c.tangent_total[0]);
+      (old2 + delta2).store(c.tangent_total[1]);
+      (F::load(c.tangent_impulse[0]) + delta1).store(c.tangent_impulse[0]);
+      (F::load(c.tangent_impulse[1]) + delta2).store(c.tangent_impulse[1]);
+      const WideVec3<W> p = add(multiply(t, delta1), multiply(u, delta2));
+      push_back(a, ma, ia, p, cross(ra, p));
+      push(b, mb, ib, p, cross(rb, p));
+    }
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
