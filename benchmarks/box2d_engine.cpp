@@ -8,7 +8,7 @@
 
 namespace carom::bench {
 
-Outcome run_box2d(const Recipe& recipe, const Settings& settings) {
+RecipeOutcome run_box2d(const Recipe& recipe, const RecipeSettings& settings) {
   b2World world({0, -recipe.gravity});
   world.SetAllowSleeping(recipe.sleep);
   std::vector<b2Body*> bodies;
@@ -37,7 +37,7 @@ Outcome run_box2d(const Recipe& recipe, const Settings& settings) {
     world.CreateJoint(&definition);
   }
 
-  Outcome outcome;
+  RecipeOutcome outcome;
   const int steps = settings.steps > 0 ? settings.steps : recipe.steps;
   for (int i = 0; i < steps; ++i) {
     const auto begin = std::chrono::steady_clock::now();

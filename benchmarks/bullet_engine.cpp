@@ -9,7 +9,7 @@
 
 namespace carom::bench {
 
-Outcome run_bullet(const Recipe& recipe, const Settings& settings) {
+RecipeOutcome run_bullet(const Recipe& recipe, const RecipeSettings& settings) {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
@@ -55,7 +55,7 @@ Outcome run_bullet(const Recipe& recipe, const Settings& settings) {
     world.addConstraint(joints.back().get(), true);
   }
 
-  Outcome outcome;
+  RecipeOutcome outcome;
   const int steps = settings.steps > 0 ? settings.steps : recipe.steps;
   for (int i = 0; i < steps; ++i) {
     const auto begin = std::chrono::steady_clock::now();

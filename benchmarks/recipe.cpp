@@ -14,6 +14,8 @@ BodyRecipe box(double x, double y, double z, float hx, float hy, float hz, bool 
   return b;
 }
 
+}  // namespace
+
 // 5 050 unit cubes in one planar pyramid of 100 rows.
 Recipe large_pyramid(int dimension) {
   Recipe r;
@@ -102,29 +104,49 @@ Recipe heap() {
   return r;
 }
 
-// 100 × 100 spheres in a net of 19 701 ball joints (none between two fixed ones) that hangs from its upper edge;
-// nothing collides.
-Recipe joint_grid() {
+// 100 × 100 spheres (2D: circles) in a net of ball (revolute) joints that hangs from its upper edge, in the plane from
+// seven fixed bodies of it; nothing collides. No joints between two fixed bodies.
+Recipe joint_grid(int dimension) {
   Recipe r;
-  r.name = "joint_grid";
+  r.name = dimension == 2 ? "joint_grid_2d" : "joint_grid";
+  r.dimension = dimension;
+  r.steps = dimension == 2 ? 500 : 100;
+  r.density = dimension == 2 ? 1.0f : 1000.0f;
   constexpr int n = 100;
+  const auto fixed = [dimension](int k, int i) { return i == 0 && (dimension == 3 || (k >= 47 && k <= 53)); };
   for (int k = 0; k < n; ++k)
     for (int i = 0; i < n; ++i) {
       BodyRecipe b;
       b.kind = Kind::sphere;
-      b.fixed = i == 0;
+      b.fixed = fixed(k, i);
       b.size[0] = 0.4f;
       b.position[0] = k, b.position[1] = -i;
       b.collides = false;
       const int index = int(r.bodies.size());
       r.bodies.push_back(b);
       if (i > 0) r.joints.push_back({index - 1, index, {0, -0.5f, 0}, {0, 0.5f, 0}});
-      if (k > 0 && i > 0) r.joints.push_back({index - n, index, {0.5f, 0, 0}, {-0.5f, 0, 0}});
+      if (k > 0 && !(b.fixed && fixed(k - 1, i))) r.joints.push_back({index - n, index, {0.5f, 0, 0}, {-0.5f, 0, 0}});
     }
   return r;
 }
 
-}  // namespace
+// A pyramid on a square base, 15 layers that fall 0.5 m onto each other: 1 240 cubes of 8 t, or of half 0.975 m.
+Recipe wide_pyramid(bool jolt) {
+  Recipe r;
+  r.name = jolt ? "pyramid" : "wide_pyramid";
+  r.steps = 500;
+  r.gravity = jolt ? 9.81f : 10.0f;
+  r.sleep = !jolt;
+  r.damping = jolt ? 0.05f : 0.0f;
+  if (jolt) r.friction = r.ground_friction = 0.2f;
+  r.bodies.push_back(jolt ? box(0, -1, 0, 50, 1, 50, true) : box(0, -1, 0, 100, 1, 100, true));
+  const float half = jolt ? 1.0f : 0.975f;
+  for (int i = 0; i < 15; ++i)
+    for (int j = i / 2; j < 15 - (i + 1) / 2; ++j)
+      for (int k = i / 2; k < 15 - (i + 1) / 2; ++k)
+        r.bodies.push_back(box(-15 + 2 * j + i % 2, 1 + 2.5 * i, -15 + 2 * k + i % 2, half, half, half));
+  return r;
+}
 
 std::vector<std::string> recipe_names() {
   return {"large_pyramid", "many_pyramids", "twenty_pyramids", "heap", "joint_grid", "large_pyramid_2d"};
@@ -136,7 +158,7 @@ Recipe make_recipe(const std::string& name) {
   if (name == "many_pyramids") return many_pyramids();
   if (name == "twenty_pyramids") return twenty_pyramids();
   if (name == "heap") return heap();
-  if (name == "joint_grid") return joint_grid();
+  if (name == "joint_grid") return joint_grid(3);
   return {};
 }
 

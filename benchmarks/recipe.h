@@ -31,38 +31,43 @@ struct Recipe {
   float gravity = 10;
   float density = 1000;
   float friction = 0.6f, ground_friction = 0.6f;
+  float damping = 0;  ///< 1/s, linear and angular
   bool sleep = false;
   std::vector<BodyRecipe> bodies;
   std::vector<JointRecipe> joints;
 };
 
-/// large_pyramid, many_pyramids, twenty_pyramids, heap, joint_grid, large_pyramid_2d.
+// Lists of the suites of box3d (3D), box2d (2D) and jolt, and the two scenes that any engine can build.
+Recipe large_pyramid(int dimension);
+Recipe many_pyramids();
+Recipe joint_grid(int dimension);
+Recipe wide_pyramid(bool jolt);
+Recipe twenty_pyramids();
+Recipe heap();
+
+/// Those that bench_scenes compares: large_pyramid, many_pyramids, twenty_pyramids, heap, joint_grid, large_pyramid_2d.
 std::vector<std::string> recipe_names();
 /// Empty `bodies` for an unknown name.
 Recipe make_recipe(const std::string& name);
 
-/// What a run came to: time of every step and the state that tells its quality.
-struct Outcome {
+/// What a run of a recipe came to: time of every step and the state that tells its quality.
+struct RecipeOutcome {
   std::vector<double> step_ms;
   double worst_drift = 0;  ///< m, farthest any body is from where it was built (stacks)
   double rms_speed = 0;    ///< m/s at the end
   double worst_speed = 0;
   double worst_penetration = 0;  ///< m at the end
   double worst_joint_gap = 0;    ///< m at the end
-  int escaped = 0;               ///< bodies outside 200 m (heap: outside its walls)
-  std::size_t bytes = 0;         ///< where the engine tells
-  std::uint64_t hash = 0;        ///< of the final state, Carom only
+  int escaped = 0;               ///< bodies outside 200 m
 };
-
-struct Settings {
+struct RecipeSettings {
   int threads = 1;
-  int substeps = 4;
-  int simd_width = 0;
   int steps = 0;  ///< 0: the recipe's
+  int simd_width = 0;
 };
-using Runner = Outcome (*)(const Recipe&, const Settings&);
-Outcome run_carom(const Recipe&, const Settings&);
-Outcome run_bullet(const Recipe&, const Settings&);
-Outcome run_box2d(const Recipe&, const Settings&);
+using Runner = RecipeOutcome (*)(const Recipe&, const RecipeSettings&);
+RecipeOutcome run_carom(const Recipe&, const RecipeSettings&);
+RecipeOutcome run_bullet(const Recipe&, const RecipeSettings&);
+RecipeOutcome run_box2d(const Recipe&, const RecipeSettings&);
 
 }  // namespace carom::bench

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "benchmarks/measure.h"
 #include "benchmarks/recipe.h"
 
 using namespace carom::bench;
@@ -16,21 +17,15 @@ namespace {
 struct Engine {
   const char* name;
   Runner run;
-  Settings settings;
+  RecipeSettings settings;
 };
 
-void merge_minimum(Outcome& best, Outcome&& next) {
+void merge(RecipeOutcome& best, RecipeOutcome&& next) {
   if (best.step_ms.empty()) {
     best = std::move(next);
     return;
   }
   for (std::size_t i = 0; i < best.step_ms.size(); ++i) best.step_ms[i] = std::min(best.step_ms[i], next.step_ms[i]);
-}
-
-double mean_after_first(const std::vector<double>& ms) {
-  double sum = 0;
-  for (std::size_t i = 1; i < ms.size(); ++i) sum += ms[i];
-  return sum / double(std::max<std::size_t>(1, ms.size() - 1));
 }
 
 }  // namespace
@@ -73,7 +68,7 @@ int main(int argc, char** argv) {
     const auto add = [&](const char* label, Runner run, int engine_threads) {
       if (engine && std::strcmp(engine, label) != 0 && std::strstr(label, engine) == nullptr) return;
       if (threads > 0 && engine_threads != threads) return;
-      Settings settings;
+      RecipeSettings settings;
       settings.threads = engine_threads;
       settings.steps = steps;
       settings.simd_width = width;
@@ -87,12 +82,11 @@ int main(int argc, char** argv) {
 #ifdef CAROM_WITH_BOX2D
     if (recipe.dimension == 2) add("box2d 2.4", run_box2d, 1);
 #endif
-    std::vector<Outcome> best(engines.size());
+    std::vector<RecipeOutcome> best(engines.size());
     for (int round = 0; round < rounds; ++round)
-      for (std::size_t e = 0; e < engines.size(); ++e)
-        merge_minimum(best[e], engines[e].run(recipe, engines[e].settings));
+      for (std::size_t e = 0; e < engines.size(); ++e) merge(best[e], engines[e].run(recipe, engines[e].settings));
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      const Outcome& o = best[e];
+      const RecipeOutcome& o = best[e];
       std::printf("| %s | %s | %.3f | %.2f | %.2f | %.4f | %.4f | %.5f | %.5f | %d |\n", name.c_str(), engines[e].name,
                   mean_after_first(o.step_ms), *std::max_element(o.step_ms.begin(), o.step_ms.end()),
                   mean_after_first(o.step_ms) / mean_after_first(best[0].step_ms), o.worst_drift, o.rms_speed,

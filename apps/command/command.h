@@ -94,8 +94,10 @@ int doctor(bool json);
 
 struct BenchOptions {
   std::vector<std::string> scenes;
-  int threads = 1, repeats = 3, steps = 0;
-  bool json = false;
+  std::string suite;         ///< common, box3d, box2d, jolt, all
+  std::vector<int> threads;  ///< each scene once with each
+  int rounds = 3, steps = 0, width = 0;
+  bool json = false, series = false, list = false;
 };
 int bench(const BenchOptions& options);
 

@@ -117,18 +117,34 @@ int main(int count, char** arguments) {
   doctor_command->callback([&] { result = doctor(doctor_json); });
 
   BenchOptions bench_options;
-  CLI::App* bench_command = app.add_subcommand("bench", "Time the benchmark scenes");
-  bench_command->add_option("scenes", bench_options.scenes, "names of scenes (all)");
-  bench_command->add_option("--threads,-t", bench_options.threads, "worker threads; 0: all processors")
+  CLI::App* bench_command = app.add_subcommand(
+      "bench", "Time benchmark scenes: the suites of Box3D, Box2D and Jolt rebuilt, and two of our own");
+  bench_command->add_option("scenes", bench_options.scenes, "names of scenes (all of the suite); --list shows them");
+  bench_command->add_option("--suite,-s", bench_options.suite, "box3d, box2d, jolt, common or all (common)")
+      ->check(CLI::IsMember({"box3d", "box2d", "jolt", "common", "all"}));
+  bench_command
+      ->add_option("--threads,-t", bench_options.threads,
+                   "worker threads, one number or several; 0: all processors (1 and 2)")
       ->check(CLI::Range(0, 64));
-  bench_command->add_option("--repeats", bench_options.repeats, "runs of each scene; the best is told (3)")
+  bench_command
+      ->add_option("--rounds,--repeats", bench_options.rounds,
+                   "runs of each scene; the fastest of each step counts (3)")
       ->check(CLI::Range(1, 100));
   bench_command->add_option("--steps", bench_options.steps, "steps of each run (the scene's own)")
       ->check(CLI::Range(1, 100000));
+  bench_command
+      ->add_option("--width", bench_options.width, "SIMD lanes of the solver; 0: the widest of this machine (0)")
+      ->check(CLI::IsMember({0, 4, 8, 16}));
+  bench_command->add_flag("--list,-l", bench_options.list, "list the scenes");
   bench_command->add_flag("--json", bench_options.json, "as JSON");
-  bench_command->footer(with_examples("  carom bench\n  carom bench large_pyramid --threads 2 --json\n"));
+  bench_command->add_flag("--series", bench_options.series, "with every step's time in the JSON");
+  bench_command->footer(
+      with_examples("  carom bench\n"
+                    "  carom bench --suite box2d --rounds 5\n"
+                    "  carom bench box3d/large_pyramid tumbler --threads 1 --json\n"));
   bench_command->callback([&] {
-    bench_options.threads = threads_of(bench_options.threads);
+    if (bench_options.threads.empty()) bench_options.threads = {1, 2};
+    for (int& threads : bench_options.threads) threads = threads_of(threads);
     result = bench(bench_options);
   });
 

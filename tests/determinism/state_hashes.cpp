@@ -1,13 +1,13 @@
 // Prints the state hashes of scenes that every build of Carom must agree on: compilers, SIMD widths, thread counts and
 // WebAssembly (tools/check_determinism.sh compares the printed lines).
-//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--recipes]
+//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--scenes]
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include "apps/host/registry.h"
 #include "apps/host/simulation.h"
-#include "benchmarks/recipe.h"
+#include "benchmarks/measure.h"
 
 namespace {
 
@@ -34,14 +34,16 @@ bool print_demos(int threads) {
   return true;
 }
 
-void print_recipes(int threads, int width) {
-  for (const std::string& name : carom::bench::recipe_names()) {
+void print_scenes(int threads, int width) {
+  for (const carom::bench::SceneInfo& scene : carom::bench::all_scenes()) {
+    if (scene.hash_steps == 0) continue;
     carom::bench::Settings settings;
     settings.threads = threads;
     settings.simd_width = width;
-    settings.steps = 60;
-    const carom::bench::Outcome outcome = carom::bench::run_carom(carom::bench::make_recipe(name), settings);
-    std::printf("recipe %s 60 %016llx\n", name.c_str(), static_cast<unsigned long long>(outcome.hash));
+    settings.steps = scene.hash_steps;
+    const carom::bench::Outcome outcome = carom::bench::run_scene(scene, settings);
+    std::printf("scene %s %d %016llx\n", scene.path().c_str(), scene.hash_steps,
+                static_cast<unsigned long long>(outcome.hash));
   }
 }
 
@@ -49,7 +51,7 @@ void print_recipes(int threads, int width) {
 
 int main(int argc, char** argv) {
   int threads = 1, width = 0;
-  bool demos = false, recipes = false;
+  bool demos = false, scenes = false;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--threads") && i + 1 < argc)
       threads = std::atoi(argv[++i]);
@@ -57,14 +59,14 @@ int main(int argc, char** argv) {
       width = std::atoi(argv[++i]);
     else if (!std::strcmp(argv[i], "--demos"))
       demos = true;
-    else if (!std::strcmp(argv[i], "--recipes"))
-      recipes = true;
+    else if (!std::strcmp(argv[i], "--scenes"))
+      scenes = true;
     else {
       std::fprintf(stderr, "state_hashes: unknown option %s\n", argv[i]);
       return 2;
     }
   }
-  const bool all = !demos && !recipes;
+  const bool all = !demos && !scenes;
   if ((all || demos) && !print_demos(threads)) return 1;
-  if (all || recipes) print_recipes(threads, width);
+  if (all || scenes) print_scenes(threads, width);
 }
