@@ -105,6 +105,14 @@ class SlotPool {
   std::size_t bytes() const {
     return generations_.capacity() * sizeof(std::uint16_t) + next_free_.capacity() * sizeof(std::uint32_t);
   }
+  /// Calls visit(member) for everything that changes: for who saves and restores the pool. `pool` may be const.
+  template <class Pool, class Visit>
+  static void visit_members(Pool& pool, Visit&& visit) {
+    visit(pool.generations_);
+    visit(pool.next_free_);
+    visit(pool.first_free_);
+    visit(pool.size_);
+  }
 
  private:
   static constexpr std::uint32_t no_slot = 0xFFFFFFFF, used = 0xFFFFFFFE, retired = 0xFFFFFFFD;

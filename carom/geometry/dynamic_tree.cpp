@@ -84,6 +84,15 @@ template <class V>
 void DynamicTree<V>::reserve(int leaves) {
   nodes_.reserve(2 * std::size_t(leaves));
   build_.reserve(std::size_t(leaves));
+  inner_.reserve(std::size_t(leaves));
+  jobs_.reserve(2 * detail::split_depth_limit + 64);  // two a level; below the limit a build halves
+}
+
+template <class V>
+void DynamicTree<V>::release_scratch() {
+  std::vector<detail::BuildItem<V>>().swap(build_);
+  std::vector<Job>().swap(jobs_);
+  std::vector<std::int32_t>().swap(inner_);
 }
 
 // Descends to the sibling that makes the summed surface grow least, comparing at every node the cost of standing
@@ -202,25 +211,20 @@ void DynamicTree<V>::rotate(int index) {
 template <class V>
 int DynamicTree<V>::build(std::span<detail::BuildItem<V>> items) {
   if (items.size() == 1) return int(items[0].index);
-  struct Job {
-    std::size_t first, count;
-    int parent, depth;
-    bool second;
-  };
-  std::vector<Job> jobs;
-  jobs.push_back({0, items.size(), -1, 0, false});
+  jobs_.clear();
+  jobs_.push_back({0, items.size(), -1, 0, false});
   int top = -1;
-  while (!jobs.empty()) {
-    const Job job = jobs.back();
-    jobs.pop_back();
+  while (!jobs_.empty()) {
+    const Job job = jobs_.back();
+    jobs_.pop_back();
     int made;
     if (job.count == 1) {
       made = int(items[job.first].index);
     } else {
       made = take_node();
       const std::size_t cut = detail::binned_split<V>(items.subspan(job.first, job.count), job.depth);
-      jobs.push_back({job.first + cut, job.count - cut, made, job.depth + 1, true});
-      jobs.push_back({job.first, cut, made, job.depth + 1, false});
+      jobs_.push_back({job.first + cut, job.count - cut, made, job.depth + 1, true});
+      jobs_.push_back({job.first, cut, made, job.depth + 1, false});
       Box box = items[job.first].box;
       for (std::size_t i = 1; i < job.count; ++i) box = merge(box, items[job.first + i].box);
       nodes_[std::size_t(made)].box = box;
@@ -239,7 +243,7 @@ void DynamicTree<V>::rebuild() {
   if (count_ < 2) return;
   build_.clear();
   // The free list is rebuilt in ascending order too, so that inner nodes lie in depth-first order.
-  std::vector<std::int32_t> inner;
+  inner_.clear();
   detail::TraversalStack stack;
   stack.push(std::uint32_t(root_));
   while (!stack.empty()) {
@@ -249,11 +253,11 @@ void DynamicTree<V>::rebuild() {
       build_.push_back({node.box, i});
       continue;
     }
-    inner.push_back(std::int32_t(i));
+    inner_.push_back(std::int32_t(i));
     stack.push(std::uint32_t(node.child_b));
     stack.push(std::uint32_t(node.child_a));
   }
-  for (std::size_t i = inner.size(); i-- > 0;) give_node(inner[i]);
+  for (std::size_t i = inner_.size(); i-- > 0;) give_node(inner_[i]);
   root_ = build(build_);
   nodes_[std::size_t(root_)].parent = -1;
 }
@@ -263,7 +267,7 @@ int DynamicTree<V>::rebuild_enlarged() {
   if (root_ < 0 || nodes_[std::size_t(root_)].child_b < 0 || nodes_[std::size_t(root_)].enlarged == 0) return 0;
   build_.clear();
   detail::TraversalStack stack;
-  std::vector<std::int32_t> inner;
+  inner_.clear();
   stack.push(std::uint32_t(root_));
   while (!stack.empty()) {
     const std::uint32_t i = stack.pop();
@@ -272,11 +276,11 @@ int DynamicTree<V>::rebuild_enlarged() {
       build_.push_back({node.box, i});
       continue;
     }
-    inner.push_back(std::int32_t(i));
+    inner_.push_back(std::int32_t(i));
     stack.push(std::uint32_t(node.child_b));
     stack.push(std::uint32_t(node.child_a));
   }
-  for (std::size_t i = inner.size(); i-- > 0;) give_node(inner[i]);
+  for (std::size_t i = inner_.size(); i-- > 0;) give_node(inner_[i]);
   root_ = build(build_);
   nodes_[std::size_t(root_)].parent = -1;
   return int(build_.size());

@@ -37,6 +37,7 @@ class CAROM_API DynamicTree {
   void insert_all(std::span<const Box> boxes, std::span<const std::uint32_t> items, int* leaves);
   void clear();
   void reserve(int leaves);
+  void release_scratch();  ///< gives back what only builds need
 
   const Box& bounds(int leaf) const { return nodes_[std::size_t(leaf)].box; }
   std::uint32_t item(int leaf) const { return std::uint32_t(nodes_[std::size_t(leaf)].child_a); }
@@ -44,8 +45,10 @@ class CAROM_API DynamicTree {
   int size() const { return count_; }  ///< leaves
   bool empty() const { return root_ < 0; }
   Box root_bounds() const { return root_ < 0 ? Box{} : nodes_[std::size_t(root_)].box; }
-  std::size_t bytes() const {
-    return nodes_.capacity() * sizeof(Node) + build_.capacity() * sizeof(detail::BuildItem<V>);
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + scratch_bytes(); }
+  std::size_t scratch_bytes() const {  ///< of these, what only builds need
+    return build_.capacity() * sizeof(detail::BuildItem<V>) + jobs_.capacity() * sizeof(Job) +
+           inner_.capacity() * sizeof(std::int32_t);
   }
 
   /// Calls visit(item) for every leaf whose box meets `box`; visit returns false to stop.
@@ -162,6 +165,16 @@ class CAROM_API DynamicTree {
     }
   }
 
+  /// Calls visit(member) for everything that changes, plain arrays and numbers: for who saves and restores the tree.
+  /// `tree` may be const.
+  template <class Tree, class Visit>
+  static void visit_members(Tree& tree, Visit&& visit) {
+    visit(tree.nodes_);
+    visit(tree.root_);
+    visit(tree.free_);
+    visit(tree.count_);
+  }
+
   /// For tests and reports: levels below the root, summed surface of inner nodes over that of the root, and whether
   /// every link and box is consistent.
   int height() const;
@@ -176,6 +189,11 @@ class CAROM_API DynamicTree {
     std::int32_t child_b = -1;  ///< −1: leaf
     std::uint32_t enlarged = 0;
   };
+  struct Job {
+    std::size_t first, count;
+    int parent, depth;
+    bool second;
+  };
   int take_node();
   void give_node(int node);
   void link(int leaf);
@@ -185,7 +203,10 @@ class CAROM_API DynamicTree {
   int build(std::span<detail::BuildItem<V>> items);
 
   std::vector<Node> nodes_;
+  // Of a build; kept, so that a tree that was once built does not allocate again.
   std::vector<detail::BuildItem<V>> build_;
+  std::vector<Job> jobs_;
+  std::vector<std::int32_t> inner_;
   std::int32_t root_ = -1, free_ = -1;
   int count_ = 0;
 };

@@ -45,6 +45,14 @@ struct WorldDef {
   float sleep_time = 0.5f;              ///< s below the sleep speed before an island sleeps
 };
 
+/// How much a world is to have room for.
+struct Capacity {
+  int bodies = 0;
+  int shapes = 0;
+  int contacts = 0;  ///< pairs of shapes whose bounds overlap: about four a body in heaps
+  int joints = 0;
+};
+
 enum class BodyType : std::uint8_t { fixed, kinematic, dynamic };
 
 /// Degrees of freedom that do not move, in world axes.

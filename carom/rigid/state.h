@@ -65,7 +65,8 @@ struct Counters {
   int bodies = 0, awake_bodies = 0, shapes = 0, joints = 0, effectors = 0;
   int contacts = 0, touching_contacts = 0, contact_points = 0;
   int islands = 0, colors = 0, overflow_constraints = 0;
-  std::size_t bytes = 0;  ///< memory held by the world
+  std::size_t bytes = 0;       ///< memory held by the world, without shared hulls and meshes
+  std::size_t peak_bytes = 0;  ///< the most that it held after any step
 };
 
 /// Milliseconds of the last step.

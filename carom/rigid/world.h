@@ -9,6 +9,7 @@
 #include "carom/export.h"
 #include "carom/rigid/effector.h"
 #include "carom/rigid/events.h"
+#include "carom/rigid/snapshot.h"
 #include "carom/rigid/state.h"
 
 namespace carom::rigid {
@@ -120,6 +121,18 @@ class CAROM_API World {
   std::uint64_t step_count() const;
   double time() const;  ///< s
   Events<D> events() const;
+
+  /// Makes room beforehand, so that even the first steps with that much do not allocate, and keeps it.
+  /// Errors: a negative number or more than 2^24 of anything.
+  Status reserve(const Capacity& capacity);
+
+  // Rollback (docs/snapshots.md).
+  void snapshot(Snapshot<D>& into);  ///< keeps the memory of `into`
+  Snapshot<D> snapshot();
+  /// Puts the state back; handles are valid again as they were, and a world of another process goes on as this one
+  /// would. Threads, scheduler and SIMD width stay this world's own, events of the last step are forgotten. Errors: an
+  /// empty snapshot, one whose shared geometry or functions this world does not have; then nothing changes.
+  Status restore(const Snapshot<D>& snapshot);
 
   // Queries. Rays and casts go from `origin` by `translation`.
   Result<RayHit<D>> ray_cast(Position origin, Vector translation,

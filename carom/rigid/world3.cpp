@@ -8,6 +8,7 @@
 #include "carom/rigid/detail/world_forces.inl"
 #include "carom/rigid/detail/world_joints.inl"
 #include "carom/rigid/detail/world_queries.inl"
+#include "carom/rigid/detail/world_snapshot.inl"
 #include "carom/rigid/detail/world_whole.inl"
 
 namespace carom::rigid {

@@ -26,6 +26,17 @@ void grow_by_a_quarter(std::vector<T>& v) {
   if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
 }
 
+/// Which worker finds how much is chance: each list of a parallel stage gets room for all that was found, so that a
+/// warm step does not allocate however the work falls.
+template <class T>
+void level_room(std::vector<std::vector<T>>& lists) {
+  if (lists.size() < 2) return;
+  std::size_t total = 0;
+  for (const std::vector<T>& list : lists) total += list.size();
+  for (std::vector<T>& list : lists)
+    if (list.capacity() < total) list.reserve(total + total / 2);
+}
+
 /// Mass, forces and what the integrator needs. Read at the start and end of a step, not inside the contact solver.
 template <class D>
 struct BodyMotion {

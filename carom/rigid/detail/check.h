@@ -14,28 +14,31 @@ inline constexpr double max_density = 1e9;      ///< kg/m³
 inline constexpr double max_body_mass = 1e15;   ///< kg
 inline constexpr double max_force = 1e18;       ///< N, N·m, N·s
 
-inline void check_range(Complaint& c, std::string_view field, double x, double low, double high) {
-  if (!(x >= low && x <= high)) c.say(core::refused(field, x, core::text("a number from ", low, " to ", high)));
+/// `axis` is appended to the field's name; the sentence is only made when something is wrong with the number.
+inline void check_range(Complaint& c, std::string_view field, double x, double low, double high,
+                        std::string_view axis = {}) {
+  if (!(x >= low && x <= high))
+    c.say(core::refused(core::text(field, axis), x, core::text("a number from ", low, " to ", high)));
 }
 template <class T>
 void check_size(Complaint& c, std::string_view field, Vec2<T> v, double limit) {
-  check_range(c, core::text(field, ".x"), double(v.x), -limit, limit);
-  check_range(c, core::text(field, ".y"), double(v.y), -limit, limit);
+  check_range(c, field, double(v.x), -limit, limit, ".x");
+  check_range(c, field, double(v.y), -limit, limit, ".y");
 }
 template <class T>
 void check_size(Complaint& c, std::string_view field, Vec3<T> v, double limit) {
-  check_range(c, core::text(field, ".x"), double(v.x), -limit, limit);
-  check_range(c, core::text(field, ".y"), double(v.y), -limit, limit);
-  check_range(c, core::text(field, ".z"), double(v.z), -limit, limit);
+  check_range(c, field, double(v.x), -limit, limit, ".x");
+  check_range(c, field, double(v.y), -limit, limit, ".y");
+  check_range(c, field, double(v.z), -limit, limit, ".z");
 }
 inline void check_size(Complaint& c, std::string_view field, float x, double limit) {
   check_range(c, field, double(x), -limit, limit);
 }
 inline void check_material(Complaint& c, std::string_view field, const Material& m) {
-  check_range(c, core::text(field, ".friction"), m.friction, 0, 1e6);
-  check_range(c, core::text(field, ".restitution"), m.restitution, 0, 1);
-  check_range(c, core::text(field, ".rolling_resistance"), m.rolling_resistance, 0, 1e6);
-  check_range(c, core::text(field, ".tangent_speed"), m.tangent_speed, -max_velocity, max_velocity);
+  check_range(c, field, m.friction, 0, 1e6, ".friction");
+  check_range(c, field, m.restitution, 0, 1, ".restitution");
+  check_range(c, field, m.rolling_resistance, 0, 1e6, ".rolling_resistance");
+  check_range(c, field, m.tangent_speed, -max_velocity, max_velocity, ".tangent_speed");
 }
 
 }  // namespace carom::rigid::detail

@@ -131,6 +131,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
     index = std::int32_t(store.contacts.size());
     grow_by_a_quarter(store.contacts);
     store.contacts.emplace_back();
+    store.free_contacts.reserve(store.contacts.capacity());
   }
   ContactRecord<D>& c = store.at(index);
   c.shape[0] = shape_a;
@@ -248,6 +249,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
     index = std::int32_t(store.manifolds.size());
     grow_by_a_quarter(store.manifolds);
     store.manifolds.emplace_back();
+    store.free_manifolds.reserve(store.manifolds.capacity());
   }
   ManifoldRecord<D>& m = store.manifold(index);
   ContactRecord<D>& c = store.at(contact);

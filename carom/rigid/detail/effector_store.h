@@ -26,10 +26,6 @@ struct EffectorStore {
 
   explicit EffectorStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size(); }
-  std::size_t bytes() const {
-    return slots.bytes() + data.capacity() * sizeof(EffectorData<D>) + in_order.capacity() * 4 +
-           vertices.capacity() * sizeof(Vec3d) + indices.capacity() * 4;
-  }
 };
 
 }  // namespace carom::rigid::detail

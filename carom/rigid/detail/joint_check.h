@@ -13,12 +13,13 @@ namespace carom::rigid::detail {
 class Complaint {
  public:
   explicit Complaint(std::string_view call) : call_(call) {}
+  Complaint(std::string_view type, std::string_view call) : type_(type), call_(call) {}
   bool none_yet() const { return message_.empty(); }
   void say(const std::string& sentence) {
-    if (message_.empty()) message_ = core::text(call_, ": ", sentence);
+    if (message_.empty()) message_ = core::text(type_, call_, ": ", sentence);
   }
-  void finite(std::string_view field, double x) {
-    if (!is_finite(x)) say(core::refused(field, x, "a finite number"));
+  void finite(std::string_view field, double x, std::string_view axis = {}) {
+    if (!is_finite(x)) say(core::refused(core::text(field, axis), x, "a finite number"));
   }
   void not_negative(std::string_view field, double x) {
     if (!(is_finite(x) && x >= 0)) say(core::refused(field, x, "a finite number ≥ 0"));
@@ -28,14 +29,14 @@ class Complaint {
   }
   template <class T>
   void vector(std::string_view field, Vec2<T> v) {
-    finite(core::text(field, ".x"), v.x);
-    finite(core::text(field, ".y"), v.y);
+    finite(field, v.x, ".x");
+    finite(field, v.y, ".y");
   }
   template <class T>
   void vector(std::string_view field, Vec3<T> v) {
-    finite(core::text(field, ".x"), v.x);
-    finite(core::text(field, ".y"), v.y);
-    finite(core::text(field, ".z"), v.z);
+    finite(field, v.x, ".x");
+    finite(field, v.y, ".y");
+    finite(field, v.z, ".z");
   }
   void rotation(std::string_view field, Rot2f q) { unit(field, math::sqrt(q.c * q.c + q.s * q.s)); }
   void rotation(std::string_view field, const Quatf& q) { unit(field, math::length(q)); }
@@ -72,7 +73,7 @@ class Complaint {
   void unit(std::string_view field, float norm) {
     if (!(norm > 0.99f && norm < 1.01f)) say(core::text(field, " has norm ", norm, ", expected a rotation (norm 1)"));
   }
-  std::string_view call_;
+  std::string_view type_{}, call_;
   std::string message_;
 };
 

@@ -54,10 +54,6 @@ struct JointStore {
 
   explicit JointStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size() - internal_count; }
-  std::size_t bytes() const {
-    return slots.bytes() + headers.capacity() * sizeof(JointHeader) + data.capacity() * sizeof(JointData<D>) +
-           order.capacity() * 4 + offset.capacity() * 4 + records.capacity() * sizeof(Unit);
-  }
 };
 
 }  // namespace carom::rigid::detail

@@ -48,7 +48,16 @@ class PairSet {
     }
     keys_[i] = empty;
   }
-  std::size_t bytes() const { return keys_.capacity() * sizeof(std::uint64_t); }
+  void reserve(std::size_t count) {
+    while (4 * count > 3 * keys_.size()) grow();
+  }
+  /// Calls visit(member) for everything that changes. `set` may be const.
+  template <class Set, class Visit>
+  static void visit_members(Set& set, Visit&& visit) {
+    visit(set.keys_);
+    visit(set.mask_);
+    visit(set.count_);
+  }
 
  private:
   static constexpr std::uint64_t empty = 0;  ///< no pair has it: the two shapes of a pair differ

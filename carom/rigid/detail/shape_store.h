@@ -1,6 +1,7 @@
 // Shapes by slot.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "carom/core/pool.h"
@@ -22,9 +23,9 @@ enum ShapeFlag : std::uint8_t {
 /// The tree in which a shape is: after its body's type.
 enum TreeIndex : std::int8_t { tree_fixed = 0, tree_kinematic = 1, tree_dynamic = 2, tree_none = -1 };
 
+/// All of a shape but its geometry: plain bytes, which a snapshot copies.
 template <class D>
-struct ShapeRecord {
-  typename D::Shape geometry{};
+struct ShapeTraits {
   typename D::Transform local{};  ///< shape → body
   std::int32_t body = none;
   std::int32_t next = none;      ///< of the same body, in order of creation
@@ -42,10 +43,17 @@ struct ShapeRecord {
 };
 
 template <class D>
+struct ShapeRecord : ShapeTraits<D> {
+  typename D::Shape geometry{};  ///< never changes while the shape lives
+};
+
+template <class D>
 struct ShapeStore {
   core::SlotPool<ShapeTag> slots;
   std::vector<ShapeRecord<D>> record;                    ///< by slot
   geometry::DynamicTree<typename D::Position> trees[3];  ///< items are slots of shapes
+  /// Of all records, shared with the snapshots that were taken since a shape last came or went; else null.
+  std::shared_ptr<const std::vector<typename D::Shape>> geometry_copy;
 
   explicit ShapeStore(std::uint16_t world) : slots(world) {}
   ShapeRecord<D>& at(std::int32_t slot) { return record[std::size_t(slot)]; }

@@ -39,6 +39,7 @@ void find_pairs(WorldImplementation<D>& world) {
     for (int i = begin; i < end; ++i)
       find_pairs_of(world, scratch.moved[std::size_t(i)], scratch.found_pairs[std::size_t(worker)]);
   });
+  level_room(scratch.found_pairs);
   scratch.pairs.clear();
   for (const std::vector<FoundPair>& list : scratch.found_pairs)
     scratch.pairs.insert(scratch.pairs.end(), list.begin(), list.end());

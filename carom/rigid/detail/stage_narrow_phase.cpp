@@ -329,6 +329,7 @@ void update_contacts(WorldImplementation<D>& world) {
       scratch.contact_changes[std::size_t(i)] = update_contact(world, i, scratch.found_manifolds[std::size_t(worker)]);
     }
   });
+  level_room(scratch.found_manifolds);
   scratch.manifolds.clear();
   for (const std::vector<FoundManifold<D>>& list : scratch.found_manifolds)
     scratch.manifolds.insert(scratch.manifolds.end(), list.begin(), list.end());

@@ -63,4 +63,16 @@ struct StepScratch {
   std::vector<SleepEvent> fell_asleep, quarantined;
 };
 
+/// Events of the last step are gone; those that wait for the next one stay.
+template <class D>
+void forget_events(StepScratch<D>& s) {
+  s.contact_begin.clear();
+  s.contact_end.clear();
+  s.contact_hit.clear();
+  s.sensor_begin.clear();
+  s.sensor_end.clear();
+  s.fell_asleep.clear();
+  s.quarantined.clear();
+}
+
 }  // namespace carom::rigid::detail

@@ -4,6 +4,7 @@
 
 #include "carom/math/cpu.h"
 #include "carom/rigid/detail/joint_check.h"
+#include "carom/rigid/detail/memory.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -69,17 +70,11 @@ void fit_memory(std::vector<T>& v) {
 template <class D>
 void begin_events(WorldImplementation<D>& world) {
   StepScratch<D>& s = world.scratch;
-  if (world.bodies.awake.empty()) release_memory(s.fell_asleep);
-  s.contact_begin.clear();
-  s.contact_hit.clear();
-  s.sensor_begin.clear();
-  s.fell_asleep.clear();
-  s.quarantined.clear();
+  if (world.bodies.awake.empty() && !world.reserved) release_memory(s.fell_asleep);
+  forget_events(s);
   // What ended by calls between the steps is told with this one.
   s.contact_end.swap(s.pending_contact_end);
   s.sensor_end.swap(s.pending_sensor_end);
-  s.pending_contact_end.clear();
-  s.pending_sensor_end.clear();
 }
 /// What ended while the stages ran (contacts whose bounds parted) belongs to this step too.
 template <class D>
@@ -91,39 +86,42 @@ void end_events(WorldImplementation<D>& world) {
   s.pending_sensor_end.clear();
 }
 
+/// Gives back what only steps need, and what vectors hold beyond their content.
+struct MemoryRelease {
+  template <class T>
+  void state(T&) {}
+  template <class T>
+  void state(std::vector<T>& v) {
+    if (v.empty())
+      release_memory(v);
+    else if (v.capacity() > v.size())
+      fit_memory(v);
+  }
+  template <class T>
+  void scratch(std::vector<T>& v) {
+    release_memory(v);
+  }
+  template <class T>
+  void events(std::vector<T>& v) {
+    if (v.empty()) release_memory(v);
+  }
+  template <class T>
+  void definition(const T&) {}
+  template <class T>
+  void shapes(std::vector<T>& v) {
+    state(v);
+  }
+  void names(std::vector<std::string>& v) { state(v); }
+  template <class T>
+  void effectors(std::vector<T>&) {}
+};
+
 /// A world in which everything sleeps gives back what only steps need. The first step after it allocates again.
 template <class D>
 void release_scratch(WorldImplementation<D>& world) {
-  StepScratch<D>& s = world.scratch;
   world.arena = core::Arena();
-  for (auto& list : s.found_pairs) release_memory(list);
-  for (auto& list : s.found_manifolds) release_memory(list);
-  release_memory(s.moved);
-  release_memory(s.pairs);
-  release_memory(s.swept);
-  release_memory(s.body_changes);
-  release_memory(s.contact_changes);
-  release_memory(s.manifolds);
-  release_memory(s.island_parent);
-  release_memory(s.island_list);
-  release_memory(s.island_bodies);
-  release_memory(s.island_restless);
-  for (GraphColor& color : world.graph.colors) {
-    release_memory(color.manifolds);
-    release_memory(color.joints);
-  }
-  if (s.contact_begin.empty()) release_memory(s.contact_begin);
-  release_memory(world.contacts.awake);
-  release_memory(world.bodies.awake);
-  fit_memory(world.bodies.solver);
-  fit_memory(world.bodies.pose);
-  fit_memory(world.bodies.motion);
-  fit_memory(world.bodies.record);
-  fit_memory(world.bodies.birth);
-  fit_memory(world.shapes.record);
-  fit_memory(world.contacts.contacts);
-  fit_memory(world.contacts.manifolds);
-  fit_memory(world.sleeping.first);
+  visit_world(world, MemoryRelease{});
+  for (auto& tree : world.shapes.trees) tree.release_scratch();
 }
 
 template <class D>
@@ -235,7 +233,9 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   const bool moved = !world.bodies.awake.empty();
   sleep_islands(context);
   end_events(world);
-  if (moved && world.bodies.awake.empty() && world.contacts.awake.empty() && world.scratch.moved.empty())
+  world.peak_bytes = max(world.peak_bytes, bytes_of_world(world));
+  if (!world.reserved && moved && world.bodies.awake.empty() && world.contacts.awake.empty() &&
+      world.scratch.moved.empty())
     release_scratch(world);
   profile.sleep = watch.lap();
   profile.total = whole.lap();

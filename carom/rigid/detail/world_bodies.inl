@@ -158,6 +158,7 @@ Status World<D>::destroy_body(BodyId body) {
     // A slot in `moved` stays there until the next step; without a leaf it is passed over.
     const std::uint8_t moved = shape.flags & shape_moved;
     shape = {};
+    self_->shapes.geometry_copy.reset();
     shape.flags = moved;
     s = next;
   }

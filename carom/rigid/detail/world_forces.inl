@@ -23,8 +23,7 @@ Status add_load(WorldImplementation<D>& world, std::string_view call, BodyId bod
                 const typename D::Angular* angular, const typename D::Position* point, std::string_view field) {
   const Result<std::int32_t> slot = pushed_body(world, call, body);
   if (!slot.ok()) return slot.error();
-  const std::string name = core::text("World::", call);  // outlives the complaint
-  Complaint complaint(name);
+  Complaint complaint("World::", call);
   if (linear != nullptr) check_size(complaint, field, *linear, max_force);
   if (angular != nullptr) check_size(complaint, field, *angular, max_force);
   if (point != nullptr) check_size(complaint, "point", *point, max_coordinate);
@@ -49,8 +48,7 @@ Status add_kick(WorldImplementation<D>& world, std::string_view call, BodyId bod
                 const typename D::Angular* angular, const typename D::Position* point) {
   const Result<std::int32_t> slot = pushed_body(world, call, body);
   if (!slot.ok()) return slot.error();
-  const std::string name = core::text("World::", call);  // outlives the complaint
-  Complaint complaint(name);
+  Complaint complaint("World::", call);
   if (linear != nullptr) check_size(complaint, "impulse", *linear, max_force);
   if (angular != nullptr) check_size(complaint, "impulse", *angular, max_force);
   if (point != nullptr) check_size(complaint, "point", *point, max_coordinate);

@@ -43,6 +43,8 @@ struct WorldImplementation {
   std::uint64_t step_count = 0, births = 0;
   double time = 0;
   float last_dt = 0;
+  std::size_t peak_bytes = 0;  ///< the most memory held after any step
+  bool reserved = false;       ///< the caller asked for room: it is not given back when all sleeps
   StepProfile profile{};
 };
 

@@ -137,6 +137,7 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   s = {};
   s.flags = moved;
   s.geometry = shape;
+  self_->shapes.geometry_copy.reset();
   s.local = d.local;
   s.local.q = unit_rotation(d.local.q);
   s.at_origin = s.local == typename D::Transform{};
@@ -183,6 +184,7 @@ Status World<D>::destroy_shape(ShapeId shape) {
   if (s.flags & shape_hit_events) --self_->hit_event_shapes;
   const std::uint8_t moved = s.flags & shape_moved;
   s = {};
+  self_->shapes.geometry_copy.reset();
   s.flags = moved;
   self_->shapes.slots.release(shape);
   update_mass(*self_, body);

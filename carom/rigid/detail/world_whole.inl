@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "carom/rigid/detail/memory.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid {
@@ -41,31 +42,68 @@ double spin_energy(const BodyMotion<D>& m, const typename D::Rotation& q, const 
   }
 }
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-  return v.capacity() * sizeof(T);
-}
 template <class D>
-std::size_t bytes_of_world(const WorldImplementation<D>& w) {
-  std::size_t n = sizeof(w);
-  n += w.bodies.slots.bytes() + bytes_of(w.bodies.solver) + bytes_of(w.bodies.pose) + bytes_of(w.bodies.motion) +
-       bytes_of(w.bodies.record) + bytes_of(w.bodies.names) + bytes_of(w.bodies.birth) + bytes_of(w.bodies.awake);
-  n += w.shapes.slots.bytes() + bytes_of(w.shapes.record);
-  for (const auto& tree : w.shapes.trees) n += tree.bytes();
-  n += w.joints.bytes() + w.effectors.bytes();
-  n += bytes_of(w.contacts.contacts) + bytes_of(w.contacts.manifolds) + bytes_of(w.contacts.free_contacts) +
-       bytes_of(w.contacts.free_manifolds) + bytes_of(w.contacts.awake) + w.pairs.bytes();
-  for (const GraphColor& c : w.graph.colors) n += bytes_of(c.manifolds) + bytes_of(c.joints);
-  n += bytes_of(w.sleeping.first) + bytes_of(w.sleeping.free);
-  const StepScratch<D>& s = w.scratch;
-  for (const auto& list : s.found_pairs) n += bytes_of(list);
-  for (const auto& list : s.found_manifolds) n += bytes_of(list);
-  n += bytes_of(s.moved) + bytes_of(s.pairs) + bytes_of(s.swept) + bytes_of(s.fast) + bytes_of(s.body_changes) +
-       bytes_of(s.contact_changes) + bytes_of(s.manifolds) + bytes_of(s.island_parent) + bytes_of(s.island_list) +
-       bytes_of(s.island_bodies) + bytes_of(s.doomed_contacts) + bytes_of(s.new_touches) + bytes_of(s.island_restless) +
-       bytes_of(s.contact_begin) + bytes_of(s.contact_end) + bytes_of(s.contact_hit) + bytes_of(s.sensor_begin) +
-       bytes_of(s.sensor_end) + bytes_of(s.fell_asleep);
-  return n + w.arena.capacity();
+void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
+  const std::size_t bodies = std::size_t(capacity.bodies), shapes = std::size_t(capacity.shapes);
+  const std::size_t contacts = std::size_t(capacity.contacts), joints = std::size_t(capacity.joints);
+  // Contacts with meshes and compounds have several manifolds, others one or none.
+  const std::size_t manifolds = contacts;
+  world.reserved = true;
+  world.bodies.slots.reserve(int(bodies));
+  reserve_bodies(world.bodies, bodies);
+  world.bodies.awake.reserve(bodies);
+  world.shapes.slots.reserve(int(shapes));
+  world.shapes.record.reserve(shapes);
+  for (auto& tree : world.shapes.trees) tree.reserve(int(shapes));
+  world.joints.slots.reserve(int(joints));
+  world.joints.headers.reserve(joints);
+  world.joints.data.reserve(joints);
+  world.joints.order.reserve(joints);
+  world.joints.offset.reserve(joints + 1);
+  world.joints.color_begin.reserve(color_count + 2);
+  world.joints.records.reserve(joints * 24);  // the longest record of a joint takes about that
+  world.contacts.contacts.reserve(contacts);
+  world.contacts.free_contacts.reserve(contacts);
+  world.contacts.awake.reserve(contacts);
+  world.contacts.manifolds.reserve(manifolds);
+  world.contacts.free_manifolds.reserve(manifolds);
+  world.pairs.reserve(contacts);
+  for (GraphColor& color : world.graph.colors) {
+    color.manifolds.reserve(min(bodies, manifolds));  // no body is twice in a colour
+    color.joints.reserve(min(bodies, joints));
+  }
+  world.sleeping.first.reserve(bodies);
+  world.sleeping.free.reserve(bodies);
+  StepScratch<D>& s = world.scratch;
+  s.moved.reserve(shapes);
+  for (auto& list : s.found_pairs) list.reserve(contacts);
+  s.pairs.reserve(contacts);
+  s.swept.reserve(bodies);
+  s.fast.reserve(bodies);
+  s.broken.reserve(bodies);
+  s.body_changes.reserve(bodies);
+  s.contact_changes.reserve(contacts + 8);
+  for (auto& list : s.found_manifolds) list.reserve(manifolds);
+  s.manifolds.reserve(manifolds);
+  for (auto* list : {&s.island_parent, &s.island_list, &s.island_bodies, &s.island_ends}) list->reserve(bodies + 1);
+  s.island_restless.reserve(bodies);
+  s.doomed_contacts.reserve(contacts);
+  s.new_touches.reserve(contacts);
+  s.contact_begin.reserve(contacts);
+  s.contact_end.reserve(contacts);
+  s.pending_contact_end.reserve(contacts);
+  s.contact_hit.reserve(contacts);
+  s.sensor_begin.reserve(contacts);
+  s.sensor_end.reserve(contacts);
+  s.pending_sensor_end.reserve(contacts);
+  s.fell_asleep.reserve(bodies);
+  s.quarantined.reserve(bodies);
+  // Blocks of the solver: a lane a manifold, and for every colour one that is not full.
+  using Block = ContactBlock<D, 16>;
+  using Extra = ContactExtra<D, 16>;
+  const std::size_t blocks = manifolds / 16 + color_count + 1;
+  world.arena.reset();
+  world.arena = core::Arena(blocks * (sizeof(Block) + sizeof(Extra)) + 2 * (color_count + 1) * core::Arena::alignment);
 }
 
 }  // namespace detail
@@ -97,6 +135,19 @@ Status World<D>::set_gravity(Vector gravity) {
   self_->definition.gravity = gravity;
   for (std::int32_t i = 0; i < self_->bodies.slots.capacity(); ++i)
     if (self_->bodies.slots.in_use(i) && self_->bodies.is_dynamic(i)) wake_body(*self_, i);
+  return {};
+}
+
+template <class D>
+Status World<D>::reserve(const Capacity& capacity) {
+  using namespace detail;
+  Complaint complaint("World::reserve");
+  check_range(complaint, "bodies", capacity.bodies, 0, 1 << 24);
+  check_range(complaint, "shapes", capacity.shapes, 0, 1 << 24);
+  check_range(complaint, "contacts", capacity.contacts, 0, 1 << 24);
+  check_range(complaint, "joints", capacity.joints, 0, 1 << 24);
+  if (!complaint.none_yet()) return complaint.error();
+  reserve_world(*self_, capacity);
   return {};
 }
 
@@ -209,7 +260,8 @@ Counters World<D>::counters() const {
     if (!self_->graph.colors[i].manifolds.empty() || !self_->graph.colors[i].joints.empty()) ++c.colors;
   c.overflow_constraints =
       int(self_->graph.colors[overflow_color].manifolds.size() + self_->graph.colors[overflow_color].joints.size());
-  c.bytes = bytes_of_world(*self_);
+  c.bytes = bytes_of_world<D>(*self_);
+  c.peak_bytes = max(self_->peak_bytes, c.bytes);
   return c;
 }
 

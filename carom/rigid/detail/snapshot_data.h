@@ -1,0 +1,57 @@
+// What a snapshot holds: plain state as one row of sections, in the order of state_visitor.h, and the few things that
+// are not plain.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "carom/rigid/detail/effector_store.h"
+#include "carom/rigid/detail/shape_store.h"
+
+namespace carom::rigid::detail {
+
+/// An array of plain values in SnapshotData::image. Every state of the visitor is one, in its order.
+struct SnapshotSection {
+  std::uint64_t first = 0;    ///< word of the image
+  std::uint64_t count = 0;    ///< elements
+  std::uint64_t element = 0;  ///< bytes of one
+};
+
+/// A shape's geometry in a form that can be compared and sent: small ones by value, shared ones by fingerprint.
+struct GeometryRecord {
+  std::uint32_t type = 0;
+  std::uint32_t shared = 0;       ///< 1: `fingerprint` stands for the value
+  std::uint64_t fingerprint = 0;  ///< of what all the world's users of a hull or mesh share
+  std::uint32_t value[40] = {};   ///< bytes of the small shape
+  friend bool operator==(const GeometryRecord&, const GeometryRecord&) = default;
+};
+
+template <class D>
+struct SnapshotData {
+  std::vector<std::uint64_t> image;
+  std::vector<SnapshotSection> sections;
+  std::shared_ptr<const std::vector<typename D::Shape>> geometry;  ///< by slot of the shape
+  std::vector<GeometryRecord> missing;  ///< after decoding: by slot, where `geometry` has no value yet
+  std::vector<EffectorData<D>> effectors;
+  bool decoded = false;  ///< came as bytes: functions of the caller are not in it
+  std::uint16_t world_number = 0;
+  std::uint64_t step_count = 0;
+
+  std::size_t image_bytes() const { return image.size() * sizeof(std::uint64_t); }
+};
+
+/// A hash of all that a shape is.
+std::uint64_t fingerprint(const geometry::Shape2& shape);
+std::uint64_t fingerprint(const geometry::Shape3& shape);
+GeometryRecord geometry_record(const geometry::Shape2& shape);
+GeometryRecord geometry_record(const geometry::Shape3& shape);
+/// The shape of a record that is not shared; false where the record is no shape.
+bool shape_of(const GeometryRecord& record, geometry::Shape2& shape);
+bool shape_of(const GeometryRecord& record, geometry::Shape3& shape);
+inline bool is_shared(const geometry::Shape2& s) { return s.chain != nullptr; }
+inline bool is_shared(const geometry::Shape3& s) { return s.data != nullptr; }
+
+/// 64 bits over many words: four interleaved core::StateHash, because one waits for each of its own words.
+std::uint64_t hash_words(std::span<const std::uint64_t> words);
+
+}  // namespace carom::rigid::detail

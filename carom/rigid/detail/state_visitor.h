@@ -1,0 +1,154 @@
+// Every member of a world, once: what snapshots copy and what memory counts. The members are taken apart by structured
+// bindings, which do not compile when a member is added and not named here: no new state can escape a snapshot.
+#pragma once
+
+#include "carom/rigid/detail/world_implementation.h"
+
+namespace carom::rigid::detail {
+
+// `visit` has these functions:
+//   state(x)       x decides how the world goes on: a number, a plain struct or a vector of them;
+//   scratch(v)     a vector of the step, whose content may be forgotten between steps;
+//   events(v)      what the last step told;
+//   definition(d), shapes(v), names(v), effectors(v)     state that is not plain bytes.
+// Store types are deduced, so that all of this serves constant worlds too.
+
+template <class Slots, class Visit>
+void visit_slots(Slots& slots, Visit& visit) {
+  std::remove_const_t<Slots>::visit_members(slots, [&](auto& x) { visit.state(x); });
+}
+
+template <class Bodies, class Visit>
+void visit_bodies(Bodies& store, Visit& visit) {
+  auto& [slots, solver, pose, motion, record, names, birth, awake] = store;
+  visit_slots(slots, visit);
+  visit.state(solver);
+  visit.state(pose);
+  visit.state(motion);
+  visit.state(record);
+  visit.names(names);
+  visit.state(birth);
+  visit.state(awake);
+}
+
+template <class Shapes, class Visit>
+void visit_shapes(Shapes& store, Visit& visit) {
+  auto& [slots, record, trees, geometry_copy] = store;
+  (void)geometry_copy;
+  visit_slots(slots, visit);
+  visit.shapes(record);
+  for (auto& tree : trees) visit_slots(tree, visit);
+}
+
+template <class Joints, class Visit>
+void visit_joints(Joints& store, Visit& visit) {
+  auto& [slots, headers, data, births, internal_count, order, offset, color_begin, records] = store;
+  visit_slots(slots, visit);
+  visit.state(headers);
+  visit.state(data);
+  visit.state(births);
+  visit.state(internal_count);
+  visit.scratch(order);
+  visit.scratch(offset);
+  visit.scratch(color_begin);
+  visit.scratch(records);
+}
+
+template <class Effectors, class Visit>
+void visit_effectors(Effectors& store, Visit& visit) {
+  auto& [slots, data, in_order, vertices, indices] = store;
+  visit_slots(slots, visit);
+  visit.effectors(data);
+  visit.state(in_order);
+  visit.scratch(vertices);
+  visit.scratch(indices);
+}
+
+template <class Contacts, class Visit>
+void visit_contacts(Contacts& store, Visit& visit) {
+  auto& [contacts, manifolds, free_contacts, free_manifolds, awake, count] = store;
+  visit.state(contacts);
+  visit.state(manifolds);
+  visit.state(free_contacts);
+  visit.state(free_manifolds);
+  visit.state(awake);
+  visit.state(count);
+}
+
+template <class Graph, class Visit>
+void visit_graph(Graph& graph, Visit& visit) {
+  auto& [colors] = graph;
+  for (auto& color : colors) {
+    auto& [manifolds, joints, extra] = color;
+    visit.state(manifolds);
+    visit.state(joints);
+    visit.state(extra);
+  }
+}
+
+template <class Scratch, class Visit>
+void visit_scratch(Scratch& scratch, Visit& visit) {
+  auto& [blocks, moved, found_pairs, pairs, swept, fast, broken, body_changes, contact_changes, found_manifolds,
+         manifolds, island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches,
+         island_restless, contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin, sensor_end,
+         pending_sensor_end, fell_asleep, quarantined] = scratch;
+  (void)blocks;
+  visit.state(moved);
+  for (auto& list : found_pairs) visit.scratch(list);
+  visit.scratch(pairs);
+  visit.scratch(swept);
+  visit.scratch(fast);
+  visit.scratch(broken);
+  visit.scratch(body_changes);
+  visit.scratch(contact_changes);
+  for (auto& list : found_manifolds) visit.scratch(list);
+  visit.scratch(manifolds);
+  visit.scratch(island_parent);
+  visit.scratch(island_list);
+  visit.scratch(island_bodies);
+  visit.scratch(island_ends);
+  visit.scratch(doomed_contacts);
+  visit.scratch(new_touches);
+  visit.scratch(island_restless);
+  visit.events(contact_begin);
+  visit.events(contact_end);
+  visit.state(pending_contact_end);
+  visit.events(contact_hit);
+  visit.events(sensor_begin);
+  visit.events(sensor_end);
+  visit.state(pending_sensor_end);
+  visit.events(fell_asleep);
+  visit.events(quarantined);
+}
+
+/// `world` is a WorldImplementation, constant or not.
+template <class World, class Visit>
+void visit_world(World& world, Visit&& visit) {
+  auto& [definition, world_number, bodies, shapes, joints, effectors, contacts, pairs, graph, sleeping, own_scheduler,
+         scheduler, arena, scratch, kernels, hit_event_shapes, step_count, births, time, last_dt, peak_bytes, reserved,
+         profile] = world;
+  // Of this object, this machine or the last step's clock.
+  (void)world_number, (void)own_scheduler, (void)scheduler, (void)arena, (void)kernels, (void)peak_bytes,
+      (void)reserved, (void)profile;
+  visit.definition(definition);
+  visit_bodies(bodies, visit);
+  visit_shapes(shapes, visit);
+  visit_joints(joints, visit);
+  visit_effectors(effectors, visit);
+  visit_contacts(contacts, visit);
+  visit_slots(pairs, visit);
+  visit_graph(graph, visit);
+  {
+    auto& [first, free] = sleeping;
+    visit.state(first);
+    visit.state(free);
+  }
+  visit_scratch(scratch, visit);
+  visit.state(hit_event_shapes);
+  visit.state(step_count);
+  visit.state(births);
+  visit.state(time);
+  visit.state(last_dt);
+}
+
+}  // namespace carom::rigid::detail

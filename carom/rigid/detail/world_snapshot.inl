@@ -1,0 +1,296 @@
+// World's members that take and restore snapshots.
+#pragma once
+
+#include <cstring>
+
+#include "carom/rigid/detail/check.h"
+#include "carom/rigid/detail/snapshot_data.h"
+#include "carom/rigid/detail/state_visitor.h"
+#include "carom/rigid/snapshot.h"
+
+namespace carom::rigid {
+namespace detail {
+
+/// What a definition says about the machine and not about the motion.
+template <class D>
+WorldDef<D> without_machine(WorldDef<D> definition, const WorldDef<D>& machine = {}) {
+  definition.threads = machine.threads;
+  definition.scheduler = machine.scheduler;
+  definition.simd_width = machine.simd_width;
+  return definition;
+}
+
+template <class D>
+class SnapshotWriter {
+ public:
+  explicit SnapshotWriter(SnapshotData<D>& to) : to_(to) {
+    to_.image.clear();
+    to_.sections.clear();
+  }
+  template <class T>
+  void state(const std::vector<T>& v) {
+    put(v.data(), v.size());
+  }
+  template <class T>
+  void state(const T& x) {
+    put(&x, 1);
+  }
+  template <class T>
+  void scratch(const T&) {}
+  template <class T>
+  void events(const T&) {}
+  void definition(const WorldDef<D>& d) {
+    const WorldDef<D> plain = without_machine(d);
+    put(&plain, 1);
+  }
+  void shapes(const std::vector<ShapeRecord<D>>& v) {
+    ShapeTraits<D>* to = static_cast<ShapeTraits<D>*>(room<ShapeTraits<D>>(v.size()));
+    for (const ShapeRecord<D>& record : v) {
+      const ShapeTraits<D> traits = record;
+      std::memcpy(static_cast<void*>(to++), &traits, sizeof traits);
+    }
+  }
+  void names(const std::vector<std::string>& v) {
+    std::uint32_t* sizes = static_cast<std::uint32_t*>(room<std::uint32_t>(v.size()));
+    std::size_t total = 0;
+    for (const std::string& name : v) total += name.size(), *sizes++ = std::uint32_t(name.size());
+    char* to = static_cast<char*>(room<char>(total));
+    for (const std::string& name : v) std::memcpy(to, name.data(), name.size()), to += name.size();
+  }
+  void effectors(const std::vector<EffectorData<D>>& v) { to_.effectors = v; }
+
+ private:
+  template <class T>
+  void* room(std::size_t count) {
+    const std::size_t first = to_.image.size();
+    to_.image.resize(first + (count * sizeof(T) + 7) / 8);
+    to_.sections.push_back({first, count, sizeof(T)});
+    return to_.image.data() + first;
+  }
+  template <class T>
+  void put(const T* values, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>, "state that is not plain bytes needs a function of its own");
+    void* to = room<T>(count);
+    if (count > 0) std::memcpy(to, values, count * sizeof(T));
+  }
+  SnapshotData<D>& to_;
+};
+
+/// Do the sections fit the world's members? Nothing is written.
+template <class D>
+class SnapshotChecker {
+ public:
+  explicit SnapshotChecker(const SnapshotData<D>& from) : from_(from) {}
+  bool fits() const { return fits_ && next_ == from_.sections.size(); }
+  template <class T>
+  void state(const std::vector<T>&) {
+    expect(sizeof(T), false);
+  }
+  template <class T>
+  void state(const T&) {
+    expect(sizeof(T), true);
+  }
+  template <class T>
+  void scratch(const T&) {}
+  template <class T>
+  void events(const T&) {}
+  void definition(const WorldDef<D>&) { expect(sizeof(WorldDef<D>), true); }
+  void shapes(const std::vector<ShapeRecord<D>>&) {
+    const std::uint64_t count = expect(sizeof(ShapeTraits<D>), false);
+    fits_ = fits_ && from_.geometry != nullptr && from_.geometry->size() == count;
+  }
+  void names(const std::vector<std::string>&) {
+    const std::uint64_t count = expect(sizeof(std::uint32_t), false);
+    const std::uint64_t characters = expect(1, false);
+    if (!fits_) return;
+    const std::uint32_t* sizes = reinterpret_cast<const std::uint32_t*>(&from_.image[from_.sections[next_ - 2].first]);
+    std::uint64_t total = 0;
+    for (std::uint64_t i = 0; i < count; ++i) total += sizes[i];
+    fits_ = total == characters;
+  }
+  void effectors(const std::vector<EffectorData<D>>&) {}
+
+ private:
+  std::uint64_t expect(std::size_t element, bool one) {
+    if (next_ >= from_.sections.size()) return fits_ = false, 0;
+    const SnapshotSection& s = from_.sections[next_++];
+    fits_ = fits_ && s.element == element && (!one || s.count == 1);
+    return s.count;
+  }
+  const SnapshotData<D>& from_;
+  std::size_t next_ = 0;
+  bool fits_ = true;
+};
+
+template <class D>
+class SnapshotReader {
+ public:
+  explicit SnapshotReader(const SnapshotData<D>& from) : from_(from) {}
+  template <class T>
+  void state(std::vector<T>& v) {
+    const SnapshotSection& s = from_.sections[next_++];
+    v.resize(std::size_t(s.count));
+    if (s.count > 0) std::memcpy(static_cast<void*>(v.data()), place(s), std::size_t(s.count) * sizeof(T));
+  }
+  template <class T>
+  void state(T& x) {
+    std::memcpy(static_cast<void*>(&x), place(from_.sections[next_++]), sizeof(T));
+  }
+  template <class T>
+  void scratch(const T&) {}
+  template <class T>
+  void events(std::vector<T>& v) {
+    v.clear();  // they tell of a step that is not the last one any more
+  }
+  void definition(WorldDef<D>& d) {
+    const WorldDef<D> machine = d;
+    state(d);
+    d = without_machine(d, machine);
+  }
+  void shapes(std::vector<ShapeRecord<D>>& v) {
+    const SnapshotSection& s = from_.sections[next_++];
+    v.resize(std::size_t(s.count));
+    const ShapeTraits<D>* from = static_cast<const ShapeTraits<D>*>(place(s));
+    for (ShapeRecord<D>& record : v) {
+      ShapeTraits<D> traits;
+      std::memcpy(static_cast<void*>(&traits), static_cast<const void*>(from++), sizeof traits);
+      static_cast<ShapeTraits<D>&>(record) = traits;
+    }
+  }
+  void names(std::vector<std::string>& v) {
+    const SnapshotSection& s = from_.sections[next_++];
+    const std::uint32_t* sizes = static_cast<const std::uint32_t*>(place(s));
+    const char* from = static_cast<const char*>(place(from_.sections[next_++]));
+    v.resize(std::size_t(s.count));
+    for (std::string& name : v) name.assign(from, *sizes), from += *sizes++;
+  }
+  void effectors(std::vector<EffectorData<D>>& v) { v = from_.effectors; }
+
+ private:
+  const void* place(const SnapshotSection& s) const { return from_.image.data() + s.first; }
+  const SnapshotData<D>& from_;
+  std::size_t next_ = 0;
+};
+
+/// Handles inside the state name the world that they were made by.
+template <class D>
+void adopt_handles(WorldImplementation<D>& world) {
+  const std::uint16_t number = world.world_number;
+  const auto adopt = [number](auto& handle) {
+    if (!handle.is_null()) handle.world = number;
+  };
+  for (JointData<D>& joint : world.joints.data)
+    std::visit([&](auto& d) { adopt(d.body_a), adopt(d.body_b); }, joint.definition);
+  for (EffectorData<D>& effector : world.effectors.data)
+    std::visit(
+        [&](auto& d) {
+          if constexpr (requires { d.body_a; })
+            adopt(d.body_a), adopt(d.body_b);
+          else if constexpr (requires { d.body; })
+            adopt(d.body);
+        },
+        effector.definition);
+  for (ContactEndEvent& e : world.scratch.pending_contact_end) adopt(e.shape_a), adopt(e.shape_b);
+  for (SensorEvent& e : world.scratch.pending_sensor_end) adopt(e.sensor), adopt(e.visitor);
+}
+
+/// The hulls and meshes that a decoded snapshot knows by their fingerprint, out of this world's own.
+template <class D>
+Result<std::shared_ptr<const std::vector<typename D::Shape>>> find_geometry(const WorldImplementation<D>& world,
+                                                                            const SnapshotData<D>& data) {
+  if (data.missing.empty()) return data.geometry;
+  auto all = std::make_shared<std::vector<typename D::Shape>>(*data.geometry);
+  std::vector<std::pair<std::uint64_t, std::size_t>> known;  // fingerprints, each data once
+  for (std::size_t slot = 0; slot < data.missing.size(); ++slot) {
+    const GeometryRecord& record = data.missing[slot];
+    if (record.shared == 0) continue;
+    if (known.empty())
+      for (std::size_t i = 0; i < world.shapes.record.size(); ++i)
+        if (is_shared(world.shapes.record[i].geometry))
+          known.push_back({fingerprint(world.shapes.record[i].geometry), i});
+    bool found = false;
+    for (const auto& [print, i] : known)
+      if (print == record.fingerprint) {
+        (*all)[slot] = world.shapes.record[i].geometry;
+        found = true;
+        break;
+      }
+    if (!found)
+      return core::Error{core::text("World::restore: shape #", slot + 1,
+                                    " of the snapshot has shared geometry with a fingerprint that no shape of this "
+                                    "world has, expected a world with the same hulls and meshes")};
+  }
+  return std::shared_ptr<const std::vector<typename D::Shape>>(std::move(all));
+}
+
+}  // namespace detail
+
+template <class D>
+void World<D>::snapshot(Snapshot<D>& into) {
+  using namespace detail;
+  if (into.self_ == nullptr) into.self_ = std::make_unique<SnapshotData<D>>();
+  SnapshotData<D>& data = *into.self_;
+  SnapshotWriter<D> writer(data);
+  visit_world(static_cast<const WorldImplementation<D>&>(*self_), writer);
+  if (self_->shapes.geometry_copy == nullptr) {
+    auto copy = std::make_shared<std::vector<Shape>>();
+    copy->reserve(self_->shapes.record.size());
+    for (const ShapeRecord<D>& record : self_->shapes.record) copy->push_back(record.geometry);
+    self_->shapes.geometry_copy = std::move(copy);
+  }
+  data.geometry = self_->shapes.geometry_copy;
+  data.missing.clear();
+  data.decoded = false;
+  data.world_number = self_->world_number;
+  data.step_count = self_->step_count;
+}
+
+template <class D>
+Snapshot<D> World<D>::snapshot() {
+  Snapshot<D> result;
+  snapshot(result);
+  return result;
+}
+
+template <class D>
+Status World<D>::restore(const Snapshot<D>& snapshot) {
+  using namespace detail;
+  if (snapshot.empty()) return core::Error{"World::restore: the snapshot is empty, expected one that was taken"};
+  const SnapshotData<D>& data = *snapshot.self_;
+  WorldImplementation<D>& world = *self_;
+  SnapshotChecker<D> checker(data);
+  visit_world(static_cast<const WorldImplementation<D>&>(world), checker);
+  if (!checker.fits())
+    return core::Error{
+        "World::restore: the snapshot's sections are not those of a world, expected one of this version"};
+  const auto geometry = find_geometry(world, data);
+  if (!geometry.ok()) return geometry.error();
+  std::vector<EffectorData<D>> kept;  // the caller's own functions, where bytes could not carry them
+  for (std::size_t i = 0; i < data.effectors.size(); ++i) {
+    const auto* custom = std::get_if<CustomEffector<D>>(&data.effectors[i].definition);
+    if (custom == nullptr || custom->model || !data.decoded) continue;
+    const auto* own =
+        i < world.effectors.data.size() ? std::get_if<CustomEffector<D>>(&world.effectors.data[i].definition) : nullptr;
+    if (own == nullptr || !own->model)
+      return core::Error{core::text("World::restore: effector #", i + 1,
+                                    " is the caller's own function, which bytes do not carry, expected one in the same "
+                                    "slot of this world")};
+    if (kept.empty()) kept = world.effectors.data;
+  }
+
+  SnapshotReader<D> reader(data);
+  visit_world(world, reader);
+  if (world.shapes.geometry_copy == nullptr || world.shapes.geometry_copy != *geometry) {
+    for (std::size_t i = 0; i < world.shapes.record.size(); ++i) world.shapes.record[i].geometry = (**geometry)[i];
+    world.shapes.geometry_copy = *geometry;
+  }
+  for (std::size_t i = 0; i < world.effectors.data.size() && !kept.empty(); ++i) {
+    auto* custom = std::get_if<CustomEffector<D>>(&world.effectors.data[i].definition);
+    if (custom != nullptr && !custom->model && i < kept.size())
+      if (auto* own = std::get_if<CustomEffector<D>>(&kept[i].definition)) custom->model = own->model;
+  }
+  if (data.world_number != world.world_number) adopt_handles(world);
+  return {};
+}
+
+}  // namespace carom::rigid

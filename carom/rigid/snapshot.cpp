@@ -1,0 +1,322 @@
+#include "carom/rigid/snapshot.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "carom/core/hash.h"
+#include "carom/core/string.h"
+#include "carom/rigid/detail/contact_store.h"
+#include "carom/rigid/detail/joint_store.h"
+#include "carom/rigid/detail/snapshot_code.h"
+#include "carom/rigid/detail/snapshot_data.h"
+
+namespace carom::rigid {
+namespace detail {
+namespace {
+
+constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
+constexpr std::uint64_t format_version = 1;
+constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
+
+/// Where compilers and machines could lay out the plain bytes of a state differently.
+template <class D>
+std::uint64_t layout() {
+  core::StateHash hash;
+  hash.add(format_version).add(std::int32_t(D::dimension));
+  const std::size_t sizes[] = {
+      sizeof(SolverBody<D>),          sizeof(typename D::Pose),  sizeof(BodyMotion<D>), sizeof(BodyRecord),
+      sizeof(ShapeTraits<D>),         sizeof(JointHeader),       sizeof(JointData<D>),  sizeof(EffectorDef<D>),
+      sizeof(ContactRecord<D>),       sizeof(ManifoldRecord<D>), sizeof(WorldDef<D>),   sizeof(std::size_t),
+      offsetof(BodyRecord, user_data)};
+  for (const std::size_t size : sizes) hash.add(std::uint64_t{size});
+  hash.add(std::endian::native == std::endian::little);
+#if defined(_LIBCPP_VERSION)
+  hash.add("libc++");  // lays out variants in its own way
+#elif defined(__GLIBCXX__)
+  hash.add("libstdc++");
+#endif
+  return hash.digest();
+}
+
+template <class D>
+std::uint64_t digest_of(const SnapshotData<D>* data) {
+  return data == nullptr ? 0 : hash_words(data->image);
+}
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  std::vector<std::uint64_t> words((bytes.size() + 7) / 8);
+  if (!bytes.empty()) std::memcpy(words.data(), bytes.data(), bytes.size());
+  words.push_back(bytes.size());
+  return hash_words(words);
+}
+
+const std::uint32_t* words_of(const SnapshotSection& s, const std::vector<std::uint64_t>& image) {
+  return reinterpret_cast<const std::uint32_t*>(image.data() + s.first);
+}
+std::size_t word_count(const SnapshotSection& s) { return std::size_t((s.count * s.element + 7) / 8); }
+
+template <class D>
+std::vector<GeometryRecord> geometry_records(const SnapshotData<D>& data) {
+  std::vector<GeometryRecord> records;
+  for (const typename D::Shape& shape : *data.geometry) records.push_back(geometry_record(shape));
+  return records;
+}
+/// What is not yet found in a world keeps its record.
+template <class D>
+std::vector<GeometryRecord> known_records(const SnapshotData<D>* data) {
+  if (data == nullptr) return {};
+  std::vector<GeometryRecord> records = geometry_records(*data);
+  for (std::size_t i = 0; i < data->missing.size(); ++i)
+    if (data->missing[i].shared != 0) records[i] = data->missing[i];
+  return records;
+}
+
+template <class D>
+void write_effectors(ByteWriter& out, const std::vector<EffectorData<D>>& effectors) {
+  out.number(effectors.size());
+  for (const EffectorData<D>& e : effectors) {
+    out.number(e.definition.index());
+    out.number(std::uint32_t(e.joint));
+    std::visit(
+        [&]<class T>(const T& value) {
+          if constexpr (std::is_trivially_copyable_v<T>) {
+            std::vector<std::uint32_t> words((sizeof(T) + 3) / 4);
+            std::memcpy(words.data(), &value, sizeof(T));
+            out.difference(words.data(), nullptr, words.size());
+          } else {
+            out.word(value.body.packed());  // a function of the caller: only whom it pushes
+          }
+        },
+        e.definition);
+  }
+}
+
+template <class Variant, std::size_t I = 0>
+bool read_effector(ByteReader& in, std::size_t index, Variant& definition) {
+  if constexpr (I == std::variant_size_v<Variant>) {
+    return false;
+  } else {
+    if (index != I) return read_effector<Variant, I + 1>(in, index, definition);
+    using T = std::variant_alternative_t<I, Variant>;
+    T value{};
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      std::vector<std::uint32_t> words((sizeof(T) + 3) / 4);
+      in.difference(words.data(), words.size());
+      std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
+    } else {
+      const std::uint64_t packed = in.word();
+      value.body = {std::uint32_t(packed >> 32), std::uint16_t(packed >> 16), std::uint16_t(packed)};
+    }
+    definition = value;
+    return in.sound();
+  }
+}
+
+template <class D>
+std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const SnapshotData<D>* base) {
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
+  for (const std::uint64_t x : {magic, layout<D>(), digest_of<D>(base), hash_words(data.image)}) out.word(x);
+  out.number(data.world_number);
+  out.number(data.step_count);
+  out.number(data.sections.size());
+  static const std::vector<std::uint64_t> nothing;
+  for (std::size_t i = 0; i < data.sections.size(); ++i) {
+    const SnapshotSection& s = data.sections[i];
+    const SnapshotSection b = base != nullptr ? base->sections[i] : SnapshotSection{};
+    out.number(s.count);
+    if (base == nullptr) out.number(s.element);
+    const std::vector<std::uint64_t>& base_image = base != nullptr ? base->image : nothing;
+    const std::size_t count = word_count(s), common = std::min(count, base != nullptr ? word_count(b) : 0);
+    out.difference(words_of(s, data.image), words_of(b, base_image), 2 * common);
+    out.difference(words_of(s, data.image) + 2 * common, nullptr, 2 * (count - common));
+  }
+  // Geometry by slot, where it is not as in the base.
+  const bool same = base != nullptr && base->geometry == data.geometry && base->missing.empty();
+  const std::vector<GeometryRecord> now = same ? std::vector<GeometryRecord>{} : known_records(&data);
+  const std::vector<GeometryRecord> before = same ? std::vector<GeometryRecord>{} : known_records(base);
+  out.number(data.geometry->size());
+  out.byte(same ? 0 : 1);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const bool equal = i < before.size() && before[i] == now[i];
+    out.byte(equal ? 0 : (now[i].shared != 0 ? 2 : 1));
+    if (equal) continue;
+    out.number(now[i].type);
+    if (now[i].shared != 0)
+      out.word(now[i].fingerprint);
+    else
+      out.difference(now[i].value, nullptr, std::size(now[i].value));
+  }
+  write_effectors<D>(out, data.effectors);
+  out.word(checksum(bytes));
+  return bytes;
+}
+
+template <class D>
+bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>* base) {
+  const std::uint64_t sections = in.number();
+  if (sections > most_sections || (base != nullptr && sections != base->sections.size())) return false;
+  for (std::uint64_t i = 0; i < sections && in.sound(); ++i) {
+    SnapshotSection s;
+    s.count = in.number();
+    s.element = base != nullptr ? base->sections[i].element : in.number();
+    s.first = data.image.size();
+    if (s.count > most_words || s.element == 0 || s.element > 65536 || s.count * s.element > most_words) return false;
+    const std::size_t count = word_count(s);
+    const std::size_t common = std::min(count, base != nullptr ? word_count(base->sections[i]) : 0);
+    data.image.resize(data.image.size() + count);
+    std::uint64_t* const to = data.image.data() + s.first;
+    if (common > 0) std::memcpy(to, base->image.data() + base->sections[i].first, common * 8);
+    std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(to);
+    in.difference(words, 2 * common);
+    in.difference(words + 2 * common, 2 * (count - common));
+    data.sections.push_back(s);
+  }
+  return in.sound();
+}
+
+template <class D>
+bool read_geometry(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>* base) {
+  const std::uint64_t count = in.number();
+  const bool changed = in.byte() != 0;
+  if (!changed) {
+    if (base == nullptr || base->geometry->size() != count) return false;
+    data.geometry = base->geometry;
+    data.missing = base->missing;
+    return in.sound();
+  }
+  if (count > in.left()) return false;  // a byte a slot at least
+  auto shapes = std::make_shared<std::vector<typename D::Shape>>(std::size_t(count));
+  data.missing.resize(std::size_t(count));
+  bool any = false;
+  for (std::size_t i = 0; i < count && in.sound(); ++i) {
+    GeometryRecord record;
+    switch (in.byte()) {
+      case 0:
+        if (base == nullptr || i >= base->geometry->size()) return false;
+        (*shapes)[i] = (*base->geometry)[i];
+        if (i < base->missing.size()) data.missing[i] = base->missing[i];
+        break;
+      case 1:
+        record.type = std::uint32_t(in.number());
+        in.difference(record.value, std::size(record.value));
+        if (!shape_of(record, (*shapes)[i])) return false;
+        break;
+      case 2:
+        record.type = std::uint32_t(in.number());
+        record.shared = 1;
+        record.fingerprint = in.word();
+        data.missing[i] = record;
+        break;
+      default:
+        return false;
+    }
+    any = any || data.missing[i].shared != 0;
+  }
+  if (!any) data.missing.clear();
+  data.geometry = std::move(shapes);
+  return in.sound();
+}
+
+template <class D>
+bool read_effectors(ByteReader& in, SnapshotData<D>& data) {
+  const std::uint64_t count = in.number();
+  if (count > in.left()) return false;
+  data.effectors.resize(std::size_t(count));
+  for (EffectorData<D>& e : data.effectors) {
+    const std::uint64_t index = in.number();
+    e.joint = std::int32_t(std::uint32_t(in.number()));
+    if (!read_effector(in, std::size_t(index), e.definition)) return false;
+  }
+  return in.sound();
+}
+
+}  // namespace
+}  // namespace detail
+
+template <class D>
+Snapshot<D>::Snapshot() = default;
+template <class D>
+Snapshot<D>::~Snapshot() = default;
+template <class D>
+Snapshot<D>::Snapshot(Snapshot&&) noexcept = default;
+template <class D>
+Snapshot<D>& Snapshot<D>::operator=(Snapshot&&) noexcept = default;
+template <class D>
+Snapshot<D>::Snapshot(const Snapshot& other) {
+  *this = other;
+}
+template <class D>
+Snapshot<D>& Snapshot<D>::operator=(const Snapshot& other) {
+  if (this == &other) return *this;
+  if (other.self_ == nullptr)
+    self_.reset();
+  else if (self_ == nullptr)
+    self_ = std::make_unique<detail::SnapshotData<D>>(*other.self_);
+  else
+    *self_ = *other.self_;
+  return *this;
+}
+
+template <class D>
+bool Snapshot<D>::empty() const {
+  return self_ == nullptr;
+}
+template <class D>
+std::uint64_t Snapshot<D>::step_count() const {
+  return empty() ? 0 : self_->step_count;
+}
+template <class D>
+std::size_t Snapshot<D>::bytes() const {
+  return empty() ? 0
+                 : sizeof(*self_) + self_->image.capacity() * 8 +
+                       self_->sections.capacity() * sizeof(detail::SnapshotSection) +
+                       self_->effectors.capacity() * sizeof(detail::EffectorData<D>);
+}
+template <class D>
+std::uint64_t Snapshot<D>::digest() const {
+  return detail::digest_of<D>(self_.get());
+}
+
+template <class D>
+std::vector<std::byte> Snapshot<D>::encode() const {
+  return empty() ? std::vector<std::byte>{} : detail::encode_difference<D>(*self_, nullptr);
+}
+template <class D>
+std::vector<std::byte> Snapshot<D>::encode(const Snapshot& base) const {
+  return empty() ? std::vector<std::byte>{} : detail::encode_difference<D>(*self_, base.self_.get());
+}
+
+template <class D>
+core::Result<Snapshot<D>> Snapshot<D>::decode(std::span<const std::byte> bytes, const Snapshot& base) {
+  using namespace detail;
+  const auto fault = [](std::string_view what) { return core::Error{core::text("Snapshot::decode: ", what)}; };
+  if (bytes.size() < 48)
+    return fault(core::text("the data is ", bytes.size(), " bytes, expected a snapshot, which has at least 48"));
+  ByteReader in(bytes.first(bytes.size() - 8)), end(bytes.last(8));
+  if (in.word() != magic) return fault("the data does not begin as a snapshot of this version does");
+  if (in.word() != layout<D>())
+    return fault("the snapshot was made by another version, for another dimension or on a machine with another layout");
+  if (end.word() != checksum(bytes.first(bytes.size() - 8)))
+    return fault("the checksum does not match, expected whole data: it is truncated or corrupt");
+  const std::uint64_t base_digest = in.word(), digest = in.word();
+  if (base_digest != digest_of<D>(base.self_.get()))
+    return fault(base_digest == 0 ? "the data is a whole snapshot, expected a difference to the given base"
+                                  : "the data is a difference to another base than the one given");
+  Snapshot result;
+  result.self_ = std::make_unique<SnapshotData<D>>();
+  SnapshotData<D>& data = *result.self_;
+  data.decoded = true;
+  data.world_number = std::uint16_t(in.number());
+  data.step_count = in.number();
+  if (!read_sections<D>(in, data, base.self_.get()) || !read_geometry<D>(in, data, base.self_.get()) ||
+      !read_effectors<D>(in, data) || !in.at_end())
+    return fault("the data is not what a snapshot holds");
+  if (hash_words(data.image) != digest) return fault("the state does not match its digest, expected whole data");
+  return result;
+}
+
+template class Snapshot<Dim2>;
+template class Snapshot<Dim3>;
+
+}  // namespace carom::rigid
