@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "carom/core/function_ref.h"
 #include "carom/export.h"
@@ -26,6 +27,34 @@ class CAROM_API TaskScheduler {
   virtual int thread_count() const = 0;
   /// count ≤ 0 does nothing; grain < 1 counts as 1. Must not allocate. The body must not throw.
   virtual void parallel_for(int count, int grain, Body body) = 0;
+
+  struct Stage {
+    int count = 0, grain = 1;
+  };
+  using StageBody = FunctionRef<void(int stage, int begin, int end, int worker)>;
+  /// Loops that depend on each other: as parallel_for for every stage in turn; a stage begins when all chunks of the
+  /// one before are done. Schedulers that can, do it with less than a fork and a join for each.
+  virtual void run_stages(std::span<const Stage> stages, StageBody body) {
+    for (std::size_t s = 0; s < stages.size(); ++s)
+      parallel_for(stages[s].count, stages[s].grain,
+                   [&](int begin, int end, int worker) { body(int(s), begin, end, worker); });
+  }
+  /// Hints that many short loops follow each other until end_region: workers may stay at hand in between. Calls come
+  /// in pairs, from the thread that calls parallel_for. By default nothing.
+  virtual void begin_region() {}
+  virtual void end_region() {}
+};
+
+/// Keeps a scheduler's workers at hand while it lives.
+class ParallelRegion {
+ public:
+  explicit ParallelRegion(TaskScheduler& scheduler) : scheduler_(scheduler) { scheduler_.begin_region(); }
+  ~ParallelRegion() { scheduler_.end_region(); }
+  ParallelRegion(const ParallelRegion&) = delete;
+  ParallelRegion& operator=(const ParallelRegion&) = delete;
+
+ private:
+  TaskScheduler& scheduler_;
 };
 
 /// Everything on the calling thread, chunks in order.

@@ -12,6 +12,7 @@
 
 namespace scheduler_test {
 using carom::core::make_thread_pool;
+using carom::core::ParallelRegion;
 using carom::core::TaskScheduler;
 
 TEST(Scheduler, RunsEveryItemExactlyOnce) {
@@ -112,6 +113,41 @@ TEST(Scheduler, WakesSleepingWorkersAndStopsThem) {
     std::atomic<int> sum{0};
     for (int i = 0; i < 100; ++i) pool->parallel_for(4, 1, [&](int begin, int, int) { sum.fetch_add(begin); });
     EXPECT_EQ(sum.load(), 600);
+  }
+}
+
+/// Every chunk of a stage must find the stage before complete.
+void run_chain(TaskScheduler& scheduler, int rounds) {
+  std::vector<TaskScheduler::Stage> stages;
+  for (int s = 0; s < 40; ++s) stages.push_back({s % 7 == 0 ? 1 : (s % 5 == 0 ? 0 : 10 + 13 * s), 1 + s % 6});
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<std::atomic<int>> done(stages.size());
+    std::atomic<int> early{0};
+    scheduler.run_stages(stages, [&](int stage, int begin, int end, int) {
+      for (int s = 0; s < stage; ++s)
+        if (done[std::size_t(s)].load() != stages[std::size_t(s)].count) early.fetch_add(1);
+      done[std::size_t(stage)].fetch_add(end - begin);
+    });
+    EXPECT_EQ(early.load(), 0);
+    for (std::size_t s = 0; s < stages.size(); ++s) EXPECT_EQ(done[s].load(), stages[s].count) << "stage " << s;
+  }
+}
+
+TEST(Scheduler, RunsStagesOneAfterTheOther) {
+  for (const int threads : {1, 2, 3, 7}) run_chain(*make_thread_pool(threads), 50);
+}
+
+TEST(Scheduler, RunsLoopsAndStagesInsideARegion) {
+  const auto pool = make_thread_pool(3);
+  for (int round = 0; round < 50; ++round) {
+    const ParallelRegion region(*pool);
+    std::atomic<int> sum{0};
+    for (int i = 0; i < 20; ++i) {
+      const ParallelRegion nested(*pool);
+      pool->parallel_for(50, 3, [&](int begin, int end, int) { sum.fetch_add(end - begin); });
+    }
+    EXPECT_EQ(sum.load(), 1000);
+    run_chain(*pool, 1);
   }
 }
 

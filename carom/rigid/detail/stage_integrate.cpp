@@ -4,8 +4,6 @@
 namespace carom::rigid::detail {
 namespace {
 
-constexpr int body_grain = 256;
-
 float speed_of(float w) { return math::abs(w); }
 float speed_of(const Vec3f& w) { return math::length(w); }
 
@@ -36,54 +34,50 @@ void turn_body(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Quatf& star
 }  // namespace
 
 template <class D>
-void integrate_velocities(StepContext<D>& context) {
+void integrate_velocities(StepContext<D>& context, int begin, int end) {
   auto& bodies = context.world.bodies;
   const float h = context.h;
   const typename D::Vector gravity = context.world.definition.gravity;
   const float max_speed = context.world.definition.maximum_linear_speed;
-  context.scheduler.parallel_for(int(bodies.awake.size()), body_grain, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const std::size_t body = std::size_t(bodies.awake[std::size_t(i)]);
-      const BodyRecord& record = bodies.record[body];
-      if (record.type != BodyType::dynamic) continue;
-      const BodyMotion<D>& m = bodies.motion[body];
-      SolverBody<D>& s = bodies.solver[body];
-      const typename D::Vector before = s.linear_velocity;
-      s.linear_velocity += h * (m.gravity_scale * gravity + m.inverse_mass * m.force);
-      s.angular_velocity += h * (m.world_inverse_inertia * m.torque);
-      s.linear_velocity *= 1 / (1 + h * m.linear_damping);
-      s.angular_velocity *= 1 / (1 + h * m.angular_damping);
-      if (record.locks != 0) apply_locks(s, record.locks);
-      const float speed_squared = math::length_squared(s.linear_velocity);
-      if (speed_squared > max_speed * max_speed) s.linear_velocity *= max_speed / math::sqrt(speed_squared);
-      const float spin = speed_of(s.angular_velocity);
-      if (spin * h > max_turn) s.angular_velocity *= max_turn / (spin * h);
-      // Free flight: the mean of the velocities makes ½at² exact. In contact it would fight the contact.
-      if (record.constraint_count == 0) s.delta_position += (0.5f * h) * (before + s.linear_velocity);
-    }
-  });
+  for (int i = begin; i < end; ++i) {
+    const std::size_t body = std::size_t(bodies.awake[std::size_t(i)]);
+    const BodyRecord& record = bodies.record[body];
+    if (record.type != BodyType::dynamic) continue;
+    const BodyMotion<D>& m = bodies.motion[body];
+    SolverBody<D>& s = bodies.solver[body];
+    const typename D::Vector before = s.linear_velocity;
+    s.linear_velocity += h * (m.gravity_scale * gravity + m.inverse_mass * m.force);
+    s.angular_velocity += h * (m.world_inverse_inertia * m.torque);
+    s.linear_velocity *= 1 / (1 + h * m.linear_damping);
+    s.angular_velocity *= 1 / (1 + h * m.angular_damping);
+    if (record.locks != 0) apply_locks(s, record.locks);
+    const float speed_squared = math::length_squared(s.linear_velocity);
+    if (speed_squared > max_speed * max_speed) s.linear_velocity *= max_speed / math::sqrt(speed_squared);
+    const float spin = speed_of(s.angular_velocity);
+    if (spin * h > max_turn) s.angular_velocity *= max_turn / (spin * h);
+    // Free flight: the mean of the velocities makes ½at² exact. In contact it would fight the contact.
+    if (record.constraint_count == 0) s.delta_position += (0.5f * h) * (before + s.linear_velocity);
+  }
 }
 
 template <class D>
-void integrate_positions(StepContext<D>& context) {
+void integrate_positions(StepContext<D>& context, int begin, int end) {
   auto& bodies = context.world.bodies;
   const float h = context.h;
-  context.scheduler.parallel_for(int(bodies.awake.size()), body_grain, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const std::size_t body = std::size_t(bodies.awake[std::size_t(i)]);
-      const BodyRecord& record = bodies.record[body];
-      SolverBody<D>& s = bodies.solver[body];
-      if (record.locks != 0) apply_locks(s, record.locks);
-      if (record.constraint_count != 0 || record.type != BodyType::dynamic) s.delta_position += h * s.linear_velocity;
-      const BodyMotion<D>& m = bodies.motion[body];
-      turn_body(s, m, bodies.pose[body].rotation, turns_freely(m, record, s.angular_velocity), h);
-    }
-  });
+  for (int i = begin; i < end; ++i) {
+    const std::size_t body = std::size_t(bodies.awake[std::size_t(i)]);
+    const BodyRecord& record = bodies.record[body];
+    SolverBody<D>& s = bodies.solver[body];
+    if (record.locks != 0) apply_locks(s, record.locks);
+    if (record.constraint_count != 0 || record.type != BodyType::dynamic) s.delta_position += h * s.linear_velocity;
+    const BodyMotion<D>& m = bodies.motion[body];
+    turn_body(s, m, bodies.pose[body].rotation, turns_freely(m, record, s.angular_velocity), h);
+  }
 }
 
-template void integrate_velocities<Dim2>(StepContext<Dim2>&);
-template void integrate_velocities<Dim3>(StepContext<Dim3>&);
-template void integrate_positions<Dim2>(StepContext<Dim2>&);
-template void integrate_positions<Dim3>(StepContext<Dim3>&);
+template void integrate_velocities<Dim2>(StepContext<Dim2>&, int, int);
+template void integrate_velocities<Dim3>(StepContext<Dim3>&, int, int);
+template void integrate_positions<Dim2>(StepContext<Dim2>&, int, int);
+template void integrate_positions<Dim3>(StepContext<Dim3>&, int, int);
 
 }  // namespace carom::rigid::detail

@@ -1,72 +1,132 @@
+// The substeps: passes over the bodies and over the colours of the constraint graph, with a barrier after each.
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
 namespace {
 
-template <class D, class F>
-void run_blocks(StepContext<D>& context, int color, F&& f) {
-  const ColorBlocks& blocks = context.world.scratch.blocks[color];
-  if (blocks.count == 0) return;
-  // A pass over a block takes a tenth (plane) to a quarter (space) of a microsecond, and handing a chunk to another
-  // core about as long: few large chunks, and none for little work. No result depends on how a colour is cut.
-  const int threads = context.scheduler.thread_count(), least = D::dimension == 2 ? 48 : 16;
-  if (color == overflow_color || threads == 1 || blocks.count <= least) return f(blocks, 0, blocks.count);
-  const int grain = max(least / 4, (blocks.count + 3 * threads - 1) / (3 * threads));
-  context.scheduler.parallel_for(blocks.count, grain, [&](int begin, int end, int) { f(blocks, begin, end); });
+constexpr int body_grain = 256;
+/// Up to so many blocks a barrier (half a microsecond) costs more than a second core saves.
+template <class D>
+constexpr int few_blocks = D::dimension == 2 ? 24 : 8;
+
+/// Colours in the order of a sweep: the overflow first, because what is solved last holds best.
+int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
+
+template <class D>
+bool has_joints(const StepContext<D>& context, int color) {
+  return !context.world.graph.colors[color].joints.empty();
 }
 
-/// Calls f(color) for those with something in them: the overflow first, because what is solved last holds best.
-template <class D, class F>
-void for_colors(StepContext<D>& context, F&& f) {
-  const ConstraintGraph& graph = context.world.graph;
-  const auto used = [&](int color) {
-    return !graph.colors[color].manifolds.empty() || !graph.colors[color].joints.empty();
-  };
-  if (used(overflow_color)) f(overflow_color);
-  for (int color = 0; color < color_count; ++color)
-    if (used(color)) f(color);
+template <class D>
+void add_body_stage(StepContext<D>& context, SolverPass pass) {
+  context.world.scratch.solver_stages.push_back({pass, 0, 0});
+  context.world.scratch.solver_loops.push_back({int(context.world.bodies.awake.size()), body_grain});
+}
+
+/// One stage for every colour, but one for neighbours that are small or serial: no result depends on how the colours
+/// are cut, because one chunk runs them in their order.
+template <class D>
+void add_color_stages(StepContext<D>& context, SolverPass pass) {
+  std::vector<SolverStage>& stages = context.world.scratch.solver_stages;
+  std::vector<core::TaskScheduler::Stage>& loops = context.world.scratch.solver_loops;
+  const int threads = context.scheduler.thread_count();
+  bool joining = false;
+  for (int rank = 0; rank <= color_count; ++rank) {
+    const int color = color_of_rank(rank), count = context.world.scratch.blocks[color].count;
+    const bool joints = has_joints(context, color);
+    if (count == 0 && !joints) continue;
+    const bool serial = color == overflow_color || threads == 1 || count <= few_blocks<D>;
+    if (serial && joining && !joints) {
+      stages.back().last_rank = std::int8_t(rank);
+      continue;
+    }
+    stages.push_back({pass, std::int8_t(rank), std::int8_t(rank)});
+    if (serial)
+      loops.push_back({1, 1});
+    else
+      loops.push_back({count, max(few_blocks<D> / 4, (count + 3 * threads - 1) / (3 * threads))});
+    joining = serial && !joints;
+  }
+}
+
+template <class D>
+void list_stages(StepContext<D>& context) {
+  StepScratch<D>& scratch = context.world.scratch;
+  scratch.solver_stages.clear();
+  scratch.solver_loops.clear();
+  scratch.solver_stages.reserve(most_solver_stages(context.substeps));
+  scratch.solver_loops.reserve(most_solver_stages(context.substeps));
+  for (int substep = 0; substep < context.substeps; ++substep) {
+    add_body_stage(context, SolverPass::velocities);
+    add_color_stages(context, SolverPass::warm_start);
+    add_color_stages(context, SolverPass::solve);
+    add_body_stage(context, SolverPass::positions);
+    add_color_stages(context, SolverPass::relax);
+  }
+}
+
+template <class D>
+void run_blocks(StepContext<D>& context, SolverPass pass, const ColorBlocks& b, int begin, int end) {
+  const ContactKernels<D>& kernels = context.world.kernels;
+  if (pass == SolverPass::warm_start)
+    kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end);
+  else if (pass == SolverPass::solve)
+    kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed);
+  else
+    kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h);
+}
+
+template <class D>
+void run_stage(StepContext<D>& context, int index, int begin, int end) {
+  const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
+  if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end);
+  if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
+  const bool whole = context.world.scratch.solver_loops[std::size_t(index)].count == 1;
+  for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank) {
+    const ColorBlocks& blocks = context.world.scratch.blocks[color_of_rank(rank)];
+    if (blocks.count > 0) run_blocks(context, stage.pass, blocks, whole ? 0 : begin, whole ? blocks.count : end);
+  }
+}
+
+template <class D>
+void run_joints(StepContext<D>& context, SolverStage stage) {
+  const int color = color_of_rank(stage.first_rank);
+  if (stage.pass == SolverPass::velocities || stage.pass == SolverPass::positions || !has_joints(context, color))
+    return;
+  if (stage.pass == SolverPass::warm_start)
+    warm_start_joints(context, color);
+  else
+    solve_joints(context, color, stage.pass == SolverPass::solve);
 }
 
 }  // namespace
 
 template <class D>
 void solve_constraints(StepContext<D>& context) {
-  const ContactKernels<D>& kernels = context.world.kernels;
-  const float inverse_h = context.inverse_h, push_speed = context.push_speed;
-  SolverBody<D>* const bodies = context.bodies;
-  for (int substep = 0; substep < context.substeps; ++substep) {
-    integrate_velocities(context);
-    for_colors(context, [&](int color) {
-      warm_start_joints(context, color);
-      run_blocks(context, color, [&](const ColorBlocks& b, int begin, int end) {
-        kernels.warm_start(bodies, b.blocks, b.extra, begin, end);
-      });
-    });
-    for_colors(context, [&](int color) {
-      solve_joints(context, color, true);
-      run_blocks(context, color, [&](const ColorBlocks& b, int begin, int end) {
-        kernels.solve(bodies, b.blocks, begin, end, inverse_h, push_speed);
-      });
-    });
-    integrate_positions(context);
-    for_colors(context, [&](int color) {
-      solve_joints(context, color, false);
-      run_blocks(context, color, [&](const ColorBlocks& b, int begin, int end) {
-        kernels.relax(bodies, b.blocks, b.extra, begin, end, inverse_h);
-      });
-    });
+  list_stages(context);
+  const StepScratch<D>& scratch = context.world.scratch;
+  if (context.world.joints.order.empty())
+    return context.scheduler.run_stages(
+        scratch.solver_loops, [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
+  for (std::size_t i = 0; i < scratch.solver_stages.size(); ++i) {
+    run_joints(context, scratch.solver_stages[i]);
+    context.scheduler.parallel_for(scratch.solver_loops[i].count, scratch.solver_loops[i].grain,
+                                   [&](int begin, int end, int) { run_stage(context, int(i), begin, end); });
   }
 }
 
 template <class D>
 void restitute_contacts(StepContext<D>& context) {
   const ContactKernels<D>& kernels = context.world.kernels;
-  for_colors(context, [&](int color) {
-    if (!context.world.scratch.blocks[color].bounces) return;
-    run_blocks(context, color, [&](const ColorBlocks& b, int begin, int end) {
-      kernels.restitute(context.bodies, b.blocks, b.extra, begin, end);
-    });
-  });
+  for (int rank = 0; rank <= color_count; ++rank) {
+    const ColorBlocks& b = context.world.scratch.blocks[color_of_rank(rank)];
+    if (!b.bounces) continue;
+    const auto run = [&](int begin, int end, int) { kernels.restitute(context.bodies, b.blocks, b.extra, begin, end); };
+    if (rank == 0)
+      run(0, b.count, 0);
+    else
+      context.scheduler.parallel_for(b.count, few_blocks<D>, run);
+  }
 }
 
 template void solve_constraints<Dim2>(StepContext<Dim2>&);

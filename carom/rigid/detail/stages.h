@@ -26,10 +26,11 @@ template <class D>
 void solve_constraints(StepContext<D>& context);
 template <class D>
 void restitute_contacts(StepContext<D>& context);
+/// Of the bodies in places [begin, end) of the list of awake bodies, by one substep.
 template <class D>
-void integrate_velocities(StepContext<D>& context);
+void integrate_velocities(StepContext<D>& context, int begin, int end);
 template <class D>
-void integrate_positions(StepContext<D>& context);
+void integrate_positions(StepContext<D>& context, int begin, int end);
 /// New poses from displacements; bounds; sleep timers; quarantine; who is fast.
 template <class D>
 void finalize_bodies(StepContext<D>& context);

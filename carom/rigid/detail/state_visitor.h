@@ -88,11 +88,13 @@ void visit_graph(Graph& graph, Visit& visit) {
 
 template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
-  auto& [blocks, moved, found_pairs, pairs, swept, fast, broken, body_changes, contact_changes, found_manifolds,
-         manifolds, island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches,
-         island_restless, contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin, sensor_end,
-         pending_sensor_end, fell_asleep, quarantined] = scratch;
+  auto& [blocks, solver_stages, solver_loops, moved, found_pairs, pairs, swept, fast, broken, body_changes,
+         contact_changes, found_manifolds, manifolds, island_parent, island_list, island_bodies, island_ends,
+         doomed_contacts, new_touches, island_restless, contact_begin, contact_end, pending_contact_end, contact_hit,
+         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined] = scratch;
   (void)blocks;
+  visit.scratch(solver_stages);
+  visit.scratch(solver_loops);
   visit.state(moved);
   for (auto& list : found_pairs) visit.scratch(list);
   visit.scratch(pairs);

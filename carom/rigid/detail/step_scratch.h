@@ -30,6 +30,18 @@ struct ColorBlocks {
   bool bounces = false;
 };
 
+/// A pass over bodies or over the constraints of some colours: what the solver does between two barriers.
+enum class SolverPass : std::uint8_t { velocities, warm_start, solve, positions, relax };
+struct SolverStage {
+  SolverPass pass = SolverPass::velocities;
+  std::int8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
+};
+
+/// So many stages a step has at most.
+inline constexpr std::size_t most_solver_stages(int substeps) {
+  return std::size_t(substeps) * (2 + 3 * (color_count + 1));
+}
+
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
 
 /// Where a fast body was when the step began.
@@ -43,8 +55,10 @@ struct SweepStart {
 template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
-  std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
-  std::vector<std::vector<FoundPair>> found_pairs;  ///< by worker
+  std::vector<SolverStage> solver_stages;
+  std::vector<core::TaskScheduler::Stage> solver_loops;  ///< of the same places
+  std::vector<std::int32_t> moved;                       ///< shapes whose fat bounds changed
+  std::vector<std::vector<FoundPair>> found_pairs;       ///< by worker
   std::vector<FoundPair> pairs;
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake

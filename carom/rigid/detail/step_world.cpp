@@ -1,6 +1,7 @@
 // The step as a named sequence of stages.
 #include <atomic>
 #include <chrono>
+#include <optional>
 
 #include "carom/math/cpu.h"
 #include "carom/rigid/detail/joint_check.h"
@@ -124,6 +125,12 @@ void release_scratch(WorldImplementation<D>& world) {
   for (auto& tree : world.shapes.trees) tree.release_scratch();
 }
 
+/// Is there enough to do that keeping the workers at hand pays? A small step wakes nobody.
+template <class D>
+bool worth_a_region(const WorldImplementation<D>& world) {
+  return world.scheduler->thread_count() > 1 && world.bodies.awake.size() + world.contacts.awake.size() >= 512;
+}
+
 template <class D>
 StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
   StepContext<D> context{world, *world.scheduler, world.arena};
@@ -203,6 +210,8 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   world.arena.reset();
   world.last_dt = dt;
 
+  std::optional<core::ParallelRegion> region;
+  if (worth_a_region(world)) region.emplace(*world.scheduler);
   apply_effectors(world, dt);
   profile.effectors = watch.lap();
   find_pairs(world);

@@ -75,6 +75,8 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   world.sleeping.first.reserve(bodies);
   world.sleeping.free.reserve(bodies);
   StepScratch<D>& s = world.scratch;
+  s.solver_stages.reserve(most_solver_stages(world.definition.substeps));
+  s.solver_loops.reserve(most_solver_stages(world.definition.substeps));
   s.moved.reserve(shapes);
   for (auto& list : s.found_pairs) list.reserve(contacts);
   s.pairs.reserve(contacts);
