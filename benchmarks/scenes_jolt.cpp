@@ -89,12 +89,26 @@ std::unique_ptr<Scene<Dim3>> make() {
 
 }  // namespace
 
+std::unique_ptr<Scene<Dim3>> make_ragdolls();             // ragdolls_jolt.cpp
+std::unique_ptr<Scene<Dim3>> make_ragdoll_single_pile();  // ragdolls_jolt.cpp
+
 std::span<const SceneInfo> jolt_scenes() {
   static const SceneInfo scenes[] = {
       {.suite = "jolt", .name = "pyramid", .steps = 500, .make3 = [] { return list_scene<Dim3>(wide_pyramid(true)); }},
       {.suite = "jolt", .name = "convex_vs_mesh", .steps = 500, .hash_steps = 120, .make3 = make<ConvexVsMesh>},
       {.suite = "jolt", .name = "high_speed", .steps = 500, .hash_steps = 60, .make3 = make<HighSpeed>},
       {.suite = "jolt", .name = "character_virtual", .steps = 500, .missing = "needs the character controller"},
+      {.suite = "jolt",
+       .name = "ragdoll",
+       .steps = 500,
+       .hash_steps = 60,
+       .missing = "stand-in figure and terrain",
+       .make3 = make_ragdolls},
+      {.suite = "jolt",
+       .name = "ragdoll_single_pile",
+       .steps = 500,
+       .missing = "stand-in figure and terrain",
+       .make3 = make_ragdoll_single_pile},
       {.suite = "jolt", .name = "large_mesh_500", .steps = 500, .make3 = make<LargeMesh<500>>},
       {.suite = "jolt", .name = "large_mesh_1000", .steps = 500, .make3 = make<LargeMesh<1000>>},
   };
