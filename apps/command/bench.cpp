@@ -147,6 +147,7 @@ nlohmann::ordered_json to_json(const Row& row, bool series) {
 }  // namespace
 
 int bench(const BenchOptions& options) {
+  if (!options.plot.empty()) return plot_benchmarks(options.from, options.plot);
   if (options.list) return list_scenes(options.json), exit_ok;
   const auto chosen = choose(options);
   if (!chosen) return fail(exit_usage, chosen.error().message);

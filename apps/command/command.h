@@ -98,7 +98,9 @@ struct BenchOptions {
   std::vector<int> threads;  ///< each scene once with each
   int rounds = 3, steps = 0, width = 0;
   bool json = false, series = false, list = false;
+  std::string from, plot;  ///< rows in a file, and the picture drawn from them
 };
 int bench(const BenchOptions& options);
+int plot_benchmarks(const std::string& rows, const std::string& picture);
 
 }  // namespace carom::command

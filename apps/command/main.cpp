@@ -137,6 +137,12 @@ int main(int count, char** arguments) {
       ->check(CLI::IsMember({0, 4, 8, 16}));
   bench_command->add_flag("--list,-l", bench_options.list, "list the scenes");
   bench_command->add_flag("--json", bench_options.json, "as JSON");
+  auto* plot = bench_command->add_option("--plot", bench_options.plot,
+                                         "draw Carom beside its peers to this SVG file, from the rows of --from");
+  bench_command->add_option("--from", bench_options.from, "rows as --json prints them, of several engines")
+      ->needs(plot)
+      ->check(CLI::ExistingFile);
+  plot->needs("--from");
   bench_command->add_flag("--series", bench_options.series, "with every step's time in the JSON");
   bench_command->footer(
       with_examples("  carom bench\n"
