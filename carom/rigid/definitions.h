@@ -8,8 +8,9 @@
 #include "carom/rigid/dimension.h"
 
 namespace carom::core {
+class Profiler;       // core/profiler.h
 class TaskScheduler;  // core/scheduler.h
-}
+}  // namespace carom::core
 
 namespace carom::rigid {
 
@@ -32,6 +33,7 @@ struct WorldDef {
   int substeps = 4;                                   ///< solver substeps in a step, 1 … 64
   int threads = 1;  ///< worker threads the world makes for itself, 1 … 64 (the caller's included)
   core::TaskScheduler* scheduler = nullptr;  ///< the caller's own, instead; must outlive the world
+  core::Profiler* profiler = nullptr;        ///< takes the stages of every step, lane 0; must outlive the world
   int simd_width = 0;  ///< lanes of the contact solver: 4, 8 or 16, or 0 for the widest the machine has; same results
   bool allow_sleep = true;
   bool continuous = true;              ///< fast bodies never pass through static geometry

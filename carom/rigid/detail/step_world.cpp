@@ -1,8 +1,8 @@
 // The step as a named sequence of stages.
 #include <atomic>
-#include <chrono>
 #include <optional>
 
+#include "carom/core/profiler.h"
 #include "carom/math/cpu.h"
 #include "carom/rigid/detail/joint_check.h"
 #include "carom/rigid/detail/memory.h"
@@ -11,18 +11,25 @@
 namespace carom::rigid::detail {
 namespace {
 
-/// Measures; nothing in a world depends on it.
+/// Times the stages for `World::profile` and the caller's profiler; nothing in a world depends on it.
 class Stopwatch {
  public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
+  explicit Stopwatch(core::Profiler* profiler) : profiler_(profiler) {}
+  /// ms since the last lap.
+  double lap(const char* stage) { return measure(stage, last_); }
+  /// ms since the start.
+  double whole(const char* name) { return measure(name, start_); }
 
  private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  double measure(const char* name, std::int64_t since) {
+    const std::int64_t now = core::Profiler::now();
+    if (profiler_ != nullptr) profiler_->record(name, 0, since, now);
+    last_ = now;
+    return 1e-6 * double(now - since);
+  }
+
+  core::Profiler* profiler_;
+  std::int64_t start_ = core::Profiler::now(), last_ = start_;
 };
 
 template <class D>
@@ -204,7 +211,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
     const Status status = check_definition<D>("World::step: definition", world.definition);
     if (!status.ok()) return status.error();
   }
-  Stopwatch watch, whole;
+  Stopwatch watch(world.definition.profiler);
   StepProfile profile;
   begin_events(world);
   world.arena.reset();
@@ -213,30 +220,30 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   std::optional<core::ParallelRegion> region;
   if (worth_a_region(world)) region.emplace(*world.scheduler);
   apply_effectors(world, dt);
-  profile.effectors = watch.lap();
+  profile.effectors = watch.lap("effectors");
   find_pairs(world);
-  profile.broad_phase = watch.lap();
+  profile.broad_phase = watch.lap("broad phase");
   update_contacts(world);
-  profile.narrow_phase = watch.lap();
+  profile.narrow_phase = watch.lap("narrow phase");
 
   StepContext<D> context = make_context(world, dt);
   prepare_joints(context);
   prepare_contacts(context);
-  profile.prepare = watch.lap();
+  profile.prepare = watch.lap("prepare");
   solve_constraints(context);
-  profile.solve = watch.lap();
+  profile.solve = watch.lap("solve");
   restitute_contacts(context);
-  profile.restitution = watch.lap();
+  profile.restitution = watch.lap("restitution");
   store_joints(context);
   store_contacts(context);
   finalize_bodies(context);
   gather_hit_events(context);
-  profile.finalize = watch.lap();
+  profile.finalize = watch.lap("finalize");
   stop_fast_bodies(context);
-  profile.continuous = watch.lap();
+  profile.continuous = watch.lap("continuous");
   update_trees(world);
   release_broken_bodies(world);
-  profile.broad_phase += watch.lap();
+  profile.broad_phase += watch.lap("trees");
   ++world.step_count;
   world.time += double(dt);
   const bool moved = !world.bodies.awake.empty();
@@ -246,8 +253,8 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   if (!world.reserved && moved && world.bodies.awake.empty() && world.contacts.awake.empty() &&
       world.scratch.moved.empty())
     release_scratch(world);
-  profile.sleep = watch.lap();
-  profile.total = whole.lap();
+  profile.sleep = watch.lap("events and sleep");
+  profile.total = watch.whole("World::step");
   world.profile = profile;
   return {};
 }
