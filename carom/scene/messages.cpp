@@ -6,7 +6,7 @@
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/scene/detail/bytes.h"
 #include "carom/scene/detail/document.h"
-#include "carom/scene/detail/flight.h"
+#include "carom/scene/detail/text.h"
 #include "carom/scene/recording.h"
 #include "carom/scene/scene_world.h"
 
@@ -206,31 +206,12 @@ void describe_bodies(const World<D>& world, const SceneWorld& scene, SceneMessag
                  ",\"name\":" + quote(named != nullptr ? named->name : "body_" + std::to_string(i)) + ",\"type\":\"" +
                  types[int(state->type)] + "\"";
     if (named != nullptr && named->colored) {
-      char color[16];
-      std::snprintf(color, sizeof color, "#%06x", unsigned(named->color & 0xFFFFFF));
-      out.scene += std::string(",\"color\":\"") + color + "\"";
+      out.scene += ",\"color\":" + quote(detail::color_text(named->color | 0xff000000u));
     }
     out.scene += ",\"position\":" + list({p.x, p.y, p.z}) +
                  ",\"rotation\":" + list({double(q.w), double(q.x), double(q.y), double(q.z)}) + ",\"shapes\":[" +
                  list_of_shapes + "]}";
   }
-}
-
-/// North, up, east from north, east, down: x forward, y up, z to starboard.
-math::Vec3d upright(math::Vec3d ned) { return {ned.x, -ned.z, ned.y}; }
-math::Vec3d flight_position(const detail::Flight& flight) {
-  const FlightRow& row = flight.now();
-  const FlightRow& start = flight.rows.front();
-  const double r = flight.definition.ellipsoid.equatorial_radius;
-  if (flight.definition.world == FlightWorld::flat) {
-    const math::Vec3d p = row.state.position - start.state.position;
-    return {p.x, row.altitude, p.y};
-  }
-  return {(row.latitude - start.latitude) * r, row.altitude, (row.longitude - start.longitude) * r};
-}
-math::Quatf flight_rotation(const detail::Flight& flight) {
-  const math::Quatd q = to_attitude(flight.now().angles);
-  return math::Quatf(math::Quatd{q.w, upright(q.vector())});
 }
 
 template <class D>
@@ -253,12 +234,13 @@ SceneMessages scene_messages(const SceneWorld& world, const double* ground) {
   if (world.world2) describe_bodies(*world.world2, world, out);
   if (world.world3) describe_bodies(*world.world3, world, out);
   if (world.flight) {
-    const math::Vec3d p = flight_position(*world.flight);
-    const math::Quatf q = flight_rotation(*world.flight);
-    out.scene +=
-        "{\"id\":0,\"name\":\"vehicle\",\"type\":\"dynamic\",\"position\":" + list({p.x, p.y, p.z}) +
-        ",\"rotation\":" + list({double(q.w), double(q.x), double(q.y), double(q.z)}) +
-        ",\"shapes\":[{\"kind\":\"box\",\"half_extents\":[1,0.25,0.5],\"radius\":0,\"local\":[0,0,0,1,0,0,0]}]}";
+    const FlightPlace place = *world.flight_place();
+    const math::Vec3d p = place.position, h = place.half_extents;
+    const math::Quatf q = place.rotation;
+    out.scene += "{\"id\":0,\"name\":\"vehicle\",\"type\":\"dynamic\",\"position\":" + list({p.x, p.y, p.z}) +
+                 ",\"rotation\":" + list({double(q.w), double(q.x), double(q.y), double(q.z)}) +
+                 ",\"shapes\":[{\"kind\":\"box\",\"half_extents\":" + list({h.x, h.y, h.z}) +
+                 ",\"radius\":0,\"local\":[0,0,0,1,0,0,0]}]}";
   }
   out.scene += "]";
   if (ground != nullptr) out.scene += ",\"ground\":{\"level\":" + shortest(*ground) + "}";
@@ -274,7 +256,8 @@ void capture_frame(const SceneWorld& world, RecordedFrame& out) {
   out.bodies.clear();
   if (world.world2) capture(*world.world2, out);
   if (world.world3) capture(*world.world3, out);
-  if (world.flight) out.bodies.push_back({0, false, flight_position(*world.flight), flight_rotation(*world.flight)});
+  if (const std::optional<FlightPlace> place = world.flight_place())
+    out.bodies.push_back({0, false, place->position, place->rotation});
 }
 
 }  // namespace carom::scene

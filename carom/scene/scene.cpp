@@ -105,6 +105,9 @@ void read_camera(Reader& reader, const Object& o, Scene& scene) {
     scene.camera.height = reader.number(c, "height", scene.camera.height);
     if (!reader.failed() && !(scene.camera.height > 0))
       reader.expected(*c.find("height"), "camera.height", "a height above zero");
+    scene.camera.width = reader.number(c, "width", 0);
+    if (!reader.failed() && !(scene.camera.width >= 0))
+      reader.expected(*c.find("width"), "camera.width", "a width above zero");
   }
   scene.camera.follow = reader.text(c, "follow");
 }
@@ -280,6 +283,7 @@ Result<Scene> parse_scene(std::string_view text, std::string_view name, const Re
   if (const Status set = detail::set_variables(reader, scene, {}); !set) return set.error();
   scene.step = reader.number(o, "step", scene.kind == Kind::flight ? 0.01 : 1.0 / 60);
   scene.duration = reader.number(o, "duration", scene.kind == Kind::flight ? 30 : 10);
+  scene.loop = reader.flag(o, "loop", false);
   if (o.has("ground")) scene.ground = reader.number(o, "ground", 0);
   if (!reader.failed() && !(scene.step > 0 && scene.step <= 1)) {
     reader.expected(*o.find("step"), "step", "a time above zero and up to 1 s");

@@ -59,6 +59,7 @@ struct Camera {
   math::Vec3d target{};
   double field_of_view = 0.8;  ///< rad, space
   double height = 20;          ///< m from the bottom to the top of the picture, plane
+  double width = 0;            ///< m from left to right that must be seen too, plane
   std::string follow;          ///< name of a body, or empty
 };
 /// A number that the run must reach: what `carom run` checks and reports.
@@ -74,6 +75,7 @@ struct Expectation {
 struct InstantiateOptions {
   int threads = 1;
   core::TaskScheduler* scheduler = nullptr;  ///< as in rigid::WorldDef
+  core::Profiler* profiler = nullptr;        ///< likewise
 };
 
 /// A checked scene file. Copies share the document.
@@ -85,6 +87,7 @@ class CAROM_API Scene {
   int dimension = 3;
   double step = 1.0 / 60;        ///< s
   double duration = 10;          ///< s
+  bool loop = false;             ///< the playground starts it anew after its duration
   std::optional<double> ground;  ///< m: height of a ground plane that pictures draw
   Camera camera;
   std::vector<Parameter> parameters;

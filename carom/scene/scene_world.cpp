@@ -247,6 +247,31 @@ std::uint64_t SceneWorld::state_hash() const {
   return hash.digest();
 }
 
+std::optional<FlightPlace> SceneWorld::flight_place() const {
+  if (!flight) return {};
+  // North, up, east from north, east, down; likewise the body's axes.
+  const auto upright = [](math::Vec3d ned) { return math::Vec3d{ned.x, -ned.z, ned.y}; };
+  const rigid::FlightCase& c = flight->definition;
+  const rigid::FlightRow &row = flight->now(), &start = flight->rows.front();
+  FlightPlace out;
+  const math::Quatd q = to_attitude(row.angles);
+  out.rotation = math::Quatf(math::Quatd{q.w, upright(q.vector())});
+  if (c.world == FlightWorld::flat) {
+    const math::Vec3d p = row.state.position - start.state.position;
+    out.position = {p.x, row.altitude, p.y};
+  } else {
+    const double r = c.ellipsoid.equatorial_radius;
+    out.position = {(row.latitude - start.latitude) * r, row.altitude,
+                    (row.longitude - start.longitude) * r * math::cos(start.latitude)};
+  }
+  // I_x = m (b² + c²)/3 with half extents a, b, c.
+  const math::Vec3d i{c.inertia(0, 0), c.inertia(2, 2), c.inertia(1, 1)};
+  const double sum = i.x + i.y + i.z;
+  for (int k = 0; k < 3; ++k)
+    out.half_extents[k] = math::sqrt(math::max(0.0, 1.5 * (sum - 2 * i[k]) / math::max(c.mass, 1e-30)));
+  return out;
+}
+
 const SceneBody* SceneWorld::find_body(std::string_view name) const {
   for (const SceneBody& b : bodies)
     if (b.name == name) return &b;

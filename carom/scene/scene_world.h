@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,8 +23,16 @@ class Flight;
 struct SceneBody {
   std::string name;
   rigid::BodyId id{};
-  std::uint32_t color = 0;  ///< 0xRRGGBB
+  std::uint32_t color = 0;  ///< 0xAARRGGBB, the opacity first
   bool colored = false;
+  bool trail = false;  ///< pictures draw its path
+};
+/// Where a flight's vehicle is: x north and z east of where it began, y the altitude, m. The body's axes are x forward,
+/// y up, z to starboard; `half_extents` are those of the solid box with its mass and inertia.
+struct FlightPlace {
+  math::Vec3d position{};
+  math::Quatf rotation{};
+  math::Vec3d half_extents{};
 };
 struct SceneJoint {
   std::string name;
@@ -73,6 +82,8 @@ class CAROM_API SceneWorld {
   double time() const;
   std::uint64_t step_count() const;
   std::uint64_t state_hash() const;
+  /// Empty where the scene is no flight.
+  std::optional<FlightPlace> flight_place() const;
 
   /// Null where there is none.
   const SceneBody* find_body(std::string_view name) const;

@@ -1,219 +1,14 @@
 #include "carom/scene/write_scene.h"
 
-#include <charconv>
 #include <map>
 #include <set>
 
-#include "carom/geometry/compound.h"
-#include "carom/geometry/height_field.h"
-#include "carom/geometry/hull.h"
-#include "carom/geometry/triangle_mesh.h"
-#include "carom/math/decimal.h"
-#include "carom/scene/detail/document.h"
+#include "carom/scene/detail/text.h"
 
 namespace carom::scene {
 namespace {
 using namespace rigid;
-using detail::quote;
-
-/// Digits that give the same bits back when they are read as a double and narrowed.
-std::string digits(double v) { return detail::shortest(v); }
-std::string digits(float v) {
-  const std::string s = detail::shortest(v);
-  return float(math::parse_decimal(s).value) == v ? s : detail::shortest(double(v));
-}
-template <class T>
-std::string vector_text(math::Vec2<T> v) {
-  return "[" + digits(v.x) + ", " + digits(v.y) + "]";
-}
-template <class T>
-std::string vector_text(math::Vec3<T> v) {
-  return "[" + digits(v.x) + ", " + digits(v.y) + ", " + digits(v.z) + "]";
-}
-std::string rotation_text(math::Rot2f q) { return "[" + digits(q.c) + ", " + digits(q.s) + "]"; }
-std::string rotation_text(const math::Quatf& q) {
-  return "[" + digits(q.w) + ", " + digits(q.x) + ", " + digits(q.y) + ", " + digits(q.z) + "]";
-}
-std::string angular_text(float w) { return digits(w); }
-std::string angular_text(math::Vec3f w) { return vector_text(w); }
-std::string bits_text(std::uint64_t bits) {
-  char buffer[24] = "0x";
-  const std::to_chars_result end = std::to_chars(buffer + 2, buffer + sizeof buffer, bits, 16);
-  return quote(std::string_view(buffer, std::size_t(end.ptr - buffer)));
-}
-const char* truth(bool b) { return b ? "true" : "false"; }
-
-/// "key": value pairs of one object.
-class Fields {
- public:
-  Fields& put(const char* key, const std::string& json) {
-    text_ += (text_.empty() ? "" : ", ") + quote(key) + ": " + json;
-    return *this;
-  }
-  Fields& put(const char* key, double v) { return put(key, digits(v)); }
-  Fields& put(const char* key, float v) { return put(key, digits(v)); }
-  Fields& flag(const char* key, bool v, bool fallback) {
-    return v == fallback ? *this : put(key, std::string(truth(v)));
-  }
-  template <class T>
-  Fields& unless(const char* key, T v, T fallback) {
-    return v == fallback ? *this : put(key, v);
-  }
-  std::string object() const { return "{" + text_ + "}"; }
-
- private:
-  std::string text_;
-};
-
-template <class V>
-std::string points_text(std::span<const V> points) {
-  std::string out = "[";
-  for (const V& p : points) out += (out.size() > 1 ? ", " : "") + vector_text(p);
-  return out + "]";
-}
-
-/// The half extents where the polygon is what make_box2 makes of them; zero where it is not. A box may be thinner than
-/// a polygon of the same points, which make_polygon would take for a line.
-math::Vec2f box_extents(const geometry::Polygon& p) {
-  math::Vec2f half;
-  for (int i = 0; i < p.count; ++i) half = math::max(half, p.vertices[i]);
-  if (p.count != 4 || !(half.x > 0 && half.y > 0)) return {};
-  const geometry::Polygon box = geometry::make_box2(half, p.radius);
-  for (int i = 0; i < 4; ++i)
-    if (!(box.vertices[i] == p.vertices[i])) return {};
-  return half;
-}
-
-void put_geometry(const geometry::Shape2& s, Fields& f) {
-  switch (s.type) {
-    case geometry::ShapeType2::circle:
-      f.put("type", quote("circle")).put("radius", s.circle.radius);
-      return;
-    case geometry::ShapeType2::capsule:
-      f.put("type", quote("capsule")).put("half_length", s.capsule.half_length).put("radius", s.capsule.radius);
-      return;
-    case geometry::ShapeType2::polygon:
-      if (const math::Vec2f half = box_extents(s.polygon); half.x > 0) {
-        f.put("type", quote("box")).put("half_extents", vector_text(half)).unless("radius", s.polygon.radius, 0.0f);
-        return;
-      }
-      f.put("type", quote("polygon"))
-          .put("points", points_text(std::span<const math::Vec2f>(s.polygon.vertices, std::size_t(s.polygon.count))))
-          .unless("radius", s.polygon.radius, 0.0f);
-      return;
-    case geometry::ShapeType2::segment: {
-      const math::Vec2f ends[] = {s.segment.a, s.segment.b};
-      f.put("type", quote("segment")).put("points", points_text(std::span<const math::Vec2f>(ends)));
-      return;
-    }
-    case geometry::ShapeType2::chain_segment: {
-      const math::Vec2f ends[] = {s.chain_segment.a, s.chain_segment.b};
-      f.put("type", quote("segment")).put("points", points_text(std::span<const math::Vec2f>(ends)));
-      return;
-    }
-    case geometry::ShapeType2::chain:
-      f.put("type", quote("chain")).put("points", points_text(std::span<const math::Vec2f>(s.chain->points)));
-      f.flag("loop", s.chain->loop, false);
-      return;
-  }
-}
-
-template <class T>
-std::string numbers_text(const std::vector<T>& values) {
-  std::string out = "[";
-  for (const T v : values) {
-    if (out.size() > 1) out += ", ";
-    if constexpr (std::is_floating_point_v<T>)
-      out += digits(v);
-    else
-      out += std::to_string(v);
-  }
-  return out + "]";
-}
-
-void put_geometry(const geometry::Shape3& s, Fields& f) {
-  switch (s.type) {
-    case geometry::ShapeType3::sphere:
-      f.put("type", quote("sphere")).put("radius", s.sphere.radius);
-      return;
-    case geometry::ShapeType3::capsule:
-      f.put("type", quote("capsule")).put("half_length", s.capsule.half_length).put("radius", s.capsule.radius);
-      return;
-    case geometry::ShapeType3::box:
-      f.put("type", quote("box"))
-          .put("half_extents", vector_text(s.box.half_extents))
-          .unless("radius", s.box.radius, 0.0f);
-      return;
-    case geometry::ShapeType3::cylinder:
-      f.put("type", quote("cylinder")).put("half_height", s.cylinder.half_height).put("radius", s.cylinder.radius);
-      return;
-    case geometry::ShapeType3::cone:
-      f.put("type", quote("cone")).put("half_height", s.cone.half_height).put("radius", s.cone.radius);
-      return;
-    case geometry::ShapeType3::plane:
-      f.put("type", quote("plane")).put("normal", vector_text(s.plane.normal));
-      return;
-    case geometry::ShapeType3::hull:
-      f.put("type", quote("hull")).put("points", points_text(std::span<const math::Vec3f>(s.hull->vertices)));
-      f.unless("radius", s.hull->radius, 0.0f);
-      return;
-    case geometry::ShapeType3::mesh:
-      f.put("type", quote("mesh")).put("vertices", points_text(std::span<const math::Vec3f>(s.mesh->vertices)));
-      f.put("indices", numbers_text(s.mesh->indices));
-      return;
-    case geometry::ShapeType3::height_field: {
-      const geometry::HeightField& h = *s.height_field;
-      f.put("type", quote("height_field"))
-          .put("columns", std::to_string(h.columns))
-          .put("rows", std::to_string(h.rows));
-      f.put("cell", vector_text(h.cell)).put("heights", numbers_text(h.heights));
-      if (!h.holes.empty()) f.put("holes", numbers_text(h.holes));
-      return;
-    }
-    case geometry::ShapeType3::compound: {
-      std::string children = "[";
-      for (const geometry::CompoundChild& child : s.compound->children) {
-        Fields c;
-        put_geometry(child.shape, c);
-        c.put("position", vector_text(child.local.p)).put("rotation", rotation_text(child.local.q));
-        children += (children.size() > 1 ? ", " : "") + c.object();
-      }
-      f.put("type", quote("compound")).put("children", children + "]");
-      return;
-    }
-  }
-}
-
-std::string material_text(const Material& m) {
-  Fields f;
-  f.put("friction", m.friction)
-      .put("restitution", m.restitution)
-      .unless("rolling_resistance", m.rolling_resistance, 0.0f);
-  f.unless("tangent_speed", m.tangent_speed, 0.0f);
-  if (m.user_id != 0) f.put("user_id", std::to_string(m.user_id));
-  return f.object();
-}
-
-template <class D>
-std::string shape_text(const typename D::Shape& shape, const ShapeDef<D>& d) {
-  Fields f;
-  put_geometry(shape, f);
-  if (!(d.local == typename D::Transform{}))
-    f.put("position", vector_text(d.local.p)).put("rotation", rotation_text(d.local.q));
-  f.put("density", d.density).put("material", material_text(d.material));
-  if (!(d.filter == Filter{})) {
-    Fields filter;
-    filter.put("category", bits_text(d.filter.category))
-        .put("mask", bits_text(d.filter.mask))
-        .put("group", std::to_string(d.filter.group));
-    f.put("filter", filter.object());
-  }
-  f.flag("sensor", d.sensor, false)
-      .flag("contact_events", d.contact_events, true)
-      .flag("hit_events", d.hit_events, false);
-  if (d.user_data != 0) f.put("user_data", bits_text(d.user_data));
-  return f.object();
-}
+using namespace detail;
 
 geometry::MassProperties2 mass_of(const World2& w, BodyId b) { return w.mass_properties2(b).value_or({}); }
 geometry::MassProperties3 mass_of(const World3& w, BodyId b) { return w.mass_properties3(b).value_or({}); }
@@ -316,10 +111,9 @@ class SceneWriter {
         .flag("bullet", d.bullet, false)
         .flag("enabled", d.enabled, true);
     if (d.user_data != 0) f.put("user_data", bits_text(d.user_data));
-    if (const auto given = given_.find(id.packed()); given != given_.end() && given->second->colored) {
-      char color[16];
-      std::snprintf(color, sizeof color, "#%06x", unsigned(given->second->color & 0xFFFFFF));
-      f.put("color", quote(color));
+    if (const auto given = given_.find(id.packed()); given != given_.end()) {
+      if (given->second->colored) f.put("color", quote(color_text(given->second->color)));
+      f.flag("trail", given->second->trail, false);
     }
     put_shapes(id, d, f);
     return f.object();

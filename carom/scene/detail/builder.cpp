@@ -14,6 +14,7 @@ template <class D>
 bool read_world(Reader& reader, const Object& scene, const InstantiateOptions& options, WorldDef<D>& def) {
   def.threads = options.threads;
   def.scheduler = options.scheduler;
+  def.profiler = options.profiler;
   if (scene.has("gravity")) def.gravity = vector_for(reader.vector(scene, "gravity"), static_cast<D*>(nullptr));
   def.substeps = reader.integer(scene, "substeps", def.substeps, 1, 64);
   Object w;
@@ -277,6 +278,7 @@ class Builder final : public BodyNames {
     def.user_data = reader_.bits(o, "user_data", 0);
     std::string name = reader_.text(o, "name");
     const auto color = reader_.color(o, "color");
+    const bool trail = reader_.flag(o, "trail", false);
     if (reader_.failed()) return;
     if (name.empty()) {
       name = "body_" + std::to_string(out_.bodies.size());
@@ -306,7 +308,7 @@ class Builder final : public BodyNames {
       return;
     if (!def.awake) sleepers_.push_back(*id);
     names_.emplace(name, out_.bodies.size());
-    out_.bodies.push_back({std::move(name), *id, color.value_or(0), color.has_value()});
+    out_.bodies.push_back({std::move(name), *id, color.value_or(0), color.has_value(), trail});
   }
 
   void update_body(const Object& o, const BodyDef<D>& def, const std::vector<ReadShape<D>>& shapes) {

@@ -155,7 +155,8 @@ constexpr Field body_fields[] = {
     {"bullet", T::flag, M::plain, "continuous collision against moving bodies too"},
     {"enabled", T::flag},
     {"user_data", T::bits},
-    {"color", T::color, M::plain, "as #rrggbb"},
+    {"color", T::color, M::plain, "as #rrggbb, or #rrggbbaa with an opacity"},
+    {"trail", T::flag, M::plain, "pictures draw its path"},
     {"shape", T::reference, M::plain, "one shape, or the name of one", &shape_kind},
     {"shapes", T::list, M::plain, "several shapes", &shape_kind},
     {"material", T::reference, M::plain, "of shapes that name none", &material_kind},
@@ -293,6 +294,7 @@ constexpr Field camera_fields[] = {
     {"target", T::vector, M::length, "middle of the picture"},
     {"field_of_view", T::quantity, M::angle, "", nullptr, {}, false, 3},
     {"height", T::quantity, M::length, "shown from bottom to top", nullptr, {}, false, 2},
+    {"width", T::quantity, M::length, "shown from left to right at least", nullptr, {}, false, 2},
     {"follow", T::name, M::plain, "name of a body"},
 };
 const ObjectKind camera_kind{"camera", "Where pictures are taken from.", camera_fields};
@@ -396,6 +398,7 @@ constexpr Field scene_fields[] = {
     {"step", T::quantity, M::time, "of the engine, 1/60 s unless given"},
     {"substeps", T::integer, M::plain, "of the solver, 1 to 64"},
     {"duration", T::quantity, M::time, "of a run, 10 s unless given"},
+    {"loop", T::flag, M::plain, "the playground starts it anew after its duration"},
     {"gravity", T::vector, M::acceleration},
     {"world", T::object, M::plain, "", &world_kind},
     {"ground", T::quantity, M::length, "height of a ground plane that pictures draw"},

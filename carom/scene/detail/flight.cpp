@@ -113,7 +113,7 @@ bool build_flight(Reader& reader, const Scene& scene, SceneWorld& out) {
   const auto keep = [&rows](const FlightRow& row) { rows.push_back(row); };
   if (!reader.accept(rigid::simulate(c, keep), *flight.node, "flight")) return false;
   if (rows.empty()) return reader.fail(*flight.node, "flight", "the flight gave no state"), false;
-  out.bodies.push_back({"vehicle", {}, 0, false});
+  out.bodies.push_back({"vehicle"});
   return true;
 }
 

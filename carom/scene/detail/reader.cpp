@@ -198,8 +198,8 @@ std::optional<std::uint32_t> Reader::color(const Object& o, std::string_view key
   std::uint32_t rgb = 0;
   bool good = node->is_text();
   const std::string found = good ? expand(*node, o.path_of(key), node->text) : std::string();
-  good = good && found.size() == 7 && found[0] == '#';
-  for (std::size_t i = 1; good && i < 7; ++i) {
+  good = good && (found.size() == 7 || found.size() == 9) && found[0] == '#';
+  for (std::size_t i = 1; good && i < found.size(); ++i) {
     const char c = found[i];
     const int digit = c >= '0' && c <= '9'   ? c - '0'
                       : c >= 'a' && c <= 'f' ? c - 'a' + 10
@@ -208,8 +208,9 @@ std::optional<std::uint32_t> Reader::color(const Object& o, std::string_view key
     good = digit >= 0;
     rgb = rgb << 4 | std::uint32_t(digit & 15);
   }
-  if (good) return rgb;
-  expected(*node, o.path_of(key), "a color such as \"#c04020\"");
+  // The file ends with the opacity, we begin with it; without one a color is solid.
+  if (good) return found.size() == 7 ? 0xff000000u | rgb : rgb << 24 | rgb >> 8;
+  expected(*node, o.path_of(key), "a color such as \"#c04020\", or \"#c0402080\" with an opacity");
   return std::nullopt;
 }
 
