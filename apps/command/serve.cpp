@@ -13,6 +13,7 @@
 #include "apps/host/scene_demo.h"
 #if CAROM_WITH_SERVER
 #include "apps/server/server.h"
+#include "apps/server/shared_files.h"
 #endif
 
 namespace carom::command {
@@ -50,13 +51,14 @@ int serve(const ServeOptions& options) {
   server.max_clients = options.clients;
   server.threads = int(std::clamp(std::thread::hardware_concurrency(), 2u, 8u));
   const std::vector<host::MenuScene> scenes = menu_scenes();
-  server.host_options = [&scenes, threads = options.threads] {
+  const scene::Resolver files = server::shared_files(data_folders("scenes"), data_folders("presets"));
+  server.host_options = [&scenes, &files, threads = options.threads] {
     host::HostOptions out;
     out.threads = threads;
     out.scenes = scenes;
-    out.parse_scene = [](std::string_view name, std::string_view text) -> core::Result<std::unique_ptr<host::Demo>> {
-      // A file dropped on the page may include presets, never files of this machine beyond them.
-      core::Result<scene::Scene> scene = scene::parse_scene(text, name);
+    out.parse_scene = [&files](std::string_view name,
+                               std::string_view text) -> core::Result<std::unique_ptr<host::Demo>> {
+      core::Result<scene::Scene> scene = scene::parse_scene(text, name, files);
       if (!scene.ok()) return scene.error();
       return host::make_scene_demo(std::move(scene).value(), std::string(name));
     };

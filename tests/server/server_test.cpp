@@ -15,6 +15,7 @@
 
 #include "apps/server/requests.h"
 #include "apps/server/server.h"
+#include "apps/server/shared_files.h"
 
 namespace carom::server {
 namespace {
@@ -260,6 +261,35 @@ TEST_F(LiveServer, ATakenPortIsAClearError) {
   const auto second = Server::start(std::move(options));
   ASSERT_FALSE(second.ok());
   EXPECT_NE(second.error().message.find(std::to_string(server_->port())), std::string::npos);
+}
+
+TEST(SharedFiles, AreThoseOfTheScenesAndPresetsAndNoOthers) {
+  const fs::path folder = fs::temp_directory_path() / ("carom_shared_files_test_" + std::to_string(::getpid()));
+  fs::create_directories(folder / "scenes/parts");
+  fs::create_directories(folder / "presets/ball");
+  const auto write = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
+  write("scenes/parts/ground.json", R"({"bodies": [{"name": "ground", "type": "fixed", "shape": {"type": "plane"}}]})");
+  write("presets/ball/test.json", R"({"description": "a test", "source": "nowhere", "values": {"shape": {"type": "sphere", "radius": "3 m"}}})");
+  write("secret.json", "{}");
+  fs::create_symlink(folder / "secret.json", folder / "scenes/link.json");
+  fs::create_symlink(folder, folder / "presets/up");
+  const scene::Resolver files = shared_files({(folder / "scenes").string()}, {(folder / "presets").string()});
+
+  const auto scene = scene::parse_scene(
+      R"({"include": ["parts/ground.json"], "bodies": [{"name": "ball", "preset": "ball/test", "position": [0, 9, 0]}]})",
+      "dropped.json", files);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  const auto world = scene->instantiate();
+  ASSERT_TRUE(world.ok());
+  EXPECT_EQ(world->bodies.size(), 2u);
+
+  for (const char* outside : {"../secret.json", "link.json", "presets/../secret.json", "presets/up/secret.json",
+                              "/etc/hostname", "presets//etc/hostname", "parts", "", "nothing.json"}) {
+    const auto found = files(outside);
+    ASSERT_FALSE(found.ok()) << outside;
+    EXPECT_NE(found.error().message.find("expected a file"), std::string::npos) << found.error().message;
+  }
+  fs::remove_all(folder);
 }
 
 TEST(Requests, HostNames) {
