@@ -207,13 +207,16 @@ Surface plane_picture(host::Simulation& simulation, const std::vector<host::Body
   Vec3d center = camera.target;
   for (const host::BodyView& body : bodies)
     if (camera.follow >= 0 && body.id == std::uint32_t(camera.follow)) center = body.position;
-  const double scale = height / std::max(camera.height, 1e-9);
+  double scale = height / std::max(camera.height, 1e-9);
+  if (camera.width > 0) scale = std::min(scale, width / camera.width);
   const Plane2 view{scale, center.x - 0.5 * width / scale, center.y + 0.5 * height / scale};
-  const double spacing = round_length(camera.height / 8);
+  const double spacing = round_length(height / scale / 8);
   grid2(c, view, width, height, spacing);
   for (std::size_t i = 0; i < bodies.size(); ++i) body2(c, view, bodies[i], i < places.size() ? places[i].awake : true);
   cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
-  for (const host::Line& line : simulation.base().state.lines) {
+  std::vector<host::Line> lines;
+  simulation.lines(lines);
+  for (const host::Line& line : lines) {
     // White pens are meant for a dark page.
     const std::uint32_t color = line.rgba >> 8 == 0xffffff ? 0x2b333b : line.rgba >> 8;
     set(c, rgb(color, (line.rgba & 255) / 255.0));
@@ -250,7 +253,7 @@ Surface space_picture(host::Simulation& simulation, const std::vector<host::Body
       tessellate(shape, simulation.meshes(), body.position, body.rotation, color_of(body), detail, scene.triangles);
     }
   }
-  scene.lines = simulation.base().state.lines;
+  simulation.lines(scene.lines);
   const Image image = render(scene, width, height);
   Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
   unsigned char* data = cairo_image_surface_get_data(surface.get());

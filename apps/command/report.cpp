@@ -47,6 +47,7 @@ std::string padded(std::string s, std::size_t width) {
 }
 
 void row(std::string& out, const char* name, double start, double end, const char* unit) {
+  if (start == 0 && end == 0) return;  // says nothing, or does not apply
   put(out, "  %-22s %14.6g %14.6g %14.4g  %s\n", name, start, end, end - start, unit);
 }
 
@@ -112,16 +113,20 @@ std::string report_text(const Report& r) {
   put(out, "  bodies %d (%d awake)   shapes %d   contacts %d (at most %d)   joints %d   islands %d   %.1f kB\n",
       r.counters.bodies, r.counters.awake_bodies, r.counters.shapes, r.counters.touching_contacts, r.most_contacts,
       r.counters.joints, r.counters.islands, double(r.counters.bytes) / 1024);
-  put(out, "\n  %-22s %14s %14s %14s\n", "", "start", "end", "change");
-  row(out, "kinetic energy", r.start.kinetic, r.end.kinetic, "J");
-  row(out, "potential energy", r.start.potential, r.end.potential, "J");
-  row(out, "total energy", r.start.kinetic + r.start.potential, r.end.kinetic + r.end.potential, "J");
+  std::string budget;
+  row(budget, "kinetic energy", r.start.kinetic, r.end.kinetic, "J");
+  row(budget, "potential energy", r.start.potential, r.end.potential, "J");
+  row(budget, "total energy", r.start.kinetic + r.start.potential, r.end.kinetic + r.end.potential, "J");
   const char* axes[] = {"x", "y", "z"};
   for (int i = 0; i < r.dimension; ++i)
-    row(out, (std::string("momentum ") + axes[i]).c_str(), r.start.momentum[i], r.end.momentum[i], "kg·m/s");
+    row(budget, (std::string("momentum ") + axes[i]).c_str(), r.start.momentum[i], r.end.momentum[i], "kg·m/s");
   for (int i = r.dimension == 2 ? 2 : 0; i < 3; ++i)
-    row(out, (std::string("angular momentum ") + axes[i]).c_str(), r.start.angular_momentum[i],
+    row(budget, (std::string("angular momentum ") + axes[i]).c_str(), r.start.angular_momentum[i],
         r.end.angular_momentum[i], "kg·m²/s");
+  if (!budget.empty()) {
+    put(out, "\n  %-22s %14s %14s %14s\n", "", "start", "end", "change");
+    out += budget;
+  }
   put(out, "\n  worst penetration %.3g mm   worst joint error %.3g mm\n", 1e3 * r.worst_penetration,
       1e3 * r.worst_joint_error);
   put(out, "  step: median %.3f ms, worst %.3f ms   real-time factor %.3g\n", r.step_median, r.step_worst,

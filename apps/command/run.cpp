@@ -39,8 +39,8 @@ std::string plot_name(const host::Plot& plot, std::size_t index) {
 
 class Runner {
  public:
-  Runner(const RunOptions& options, std::unique_ptr<host::Simulation> simulation)
-      : options_(options), simulation_(std::move(simulation)), out_(options.out) {
+  Runner(const RunOptions& options, std::unique_ptr<host::Simulation> simulation, core::Profiler* profiler)
+      : options_(options), simulation_(std::move(simulation)), profiler_(profiler), out_(options.out) {
     const host::Declaration& d = simulation_->declaration();
     if (out_.empty()) out_ = "out/" + folder_name(d.id);
     report_.scene = d.id;
@@ -123,8 +123,6 @@ class Runner {
     const double duration = options_.duration > 0 ? options_.duration : d.duration;
     const std::uint64_t total =
         options_.steps > 0 ? std::uint64_t(options_.steps) : std::uint64_t(std::ceil(duration / d.dt - 1e-9));
-    if (!options_.trace.empty()) profiler_.emplace(1, int(std::min<std::uint64_t>(3 * total + 16, 1 << 20)));
-    core::Profiler* profiler = profiler_ ? &*profiler_ : nullptr;
     Progress progress(d.title, !options_.quiet);
     std::vector<double> times;
     times.reserve(std::size_t(std::min<std::uint64_t>(total, 1 << 24)));
@@ -136,7 +134,7 @@ class Runner {
       const double before = now_seconds();
       core::Status status;
       {
-        const core::ProfileScope scope(profiler, "step");
+        const core::ProfileScope scope(profiler_, "step");
         status = simulation_->step();
       }
       const double took = now_seconds() - before;
@@ -152,7 +150,7 @@ class Runner {
       take_samples();
       if (options_.hash_every > 0 && (i + 1) % std::uint64_t(options_.hash_every) == 0)
         report_.hashes.push_back({simulation_->step_count(), simulation_->state_hash()});
-      const core::ProfileScope scope(profiler, "record");
+      const core::ProfileScope scope(profiler_, "record");
       if (const core::Status recorded = record(false); !recorded.ok()) {
         report_.stopped = recorded.error().message;
         break;
@@ -227,10 +225,10 @@ class Runner {
 
   const RunOptions& options_;
   std::unique_ptr<host::Simulation> simulation_;
+  core::Profiler* profiler_;
   std::string out_;
   Report report_;
   std::optional<scene::Recorder> recorder_;
-  std::optional<core::Profiler> profiler_;
   scene::RecordedFrame frame_;
   std::vector<host::BodyPlace> places_;
   std::vector<host::Sample> samples_;
@@ -249,13 +247,17 @@ int run(const RunOptions& options) {
   if (!values.ok()) return fail(exit_usage, values.error().message);
   std::unique_ptr<host::Demo> owner = std::move(demo).value();
   host::Demo& opener = *owner;
+  // A scope or two of ours a step, and a dozen of the engine's: a million is an hour of the smallest scenes.
+  std::optional<core::Profiler> profiler;
+  if (!options.trace.empty()) profiler.emplace(1, 1 << 20);
+  core::Profiler* const stages = profiler ? &*profiler : nullptr;
   core::Result<std::unique_ptr<host::Simulation>> simulation =
-      opener.open(std::move(owner), *values, {options.threads});
+      opener.open(std::move(owner), *values, {options.threads, stages});
   if (!simulation.ok()) return fail(exit_input, simulation.error().message);
   watch_for_interrupts();
   // Expectations are facts about the declared run; other values or lengths make another run.
   const bool full = options.steps == 0 && options.duration == 0 && options.settings.empty();
-  return Runner(options, std::move(simulation).value()).run(full);
+  return Runner(options, std::move(simulation).value(), stages).run(full);
 }
 
 }  // namespace carom::command

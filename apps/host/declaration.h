@@ -48,6 +48,7 @@ struct Camera {
   Vec3d position{0, 4, 12}, target{};
   double field_of_view = 0.75;  ///< rad, vertical (3D)
   double height = 10;           ///< m from bottom to top (2D)
+  double width = 0;             ///< m from left to right that must be seen too (2D)
   int follow = -1;              ///< the id of a body, or −1
 };
 
@@ -64,6 +65,7 @@ struct Declaration {
   std::string text;  ///< paragraphs apart by an empty line; a paragraph indented by two spaces is a formula
   double dt = 1.0 / 60;
   double duration = 10;  ///< s, what `carom run` simulates unless told otherwise
+  bool loop = false;     ///< a page starts it anew after its duration
   Camera camera;
   std::optional<double> ground;  ///< m, height of a floor to draw
   std::vector<Parameter> parameters;

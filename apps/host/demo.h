@@ -10,10 +10,6 @@ namespace carom::host {
 
 class Simulation;
 
-struct SimulationOptions {
-  int threads = 1;
-};
-
 class Demo {
  public:
   virtual ~Demo() = default;

@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t max_waiting_samples = 4096;
+constexpr double end_pause = 1.5;  // s
 
 #if defined(__wasm__)
 constexpr const char* engine_name = "wasm";
@@ -287,6 +288,7 @@ core::Status SimulationHost::open(core::Result<std::unique_ptr<Simulation>> open
 }
 
 void SimulationHost::begin() {
+  since_end_ = 0;
   clock_.reset();
   clock_.set_rate(speed_);
   send(values_message(simulation_->declaration(), simulation_->values()));
@@ -341,17 +343,24 @@ bool SimulationHost::step_once() {
   return true;
 }
 
+bool SimulationHost::at_end() const {
+  const Declaration& d = simulation_->declaration();
+  return d.loop && simulation_->time() + 0.5 * d.dt >= d.duration;
+}
+
 void SimulationHost::advance(double real_seconds) {
   if (!simulation_ || !(real_seconds >= 0) || !math::is_finite(real_seconds)) return;
   if (restart_wanted_) restart();
   since_key_ += real_seconds;
   since_stats_ += real_seconds;
-  if (running_) {
+  // What loops shows its last picture for a moment.
+  if (running_ && at_end() && (since_end_ += real_seconds) > end_pause) restart();
+  if (running_ && !at_end()) {
     real_window_ += real_seconds;
     const ode::Frame due = clock_.advance(real_seconds);
     double spent = 0;
     for (int i = 0; i < due.steps; ++i) {
-      if (!step_once()) break;
+      if (at_end() || !step_once()) break;
       frame_wanted_ = true;
       // A scene heavier than the machine slows down instead of freezing the picture.
       spent += simulation_->profile().total;
@@ -430,7 +439,8 @@ void SimulationHost::frame(bool key) {
     if (follow >= 0 && place.id == std::uint32_t(follow)) fields.origin = place.position;
   fields.bodies = moved_;
   fields.samples = samples_;
-  fields.lines = simulation_->base().state.lines;
+  simulation_->lines(lines_);
+  fields.lines = lines_;
   FrameStats stats;
   if (key || since_stats_ >= options_.stats_interval) {
     const rigid::Counters counters = simulation_->counters();

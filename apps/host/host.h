@@ -70,6 +70,7 @@ class SimulationHost {
   void send_status();
   void send_meshes();
   bool step_once();
+  bool at_end() const;  ///< of a demo that loops
   void send_changes();
   void frame(bool key);
 
@@ -80,12 +81,13 @@ class SimulationHost {
   std::size_t outbox_bytes_ = 0;
   std::vector<BodyPlace> sent_, now_, moved_;
   std::vector<Sample> samples_;
+  std::vector<Line> lines_;
   bool running_ = false, restart_wanted_ = false, key_wanted_ = false, frame_wanted_ = false;
   bool greeted_ = false;
   double speed_ = 1;
   std::uint32_t sequence_ = 0, acknowledged_ = 0;
   std::size_t meshes_sent_ = 0;
-  double since_key_ = 0, since_stats_ = 0;
+  double since_key_ = 0, since_stats_ = 0, since_end_ = 0;
   double real_window_ = 0, simulated_window_ = 0, real_time_factor_ = 1;
 };
 

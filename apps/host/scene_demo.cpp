@@ -1,5 +1,6 @@
 #include "apps/host/scene_demo.h"
 
+#include <cstdio>
 #include <utility>
 
 namespace carom::host {
@@ -14,7 +15,9 @@ Declaration declaration_of(const scene::Scene& scene, std::string id) {
   d.dimension = scene.dimension;
   d.dt = scene.step;
   d.duration = scene.duration;
-  d.camera = {scene.camera.position, scene.camera.target, scene.camera.field_of_view, scene.camera.height};
+  d.loop = scene.loop || scene.kind == scene::Kind::flight;
+  d.camera = {scene.camera.position, scene.camera.target, scene.camera.field_of_view, scene.camera.height,
+              scene.camera.width};
   d.ground = scene.ground;
   for (const scene::Parameter& p : scene.parameters)
     d.parameters.push_back(
@@ -42,7 +45,8 @@ class SceneDemo final : public DemoOf<D> {
   std::unique_ptr<Demo> again() const override { return std::make_unique<SceneDemo<D>>(scene_, id_); }
 
   void build(Stage<D>& stage) override {
-    core::Result<scene::SceneWorld> made = scene_.instantiate(values(stage), {stage.threads()});
+    core::Result<scene::SceneWorld> made =
+        scene_.instantiate(values(stage), {.threads = stage.threads(), .profiler = stage.profiler()});
     if (!made.ok()) return stage.fail(made.error());
     world_ = std::move(made).value();
     if (world_.kind == scene::Kind::flight)
@@ -51,8 +55,11 @@ class SceneDemo final : public DemoOf<D> {
       stage.use(*world_.world2);
     else
       stage.use(*world_.world3);
-    for (const scene::SceneBody& body : world_.bodies)
-      if (body.colored) stage.set_color(body.id, 0xff000000u | body.color);
+    for (const scene::SceneBody& body : world_.bodies) {
+      if (body.colored) stage.set_color(body.id, body.color);
+      if (body.trail)
+        trails_.push_back({body.id, body.colored ? body.color & 0xffffff : 0x6b7682, Trail(trail_step())});
+    }
     if (const scene::SceneBody* body = world_.find_body(scene_.camera.follow); body && !scene_.camera.follow.empty())
       for (const auto& actor : stage.actors())
         if (actor.body == body->id) stage.follow(int(actor.id));
@@ -76,7 +83,15 @@ class SceneDemo final : public DemoOf<D> {
       if (const core::Status status = stage.world().step(float(scene_.step)); !status.ok()) return status;
     return world_.step();
   }
-  void after_step(Stage<D>& stage) override { sample(stage); }
+  void after_step(Stage<D>& stage) override {
+    sample(stage);
+    if constexpr (D::dimension == 3)
+      if (const auto place = world_.flight_place()) fly(stage, *place);
+    for (Followed& f : trails_) {
+      if (const auto state = stage.world().state(f.body); state.ok()) f.trail.add(state->center_of_mass);
+      f.trail.draw(stage, f.color << 8 | 0xb0);
+    }
+  }
   void changed(Stage<D>& stage, std::string_view) override { stage.check(scene_.apply(world_, values(stage))); }
   std::uint64_t state_hash(std::uint64_t) const override { return world_.state_hash(); }
 
@@ -110,15 +125,56 @@ class SceneDemo final : public DemoOf<D> {
     return out;
   }
 
-  /// A flight has no body in a world: a small mark stands for it.
+  /// A flight has no body in a world: a mark stands for it, much larger than life, so that one sees the whole way at
+  /// once and still how the vehicle lies.
   void marker(Stage<D>& stage) {
-    rigid::BodyDef<D> body;
-    body.type = rigid::BodyType::kinematic;
-    body.name = scene_.name;
-    if constexpr (D::dimension == 3)
-      stage.add(body, geometry::Box{}, {}, 0xffe8833a);
-    else
-      stage.add(body, geometry::Circle{}, {}, 0xffe8833a);
+    if constexpr (D::dimension == 3) {
+      // The way is known from the start; walk it once to frame it.
+      core::Result<scene::SceneWorld> ahead = scene_.instantiate(values(stage));
+      if (!ahead.ok()) return stage.fail(ahead.error());
+      start_ = ahead->flight_place()->position;
+      math::Vec3d low = start_, high = start_, half = ahead->flight_place()->half_extents;
+      while (ahead->step().ok()) {
+        const math::Vec3d p = ahead->flight_place()->position;
+        low = math::min(low, p);
+        high = math::max(high, p);
+      }
+      const double size = math::max(half.x, math::max(half.y, half.z));
+      extent_ = math::max(math::length(high - low), 4 * size);
+      const double scale = size > 0 ? 0.05 * extent_ / size : 1;
+      rigid::BodyDef<D> body;
+      body.type = rigid::BodyType::kinematic;
+      body.name = scene_.name;
+      const math::Vec3f shown(half * scale);
+      const bool round = shown.x == shown.y && shown.y == shown.z;
+      mark_ = round ? stage.add(body, geometry::Sphere{shown.x}, {}, 0xe8833a)
+                    : stage.add(body, geometry::Box{shown}, {}, 0xe8833a);
+      char text[80];
+      std::snprintf(text, sizeof text, "the vehicle is drawn %.0f times as large", scale);
+      stage.say(text);
+      const math::Vec3d middle = 0.5 * (low + high) - start_;
+      stage.set_camera({middle + math::Vec3d{0.55, 0.25, 1.35} * extent_, middle, 0.75});
+      trails_.push_back({mark_, 0xe8833a, Trail(0.005 * extent_)});
+      fly(stage, *world_.flight_place());
+    }
+  }
+
+  /// Relative to where it began: a ladder of whole seconds stays behind.
+  void fly(Stage<D>& stage, const scene::FlightPlace& place) {
+    if constexpr (D::dimension == 3) {
+      const math::Vec3d at = place.position - start_;
+      stage.check(stage.world().set_pose(mark_, at, place.rotation));
+      if (world_.time() + 1e-6 * scene_.step >= double(rungs_.size())) rungs_.push_back(at);
+      for (std::size_t i = 0; i < rungs_.size(); ++i) {
+        const double half = (i % 10 == 0 ? 0.1 : i % 5 == 0 ? 0.07 : 0.04) * extent_;
+        stage.line(rungs_[i] - math::Vec3d{half, 0, 0}, rungs_[i] + math::Vec3d{half, 0, 0}, 0x6b7682ff);
+      }
+    }
+  }
+
+  double trail_step() const {
+    return D::dimension == 2 ? 0.005 * scene_.camera.height
+                             : 0.003 * math::distance(scene_.camera.position, scene_.camera.target);
   }
 
   void sample(Stage<D>& stage) {
@@ -140,6 +196,12 @@ class SceneDemo final : public DemoOf<D> {
     }
   }
 
+  struct Followed {
+    rigid::BodyId body;
+    std::uint32_t color;
+    Trail trail;
+  };
+
   scene::Scene scene_;
   std::string id_;
   scene::SceneWorld world_;
@@ -147,6 +209,12 @@ class SceneDemo final : public DemoOf<D> {
   std::vector<scene::Probe> probes_;
   std::vector<double> found_;
   std::vector<bool> taken_;
+  std::vector<Followed> trails_;
+  // Of a flight: its mark, its start, the size of its way, the places at whole seconds.
+  rigid::BodyId mark_;
+  math::Vec3d start_{};
+  double extent_ = 1;
+  std::vector<math::Vec3d> rungs_;
 };
 
 }  // namespace

@@ -32,8 +32,8 @@ class SimulationOf final : public Simulation {
       : Simulation(owner->declaration()),
         owner_(std::move(owner)),
         demo_(demo),
-        stage_(declaration_, options.threads),
-        threads_(options.threads) {
+        stage_(declaration_, options),
+        options_(options) {
     base_ = &stage_;
   }
 
@@ -57,7 +57,6 @@ class SimulationOf final : public Simulation {
     if (!stage_.world().events().quarantined.empty())
       stage_.say(std::to_string(stage_.world().events().quarantined.size()) +
                  " bodies got a state that is not a number and were frozen");
-    draw_grabs();
     return stage_.state.status;
   }
   double time() const override { return stage_.world().time(); }
@@ -137,10 +136,30 @@ class SimulationOf final : public Simulation {
         if (!shape.ok() || !shape_definition.ok()) continue;
         const std::size_t first = view.shapes.size();
         view_shape(*shape, shape_definition->local, shape_definition->sensor, meshes_, view.shapes);
-        for (std::size_t i = first; i < view.shapes.size() && stage_.looks_in_materials; ++i)
-          view.shapes[i].look = shape_definition->material.user_id;
+        const std::uint32_t opacity = actor.color >> 24;
+        for (std::size_t i = first; i < view.shapes.size(); ++i) {
+          if (stage_.looks_in_materials) view.shapes[i].look = shape_definition->material.user_id;
+          if (opacity != 0 && opacity != 255 && view.shapes[i].look == 0) view.shapes[i].look = actor.color;
+        }
       }
       out.push_back(std::move(view));
+    }
+  }
+  void lines(std::vector<Line>& out) const override {
+    out = stage_.state.lines;
+    const World& world = stage_.world();
+    for (const Grab& held : grabs_)
+      if (const auto state = world.state(held.body); state.ok())
+        out.push_back({in_space(world_point(state->pose, held.local)), in_space(held.target), 0xffd54fff});
+    // Ropes, rods and springs hold at a distance: without a line one would not see them.
+    std::vector<rigid::JointId> joints;
+    world.joints(joints);
+    for (const rigid::JointId id : joints) {
+      if (out.size() >= max_lines) break;
+      const auto definition = world.joint_definition(id);
+      if (!definition.ok()) continue;
+      if (const auto* rod = std::get_if<rigid::DistanceJointDef<D>>(&*definition))
+        out.push_back({anchor(rod->body_a, rod->frame_a.p), anchor(rod->body_b, rod->frame_b.p), 0x6b7682ff});
     }
   }
   bool take_changes(std::vector<std::uint32_t>& added, std::vector<std::uint32_t>& removed) override {
@@ -163,9 +182,9 @@ class SimulationOf final : public Simulation {
   core::Result<std::unique_ptr<Simulation>> reopen(const std::vector<double>& values) const override {
     std::unique_ptr<Demo> fresh = owner_->again();
     Demo& demo = *fresh;
-    return demo.open(std::move(fresh), values, {threads_});
+    return demo.open(std::move(fresh), values, options_);
   }
-  int threads() const override { return threads_; }
+  int threads() const override { return options_.threads; }
   void expectations(std::vector<Expectation>& out) override { demo_.expectations(stage_, out); }
   rigid::World2* world2() override {
     if constexpr (D::dimension == 2)
@@ -230,18 +249,17 @@ class SimulationOf final : public Simulation {
     }
   }
 
-  void draw_grabs() {
-    for (const Grab& held : grabs_) {
-      const auto state = world().state(held.body);
-      if (state.ok()) stage_.line(world_point(state->pose, held.local), held.target, 0xffd54fff);
-    }
+  /// A point of a body in space; without a body it is one of the world.
+  math::Vec3d anchor(rigid::BodyId body, typename D::Vector local) const {
+    const auto state = stage_.world().state(body);
+    return in_space(state.ok() ? world_point(state->pose, local) : Position(local));
   }
 
   std::unique_ptr<Demo> owner_;
   DemoOf<D>& demo_;
   Stage<D> stage_;
   std::vector<Grab> grabs_;
-  int threads_;
+  SimulationOptions options_;
 };
 
 }  // namespace

@@ -46,6 +46,8 @@ class Simulation {
   virtual std::size_t body_count() const = 0;
   virtual void places(std::vector<BodyPlace>& out) const = 0;  ///< of every shown body
   virtual void describe(const std::vector<std::uint32_t>* only, std::vector<BodyView>& out) = 0;  ///< null: all
+  /// What to draw beside the bodies: the demo's lines, ropes and rods, the springs of pointers.
+  virtual void lines(std::vector<Line>& out) const = 0;
   virtual bool take_changes(std::vector<std::uint32_t>& added, std::vector<std::uint32_t>& removed) = 0;
   const MeshLibrary& meshes() const { return meshes_; }
 

@@ -5,7 +5,8 @@
 
 namespace carom::host {
 
-StageBase::StageBase(Declaration& declaration, int threads) : declaration_(declaration), threads_(threads) {
+StageBase::StageBase(Declaration& declaration, const SimulationOptions& options)
+    : declaration_(declaration), options_(options) {
   for (const Parameter& parameter : declaration.parameters) state.values.push_back(parameter.value);
   state.inputs.resize(declaration.inputs.size());
   state.presses.resize(declaration.inputs.size());
@@ -65,7 +66,8 @@ void StageBase::fail(const core::Error& error) {
 
 template <class D>
 void Stage<D>::start(rigid::WorldDef<D> definition) {
-  if (!definition.scheduler) definition.threads = threads_;
+  if (!definition.scheduler) definition.threads = options_.threads;
+  definition.profiler = options_.profiler;
   check(rigid::World<D>::check(definition));
   for (const Actor& actor : actors_) removed_.push_back(actor.id);
   actors_.clear();

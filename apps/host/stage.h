@@ -15,10 +15,15 @@
 
 namespace carom::host {
 
+struct SimulationOptions {
+  int threads = 1;
+  core::Profiler* profiler = nullptr;  ///< of the world's stages; outlives the simulation
+};
+
 /// Everything of a stage that does not depend on the dimension.
 class StageBase {
  public:
-  explicit StageBase(Declaration& declaration, int threads);
+  StageBase(Declaration& declaration, const SimulationOptions& options);
 
   const Declaration& declaration() const { return declaration_; }
   /// A parameter's value now (SI). An unknown name is a mistake in the demo: it fails the stage and gives 0.
@@ -49,7 +54,10 @@ class StageBase {
   void set_value(std::string_view name, double value);
   /// Lets the camera follow a body, by the id that `actors` gives it.
   void follow(int id) { declaration_.camera.follow = id; }
-  int threads() const { return threads_; }
+  /// Where to look from, known only now that the demo is built.
+  void set_camera(const Camera& camera) { declaration_.camera = camera; }
+  int threads() const { return options_.threads; }
+  core::Profiler* profiler() const { return options_.profiler; }
 
   // For the simulation that owns the stage.
   struct State {
@@ -68,7 +76,7 @@ class StageBase {
 
  protected:
   Declaration& declaration_;
-  int threads_;
+  SimulationOptions options_;
 };
 
 inline constexpr std::size_t max_samples = 20'000;
@@ -83,7 +91,7 @@ class Stage : public StageBase {
     rigid::ShapeDef<D> definition{};
   };
 
-  Stage(Declaration& declaration, int threads) : StageBase(declaration, threads) { start({}); }
+  Stage(Declaration& declaration, const SimulationOptions& options) : StageBase(declaration, options) { start({}); }
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 

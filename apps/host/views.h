@@ -42,7 +42,7 @@ struct BodyView {
   std::uint32_t id = 0;
   std::string name;
   rigid::BodyType type = rigid::BodyType::dynamic;
-  std::uint32_t color = 0;  ///< 0xRRGGBB | 0xff000000, or 0: the viewer's choice
+  std::uint32_t color = 0;  ///< 0xAARRGGBB (an opacity of 0 stands for solid), or 0: the viewer's choice
   math::Vec3d position{};
   math::Quatf rotation{};
   std::vector<ShapeView> shapes;

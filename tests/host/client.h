@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/host/host.h"
+#include "apps/host/registry.h"
 
 namespace carom::host::test {
 
@@ -178,5 +179,11 @@ class Page {
     }
   }
 };
+
+inline std::vector<std::string> demo_ids() {
+  std::vector<std::string> out;
+  for (const DemoFactory make : demos()) out.push_back(make()->declaration().id);
+  return out;
+}
 
 }  // namespace carom::host::test

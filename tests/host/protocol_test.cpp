@@ -72,12 +72,7 @@ TEST_P(EveryDemo, OpensWithKeyFrameRunsAndStaysFinite) {
     }
 }
 
-std::vector<std::string> ids() {
-  std::vector<std::string> out;
-  for (const DemoFactory make : demos()) out.push_back(make()->declaration().id);
-  return out;
-}
-INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo, testing::ValuesIn(ids()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo, testing::ValuesIn(demo_ids()), [](const auto& info) {
   std::string name = info.param;
   for (char& c : name)
     if (c == '-') c = '_';

@@ -26,7 +26,8 @@ class CollisionLab2 final : public Repeatable<CollisionLab2, Demo2> {
     d.dt = 1.0 / 120;
     d.duration = 3;
     d.camera.target = {1.5, 0, 0};
-    d.camera.height = 11;
+    d.camera.height = 8;
+    d.camera.width = 13;
     d.parameters = {
         {"restitution", "Restitution e", "", "", "0: they stay together, 1: no energy is lost", 0, 1, 0, 0.5, false},
         {"friction", "Friction μ", "", "", "turns some of a glancing blow into spin", 0, 1.5, 0, 0.3, false},
@@ -64,7 +65,7 @@ class CollisionLab2 final : public Repeatable<CollisionLab2, Demo2> {
 
   void after_step(Stage2& stage) override {
     const auto a = stage.at(a_), b = stage.at(b_);
-    const double t = stage.world().time();
+    const double t = stage.world().time() - launched_;
     const Vec2d pa = double(a.mass) * Vec2d(a.linear_velocity), pb = double(b.mass) * Vec2d(b.linear_velocity);
     stage.sample(0, 0, t, pa.x);
     stage.sample(0, 1, t, pb.x);

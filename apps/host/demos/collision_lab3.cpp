@@ -23,25 +23,32 @@ class CollisionLab3 final : public Repeatable<CollisionLab3, Demo3> {
         "  v_t' = v_t − J_t/m      ω' = J_t r / I\n\n"
         "A ball thrown with (10, −5) m/s at e = 0.8 and μ = 0.3 keeps sliding: it leaves with 7.3 m/s along the floor "
         "and a spin "
-        "of 6.75 m/s over its radius. More friction than 0.317 and it rolls off instead. The cube lands on an edge or "
-        "a corner "
-        "and shows the same law with a longer arm.";
+        "of 6.75 m/s over its radius. More friction than 0.317 and it rolls off instead. The cube lands on an edge "
+        "and shows the same law with a longer arm. They start over every three and a half seconds.";
     d.dt = 1.0 / 240;
     d.duration = 3;
-    d.camera = {{1.2, 2.6, 7.5}, {1.0, 0.8, 0}};
+    d.camera = {{4.6, 3.4, 10.5}, {4.2, 0.7, 0}};
     d.ground = 0;
     d.parameters = {
-        {"restitution", "Restitution e", "", "", "", 0, 1, 0, 0.8, false},
-        {"friction", "Friction μ", "", "", "", 0, 1.5, 0, 0.3, false},
-        {"speed", "Speed along the floor", "m/s", "m/s", "", 0, 20, 0, 10, false},
+        {"restitution", "Restitution e", "", "", "0: stays down, 1: as high as it fell", 0, 1, 0, 0.8, false},
+        {"friction", "Friction μ", "", "", "of ball and cube on the floor", 0, 1.5, 0, 0.3, false},
+        {"speed", "Speed along the floor", "m/s", "m/s", "of the ball; the cube has half of it", 0, 20, 0, 10, false},
         {"fall", "Speed toward the floor", "m/s", "m/s", "at the moment of the impact", 1, 15, 0, 5, false},
         {"spin", "Back spin before", "rad/s", "rad/s", "positive: against rolling", -100, 100, 0, 0, false},
         {"gravity", "Gravity", "m/s^2", "m/s²", "0: one impact, then straight on", 0, 20, 0, 9.80665, false},
     };
-    d.plots = {
-        {"Ball", {"time", "s"}, {"speed", "m/s"}, {{"along the floor"}, {"spin × radius"}, {"of the contact point"}}},
-        {"Energy of the ball", {"time", "s"}, {"energy", "J"}, {{"translation"}, {"rotation"}, {"height"}, {"all"}}},
-        {"Momentum of the ball", {"time", "s"}, {"momentum", "kg·m/s"}, {{"along the floor"}, {"upward"}}}};
+    d.plots = {{"Ball",
+                {"time since the throw", "s"},
+                {"speed", "m/s"},
+                {{"along the floor"}, {"spin × radius"}, {"of the contact point"}}},
+               {"Energy of the ball",
+                {"time since the throw", "s"},
+                {"energy", "J"},
+                {{"translation"}, {"rotation"}, {"height"}, {"all"}}},
+               {"Momentum of the ball",
+                {"time since the throw", "s"},
+                {"momentum", "kg·m/s"},
+                {{"along the floor"}, {"upward"}}}};
     d.inputs = {{"again", "Throw again", {"Space"}, true, 1}};
     return d;
   }
@@ -76,13 +83,13 @@ class CollisionLab3 final : public Repeatable<CollisionLab3, Demo3> {
   }
 
   void before_step(Stage3& stage) override {
-    if (stage.presses("again") > 0) launch(stage);
+    if (stage.presses("again") > 0 || stage.world().time() - launched_ > 3.5) launch(stage);
     before_ = stage.at(ball_);
   }
 
   void after_step(Stage3& stage) override {
     const auto ball = stage.at(ball_);
-    const double t = stage.world().time();
+    const double t = stage.world().time() - launched_;
     const Vec3d v(ball.linear_velocity), w(ball.angular_velocity);
     const double i = 0.4 * ball.mass * radius_ * radius_;
     const double g = stage.value("gravity");
@@ -135,6 +142,7 @@ class CollisionLab3 final : public Repeatable<CollisionLab3, Demo3> {
     for (std::size_t i = 0; i < row_.size(); ++i)
       throw_one(stage, row_[i], {(i == 0 ? -1.5 : -0.5 + 0.43 * double(i)), 0.2001, -2.2}, {},
                 {i == 0 ? 3.0f : 0.0f, 0, 0}, false);
+    launched_ = stage.world().time();
     bounced_ = false;
     trail_.clear();
   }
@@ -148,7 +156,7 @@ class CollisionLab3 final : public Repeatable<CollisionLab3, Demo3> {
   std::vector<rigid::BodyId> row_;
   rigid::BodyState<Dim3> before_;
   Trail trail_{0.05, 300};
-  double along_ = 0, spin_ = 0;
+  double along_ = 0, spin_ = 0, launched_ = 0;
   bool bounced_ = false;
 };
 

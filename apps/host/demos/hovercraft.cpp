@@ -28,6 +28,7 @@ class Hovercraft final : public Repeatable<Hovercraft, Demo2> {
     d.dt = 1.0 / 60;
     d.duration = 20;
     d.camera.height = 46;
+    d.camera.width = 80;
     d.parameters = {
         {"mass", "Mass", "kg", "kg", "of each craft", 200, 4000, 10, 1000, false},
         {"thrust", "Thrust of the fan", "N", "kN", "full throttle", 500, 20000, 100, 6000, true},

@@ -49,7 +49,9 @@ class Race final : public Repeatable<Race<course>, Demo2> {
           "halves, Heun's falls to a quarter, RK4's to a sixteenth. That is what the order of a method means.";
       d.duration = 10;
       d.camera.target = {38, -1.2, 0};
-      d.camera.height = 52;
+      d.camera.height = 30;
+      d.camera.width = 92;
+      d.loop = true;
       d.parameters = {{"step", "Step", "s", "s", "of every method", 0.05, 4, 0.05, 1, false},
                       {"mass", "Mass of the ship", "kg", "t", "", 1e3, 1e5, 0, 1e4, false},
                       {"thrust", "Thrust", "N", "kN", "", 1e3, 1e5, 0, 2e4, false},
@@ -69,7 +71,8 @@ class Race final : public Repeatable<Race<course>, Demo2> {
           "engines use it, and why this one does.";
       d.duration = 20;
       d.camera.target = {0, -4.2, 0};
-      d.camera.height = 13;
+      d.camera.height = 11;
+      d.camera.width = 13.5;
       d.parameters = {{"step", "Step", "s", "s", "of every method", 0.005, 0.2, 0.005, 0.05, false},
                       {"frequency", "Frequency", "Hz", "Hz", "of the spring", 0.2, 2, 0, 1, false}};
       d.plots = {{"Energy", time, {"log₁₀ E/E₀", ""}, names},
@@ -88,6 +91,7 @@ class Race final : public Repeatable<Race<course>, Demo2> {
       d.duration = 30;
       d.camera.target = {-0.5, 0, 0};
       d.camera.height = 3.4;
+      d.camera.width = 4;
       d.parameters = {
           {"step", "Step", "s", "s", "of every method; one turn takes 2π s", 0.005, 0.2, 0.005, 0.05, false},
           {"eccentricity", "Eccentricity", "", "", "0: circle", 0, 0.8, 0, 0.5, false}};

@@ -163,6 +163,8 @@ class Target final : public Repeatable<Target, Demo3> {
     const double entry = sweep(last_, p, half + shell_radius_);
     if (entry <= 1) {
       ++hits_;
+      // From where it touched, not from within.
+      stage.check(stage.world().set_pose(shells_.back(), last_ + entry * (p - last_), {}));
       land(stage);
       hit_time_ = t - stage.declaration().dt * (1 - entry);
       stage.say(

@@ -48,7 +48,7 @@ export class Panel {
       const value = short(toDisplay(p, si), 5);
       range.value = String(toDisplay(p, si));
       range.setAttribute('aria-valuetext', `${value} ${unit}`);
-      if (document.activeElement !== number) number.value = String(Number(toDisplay(p, si).toPrecision(6)));
+      if (document.activeElement !== number) number.value = String(Number(toDisplay(p, si).toPrecision(5)));
     };
     const change = (text: string) => {
       const shown = Number(text);
@@ -59,7 +59,7 @@ export class Panel {
     };
     // A parameter that is not live restarts the demo: wait until the slider is let go.
     range.addEventListener(p.live ? 'input' : 'change', () => change(range.value));
-    if (!p.live) range.addEventListener('input', () => { number.value = range.value; });
+    if (!p.live) range.addEventListener('input', () => { number.value = String(Number(Number(range.value).toPrecision(5))); });
     number.addEventListener('change', () => change(number.value));
     this.shown.set(p.name, (si) => { p.value = si; show(si); });
     show(p.value);
@@ -71,7 +71,7 @@ export class Panel {
   private inputs(demo: Opened): void {
     const host = document.getElementById('inputs')!;
     host.replaceChildren(...demo.inputs.map((input) => {
-      const key = input.keys.map((k) => k.replace(/^Key|^Digit/, '').replace('ArrowUp', '↑').replace('ArrowDown', '↓').replace('ArrowLeft', '←').replace('ArrowRight', '→').replace('Space', '␣')).join(' ');
+      const key = input.keys.map((k) => k.replace(/^Key|^Digit/, '').replace('ArrowUp', '↑').replace('ArrowDown', '↓').replace('ArrowLeft', '←').replace('ArrowRight', '→').replace('Space', 'space').replace('Enter', 'enter')).join(' ');
       const button = element('button', {type: 'button', title: `${input.label} (${key})`}, input.label, ' ', element('kbd', {textContent: key}));
       const press = (value: number) => this.send({type: 'input', action: input.action, value});
       button.onpointerdown = (event) => { button.setPointerCapture(event.pointerId); press(input.value); };

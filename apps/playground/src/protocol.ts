@@ -8,7 +8,7 @@ export interface Parameter {
 export interface Axis { label: string; unit: string }
 export interface Series { name: string; style: 'line' | 'points'; color?: string; points?: [number, number][] }
 export interface PlotDeclaration { title: string; x: Axis; y: Axis; series: Series[] }
-export interface Camera { position: number[]; target: number[]; field_of_view?: number; height?: number; follow?: number }
+export interface Camera { position: number[]; target: number[]; field_of_view?: number; height?: number; width?: number; follow?: number }
 export interface Input { action: string; label: string; keys: string[]; kind: 'hold' | 'press'; value: number }
 export interface Opened {
   type: 'opened'; demo: string; title: string; summary: string; text: string; dimension: 2 | 3; dt: number; camera: Camera;

@@ -85,7 +85,9 @@ export class Viewer {
   private origin = new THREE.Vector3();
   private follow = -1;
   private home: Camera = {position: [8, 6, 12], target: [0, 1, 0]};
+  private framed = {width: 0, height: 0};
   private pixel = 0.02;
+  private touched = false;  // the user has turned the view; nothing else may
   private quality = 2;
   private slowness = 16;
   private lastFrame = 0;
@@ -140,10 +142,11 @@ export class Viewer {
   resetView(): void {
     const {position, target} = this.home;
     const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
+    this.framed = {width: this.canvas.clientWidth, height: this.canvas.clientHeight};
     this.follow = this.home.follow ?? -1;
     this.controls.dispose();
     if (this.dimension === 2) {
-      const height = this.home.height ?? 20;
+      const height = Math.max(this.home.height ?? 20, (this.home.width ?? 0) / aspect);
       this.pixel = height / 600;
       this.camera = new THREE.OrthographicCamera(-height * aspect / 2, height * aspect / 2, height / 2, -height / 2, 0.1, 100);
       this.camera.position.set(target[0], target[1], 50);
@@ -152,12 +155,17 @@ export class Viewer {
       this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
       this.controls.touches.ONE = THREE.TOUCH.PAN;
       this.controls.target.set(target[0], target[1], 0);
+      this.controls.addEventListener('start', () => { this.touched = true; });
     } else {
-      const distance = new THREE.Vector3(...(position as [number, number, number])).distanceTo(new THREE.Vector3(...(target as [number, number, number])));
+      // Cameras are declared for a picture that is wider than high; in a narrow one they step back, so that nothing is cut off.
+      const away = new THREE.Vector3(...(position as [number, number, number])).sub(new THREE.Vector3(...(target as [number, number, number])));
+      away.multiplyScalar(Math.min(2.2, Math.max(1, 1.35 / aspect)));
+      const distance = away.length();
       this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
-      this.camera.position.set(position[0], position[1], position[2]);
+      this.camera.position.set(target[0], target[1], target[2]).add(away);
       this.controls = new OrbitControls(this.camera, this.canvas);
       this.controls.target.set(target[0], target[1], target[2]);
+      this.controls.addEventListener('start', () => { this.touched = true; });
       this.controls.maxPolarAngle = Math.PI * 0.95;
       this.sunFor(distance);
       this.ground.setScale(distance);
@@ -166,7 +174,8 @@ export class Viewer {
     this.controls.dampingFactor = 0.12;
     this.controls.update();
     this.resize();
-    if (this.dimension === 2) this.ground.showPlane(this.home.height ?? 20, aspect, target);
+    this.touched = false;
+    if (this.dimension === 2) this.ground.showPlane(this.camera instanceof THREE.OrthographicCamera ? this.camera.top - this.camera.bottom : 20, aspect, target);
   }
 
   private sunFor(distance: number): void {
@@ -223,7 +232,7 @@ export class Viewer {
       return;
     }
     const opacity = shape.sensor ? Math.min(0.35, shape.opacity ?? 1) : shape.opacity ?? 1;
-    const key = `${found.key} ${opacity.toFixed(2)}`;
+    const key = `${found.key} ${opacity.toFixed(2)}${shape.sensor ? ' sensor' : ''}`;
     let batch = this.batches.get(key);
     if (!batch) this.batches.set(key, batch = new Batch(found.build(), this.materialFor(opacity), this.root));
     const [px, py, pz, qw, qx, qy, qz] = shape.local;
@@ -240,6 +249,7 @@ export class Viewer {
     glass.transparent = true;
     glass.opacity = opacity;
     glass.depthWrite = false;
+    if (this.dimension === 3) glass.side = THREE.DoubleSide;
     return glass;
   }
 
@@ -326,7 +336,9 @@ export class Viewer {
     const ray = this.ray(x, y);
     ray.origin.sub(this.origin);
     const caster = new THREE.Raycaster(ray.origin, ray.direction);
-    const hit = caster.intersectObjects([...this.batches.values()].map((b) => b.mesh), false)[0];
+    // Sensors push nothing, and nothing holds them.
+    const solid = [...this.batches].filter(([key]) => !key.endsWith(' sensor')).map(([, batch]) => batch.mesh);
+    const hit = caster.intersectObjects(solid, false)[0];
     if (!hit || hit.instanceId === undefined) return false;
     for (const batch of this.batches.values())
       if (batch.mesh === hit.object) return this.drawn.get(batch.owners[hit.instanceId])?.body.type === 'dynamic';
@@ -354,6 +366,7 @@ export class Viewer {
 
   resize(): void {
     const width = this.canvas.clientWidth, height = Math.max(1, this.canvas.clientHeight);
+    if (!this.touched && this.framed.width > 0 && Math.abs(width / height - this.framed.width / this.framed.height) > 0.02) return this.resetView();
     this.renderer.setSize(width, height, false);
     if (this.camera instanceof THREE.PerspectiveCamera) this.camera.aspect = width / height;
     else {

@@ -1,0 +1,111 @@
+// What demos and scenes show: their expectations, ropes as lines, loops.
+#include "apps/host/registry.h"
+#include "apps/host/scene_demo.h"
+#include "tests/host/client.h"
+
+namespace carom::host::test {
+namespace {
+
+class DemoExpectations : public testing::TestWithParam<std::string> {};
+
+TEST_P(DemoExpectations, AreMetAfterTheDeclaredTime) {
+  std::unique_ptr<Demo> owner = make_demo(GetParam());
+  Demo& demo = *owner;
+  auto simulation = demo.open(std::move(owner), {}, {});
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  const Declaration& d = (*simulation)->declaration();
+  while ((*simulation)->time() + 0.5 * d.dt < d.duration) {
+    const core::Status status = (*simulation)->step();
+    ASSERT_TRUE(status.ok()) << status.error().message;
+  }
+  std::vector<Expectation> expectations;
+  (*simulation)->expectations(expectations);
+  EXPECT_FALSE(expectations.empty()) << "a demo says what must come out";
+  for (const Expectation& e : expectations)
+    EXPECT_TRUE(e.passed()) << e.name << ": found " << e.found << ' ' << e.unit << ", expected " << e.expected << " ± "
+                            << e.tolerance << " (" << e.source << ')';
+}
+INSTANTIATE_TEST_SUITE_P(Demos, DemoExpectations, testing::ValuesIn(demo_ids()), [](const auto& info) {
+  std::string name = info.param;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+});
+
+HostOptions with_scenes() {
+  HostOptions options;
+  options.parse_scene = [](std::string_view name, std::string_view text) -> core::Result<std::unique_ptr<Demo>> {
+    core::Result<scene::Scene> scene = scene::parse_scene(text, name);
+    if (!scene.ok()) return scene.error();
+    return make_scene_demo(std::move(scene).value(), std::string(name));
+  };
+  return options;
+}
+
+TEST(SceneDemo, RopesAreLinesAndPathsStayBehind) {
+  Page page(with_scenes());
+  page.hello();
+  page.send({{"type", "open_scene"}, {"name", "rope.json"}, {"text", R"({"bodies": [{"name": "hook", "type": "fixed"},
+                {"name": "ball", "trail": true, "color": "#c0402080", "position": ["1 m", 0, 0],
+                 "shape": {"type": "sphere", "radius": "0.1 m"}}],
+               "joints": [{"type": "distance", "body_a": "hook", "body_b": "ball", "length": "1 m", "frame_a": {},
+                           "frame_b": {}}]})"}});
+  page.advance(0);
+  ASSERT_FALSE(page.frames.empty()) << page.last("error").dump();
+  EXPECT_EQ(page.frames.back().lines, 1u) << "the rope, before anything has moved";
+  page.ack();
+  page.run_for(0.5);
+  EXPECT_GT(page.frames.back().lines, 4u) << "the rope and the path";
+  const Json ball = page.last("scene")["bodies"][1]["shapes"][0];
+  EXPECT_EQ(ball["color"], "#c04020");
+  EXPECT_NEAR(ball["opacity"].get<double>(), 128 / 255.0, 1e-6);
+}
+
+TEST(SceneDemo, LoopsBeginAnewAfterAMoment) {
+  Page page(with_scenes());
+  page.hello();
+  const auto open = [&](const char* loop) {
+    page.send({{"type", "open_scene"},
+               {"name", "loop.json"},
+               {"text", std::string(R"({"duration": "0.5 s", "loop": )") + loop +
+                            R"(, "bodies": [{"name": "ball", "velocity": [1, 0, 0], "shape": {"type": "sphere"}}]})"}});
+  };
+  open("true");
+  const int before = page.count("scene");
+  page.run_for(1.5);
+  EXPECT_EQ(page.count("scene"), before);
+  EXPECT_NEAR(page.host.simulation()->time(), 0.5, 1e-6) << "its last picture stays";
+  page.run_for(0.7);
+  EXPECT_EQ(page.count("scene"), before + 1);
+  EXPECT_LT(page.host.simulation()->time(), 0.4);
+  open("false");
+  page.run_for(1.5);
+  EXPECT_NEAR(page.host.simulation()->time(), 1.5, 0.05);
+}
+
+TEST(SceneDemo, AFlightIsDrawnOnItsWholeWay) {
+  Page page(with_scenes());
+  page.hello();
+  page.send({{"type", "open_scene"},
+             {"name", "drop.json"},
+             {"text", R"({"kind": "flight", "duration": "10 s", "step": "0.01 s", "flight": {"earth": {"model": "flat"},
+                "vehicle": {"mass": "2 kg", "inertia": [1, 2, 2.5]}, "initial": {"altitude": "3 km",
+                "rates": ["10 deg/s", 0, 0]}}})"}});
+  page.advance(0);
+  ASSERT_FALSE(page.frames.empty()) << page.last("error").dump();
+  const Json opened = page.last("opened"), shape = page.last("scene")["bodies"][0]["shapes"][0];
+  const Frame::Body start = page.body(0);
+  page.ack();
+  page.run_for(5);
+  const Frame::Body now = page.body(0);
+  EXPECT_NEAR(now.position.y - start.position.y, -0.5 * 9.80665 * 25, 3);
+  EXPECT_NE(now.rotation[0], start.rotation[0]) << "it rolls";
+  EXPECT_NEAR(opened["camera"]["target"][1].get<double>(), -0.25 * 9.80665 * 100, 5) << "the middle of the way";
+  // I_x : I_y : I_z = 1 : 2 : 2.5 of a box whose axes are forward, starboard, down: a² : c² : b² = 3.5 : 1.5 : 0.5.
+  const double x = shape["half_extents"][0], y = shape["half_extents"][1], z = shape["half_extents"][2];
+  EXPECT_NEAR(z * z / (x * x), 1.5 / 3.5, 1e-4);
+  EXPECT_NEAR(y * y / (x * x), 0.5 / 3.5, 1e-4);
+}
+
+}  // namespace
+}  // namespace carom::host::test
