@@ -269,7 +269,8 @@ TEST(SharedFiles, AreThoseOfTheScenesAndPresetsAndNoOthers) {
   fs::create_directories(folder / "presets/ball");
   const auto write = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
   write("scenes/parts/ground.json", R"({"bodies": [{"name": "ground", "type": "fixed", "shape": {"type": "plane"}}]})");
-  write("presets/ball/test.json", R"({"description": "a test", "source": "nowhere", "values": {"shape": {"type": "sphere", "radius": "3 m"}}})");
+  write("presets/ball/test.json",
+        R"({"description": "a test", "source": "nowhere", "values": {"shape": {"type": "sphere", "radius": "3 m"}}})");
   write("secret.json", "{}");
   fs::create_symlink(folder / "secret.json", folder / "scenes/link.json");
   fs::create_symlink(folder, folder / "presets/up");

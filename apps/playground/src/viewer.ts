@@ -159,7 +159,7 @@ export class Viewer {
     } else {
       // Cameras are declared for a picture that is wider than high; in a narrow one they step back, so that nothing is cut off.
       const away = new THREE.Vector3(...(position as [number, number, number])).sub(new THREE.Vector3(...(target as [number, number, number])));
-      away.multiplyScalar(Math.min(2.2, Math.max(1, 1.35 / aspect)));
+      away.multiplyScalar(Math.min(2, Math.max(1, 1.1 / aspect)));
       const distance = away.length();
       this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
       this.camera.position.set(target[0], target[1], target[2]).add(away);

@@ -16,6 +16,7 @@ template <class D>
 WorldDef<D> without_machine(WorldDef<D> definition, const WorldDef<D>& machine = {}) {
   definition.threads = machine.threads;
   definition.scheduler = machine.scheduler;
+  definition.profiler = machine.profiler;
   definition.simd_width = machine.simd_width;
   return definition;
 }
