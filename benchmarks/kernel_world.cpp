@@ -154,6 +154,7 @@ void BM_StepBesideSleepers(benchmark::State& state) {
                     .angular_velocity = {0.1f, 0.2f, 0},
                     .sleep_speed = 0},
                    geometry::Box{{0.5f, 0.5f, 0.5f}}, {});
+  for (int i = 0; i < 3; ++i) world.step(1.0f / 60.0f).value();  // the first looks for everyone's pairs
   for (auto _ : state) world.step(1.0f / 60.0f).value();
 }
 BENCHMARK(BM_StepBesideSleepers)->Arg(0)->Arg(100000)->Unit(benchmark::kMicrosecond);

@@ -1,0 +1,111 @@
+// Bars of speed that hold on any recent machine with room to spare. Times are minima over many repetitions, and each
+// test may try again, so that what else the machine does cannot fail it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "benchmarks/measure.h"
+#include "benchmarks/scene_pieces.h"
+#include "carom/math/random.h"
+
+namespace {
+using namespace carom;
+using namespace carom::bench;
+
+double microseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// The reference of a game at 60 Hz: 5 000 bodies that touch within one frame of 16 ms, on one thread.
+TEST(Bars, FiveThousandBodiesInAFrame) {
+  for (const char* name : {"box3d/large_pyramid", "box2d/large_pyramid"}) {
+    const std::vector<const SceneInfo*> scenes = find_scenes(name);
+    ASSERT_EQ(scenes.size(), 1u);
+    Settings settings;
+    settings.steps = 60;
+    double best = 1e9;
+    int bodies = 0;
+    for (int attempt = 0; attempt < 4 && best >= 16; ++attempt) {
+      const Outcome outcome = run_scene(*scenes[0], settings);
+      best = std::min(best, mean_after_first(outcome.step_ms));
+      bodies = outcome.counters.bodies;
+    }
+    EXPECT_GE(bodies, 5000) << name;
+    EXPECT_LT(best, 16.0) << name << ", ms a step";
+  }
+}
+
+/// n separate sleeping boxes, without gravity.
+World3 sleeping_boxes(int n) {
+  rigid::WorldDef<Dim3> definition;
+  definition.gravity = {};
+  World3 world(definition);
+  for (int i = 0; i < n; ++i)
+    add_body<Dim3>(world, {.position = {2.0 * (i % 100), 2.0 * (i / 100 % 100), 2.0 * (i / 10000)}, .awake = false},
+                   geometry::Box{{0.5f, 0.5f, 0.5f}}, {});
+  return world;
+}
+void add_spinning_boxes(World3& world, int n) {
+  for (int i = 0; i < n; ++i)
+    add_body<Dim3>(world,
+                   {.position = {2.0 * (i % 20), 2.0 * (i / 20 % 20), -100 - 2.0 * (i / 400)},
+                    .angular_velocity = {0.1f, 0.2f, 0},
+                    .sleep_speed = 0},
+                   geometry::Box{{0.5f, 0.5f, 0.5f}}, {});
+}
+
+TEST(Bars, HundredThousandSleepersAddLessThanOnePercent) {
+  World3 alone = sleeping_boxes(0), beside = sleeping_boxes(100000);
+  add_spinning_boxes(alone, 4000);
+  add_spinning_boxes(beside, 4000);
+  double fastest[2] = {1e9, 1e9};
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    for (int i = 0; i < 30; ++i) {
+      World3* worlds[] = {&alone, &beside};
+      for (int k = 0; k < 2; ++k) {
+        const auto begin = std::chrono::steady_clock::now();
+        worlds[k]->step(1.0f / 60.0f).value();
+        fastest[k] = std::min(fastest[k], microseconds_since(begin));
+      }
+    }
+    if (attempt >= 3 && fastest[1] < 1.01 * fastest[0]) break;
+  }
+  EXPECT_EQ(beside.counters().awake_bodies, 4000);
+  EXPECT_LT(fastest[1], 1.01 * fastest[0]) << "µs a step with and without 100 000 sleepers";
+}
+
+/// Fastest of a few rounds, µs a call.
+template <class Call>
+double cost(Call&& call) {
+  double best = 1e9;
+  for (int round = 0; round < 20; ++round) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 500; ++i) call();
+    best = std::min(best, microseconds_since(begin) / 500);
+  }
+  return best;
+}
+
+// O(log n): a hundred times the bodies cost log 10⁵ / log 10³ = 5/3 of the visits. Memory that is no longer in the
+// cache makes each of them dearer, so the bar is 6; a linear search would show 100.
+TEST(Bars, BodiesComeAndGoAndMoveInLogarithmicTime) {
+  World3 few = sleeping_boxes(1000), many = sleeping_boxes(100000);
+  math::Random random(3);
+  const auto place = [&random] { return math::Vec3d{random.uniform(0.0, 200.0), random.uniform(0.0, 200.0), -10}; };
+  const auto come_and_go = [&](World3& world) {
+    return cost([&] {
+      const BodyId body = add_body<Dim3>(world, {.position = place(), .awake = false}, geometry::Sphere{0.25f}, {});
+      world.destroy_body(body).value();
+    });
+  };
+  const auto move = [&](World3& world) {
+    const BodyId body =
+        add_body<Dim3>(world, {.type = BodyType::fixed, .position = place()}, geometry::Sphere{0.25f}, {});
+    return cost([&] { world.set_pose(body, place(), {}).value(); });
+  };
+  EXPECT_LT(come_and_go(many), 6 * come_and_go(few));
+  EXPECT_LT(move(many), 6 * move(few));
+}
+
+}  // namespace
