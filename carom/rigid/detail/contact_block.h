@@ -58,6 +58,24 @@ struct alignas(64) ContactBlock<Dim3, W> {
   float twist_mass[W], twist_radius[W], twist_impulse[W];
 };
 
+/// What the preparation of a block starts from, as the records hold it; the points, the normal (both in A's shape
+/// frame) and the impulses lie in the block itself. An absent point has a normal_mass of 0, others 1.
+template <class D, int W>
+struct alignas(64) ContactRaw {
+  static constexpr int dimension = D::dimension, turn = D::dimension == 2 ? 2 : 4;  ///< turn: c, s or w, x, y, z
+  struct Placed {
+    float p[dimension][W], q[turn][W];
+  };
+  float rotation_a[turn][W], rotation_b[turn][W];  ///< of the bodies
+  Placed shape_a, shape_b;                         ///< in their bodies, from the centres of mass
+  Placed base;                                     ///< B in A when the manifold was made
+  float recycled[W];                               ///< 1: the manifold was made at `base`, 0: now
+  float anchor_a[dimension][W], anchor_b[dimension][W];
+  float anchor_state[W];  ///< 0: friction slides freely, 1: no anchor yet, 2: anchored; out: 1 for a new anchor
+  float friction_impulse[dimension][W];
+  float tangent_speed[W], patch_factor[W];
+};
+
 /// Only where a contact of the colour rolls with resistance or bounces.
 template <class D, int W>
 struct alignas(64) ContactExtra {
@@ -74,8 +92,8 @@ template <class D>
 struct ContactKernels {
   using Blocks = void*;
   int width = 4;
-  /// Effective masses from what the preparation wrote; normal_mass holds 1 for points that exist and 0 for others.
-  void (*prepare)(Blocks blocks, int begin, int end) = nullptr;
+  /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back.
+  void (*prepare)(void* block, void* raw, float anchor_rate) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed) = nullptr;
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h) = nullptr;

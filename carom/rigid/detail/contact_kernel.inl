@@ -77,6 +77,13 @@ CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
+/// flag/k, or 0 where nothing responds.
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> inverse_or_zero(WideFloat<W> flag, WideFloat<W> k) {
+  const WideFloat<W> zero = WideFloat<W>::splat(0);
+  return keep(k > zero, flag / select(k > zero, k, WideFloat<W>::splat(1)));
+}
+
 template <int W, int Columns, class Body>
 CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int offset,
                               WideFloat<W> (&columns)[Columns]) {
@@ -87,6 +94,9 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE
 
+#include "carom/rigid/detail/contact_prepare2.inl"
+#include "carom/rigid/detail/contact_prepare3.inl"
+// The passes use what the preparation left.
 #include "carom/rigid/detail/contact_kernel2.inl"
 #include "carom/rigid/detail/contact_kernel3.inl"
 

@@ -33,34 +33,6 @@ CAROM_SIMD_INLINE void push_back(Velocity2<W>& a, WideFloat<W> m, WideFloat<W> i
   a.w -= i * turn;
 }
 
-/// flag/k, or 0 where nothing responds.
-template <int W>
-CAROM_SIMD_INLINE WideFloat<W> inverse_or_zero(WideFloat<W> flag, WideFloat<W> k) {
-  const WideFloat<W> zero = WideFloat<W>::splat(0);
-  return keep(k > zero, flag / select(k > zero, k, WideFloat<W>::splat(1)));
-}
-
-template <int W>
-void prepare2(void* blocks, int begin, int end) {
-  using F = WideFloat<W>;
-  for (int k = begin; k < end; ++k) {
-    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
-    const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
-    const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
-    const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
-    const WideVec2<W> t = {F::splat(0) - n.y, n.x};
-    for (int i = 0; i < 2; ++i) {
-      const WideVec2<W> ra = load2<W>(c.point[i].r_a);
-      const F ta = cross(ra, n), tb = cross(add(ra, offset), n);
-      inverse_or_zero(F::load(c.point[i].normal_mass), mass + ia * ta * ta + ib * tb * tb)
-          .store(c.point[i].normal_mass);
-    }
-    const WideVec2<W> ra = load2<W>(c.patch_r_a);
-    const F ta = cross(ra, t), tb = cross(add(ra, offset), t);
-    inverse_or_zero(F::splat(1), mass + ia * ta * ta + ib * tb * tb).store(c.tangent_mass);
-  }
-}
-
 template <int W>
 void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int begin, int end) {
   using F = WideFloat<W>;

@@ -32,33 +32,6 @@ CAROM_SIMD_INLINE void push_back(Velocity3<W>& a, WideFloat<W> m, const WideSymm
 }
 
 template <int W>
-void prepare3(void* blocks, int begin, int end) {
-  using F = WideFloat<W>;
-  for (int k = begin; k < end; ++k) {
-    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
-    const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
-    const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
-    const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset);
-    for (int i = 0; i < 4; ++i) {
-      const WideVec3<W> ra = load3<W>(c.point[i].r_a), ta = cross(ra, n), tb = cross(add(ra, offset), n);
-      const F response = mass + dot(ta, multiply(ia, ta)) + dot(tb, multiply(ib, tb));
-      inverse_or_zero(F::load(c.point[i].normal_mass), response).store(c.point[i].normal_mass);
-    }
-    const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t), ra = load3<W>(c.patch_r_a), rb = add(ra, offset);
-    const WideVec3<W> ta = cross(ra, t), tb = cross(rb, t), ua = cross(ra, u), ub = cross(rb, u);
-    const WideVec3<W> ita = multiply(ia, ta), itb = multiply(ib, tb), iua = multiply(ia, ua), iub = multiply(ib, ub);
-    const F k11 = mass + dot(ta, ita) + dot(tb, itb), k22 = mass + dot(ua, iua) + dot(ub, iub);
-    const F k12 = dot(ua, ita) + dot(ub, itb);
-    const F s = inverse_or_zero(F::splat(1), k11 * k22 - k12 * k12);
-    (k22 * s).store(c.tangent_mass[0]);
-    (k11 * s).store(c.tangent_mass[1]);
-    (F::splat(0) - k12 * s).store(c.tangent_mass[2]);
-    const WideVec3<W> spin = add(multiply(ia, n), multiply(ib, n));
-    inverse_or_zero(F::splat(1), dot(n, spin)).store(c.twist_mass);
-  }
-}
-
-template <int W>
 void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {

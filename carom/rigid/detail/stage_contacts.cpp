@@ -31,6 +31,26 @@ template <int W>
 void put(float (&to)[W], int lane, float v) {
   to[lane] = v;
 }
+template <int W>
+void put(float (&to)[2][W], int lane, const Rot2f& q) {
+  to[0][lane] = q.c;
+  to[1][lane] = q.s;
+}
+template <int W>
+void put(float (&to)[4][W], int lane, const Quatf& q) {
+  to[0][lane] = q.w;
+  to[1][lane] = q.x;
+  to[2][lane] = q.y;
+  to[3][lane] = q.z;
+}
+template <int W>
+Vec2f get(const float (&from)[2][W], int lane) {
+  return {from[0][lane], from[1][lane]};
+}
+template <int W>
+Vec3f get(const float (&from)[3][W], int lane) {
+  return {from[0][lane], from[1][lane], from[2][lane]};
+}
 
 /// A contact as it stands now: in the shape frame of A.
 template <class D>
@@ -70,51 +90,46 @@ typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t b
   return context.world.definition.gravity * m.gravity_scale + m.force * m.inverse_mass;
 }
 
-/// Where friction sticks: remembered on both bodies, so that a body at rest on a slope stays where it is for good.
-template <class D>
-typename D::Vector slip_of(const StepContext<D>& context, const ContactRecord<D>& c, ManifoldRecord<D>& m,
-                           const typename D::Vector& r_a, const typename D::Vector& r_b) {
-  const auto& bodies = context.world.bodies;
-  const typename D::Rotation qa = bodies.pose[std::size_t(c.body[0])].rotation;
-  const typename D::Rotation qb = bodies.pose[std::size_t(c.body[1])].rotation;
-  if (m.anchored) {
-    const typename D::Vector a = rotate(qa, m.anchor_a), b = rotate(qb, m.anchor_b);
-    const float reach = 0.05f * min(math::length(r_b), math::length(r_a)) + 0.01f;
-    if (math::length_squared(b - r_b) < reach * reach) return (b - r_b) - (a - r_a);
-  }
-  m.anchored = true;
-  m.anchor_a = inverse_rotate(qa, r_a);
-  m.anchor_b = inverse_rotate(qb, r_b);
-  return {};
+template <class D, int W>
+void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const typename D::Vector& center,
+               bool at_origin, typename ContactRaw<D, W>::Placed& to, int lane) {
+  const typename D::Transform local = at_origin ? typename D::Transform{} : world.shapes.at(shape).local;
+  put(to.p, lane, local.p - center);
+  put(to.q, lane, local.q);
 }
 
+/// Copies what the records hold to a lane; what follows from it the kernel computes for all lanes at once.
 template <class D, int W>
-void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block,
-                  ContactExtra<D, W>* extra, int lane) {
+void gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block, ContactRaw<D, W>& raw,
+                 int lane) {
   using V = typename D::Vector;
-  WorldImplementation<D>& world = context.world;
-  ManifoldRecord<D>& m = world.contacts.manifold(index);
+  const WorldImplementation<D>& world = context.world;
+  const ManifoldRecord<D>& m = world.contacts.manifold(index);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const std::int32_t a = c.body[0], b = c.body[1];
   const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
-  const SolverBody<D>&sa = context.bodies[a], &sb = context.bodies[b];
-  typename D::Rotation q = world.bodies.pose[std::size_t(a)].rotation;
-  V to_shape = rotate(q, -ma.local_center);
-  if ((c.flags & contact_at_origin) == 0) {
-    const ShapeRecord<D>& shape = world.shapes.at(c.shape[0]);
-    to_shape = rotate(q, shape.local.p - ma.local_center);
-    q = q * shape.local.q;
-  }
-  Geometry<D> g;
-  current_geometry(world, c, m.manifold, g);
-
   const bool dynamic_a = world.bodies.is_dynamic(a), dynamic_b = world.bodies.is_dynamic(b);
+  const bool at_origin = (c.flags & contact_at_origin) != 0;
+  put(raw.rotation_a, lane, world.bodies.pose[std::size_t(a)].rotation);
+  put(raw.rotation_b, lane, world.bodies.pose[std::size_t(b)].rotation);
+  put_shape<D, W>(world, c.shape[0], ma.local_center, at_origin, raw.shape_a, lane);
+  put_shape<D, W>(world, c.shape[1], mb.local_center, at_origin, raw.shape_b, lane);
+  put(raw.base.p, lane, c.base.p);
+  put(raw.base.q, lane, c.base.q);
+  raw.recycled[lane] = (c.flags & contact_recycled) != 0 ? 1 : 0;
+  put(raw.anchor_a, lane, m.anchor_a);
+  put(raw.anchor_b, lane, m.anchor_b);
+  const bool slides = m.tangent_speed != 0 || (c.flags & contact_round) != 0;
+  raw.anchor_state[lane] = slides ? 0 : (m.anchored ? 2 : 1);
+  put(raw.friction_impulse, lane, m.impulses.friction);
+  raw.tangent_speed[lane] = m.tangent_speed;
+  raw.patch_factor[lane] = m.patch_factor;
+
   block.read_a[lane] = a;
   block.read_b[lane] = b;
   block.write_a[lane] = dynamic_a ? a : none;
   block.write_b[lane] = dynamic_b ? b : none;
-  const V n = rotate(q, m.manifold.normal);
-  put(block.normal, lane, n);
+  put(block.normal, lane, m.manifold.normal);
   block.inverse_mass_a[lane] = ma.inverse_mass;
   block.inverse_mass_b[lane] = mb.inverse_mass;
   put(block.inverse_inertia_a, lane, ma.world_inverse_inertia);
@@ -123,105 +138,102 @@ void prepare_lane(const StepContext<D>& context, std::int32_t index, ContactBloc
   block.bias_rate[lane] = soft.bias_rate;
   block.mass_scale[lane] = soft.mass_scale;
   block.impulse_scale[lane] = soft.impulse_scale;
-  const V offset = V(ma.center - mb.center);
-  put(block.center_offset, lane, offset);
-
-  const V closing_acceleration = m.restitution > 0 ? acceleration_of(context, a) - acceleration_of(context, b) : V{};
-  float weight = 0, approach = 0;
-  V center{}, equal_center{};
+  put(block.center_offset, lane, V(ma.center - mb.center));
   for (int i = 0; i < D::max_points; ++i) {
     auto& point = block.point[i];
-    if (i >= m.manifold.count) {
-      put(point.r_a, lane, V{});
-      point.separation[lane] = 1e3f;
-      point.normal_mass[lane] = point.impulse[lane] = point.total[lane] = 0;
-      if (extra != nullptr) extra->bounce_speed[i][lane] = 0;
-      continue;
-    }
-    const V ra = rotate(q, g.point[i]) + to_shape, rb = ra + offset;
-    put(point.r_a, lane, ra);
-    point.separation[lane] = g.separation[i];
-    point.normal_mass[lane] = 1;  // a mark: the wide part of the preparation puts the mass here
+    const bool exists = i < m.manifold.count;
+    put(point.r_a, lane, exists ? m.manifold.points[i].point : V{});
+    point.separation[lane] = exists ? m.manifold.points[i].separation : 0;
+    point.normal_mass[lane] = exists ? 1 : 0;
     // An impulse on its way to nothing is nothing: no denormals, no division by them.
-    const float impulse = m.impulses.normal[i] > 1e-12f ? m.impulses.normal[i] : 0;
-    point.impulse[lane] = impulse;
+    point.impulse[lane] = exists && m.impulses.normal[i] > 1e-12f ? m.impulses.normal[i] : 0;
     point.total[lane] = 0;
-    weight += impulse;
-    center += ra * impulse;
-    equal_center += ra;
-    const float vn = dot(
-        n, sb.linear_velocity + cross(sb.angular_velocity, rb) - sa.linear_velocity - cross(sa.angular_velocity, ra));
-    approach = max(approach, -vn);
-    if (extra != nullptr) {
-      // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
-      float speed = 0;
-      if (m.restitution > 0 && vn < 0) {
-        const float fall = 2 * max(dot(n, closing_acceleration), 0.0f) * max(g.separation[i], 0.0f);
-        const float impact = math::sqrt(vn * vn + fall);
-        if (impact > world.definition.restitution_threshold) speed = m.restitution * impact;
-      }
-      extra->bounce_speed[i][lane] = speed;
-    }
   }
-  m.approach_speed = approach;
-  if (extra != nullptr) extra->closing_acceleration[lane] = max(dot(n, closing_acceleration), 0.0f);
-  center = weight > 0 ? center * (1 / weight) : equal_center * (1.0f / float(m.manifold.count));
-
   block.friction[lane] = m.friction;
-  put(block.patch_r_a, lane, center);
-  const V center_b = center + offset;
-  V slip{};
-  if (m.tangent_speed == 0 && (c.flags & contact_round) == 0) slip = slip_of(context, c, m, center, center_b);
-  const float rate = -anchor_rate * context.inverse_dt;
   if constexpr (D::dimension == 2) {
-    const Vec2f t{-n.y, n.x};
-    block.tangent_impulse[lane] = dot(m.impulses.friction, t);
-    block.tangent_target[lane] = m.tangent_speed + rate * dot(slip, t);
     block.tangent_total[lane] = 0;
   } else {
-    const Vec3f t = perpendicular(n), u = cross(n, t);
-    put(block.tangent, lane, t);
-    block.tangent_impulse[0][lane] = dot(m.impulses.friction, t);
-    block.tangent_impulse[1][lane] = dot(m.impulses.friction, u);
-    block.tangent_target[0][lane] = m.tangent_speed + rate * dot(slip, t);
-    block.tangent_target[1][lane] = rate * dot(slip, u);
     block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
-    float radius = 0;
-    if (m.manifold.count > 1) {
-      for (int i = 0; i < m.manifold.count; ++i) {
-        const Vec3f r{block.point[i].r_a[0][lane], block.point[i].r_a[1][lane], block.point[i].r_a[2][lane]};
-        radius += math::length(r - center) * (weight > 0 ? block.point[i].impulse[lane] : 1);
-      }
-      radius *= m.patch_factor / (weight > 0 ? weight : float(m.manifold.count));
-    }
-    block.twist_radius[lane] = radius;
-    block.twist_impulse[lane] = radius > 0 ? m.impulses.twist : 0;
-  }
-  if (extra != nullptr) {
-    extra->rolling_lever[lane] = m.rolling_lever;
-    if constexpr (D::dimension == 2) {
-      const float k = ma.world_inverse_inertia + mb.world_inverse_inertia;
-      extra->rolling_mass[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
-      extra->rolling_impulse[0][lane] = m.rolling_lever > 0 ? m.impulses.rolling : 0;
-    } else {
-      const Mat3f k = inverse(ma.world_inverse_inertia + mb.world_inverse_inertia);
-      put(extra->rolling_mass, lane, m.rolling_lever > 0 ? k : Mat3f::zero());
-      put(extra->rolling_impulse, lane, m.rolling_lever > 0 ? m.impulses.rolling : Vec3f{});
-    }
+    block.twist_impulse[lane] = m.impulses.twist;
   }
 }
 
+/// After the kernel: friction that sticks anew remembers where.
+template <class D, int W>
+void set_anchor(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block, int lane) {
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  const auto& pose = context.world.bodies.pose;
+  const typename D::Vector center = get(block.patch_r_a, lane), offset = get(block.center_offset, lane);
+  m.anchored = true;
+  m.anchor_a = inverse_rotate(pose[std::size_t(c.body[0])].rotation, center);
+  m.anchor_b = inverse_rotate(pose[std::size_t(c.body[1])].rotation, center + offset);
+}
+
+/// After the kernel: how fast the surfaces close, and with what speed they are to part.
+template <class D, int W>
+void find_approach(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
+                   ContactExtra<D, W>* extra, int lane) {
+  using V = typename D::Vector;
+  const WorldImplementation<D>& world = context.world;
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const SolverBody<D>&sa = context.bodies[c.body[0]], &sb = context.bodies[c.body[1]];
+  const V n = get(block.normal, lane), offset = get(block.center_offset, lane);
+  const V closing_acceleration =
+      m.restitution > 0 ? acceleration_of(context, c.body[0]) - acceleration_of(context, c.body[1]) : V{};
+  const float closing = max(dot(n, closing_acceleration), 0.0f);
+  m.approach_speed = 0;
+  if (extra != nullptr) extra->closing_acceleration[lane] = closing;
+  for (int i = 0; i < D::max_points; ++i) {
+    float speed = 0;
+    if (i < m.manifold.count) {
+      const V ra = get(block.point[i].r_a, lane), rb = ra + offset;
+      const float vn = dot(
+          n, sb.linear_velocity + cross(sb.angular_velocity, rb) - sa.linear_velocity - cross(sa.angular_velocity, ra));
+      m.approach_speed = max(m.approach_speed, -vn);
+      if (m.restitution > 0 && vn < 0) {
+        // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
+        const float impact = math::sqrt(vn * vn + 2 * closing * max(block.point[i].separation[lane], 0.0f));
+        if (impact > world.definition.restitution_threshold) speed = m.restitution * impact;
+      }
+    }
+    if (extra != nullptr) extra->bounce_speed[i][lane] = speed;
+  }
+}
+
+template <class D, int W>
+void prepare_rolling(const StepContext<D>& context, std::int32_t index, ContactExtra<D, W>& extra, int lane) {
+  const WorldImplementation<D>& world = context.world;
+  const ManifoldRecord<D>& m = world.contacts.manifold(index);
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const auto& motion = world.bodies.motion;
+  const auto k =
+      motion[std::size_t(c.body[0])].world_inverse_inertia + motion[std::size_t(c.body[1])].world_inverse_inertia;
+  extra.rolling_lever[lane] = m.rolling_lever;
+  if constexpr (D::dimension == 2) {
+    extra.rolling_mass[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
+    extra.rolling_impulse[0][lane] = m.rolling_lever > 0 ? m.impulses.rolling : 0;
+  } else {
+    put(extra.rolling_mass, lane, m.rolling_lever > 0 ? inverse(k) : Mat3f::zero());
+    put(extra.rolling_impulse, lane, m.rolling_lever > 0 ? m.impulses.rolling : Vec3f{});
+  }
+}
+
+template <class Block>
+void zero_lane(Block& block, int width, int lane) {
+  for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
+    reinterpret_cast<float*>(&block)[i + std::size_t(lane)] = 0;
+}
 /// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
 template <class D, int W>
-void clear_lane(ContactBlock<D, W>& block, ContactExtra<D, W>* extra, int lane) {
-  for (std::size_t i = 0; i < sizeof(block) / (4 * W); ++i)
-    reinterpret_cast<float*>(&block)[i * W + std::size_t(lane)] = 0;
+void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, int lane) {
+  zero_lane(block, W, lane);
+  zero_lane(raw, W, lane);
+  if (extra != nullptr) zero_lane(*extra, W, lane);
   block.read_a[lane] = block.read_a[0];
   block.read_b[lane] = block.read_b[0];
   block.write_a[lane] = block.write_b[lane] = none;
-  if (extra != nullptr)
-    for (std::size_t i = 0; i < sizeof(*extra) / (4 * W); ++i)
-      reinterpret_cast<float*>(extra)[i * W + std::size_t(lane)] = 0;
 }
 
 template <class D, int W>
@@ -316,12 +328,19 @@ void prepare_blocks(StepContext<D>& context) {
   }
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
                                 ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
+    ContactRaw<D, W> raw;
     for (int lane = 0; lane < lanes; ++lane) {
       prefetch_manifold(world, manifolds, first + std::size_t(lane));
-      prepare_lane<D, W>(context, manifolds[first + std::size_t(lane)], block, extra, lane);
+      gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
     }
-    for (int lane = lanes; lane < W; ++lane) clear_lane<D, W>(block, extra, lane);
-    world.kernels.prepare(&block, 0, 1);
+    for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+    world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const std::int32_t m = manifolds[first + std::size_t(lane)];
+      if (raw.anchor_state[lane] > 0) set_anchor(context, m, block, lane);
+      if (extra != nullptr || world.hit_event_shapes > 0) find_approach(context, m, block, extra, lane);
+      if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
+    }
   });
 }
 
