@@ -252,6 +252,7 @@ void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
   shape.tree = record.type == BodyType::fixed ? tree_fixed
                                               : (record.type == BodyType::kinematic ? tree_kinematic : tree_dynamic);
   shape.leaf = world.shapes.trees[shape.tree].insert(fat_bounds(world, shape), std::uint32_t(s));
+  world.bodies.motion[std::size_t(shape.body)].slack = 0;
   if ((shape.flags & shape_moved) == 0) {
     shape.flags |= shape_moved;
     world.scratch.moved.push_back(s);
@@ -269,6 +270,7 @@ void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
 
 template <class D>
 void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
+  world.bodies.motion[std::size_t(body)].slack = 0;
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;

@@ -52,6 +52,7 @@ struct BodyMotion {
   float gravity_scale = 1;
   float inner_extent = 0;   ///< m: half the smallest extent of its shapes; how far is "fast"
   float outer_extent = 0;   ///< m: farthest point of its shapes from the centre of mass
+  float slack = 0;          ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
   bool gyroscopic = false;  ///< 3D: inertia is not isotropic
 };
 

@@ -32,13 +32,19 @@ void quarantine(WorldImplementation<D>& world, std::int32_t body) {
 template <class D>
 bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   bool any = false;
+  double slack = 1e6;
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
-    if (geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), shape_bounds(world, shape))) continue;
+    const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf),
+                             tight = shape_bounds(world, shape);
+    const typename D::Position below = tight.low - fat.low, above = fat.high - tight.high;
+    for (int k = 0; k < D::dimension; ++k) slack = min(slack, min(below[k], above[k]));
+    if (geometry::contains(fat, tight)) continue;
     shape.flags |= shape_outgrown;
     any = true;
   }
+  world.bodies.motion[std::size_t(body)].slack = any ? 0 : 0.98f * float(slack);
   return any;
 }
 
@@ -88,7 +94,9 @@ void finalize_bodies(StepContext<D>& context) {
       reset_delta(s);
       if (record.flags & body_fast) continue;  // its bounds wait for the end of its way
       update_world_inertia(world, body);
-      if (leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
+      // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
+      m.slack = turned < 0.2f ? m.slack - (travel + turned * m.outer_extent) : 0;
+      if (m.slack <= 0 && leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
     }
   });
   for (std::size_t i = 0; i < count; ++i)
