@@ -10,6 +10,7 @@
 #include "apps/command/command.h"
 #include "apps/host/registry.h"
 #include "apps/host/scene_demo.h"
+#include "apps/host/stress_demo.h"
 #include "carom/math/units.h"
 #include "carom/scene/scene.h"
 
@@ -163,6 +164,7 @@ core::Result<std::unique_ptr<host::Demo>> open_demo(const std::string& name) {
     return host::make_scene_demo(std::move(scene).value(), fs::path(path).stem().string());
   }
   for (const host::DemoFactory make : host::demos()) known.push_back(make()->declaration().id);
+  for (const std::unique_ptr<host::Demo>& demo : host::stress_demos()) known.push_back(demo->declaration().id);
   const std::string nearest = host::nearest_name(name, {known.begin(), known.end()});
   return core::Error{"no demo or scene file \"" + name + "\"" +
                      (nearest.empty() ? "; `carom list` names them all" : "; did you mean \"" + nearest + "\"?")};

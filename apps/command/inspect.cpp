@@ -11,6 +11,7 @@
 #include "apps/host/messages.h"
 #include "apps/host/registry.h"
 #include "apps/host/scene_demo.h"
+#include "apps/host/stress_demo.h"
 #include "carom/math/cpu.h"
 #include "carom/scene/scene.h"
 
@@ -25,6 +26,13 @@ int list(bool json) {
     const host::Declaration d = make()->declaration();
     demos.push_back(Json::parse(host::declaration_json(d, -1)));
     if (!json) std::printf("  %-20s %dD  %s\n", d.id.c_str(), d.dimension, d.summary.c_str());
+  }
+  Json stress = Json::array();
+  if (!json) std::printf("\nBenchmark scenes as demos (carom run NAME)\n");
+  for (const std::unique_ptr<host::Demo>& demo : host::stress_demos()) {
+    const host::Declaration d = demo->declaration();
+    stress.push_back(Json::parse(host::declaration_json(d, -1)));
+    if (!json) std::printf("  %-28s %dD  %s\n", d.id.c_str(), d.dimension, d.summary.c_str());
   }
   bool broken = false;
   const std::vector<SceneFile> files = scene_files();
@@ -49,7 +57,9 @@ int list(bool json) {
     presets.push_back(name);
     if (!json) std::printf("  %s\n", name.c_str());
   }
-  if (json) std::printf("%s\n", Json({{"demos", demos}, {"scenes", scenes}, {"presets", presets}}).dump(2).c_str());
+  if (json)
+    std::printf("%s\n",
+                Json({{"demos", demos}, {"stress", stress}, {"scenes", scenes}, {"presets", presets}}).dump(2).c_str());
   return broken ? exit_input : exit_ok;
 }
 

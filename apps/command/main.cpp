@@ -46,6 +46,9 @@ int main(int count, char** arguments) {
       run_command->add_option("--steps", run_options.steps, "how many steps")->check(CLI::Range(1LL, 1'000'000'000LL));
   run_command->add_option("--duration", run_options.duration, "simulated seconds (the scene's own)")
       ->check(CLI::Range(1e-6, 1e7))
+      ->check([](const std::string& text) {
+        return text.find_first_of("nN") == std::string::npos ? "" : "found no number";
+      })
       ->excludes(steps);
   run_command->add_option("--hash-every", run_options.hash_every, "list the state hash every N steps")
       ->check(CLI::Range(1, 1'000'000'000));
@@ -57,7 +60,7 @@ int main(int count, char** arguments) {
   run_command->footer(
       with_examples("  carom run wrecking-ball\n"
                     "  carom run wrecking-ball --set \"ball_mass=2 t\" --set \"angle=80 deg\" --duration 5\n"
-                    "  carom run scenes/nesc/case_02.json --json --no-pictures\n"
+                    "  carom run scenes/nesc_02.json --json --no-pictures\n"
                     "  carom run pyramids --threads 2 --steps 300 --hash-every 100 --no-record\n"));
   run_command->callback([&] {
     run_options.record = !no_record;

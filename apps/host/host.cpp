@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/host/registry.h"
+#include "apps/host/stress_demo.h"
 
 namespace carom::host {
 
@@ -86,6 +87,7 @@ struct SimulationHost::Handlers {
     std::vector<Declaration> list;
     for (const DemoFactory make : demos()) list.push_back(make()->declaration());
     for (const MenuScene& scene : host.options_.scenes) list.push_back(scene.summary);
+    for (const std::unique_ptr<Demo>& demo : stress_demos()) list.push_back(demo->declaration());
     host.greeted_ = true;
     host.send(welcome_message(engine_name, list));
     return {};

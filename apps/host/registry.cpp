@@ -1,14 +1,17 @@
 #include "apps/host/registry.h"
 
 #include "apps/host/demos/demos.h"
+#include "apps/host/stress_demo.h"
 
 namespace carom::host {
 
 namespace {
 constexpr DemoFactory factories[] = {
-    demo::make_wrecking_ball, demo::make_pyramids,  demo::make_collision_lab3,  demo::make_collision_lab2,
-    demo::make_hovercraft,    demo::make_target,    demo::make_mass_properties, demo::make_race_orbit,
-    demo::make_race_spring,   demo::make_race_ship, demo::make_tumbling_brick,  demo::make_intermediate_axis,
+    demo::make_wrecking_ball,   demo::make_pyramids,       demo::make_joints,
+    demo::make_rewind,          demo::make_hovercraft,     demo::make_collision_lab3,
+    demo::make_collision_lab2,  demo::make_conveyor,       demo::make_target,
+    demo::make_mass_properties, demo::make_race_orbit,     demo::make_race_spring,
+    demo::make_race_ship,       demo::make_tumbling_brick, demo::make_intermediate_axis,
 };
 }  // namespace
 
@@ -19,7 +22,7 @@ std::unique_ptr<Demo> make_demo(std::string_view id) {
     std::unique_ptr<Demo> demo = make();
     if (demo->declaration().id == id) return demo;
   }
-  return nullptr;
+  return make_stress_demo(id);
 }
 
 }  // namespace carom::host

@@ -11,7 +11,7 @@ namespace carom::host {
 
 using DemoFactory = std::unique_ptr<Demo> (*)();
 std::span<const DemoFactory> demos();
-/// Null where no demo has this id.
+/// Everything by this id, the stress scenes (stress_demo.h) too; null where none has it.
 std::unique_ptr<Demo> make_demo(std::string_view id);
 
 }  // namespace carom::host

@@ -119,13 +119,21 @@ void Stage<D>::adopt_all(bool keep_known) {
     for (const Actor& actor : actors_) removed_.push_back(actor.id);
     actors_.clear();
   }
+  std::erase_if(actors_, [this](const Actor& actor) {
+    const bool gone = !world_->contains(actor.body);
+    if (gone) removed_.push_back(actor.id);
+    return gone;
+  });
   std::vector<BodyId> all;
   world_->bodies(all);
-  for (const BodyId body : all) {
-    bool known = false;
-    for (const Actor& actor : actors_) known = known || actor.body == body;
-    if (known) continue;
-    actors_.push_back({body, next_id_++, 0});
+  // In creation order what is known comes first, unless the demo made bodies behind the stage's back.
+  const std::size_t known = actors_.size();
+  bool prefix = known <= all.size();
+  for (std::size_t i = 0; prefix && i < known; ++i) prefix = all[i] == actors_[i].body;
+  for (std::size_t i = prefix ? known : 0; i < all.size(); ++i) {
+    const auto is_it = [&](const Actor& actor) { return actor.body == all[i]; };
+    if (!prefix && std::any_of(actors_.begin(), actors_.begin() + std::ptrdiff_t(known), is_it)) continue;
+    actors_.push_back({all[i], next_id_++, 0});
     added_.push_back(actors_.back().id);
   }
 }

@@ -56,6 +56,7 @@ class StageBase {
   void follow(int id) { declaration_.camera.follow = id; }
   /// Where to look from, known only now that the demo is built.
   void set_camera(const Camera& camera) { declaration_.camera = camera; }
+  void set_ground(double level) { declaration_.ground = level; }
   int threads() const { return options_.threads; }
   core::Profiler* profiler() const { return options_.profiler; }
 
@@ -107,7 +108,8 @@ class Stage : public StageBase {
   BodyId add(const rigid::BodyDef<D>& definition, const typename D::Shape& shape,
              const rigid::ShapeDef<D>& shape_definition = {}, std::uint32_t color = 0);
   void remove(BodyId body);
-  /// Shows every body that the world holds and the stage does not know (after a scene file was instantiated).
+  /// Shows every body that the world holds, and forgets those that it holds no more (after somebody else than the stage
+  /// made or removed some).
   void adopt_all(bool keep_known = true);
   void set_color(BodyId body, std::uint32_t color);
   /// A fixed floor: a half-space in space, a wide box in the plane, with its surface at `level`.

@@ -353,7 +353,7 @@ QuantityResult parse_quantity(std::string_view text, Dimension expected) {
   }
   if (expected == dimensions::frequency) {
     const bool turns = p.result.dimension.angle != 0;
-    if (expected.angle != 0 && p.unit.counts_cycles) {
+    if (expected.angle != 0 && !turns && p.unit.counts_cycles) {
       return detail::failure(where + "Hz counts cycles; an angular velocity is written in rad/s, rpm or rev/s");
     }
     if (expected.angle == 0 && turns) {

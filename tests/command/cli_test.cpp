@@ -66,8 +66,9 @@ TEST_F(Cli, HelpHasExamplesAndExitCodes) {
 TEST_F(Cli, BadUsageIsTwo) {
   for (const char* bad :
        {"", "fly", "run", "run pyramids --threads many", "run pyramids --threads 1000", "run pyramids --steps 0",
-        "run pyramids --steps 5 --duration 1", "run pyramids --set friction", "run pyramids --set friction=9",
-        "run pyramids --set 'friction=2 m'", "run pyramids --set 'nothing=2'", "serve --port 70000", "bench nothing"})
+        "run pyramids --steps 5 --duration 1", "run pyramids --duration nan", "run pyramids --set friction",
+        "run pyramids --set friction=9", "run pyramids --set 'friction=2 m'", "run pyramids --set 'nothing=2'",
+        "serve --port 70000", "bench nothing"})
     EXPECT_EQ(carom(bad), 2) << bad;
   carom("run pyramids --set fricton=0.5");
   EXPECT_NE(err_.find("did you mean \"friction\""), std::string::npos) << err_;

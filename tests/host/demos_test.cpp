@@ -107,5 +107,43 @@ TEST(SceneDemo, AFlightIsDrawnOnItsWholeWay) {
   EXPECT_NEAR(y * y / (x * x), 0.5 / 3.5, 1e-4);
 }
 
+// The lightest scene of each suite; the others are the same code with more bodies.
+class Stress : public testing::TestWithParam<const char*> {};
+
+TEST_P(Stress, RunsLikeADemo) {
+  Page page;
+  page.open(GetParam());
+  ASSERT_TRUE(page.last("opened").is_object()) << page.last("error").dump();
+  EXPECT_GT(page.last("scene")["bodies"].size(), 50u);
+  page.run_for(0.5);
+  EXPECT_TRUE(page.last("error").is_null()) << page.last("error").dump();
+  EXPECT_GT(page.frames.back().step, 3u);
+  for (const auto& [id, body] : page.bodies) EXPECT_TRUE(math::is_finite(body.position)) << id;
+}
+INSTANTIATE_TEST_SUITE_P(Suites, Stress,
+                         testing::Values("common-twenty-pyramids", "box3d-wide-pyramid", "box2d-tumbler",
+                                         "jolt-pyramid"));
+
+TEST(StressScenes, BodiesThatComeAndGoAreShown) {
+  std::unique_ptr<Demo> owner = make_demo("box2d-rain");
+  ASSERT_TRUE(owner);
+  Demo& demo = *owner;
+  auto simulation = demo.open(std::move(owner), {}, {});
+  ASSERT_TRUE(simulation.ok());
+  std::vector<std::uint32_t> added, removed;
+  (*simulation)->take_changes(added, removed);
+  const std::size_t before = added.size();
+  std::size_t shown = before;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE((*simulation)->step().ok());
+    if (!(*simulation)->take_changes(added, removed)) continue;
+    shown += added.size();
+    shown -= removed.size();
+  }
+  EXPECT_EQ(shown, (*simulation)->body_count());
+  EXPECT_EQ(int((*simulation)->body_count()), (*simulation)->counters().bodies);
+  EXPECT_GT(shown, before) << "ragdolls have come";
+}
+
 }  // namespace
 }  // namespace carom::host::test

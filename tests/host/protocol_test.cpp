@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "apps/host/registry.h"
+#include "apps/host/stress_demo.h"
 #include "tests/host/client.h"
 
 namespace carom::host::test {
@@ -14,7 +15,7 @@ TEST(Protocol, HelloIsAnsweredByEveryDemo) {
   ASSERT_TRUE(welcome.is_object());
   EXPECT_EQ(welcome["protocol"], 1);
   EXPECT_EQ(welcome["engine"], "native");
-  EXPECT_EQ(welcome["demos"].size(), demos().size());
+  EXPECT_EQ(welcome["demos"].size(), demos().size() + stress_demos().size());
   for (const Json& demo : welcome["demos"])
     for (const char* field : {"id", "title", "summary", "group", "chapter", "dimension"})
       EXPECT_TRUE(demo.contains(field));

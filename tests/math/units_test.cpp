@@ -111,6 +111,7 @@ TEST(Units, ErrorsSayWhatWasFoundAndWhatWasExpected) {
   contains(message("20 rpm", dim::frequency), "counts cycles");
   contains(message("3 frobs"), "'frobs', which is no unit known here");
   EXPECT_TRUE(math::parse_quantity("20 1/s", dim::angular_velocity).ok);
+  EXPECT_TRUE(math::parse_quantity("20 Hz*deg", dim::angular_velocity).ok) << "degrees a second (found by the fuzzer)";
 }
 
 TEST(Units, AdversarialTextIsRefusedNotFollowed) {

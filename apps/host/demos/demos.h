@@ -21,6 +21,9 @@ std::unique_ptr<Demo> make_race_spring();
 std::unique_ptr<Demo> make_race_orbit();
 std::unique_ptr<Demo> make_tumbling_brick();
 std::unique_ptr<Demo> make_intermediate_axis();
+std::unique_ptr<Demo> make_rewind();
+std::unique_ptr<Demo> make_conveyor();
+std::unique_ptr<Demo> make_joints();
 
 /// What `again()` of every demo is: another one like it.
 template <class DemoType, class Base>

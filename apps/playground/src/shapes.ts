@@ -6,8 +6,11 @@ import type {Mesh, Shape} from './protocol';
 export interface Drawable {
   key: string;
   scale: THREE.Vector3;
-  build: () => THREE.BufferGeometry;
+  /** `fine` is 1 for a few bodies and less for thousands: how finely round shapes are cut. */
+  build: (fine: number) => THREE.BufferGeometry;
 }
+
+const cut = (n: number, fine: number) => Math.max(6, Math.round(n * fine));
 
 const one = () => new THREE.Vector3(1, 1, 1);
 
@@ -37,18 +40,18 @@ export function drawable3(shape: Shape, meshes: Map<number, Mesh>): Drawable | u
   const r = shape.radius ?? 0, h = shape.half_length ?? shape.half_height ?? 0;
   switch (shape.kind) {
     case 'sphere':
-      return {key: 'sphere', scale: new THREE.Vector3(r, r, r), build: () => quartered(new THREE.SphereGeometry(1, 32, 20))};
+      return {key: 'sphere', scale: new THREE.Vector3(r, r, r), build: (fine) => quartered(new THREE.SphereGeometry(1, cut(32, fine), cut(20, fine)))};
     case 'box': {
       const [x, y, z] = shape.half_extents!;
       if (r === 0) return {key: 'box', scale: new THREE.Vector3(2 * x, 2 * y, 2 * z), build: () => plain(new THREE.BoxGeometry(1, 1, 1))};
       return {key: `rounded ${x} ${y} ${z} ${r}`, scale: one(), build: () => plain(new RoundedBoxGeometry(2 * (x + r), 2 * (y + r), 2 * (z + r), 3, r))};
     }
     case 'capsule':
-      return {key: `capsule ${(h / r).toFixed(3)}`, scale: new THREE.Vector3(r, r, r), build: () => quartered(new THREE.CapsuleGeometry(1, 2 * h / r, 8, 24))};
+      return {key: `capsule ${(h / r).toFixed(3)}`, scale: new THREE.Vector3(r, r, r), build: (fine) => quartered(new THREE.CapsuleGeometry(1, 2 * h / r, Math.max(3, Math.round(8 * fine)), cut(24, fine)))};
     case 'cylinder':
-      return {key: 'cylinder', scale: new THREE.Vector3(r, 2 * h, r), build: () => quartered(new THREE.CylinderGeometry(1, 1, 1, 40))};
+      return {key: 'cylinder', scale: new THREE.Vector3(r, 2 * h, r), build: (fine) => quartered(new THREE.CylinderGeometry(1, 1, 1, cut(40, fine)))};
     case 'cone':
-      return {key: 'cone', scale: new THREE.Vector3(r, 2 * h, r), build: () => quartered(new THREE.ConeGeometry(1, 1, 40))};
+      return {key: 'cone', scale: new THREE.Vector3(r, 2 * h, r), build: (fine) => quartered(new THREE.ConeGeometry(1, 1, cut(40, fine)))};
     case 'mesh': {
       const mesh = meshes.get(shape.mesh!);
       if (!mesh) return undefined;

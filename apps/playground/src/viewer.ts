@@ -15,11 +15,22 @@ const PALETTE = ['#e4572e', '#f4b942', '#2a9d8f', '#4a8fe7', '#9b6dd6', '#e07a9b
 class Batch {
   mesh: THREE.InstancedMesh;
   owners: number[] = [];
+  private free: number[] = [];
 
-  constructor(private geometry: THREE.BufferGeometry, private material: THREE.Material, private parent: THREE.Object3D) {
+  private geometry?: THREE.BufferGeometry;
+  private fine = 0;
+
+  constructor(private build: (fine: number) => THREE.BufferGeometry, private material: THREE.Material, private parent: THREE.Object3D) {
     this.mesh = this.allocate(16);
   }
   private allocate(capacity: number): THREE.InstancedMesh {
+    // Thousands of round bodies are small on the screen: coarser ones do.
+    const fine = capacity > 4096 ? 0.3 : capacity > 512 ? 0.5 : 1;
+    if (fine !== this.fine) {
+      this.geometry?.dispose();
+      this.geometry = this.build(fine);
+      this.fine = fine;
+    }
     const mesh = new THREE.InstancedMesh(this.geometry, this.material, capacity);
     mesh.count = 0;
     mesh.castShadow = mesh.receiveShadow = true;
@@ -30,6 +41,14 @@ class Batch {
     return mesh;
   }
   add(owner: number, matrix: THREE.Matrix4, color: THREE.Color): number {
+    const free = this.free.pop();
+    if (free !== undefined) {
+      this.owners[free] = owner;
+      this.mesh.setMatrixAt(free, matrix);
+      this.mesh.setColorAt(free, color);
+      this.touch();
+      return free;
+    }
     const slot = this.mesh.count;
     if (slot === this.mesh.instanceMatrix.count) {
       const old = this.mesh;
@@ -47,6 +66,13 @@ class Batch {
     this.touch();
     return slot;
   }
+  /** Its place shows nothing until another one takes it. */
+  remove(slot: number): void {
+    this.mesh.setMatrixAt(slot, NOWHERE);
+    this.owners[slot] = -1;
+    this.free.push(slot);
+    this.touch();
+  }
   touch(): void {
     this.mesh.instanceMatrix.needsUpdate = true;
     this.mesh.instanceColor!.needsUpdate = true;
@@ -55,10 +81,11 @@ class Batch {
   dispose(): void {
     this.parent.remove(this.mesh);
     this.mesh.dispose();
-    this.geometry.dispose();
+    this.geometry?.dispose();
   }
 }
 
+const NOWHERE = new THREE.Matrix4().makeScale(0, 0, 0);
 const SLEEP_TONE = new THREE.Color('#8a8f98');
 
 interface Part { batch: Batch; slot: number; local: THREE.Matrix4; color: THREE.Color }
@@ -234,7 +261,7 @@ export class Viewer {
     const opacity = shape.sensor ? Math.min(0.35, shape.opacity ?? 1) : shape.opacity ?? 1;
     const key = `${found.key} ${opacity.toFixed(2)}${shape.sensor ? ' sensor' : ''}`;
     let batch = this.batches.get(key);
-    if (!batch) this.batches.set(key, batch = new Batch(found.build(), this.materialFor(opacity), this.root));
+    if (!batch) this.batches.set(key, batch = new Batch(found.build, this.materialFor(opacity), this.root));
     const [px, py, pz, qw, qx, qy, qz] = shape.local;
     const local = new THREE.Matrix4().compose(new THREE.Vector3(px, py, pz), new THREE.Quaternion(qx, qy, qz, qw), found.scale);
     const pose = new THREE.Matrix4().compose(drawn.position, drawn.rotation, new THREE.Vector3(1, 1, 1));
@@ -254,12 +281,12 @@ export class Viewer {
   }
 
   removeBodies(ids: number[]): void {
+    for (const id of ids) {
+      for (const {batch, slot} of this.drawn.get(id)?.parts ?? []) batch.remove(slot);
+      this.drawn.delete(id);
+    }
     const gone = new Set(ids);
-    const left = [...this.drawn.values()].filter((d) => !gone.has(d.body.id));
-    const origin = this.origin.clone();
-    const kept = left.map((d) => ({...d.body, position: d.position.clone().add(origin).toArray() as number[],
-      rotation: [d.rotation.w, d.rotation.x, d.rotation.y, d.rotation.z]}));
-    this.setBodies(kept);
+    this.waiting = this.waiting.filter((w) => !gone.has(w.id));
   }
 
   addMesh(mesh: Mesh): void {
