@@ -298,7 +298,10 @@ void apply_change(WorldImplementation<D>& world, std::size_t i, std::size_t& nex
   StepScratch<D>& scratch = world.scratch;
   const std::uint8_t change = scratch.contact_changes[i];
   const std::int32_t contact = world.contacts.awake[i];
-  if (change & change_begin) send_touch_event(world, world.contacts.at(contact), true);
+  if (change & change_begin) {
+    send_touch_event(world, world.contacts.at(contact), true);
+    scratch.new_touches.push_back(contact);  // who fell asleep close by, but apart, has a manifold already
+  }
   if (change & change_end) send_touch_event(world, world.contacts.at(contact), false);
   if (change & change_apart) {
     scratch.doomed_contacts.push_back(contact);
