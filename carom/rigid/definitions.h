@@ -76,7 +76,7 @@ struct BodyDef {
   float gravity_scale = 1;
   float sleep_speed = 0.05f;  ///< m/s; 0: never sleeps
   MotionLocks locks{};
-  bool awake = true;
+  bool awake = true;  ///< false: asleep until something awake touches it
   bool allow_sleep = true;
   bool bullet = false;  ///< continuous against moving bodies too
   bool enabled = true;

@@ -161,7 +161,8 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   std::int32_t* link = &self_->bodies.record[std::size_t(*slot)].first_shape;
   while (*link != none) link = &self_->shapes.at(*link).next;
   *link = index;
-  wake_body(*self_, *slot);
+  // One that was made asleep stays so until something touches it.
+  if (self_->bodies.record[std::size_t(*slot)].sleeping_island != none) wake_body(*self_, *slot);
   update_mass(*self_, *slot);
   update_collider_flag(*self_, *slot);
   insert_into_tree(*self_, index);
