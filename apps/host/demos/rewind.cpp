@@ -69,7 +69,7 @@ class Rewind final : public Repeatable<Rewind, Demo3> {
   core::Status step(Stage3& stage) override {
     ++shown_;
     if (rewinding_) return back(stage);
-    const core::Status status = stage.world().step(float(stage.declaration().dt));
+    core::Status status = stage.world().step(float(stage.declaration().dt));
     if (!status.ok()) return status;
     if (stage.world().step_count() % 60 == 0) rehearse(stage);
     return remember(stage);

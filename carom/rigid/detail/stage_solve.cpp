@@ -37,10 +37,10 @@ void add_color_stages(StepContext<D>& context, SolverPass pass) {
     if (count == 0 && !joints) continue;
     const bool serial = color == overflow_color || threads == 1 || count <= few_blocks<D>;
     if (serial && joining && !joints) {
-      stages.back().last_rank = std::int8_t(rank);
+      stages.back().last_rank = std::uint8_t(rank);
       continue;
     }
-    stages.push_back({pass, std::int8_t(rank), std::int8_t(rank)});
+    stages.push_back({pass, std::uint8_t(rank), std::uint8_t(rank)});
     if (serial)
       loops.push_back({1, 1});
     else

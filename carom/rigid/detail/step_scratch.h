@@ -34,7 +34,7 @@ struct ColorBlocks {
 enum class SolverPass : std::uint8_t { velocities, warm_start, solve, positions, relax };
 struct SolverStage {
   SolverPass pass = SolverPass::velocities;
-  std::int8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
+  std::uint8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
 };
 
 /// So many stages a step has at most.

@@ -1,6 +1,7 @@
 // World's members that take and restore snapshots.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 
 #include "carom/rigid/detail/check.h"
@@ -56,7 +57,7 @@ class SnapshotWriter {
     std::size_t total = 0;
     for (const std::string& name : v) total += name.size(), *sizes++ = std::uint32_t(name.size());
     char* to = static_cast<char*>(room<char>(total));
-    for (const std::string& name : v) std::memcpy(to, name.data(), name.size()), to += name.size();
+    for (const std::string& name : v) to = std::copy(name.begin(), name.end(), to);
   }
   void effectors(const std::vector<EffectorData<D>>& v) { to_.effectors = v; }
 
