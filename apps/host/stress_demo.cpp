@@ -118,7 +118,7 @@ class StressDemo final : public DemoOf<D> {
       stage.world().shapes(actor.body, shapes);
       for (const rigid::ShapeId shape : shapes)
         if (const auto definition = stage.world().shape_definition(shape); definition.ok())
-          waiting.add(in_space(world_point(s.pose, definition->local.p)));
+          waiting.add(in_space(world_point(s.pose, middle_of(stage, shape, definition->local))));
       if constexpr (D::dimension == 3) surroundings(stage, actor.body, s, shapes);
       shapes.clear();
     }
@@ -136,6 +136,14 @@ class StressDemo final : public DemoOf<D> {
       camera.field_of_view = 0.8;
     }
     stage.set_camera(camera);
+  }
+
+  /// Where about a shape lies in its body: a polygon need not hold its origin.
+  static typename D::Vector middle_of(Stage<D>& stage, rigid::ShapeId shape, const typename D::Transform& local) {
+    if constexpr (D::dimension == 2)
+      if (const auto g = stage.world().shape_geometry(shape); g.ok() && g->type == geometry::ShapeType2::polygon)
+        return transform_point(local, g->polygon.vertices[0]);
+    return local.p;
   }
 
   /// A wide box whose top is at zero gets scale marks; walls let one look in.

@@ -24,6 +24,9 @@ std::unique_ptr<Demo> make_intermediate_axis();
 std::unique_ptr<Demo> make_rewind();
 std::unique_ptr<Demo> make_conveyor();
 std::unique_ptr<Demo> make_joints();
+std::unique_ptr<Demo> make_chain();
+std::unique_ptr<Demo> make_bullets();
+std::unique_ptr<Demo> make_far_away();
 
 /// What `again()` of every demo is: another one like it.
 template <class DemoType, class Base>
