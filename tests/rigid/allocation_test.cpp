@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "carom/rigid/character.h"
 #include "tests/rigid/scene_pieces.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -113,6 +114,20 @@ TYPED_TEST(WarmStep, OfAPyramid) {
     add_pyramid(world, 12);
     EXPECT_EQ(calls_in_warm_steps(world, 60, 120, nothing), 0) << threads << " threads";
   }
+}
+
+TYPED_TEST(WarmStep, OfACharacterThatWalksAmongBoxes) {
+  using D = TypeParam;
+  World<D> world(warm_definition<D>(1));
+  add_ground(world);
+  for (int i = 0; i < 20; ++i) add_box<D>(world, at<D>(3 + 2 * (i % 10), 0.5 + i / 10));
+  auto walker = Character<D>::create(world, {}, at<D>(0, 0)).value();
+  EXPECT_EQ(calls_in_warm_steps(world, 200, 120,
+                                [&](int k) {
+                                  const float way = (k / 50) % 2 == 0 ? 3.0f : -3.0f;
+                                  walker.move(world, along<D>(way, 0), frame).value();
+                                }),
+            0);
 }
 
 TYPED_TEST(WarmStep, OfAHeapAtRest) {
@@ -269,7 +284,7 @@ TYPED_TEST(WarmStep, TakingAndRestoringSnapshots) {
     world.snapshot(ring[std::size_t(i / 8) % 4]);
     (void)world.add_impulse(bodies[3], along<D>(0, 100));
   };
-  EXPECT_EQ(calls_in_warm_steps(world, 400, 100, roll_back), 0);
+  EXPECT_EQ(calls_in_warm_steps(world, 1000, 100, roll_back), 0);
 }
 
 // Forces, impulses, velocities and queries that find nothing cost no memory either.

@@ -1,0 +1,435 @@
+// Collide and slide by half-spaces: what is near gives planes, and the way that comes nearest to the wanted one and
+// crosses none of them is a small quadratic programme (after the plane movers of Box2D 3.1; the solver is Hildreth's).
+#include "carom/rigid/character.h"
+
+#include "carom/geometry/manifold.h"
+#include "carom/geometry/query.h"
+#include "carom/math/elementary.h"
+#include "carom/rigid/detail/check.h"
+#include "carom/rigid/detail/shape_manifolds.h"
+
+namespace carom::rigid {
+namespace {
+
+constexpr float tiny = 1e-6f;        // m
+constexpr float ground_gap = 2e-3f;  // m beyond the skin at which the ground still carries
+
+Rot2f upright(Vec2f up) { return {up.y, -up.x}; }
+Quatf upright(Vec3f up) {
+  if (up.y < -0.9999f) return {0, 1, 0, 0};
+  return normalize(Quatf{1 + up.y, up.z, 0, -up.x});
+}
+geometry::Shape2 make_capsule(Dim2, float half_length, float radius) { return geometry::Capsule2{half_length, radius}; }
+geometry::Shape3 make_capsule(Dim3, float half_length, float radius) { return geometry::Capsule3{half_length, radius}; }
+
+/// How far a point at `arm` from the centre of mass goes in dt with a body that moves and turns evenly.
+Vec2f way_of_point(const Vec2f& velocity, float spin, const Vec2f& arm, float dt) {
+  const Rot2f q{math::cos(spin * dt), math::sin(spin * dt)};
+  return dt * velocity + (rotate(q, arm) - arm);
+}
+Vec3f way_of_point(const Vec3f& velocity, const Vec3f& spin, const Vec3f& arm, float dt) {
+  const float rate = math::length(spin);
+  if (rate * dt < 1e-7f) return dt * (velocity + cross(spin, arm));
+  const Vec3f axis = spin / rate;
+  const auto [s, c] = math::sincos(0.5f * rate * dt);
+  return dt * velocity + (rotate(Quatf{c, s * axis}, arm) - arm);
+}
+
+float spin_of(float w) { return math::abs(w); }
+float spin_of(const Vec3f& w) { return math::length(w); }
+
+}  // namespace
+
+template <class D>
+Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>& d, Position feet) {
+  detail::Complaint complaint("Character::create");
+  detail::check_range(complaint, "radius", double(d.radius), 1e-3, 1e3);
+  detail::check_range(complaint, "half_length", double(d.half_length), 0, 1e3);
+  detail::check_range(complaint, "max_slope", double(d.max_slope), 0, double(math::pi_f) / 2);
+  detail::check_range(complaint, "step_height", double(d.step_height), 0, 1e3);
+  detail::check_range(complaint, "skin", double(d.skin), 1e-4, double(d.radius));
+  detail::check_range(complaint, "mass", double(d.mass), 0, detail::max_body_mass);
+  detail::check_range(complaint, "push_force", double(d.push_force), 0, detail::max_force);
+  const float size = math::length(d.up);
+  if (!(math::abs(size - 1) < 1e-3f)) complaint.say("up is not a unit vector, expected a length of 1");
+  detail::check_size(complaint, "feet", feet, detail::max_coordinate);
+  if (!complaint.none_yet()) return complaint.error();
+
+  Character c;
+  c.definition_ = d;
+  c.definition_.up = d.up / size;
+  c.rotation_ = upright(c.definition_.up);
+  c.capsule_ = make_capsule(D{}, d.half_length, d.radius);
+  c.least_up_ = math::cos(d.max_slope);
+  c.position_ = feet + Position(c.definition_.up * (d.half_length + d.radius));
+  BodyDef<D> body;
+  body.type = BodyType::kinematic;
+  body.position = c.position_;
+  body.rotation = c.rotation_;
+  body.user_data = d.user_data;
+  const Result<BodyId> id = world.create_body(body);
+  if (!id.ok()) return id.error();
+  c.body_ = id.value();
+  ShapeDef<D> shape;
+  shape.filter = d.filter;
+  const Result<ShapeId> made = world.add_shape(c.body_, c.capsule_, shape);
+  if (!made.ok()) {
+    (void)world.destroy_body(c.body_);
+    return made.error();
+  }
+  c.shape_ = made.value();
+  c.planes_.reserve(64);
+  c.nearby_.reserve(64);
+  return c;
+}
+
+template <class D>
+Status Character<D>::destroy(World<D>& world) {
+  return world.destroy_body(body_);
+}
+
+template <class D>
+typename Character<D>::Position Character<D>::feet() const {
+  return position_ - Position(definition_.up * (definition_.half_length + definition_.radius));
+}
+
+template <class D>
+Status Character<D>::teleport(World<D>& world, Position feet) {
+  const Position center = feet + Position(definition_.up * (definition_.half_length + definition_.radius));
+  if (const Status s = world.set_pose(body_, center, rotation_); !s.ok()) return s;
+  position_ = center;
+  velocity_ = {};
+  rise_ = 0;
+  ground_ = {};
+  return {};
+}
+
+/// Whether the top of an edge that the capsule's round end rests on is ground: the surface a little inward of the
+/// point.
+template <class D>
+bool Character<D>::can_stand_on(const typename D::Shape& geometry, const typename D::Pose& pose, const Vector& normal,
+                                const Position& point) const {
+  const Vector up = definition_.up;
+  if (dot(normal, up) >= least_up_) return true;
+  if (dot(normal, up) < 0.05f) return false;
+  const Vector level = normal - up * dot(normal, up);
+  const Vector inward = level * (-0.1f * definition_.radius / math::length(level));
+  const float down = 0.2f * definition_.radius;
+  const Vector from = local_point(pose, point + Position(inward + up * (0.5f * down)));
+  const auto hit = detail::ray_into(geometry, from, inverse_rotate(pose.rotation, up * -down));
+  return hit.hit && hit.fraction > 0 && dot(rotate(pose.rotation, hit.normal), up) >= least_up_;
+}
+
+template <class D>
+void Character<D>::add_plane(const World<D>& world, ShapeId shape, const typename D::Shape& geometry,
+                             const typename D::Pose& pose, const Vector& normal, float separation, const Vector& point,
+                             BodyId body) {
+  Plane p;
+  p.normal = rotate(pose.rotation, normal);
+  p.gap = separation - definition_.skin;
+  // The manifold's point lies midway; the obstacle's own is half the separation back.
+  p.point = world_point(pose, point) - Position(p.normal * (0.5f * separation));
+  p.height = float(dot(p.point - feet(), Position(definition_.up)));
+  p.walkable = dot(p.normal, definition_.up) >= least_up_;
+  p.ground = p.walkable || (p.height < definition_.radius && can_stand_on(geometry, pose, p.normal, p.point));
+  p.body = body;
+  p.shape = shape;
+  const Result<BodyState<D>> state = world.state(body);
+  if (state.ok()) {
+    const BodyState<D>& s = state.value();
+    p.dynamic = s.type == BodyType::dynamic && s.mass > 0;
+    if (s.type != BodyType::fixed && s.awake) {
+      const Vector arm(p.point - s.center_of_mass);
+      const float closing = dot(way_of_point(s.linear_velocity, s.angular_velocity, arm, dt_), p.normal);
+      // A dynamic body that comes nearer is stopped by the character's body, not the other way round.
+      if (!p.dynamic || closing < 0 || body == ground_.body) p.closing = closing;
+      p.gap -= p.closing;
+    }
+  }
+  planes_.push_back(p);
+}
+
+/// Looks how far anything near comes in this move by itself: the planes must be found that much earlier.
+template <class D>
+void Character<D>::look_around(const World<D>& world, float way) {
+  approach_ = 0;
+  const auto box = geometry::grow(geometry::bounds(capsule_, typename D::Transform{{}, rotation_}), way + 1);
+  const typename D::Bounds bounds{position_ + Position(box.low), position_ + Position(box.high)};
+  if (!world.overlap_bounds(bounds, nearby_, {definition_.filter.category, definition_.filter.mask}).ok()) return;
+  for (const ShapeId shape : nearby_) {
+    if (shape == shape_) continue;
+    const auto body = world.body_of(shape);
+    const auto state = body.ok() ? world.state(body.value()) : Result<BodyState<D>>(body.error());
+    if (!state.ok() || state.value().type == BodyType::fixed || !state.value().awake) continue;
+    const BodyState<D>& s = state.value();
+    const float arm = float(math::length(position_ - s.center_of_mass)) + definition_.half_length + definition_.radius;
+    const float speed = math::length(s.linear_velocity) + spin_of(s.angular_velocity) * arm;
+    approach_ = max(approach_, min(speed * dt_, 1.0f));
+  }
+}
+
+template <class D>
+void Character<D>::find_planes(const World<D>& world, float reach) {
+  planes_.clear();
+  reach += approach_;
+  const auto box = geometry::bounds(capsule_, typename D::Transform{{}, rotation_});
+  const auto grown = geometry::grow(box, reach + definition_.skin);
+  const typename D::Bounds bounds{position_ + Position(grown.low), position_ + Position(grown.high)};
+  if (!world.overlap_bounds(bounds, nearby_, {definition_.filter.category, definition_.filter.mask}).ok()) return;
+  for (const ShapeId shape : nearby_) {
+    if (shape == shape_) continue;
+    const auto geometry = world.shape_geometry(shape);
+    const auto definition = world.shape_definition(shape);
+    const auto body = world.body_of(shape);
+    if (!geometry.ok() || !definition.ok() || !body.ok()) continue;
+    const Filter& other = definition.value().filter;
+    if (other.group != 0 && other.group == definition_.filter.group && other.group < 0) continue;
+    const auto state = world.state(body.value());
+    if (!state.ok()) continue;
+    const typename D::Pose placed = state.value().pose * definition.value().local;
+    detail::for_manifolds(geometry.value(), capsule_, relative(placed, pose()), reach + definition_.skin,
+                          [&](const typename D::Manifold& m) {
+                            int deepest = 0;
+                            for (int i = 1; i < m.count; ++i)
+                              if (m.points[i].separation < m.points[deepest].separation) deepest = i;
+                            add_plane(world, shape, geometry.value(), placed, m.normal, m.points[deepest].separation,
+                                      m.points[deepest].point, body.value());
+                          });
+  }
+}
+
+/// The way nearest to `wanted` that crosses no plane: Hildreth's method on the dual, x = wanted + Σ λ n with λ ≥ 0.
+/// What is too steep to walk on is a vertical wall for whatever does not fall. With keep_height, all but the ground is.
+template <class D>
+typename Character<D>::Vector Character<D>::fit(Vector wanted, bool keep_height) const {
+  constexpr int most = 64;
+  struct Row {
+    Vector normal{};
+    float least = 0, lambda = 0;
+  } row[most];
+  int count = 0;
+  const Vector up = definition_.up;
+  for (const Plane& p : planes_) {
+    if (count == most) break;
+    const float least = -p.gap;
+    const float rise = dot(p.normal, up);
+    const bool wall = keep_height ? !p.walkable && rise > 0 && p.height > 2 * definition_.skin
+                                  : !p.ground && rise > 0 && rise < least_up_;
+    if (wall && rise < 0.9999f) {
+      // A vertical wall through the nearest point: reached by the level way g/cos.
+      const Vector level = p.normal - up * rise;
+      const float size = math::length(level);
+      if (dot(level, wanted) < 0 && count < most) row[count++] = {level / size, min(least / size, 0.0f), 0};
+      if (count == most) break;
+    }
+    row[count++] = {p.normal, least, 0};
+  }
+  Vector x = wanted;
+  for (int pass = 0; pass < 64; ++pass) {
+    float change = 0;
+    for (int i = 0; i < count; ++i) {
+      const float next = max(row[i].lambda + row[i].least - dot(row[i].normal, x), 0.0f);
+      const float step = next - row[i].lambda;
+      if (step == 0) continue;
+      x += row[i].normal * step;
+      row[i].lambda = next;
+      change = max(change, math::abs(step));
+    }
+    if (change < 0.01f * tiny) break;
+  }
+  return x;
+}
+
+/// Goes `way` as far as the planes let it; looks again where it was led aside.
+template <class D>
+void Character<D>::slide(const World<D>& world, Vector way, bool keep_height) {
+  for (int i = 0; i < 4; ++i) {
+    find_planes(world, math::length(way) + ground_gap);
+    const Vector x = fit(way, keep_height);
+    position_ += Position(x);
+    way -= x;
+    if (math::length(x) < 0.01f * definition_.skin || math::length(way) < 0.01f * definition_.skin) break;
+    // Only what a plane far away kept from it is worth another try: the rest stands in the way for good.
+    bool far = false;
+    for (const Plane& p : planes_) far = far || (p.gap > definition_.skin && p.gap + dot(p.normal, x) < tiny);
+    if (!far) break;
+  }
+}
+
+/// Goes straight in `direction` until something is at the skin; returns the way gone. Conservative advancement.
+template <class D>
+float Character<D>::advance(const World<D>& world, const Vector& direction, float way) {
+  float gone = 0;
+  for (int i = 0; i < 12 && way - gone > tiny; ++i) {
+    find_planes(world, way - gone);
+    float step = way - gone;
+    for (const Plane& p : planes_) {
+      const float toward = -dot(p.normal, direction);
+      if (toward > 1e-3f) step = min(step, max(p.gap, 0.0f) / toward);
+    }
+    position_ += Position(direction * step);
+    gone += step;
+    if (step < 10 * tiny) break;
+  }
+  return gone;
+}
+
+/// Up, on, and down again: true and there, if that leads farther than the wall did and ends on ground.
+template <class D>
+bool Character<D>::climb(const World<D>& world, const Vector& way, const Position& start) {
+  const Vector up = definition_.up;
+  const Position stopped = position_;
+  const float wanted = math::length(way);
+  const Vector ahead = way / wanted;
+  const float before = float(dot(stopped - start, Position(ahead)));
+  if (before > 0.99f * wanted) return false;
+  position_ = start;
+  const float raised = advance(world, up, definition_.step_height);
+  slide(world, way, true);
+  const float went = float(dot(position_ - start, Position(ahead)));
+  if (went > before + 0.25f * wanted) {  // less is only the skin at an edge
+    advance(world, -up, raised + ground_gap);
+    find_planes(world, ground_gap);
+    // What carries it must not lie higher above where it began than a step: it has not been lifted over an edge.
+    const float lifted = float(dot(position_ - start, Position(up)));
+    for (const Plane& p : planes_)
+      if (p.ground && p.gap < ground_gap && lifted + p.height < definition_.step_height + 2 * definition_.skin)
+        return true;
+  }
+  position_ = stopped;
+  return false;
+}
+
+/// Gives what stands in the way the speed of the walk, with no more than push_force.
+template <class D>
+void Character<D>::push_bodies(World<D>& world, const Vector& walk) {
+  const Vector up = definition_.up;
+  for (Plane& p : planes_) {
+    if (!p.dynamic || dot(p.normal, up) > 0.7f) continue;
+    Vector to = p.normal - up * dot(p.normal, up);
+    const float size = math::length(to);
+    if (size < 1e-3f) continue;
+    to *= -1 / size;
+    const float wanted = dot(walk, to);
+    if (wanted <= 0 || p.gap > wanted * dt_ + 0.5f * definition_.skin) continue;
+    const Result<BodyState<D>> state = world.state(p.body);
+    if (!state.ok()) continue;
+    const BodyState<D>& s = state.value();
+    const Vector arm(p.point - s.center_of_mass);
+    const float moves = dot(s.linear_velocity + cross(s.angular_velocity, arm), to);
+    if (moves >= wanted) continue;
+    const float impulse = min(definition_.push_force * dt_, (wanted - moves) * s.mass);
+    if (!(impulse > 0)) continue;
+    (void)world.add_impulse_at(p.body, to * impulse, p.point);
+    const Result<BodyState<D>> now = world.state(p.body);
+    if (now.ok()) {
+      const float closing =
+          dot(way_of_point(now.value().linear_velocity, now.value().angular_velocity, arm, dt_), p.normal);
+      p.gap += p.closing - min(closing, 0.0f);
+      p.closing = min(closing, 0.0f);
+    }
+  }
+}
+
+/// The way that the ground goes in this move.
+template <class D>
+typename Character<D>::Vector Character<D>::carry(const World<D>& world) {
+  if (ground_.state != GroundState::on_ground) return {};
+  const Result<BodyState<D>> state = world.state(ground_.body);
+  if (!state.ok() || state.value().type == BodyType::fixed || !state.value().awake) return {};
+  const BodyState<D>& s = state.value();
+  return way_of_point(s.linear_velocity, s.angular_velocity, Vector(ground_.point - s.center_of_mass), dt_);
+}
+
+/// Sets what is under the feet; who stood and did not jump is kept on the ground down a step.
+template <class D>
+void Character<D>::follow_ground(const World<D>& world, bool jumped, bool stood) {
+  const Vector up = definition_.up;
+  const Position here = position_;
+  if (stood && !jumped) advance(world, -up, definition_.step_height + ground_gap);
+  find_planes(world, ground_gap);
+  ground_ = {};
+  const Plane* best = nullptr;
+  for (const Plane& p : planes_) {
+    if (p.gap > ground_gap || dot(p.normal, up) < 0.05f || (jumped && rise_ > 0)) continue;
+    if (best == nullptr || (p.ground && !best->ground) ||
+        (p.ground == best->ground && dot(p.normal, up) > dot(best->normal, up)))
+      best = &p;
+  }
+  if (best == nullptr || !best->ground) position_ = here;
+  if (best == nullptr) return;
+  ground_.state = best->ground ? GroundState::on_ground : GroundState::on_steep;
+  ground_.body = best->body;
+  ground_.shape = best->shape;
+  ground_.point = best->point;
+  ground_.normal = best->normal;
+  ground_.slope = math::acos(clamp(dot(best->normal, up), -1.0f, 1.0f));
+  const Result<BodyState<D>> state = world.state(best->body);
+  if (state.ok() && state.value().type != BodyType::fixed) {
+    const BodyState<D>& s = state.value();
+    ground_.velocity = s.linear_velocity + cross(s.angular_velocity, Vector(best->point - s.center_of_mass));
+  }
+}
+
+template <class D>
+Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
+  detail::Complaint complaint("Character::move");
+  detail::check_size(complaint, "velocity", velocity, detail::max_velocity);
+  detail::check_range(complaint, "dt", double(dt), 1e-9, 1);
+  if (complaint.none_yet() && !world.contains(body_))
+    complaint.say("the character's body does not exist in this world");
+  if (!complaint.none_yet()) return complaint.error();
+  dt_ = dt;
+  const Vector up = definition_.up;
+  const Position begin = position_;
+  const bool stood = ground_.state == GroundState::on_ground;
+  const bool jumped = stood && dot(velocity, up) > 0;
+  Vector walk = velocity - up * dot(velocity, up);
+  const float speed = math::length(walk);
+  const Vector ride = carry(world);
+  if (jumped) rise_ = dot(velocity, up) + max(dot(ground_.velocity, up), 0.0f);
+
+  // Along the ground where it stands; else it falls by v t + ½ g t².
+  Vector way = walk * dt;
+  if (stood && !jumped) {
+    rise_ = 0;
+    const float n = dot(ground_.normal, up);
+    if (speed > 0 && n >= least_up_) {
+      Vector along = walk - up * (dot(walk, ground_.normal) / n);
+      way = along * (dt * speed / math::length(along));
+    }
+    if (definition_.mass > 0) {
+      const Result<BodyState<D>> state = world.state(ground_.body);
+      const float weight = -dot(world.definition().gravity, up) * definition_.mass;
+      if (state.ok() && state.value().type == BodyType::dynamic && weight > 0)
+        (void)world.add_impulse_at(ground_.body, up * (-weight * dt), ground_.point);
+    }
+  } else {
+    const float pull = dot(world.definition().gravity, up);
+    way += up * (rise_ * dt + 0.5f * pull * dt * dt);
+    rise_ += pull * dt;
+  }
+  look_around(world, math::length(way));
+  find_planes(world, math::length(way) + math::length(ride) + ground_gap);
+  if (speed > 0) push_bodies(world, walk);
+  const Vector allowed = fit(way + ride, false);
+  position_ += Position(allowed);
+  Vector rest = way + ride - allowed;
+  if (math::length(rest) > definition_.skin && math::length(allowed) > 0.01f * definition_.skin)
+    slide(world, rest, false);
+  if (stood && !jumped && speed > 0) climb(world, walk * dt, begin + Position(ride));
+  if (!stood || jumped) {
+    const float rose = float(dot(position_ - begin, Position(up)));
+    if (math::abs(rose - dot(way, up)) > 10 * tiny)  // something stopped it
+      rise_ = rise_ > 0 ? min(rise_, max(rose / dt, 0.0f)) : max(rise_, min(rose / dt, 0.0f));
+  }
+  follow_ground(world, jumped, stood);
+  if (ground_.state == GroundState::on_ground) rise_ = 0;
+  velocity_ = Vector(position_ - begin) / dt;
+  return world.set_pose(body_, position_, rotation_);
+}
+
+template class Character<Dim2>;
+template class Character<Dim3>;
+
+}  // namespace carom::rigid

@@ -1,0 +1,48 @@
+// Manifolds and rays of any shape of either dimension: what characters and the adviser ask of geometry.
+#pragma once
+
+#include "carom/geometry/manifold.h"
+#include "carom/geometry/query.h"
+
+namespace carom::rigid::detail {
+
+/// Calls f for every manifold of the convex shape b with a; normals point from a to b, in a's frame.
+template <class F>
+void for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const math::Transform2f& b_in_a, float margin,
+                   F&& f) {
+  const auto one = [&](const geometry::Shape2& part) {
+    geometry::PairCache cache;
+    geometry::Manifold2 m;
+    geometry::collide(part, b, b_in_a, margin, cache, m);
+    if (m.count > 0) f(m);
+  };
+  if (a.type != geometry::ShapeType2::chain) return one(a);
+  const geometry::Bounds2f box = geometry::grow(geometry::bounds(b, b_in_a), margin);
+  for (int i = 0; i < a.chain->segment_count(); ++i) {
+    const geometry::ChainSegment s = a.chain->segment(i);
+    if (geometry::overlaps(geometry::Bounds2f{min(s.a, s.b), max(s.a, s.b)}, box)) one(geometry::Shape2(s));
+  }
+}
+template <class F>
+void for_manifolds(const geometry::Shape3& a, const geometry::Shape3& b, const math::Transform3f& b_in_a, float margin,
+                   F&& f) {
+  if (geometry::is_convex(a) || a.type == geometry::ShapeType3::plane) {
+    geometry::PairCache cache;
+    geometry::Manifold3 m;
+    geometry::collide(a, b, b_in_a, margin, cache, m);
+    if (m.count > 0) f(m);
+    return;
+  }
+  geometry::Manifold3 many[16];
+  const int count = geometry::collide_many(a, b, b_in_a, margin, many);
+  for (int i = 0; i < count; ++i) f(many[i]);
+}
+
+inline geometry::CastHit2 ray_into(const geometry::Shape2& shape, math::Vec2f origin, math::Vec2f way) {
+  return geometry::ray_cast(shape, origin, way);
+}
+inline geometry::CastHit3 ray_into(const geometry::Shape3& shape, math::Vec3f origin, math::Vec3f way) {
+  return geometry::ray_cast(shape, origin, way);
+}
+
+}  // namespace carom::rigid::detail
