@@ -6,6 +6,8 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/rigid/advice.h"
+#include "carom/rigid/character.h"
 #include "carom/rigid/world.h"
 
 namespace carom {

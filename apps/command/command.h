@@ -91,6 +91,9 @@ int mass(const MassOptions& options);
 
 int list(bool json);
 int doctor(bool json);
+/// `carom doctor SCENE`: what its settings cannot hold, and what to change.
+int advise_scene(const std::string& scene, bool json);
+std::vector<std::string> advice_for(host::Simulation& simulation);
 
 struct BenchOptions {
   std::vector<std::string> scenes;

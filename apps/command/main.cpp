@@ -114,10 +114,14 @@ int main(int count, char** arguments) {
   list_command->footer(with_examples("  carom list\n  carom list --json\n"));
   list_command->callback([&] { result = list(list_json); });
 
-  CLI::App* doctor_command = app.add_subcommand("doctor", "What this machine and this build have, and what is missing");
+  std::string doctor_scene;
+  CLI::App* doctor_command = app.add_subcommand(
+      "doctor", "What this machine and this build have, and what is missing; or what a scene's settings cannot hold");
+  doctor_command->add_option("scene", doctor_scene, "a demo or scene file: sag, stretch and stiffness to expect of it");
   doctor_command->add_flag("--json", doctor_json, "as JSON");
-  doctor_command->footer(with_examples("  carom doctor\n"));
-  doctor_command->callback([&] { result = doctor(doctor_json); });
+  doctor_command->footer(with_examples("  carom doctor\n  carom doctor pyramids\n"));
+  doctor_command->callback(
+      [&] { result = doctor_scene.empty() ? doctor(doctor_json) : advise_scene(doctor_scene, doctor_json); });
 
   BenchOptions bench_options;
   CLI::App* bench_command = app.add_subcommand(

@@ -10,7 +10,7 @@ namespace carom::command {
 
 namespace {
 
-nlohmann::ordered_json vector_json(math::Vec3d v) { return {v.x, v.y, v.z}; }
+nlohmann::ordered_json components_json(math::Vec3d v) { return {v.x, v.y, v.z}; }
 
 nlohmann::ordered_json matrix_json(const math::Mat3d& m) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -47,9 +47,9 @@ int mass(const MassOptions& options) {
         {"volume_m3", found->volume},
         {"area_m2", found->area},
         {"mass_kg", p.mass},
-        {"center_m", vector_json(p.center)},
+        {"center_m", components_json(p.center)},
         {"inertia_kg_m2", matrix_json(p.inertia)},
-        {"principal_moments_kg_m2", vector_json(axes.moments)},
+        {"principal_moments_kg_m2", components_json(axes.moments)},
         {"principal_rotation_wxyz", {axes.rotation.w, axes.rotation.x, axes.rotation.y, axes.rotation.z}}};
     std::printf("%s\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
     return exit_ok;

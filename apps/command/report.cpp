@@ -99,6 +99,7 @@ std::string report_json(const Report& r) {
               {"expectations", expectations},
               {"passed", r.passed()},
               {"files", r.files}};
+  if (!r.advice.empty()) out["advice"] = r.advice;
   if (!r.message.empty()) out["message"] = r.message;
   if (!r.stopped.empty()) out["stopped"] = r.stopped;
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -147,6 +148,7 @@ std::string report_text(const Report& r) {
   } else if (!r.checked) {
     out += "\n  (expectations are checked with default values and the full duration only)\n";
   }
+  for (const std::string& line : r.advice) out += "  advice: " + line + "\n";
   if (!r.files.empty()) {
     out += "\n";
     for (const std::string& file : r.files) out += "  " + file + "\n";

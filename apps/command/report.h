@@ -32,6 +32,7 @@ struct Report {
   std::vector<host::Expectation> expectations;
   bool checked = false;  ///< expectations hold for this run (default values, declared duration)
   std::vector<std::string> files;
+  std::vector<std::string> advice;  ///< what the settings cannot hold, before the first step
 
   bool passed() const;
 };

@@ -127,6 +127,7 @@ class Runner {
     std::vector<double> times;
     times.reserve(std::size_t(std::min<std::uint64_t>(total, 1 << 24)));
     report_.start = simulation_->budget();
+    report_.advice = advice_for(*simulation_);
     const double started = now_seconds();
     double stepping = 0;
     take_samples();

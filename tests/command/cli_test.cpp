@@ -183,6 +183,9 @@ TEST_F(Cli, ListAndDoctorSpeakJson) {
   const Json doctor = Json::parse(out_, nullptr, false);
   for (const char* field : {"version", "compiler", "instruction set", "processors", "page", "free port", "engine"})
     EXPECT_TRUE(doctor.contains(field)) << field;
+  EXPECT_EQ(carom("doctor pyramids --json"), 0) << out_;
+  EXPECT_TRUE(Json::parse(out_, nullptr, false)["advice"].is_array());
+  EXPECT_EQ(carom("doctor no-such-scene"), 3);
 }
 
 TEST_F(Cli, ServeEndsCleanlyOnATerminationRequest) {
