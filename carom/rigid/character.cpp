@@ -104,6 +104,14 @@ Status Character<D>::teleport(World<D>& world, Position feet) {
   return {};
 }
 
+template <class D>
+void Character<D>::restore(const CharacterState<D>& state) {
+  position_ = state.center;
+  velocity_ = state.velocity;
+  rise_ = state.rise;
+  ground_ = state.ground;
+}
+
 /// Whether the top of an edge that the capsule's round end rests on is ground: the surface a little inward of the
 /// point.
 template <class D>

@@ -52,6 +52,15 @@ struct CharacterGround {
   typename D::Vector velocity{};  ///< m/s, of the ground there
 };
 
+/// What a rollback keeps of a character beside the world's snapshot.
+template <class D>
+struct CharacterState {
+  typename D::Position center{};
+  typename D::Vector velocity{};
+  float rise = 0;  ///< m/s along up while it does not stand
+  CharacterGround<D> ground{};
+};
+
 /// Not copyable: it owns a body of the world. Every call takes the world that it was created in. Deterministic; a call
 /// to `move` allocates nothing once its lists have grown to the number of shapes nearby.
 template <class D>
@@ -74,6 +83,9 @@ class CAROM_API Character {
   Status move(World<D>& world, Vector velocity, float dt);
   /// Elsewhere at once, at rest and in the air until the next move.
   Status teleport(World<D>& world, Position feet);
+  /// For rollback: with the world's own snapshot, everything that later moves depend on.
+  CharacterState<D> state() const { return {position_, velocity_, rise_, ground_}; }
+  void restore(const CharacterState<D>& state);
   /// Removes its body; the character is of no use afterwards.
   Status destroy(World<D>& world);
 

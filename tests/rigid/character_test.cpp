@@ -367,6 +367,30 @@ TYPED_TEST(Characters, SameBitsWhateverTheThreads) {
   EXPECT_EQ(hash[0], hash[1]);
 }
 
+TYPED_TEST(Characters, RollsBackWithItsWorld) {
+  using D = TypeParam;
+  World<D> world(world_with<D>());
+  add_ground(world);
+  add_heap(world, 2);
+  auto c = make<D>(world, at<D>(-6, 0.01));
+  const auto go = [&](int i) { walk(world, c, along<D>(3, i % 40 == 20 ? 4.0f : 0.0f), 1); };
+  for (int i = 0; i < 60; ++i) go(i);
+  Snapshot<D> snapshot;
+  world.snapshot(snapshot);
+  const CharacterState<D> state = c.state();
+  std::uint64_t hash[2];
+  typename D::Position feet[2];
+  for (int k = 0; k < 2; ++k) {
+    for (int i = 60; i < 180; ++i) go(i);
+    hash[k] = world.state_hash();
+    feet[k] = c.feet();
+    ASSERT_TRUE(world.restore(snapshot).ok());
+    c.restore(state);
+  }
+  EXPECT_EQ(hash[0], hash[1]);
+  EXPECT_EQ(feet[0], feet[1]);
+}
+
 TYPED_TEST(Characters, RefusesWhatIsNotANumber) {
   using D = TypeParam;
   World<D> world(world_with<D>());

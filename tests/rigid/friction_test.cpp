@@ -1,4 +1,5 @@
 // Coulomb's law on planes (mechanics.md 3, 4; rigid-body.md 6.1, 4–8).
+// Short forms: the gates at full length, in every direction, are in tests/quality/friction_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
