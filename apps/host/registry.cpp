@@ -11,6 +11,7 @@ constexpr DemoFactory factories[] = {
     demo::make_pyramids,
     demo::make_joints,
     demo::make_rewind,
+    demo::make_walker,
     demo::make_hovercraft,
     demo::make_collision_lab3,
     demo::make_collision_lab2,
