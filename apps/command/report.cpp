@@ -87,6 +87,7 @@ std::string report_json(const Report& r) {
               {"joints", r.counters.joints},
               {"islands", r.counters.islands},
               {"bytes", r.counters.bytes},
+              {"peak_bytes", r.counters.peak_bytes},
               {"start", budget_json(r.start)},
               {"end", budget_json(r.end)},
               {"worst_penetration_m", r.worst_penetration},
@@ -111,9 +112,11 @@ std::string report_text(const Report& r) {
   put(out, "  %llu steps of %.4g ms, %.4g s simulated in %.3g s on %d thread%s%s\n",
       static_cast<unsigned long long>(r.steps), 1e3 * r.dt, r.simulated, r.wall, r.threads, r.threads == 1 ? "" : "s",
       r.interrupted ? ", interrupted" : "");
-  put(out, "  bodies %d (%d awake)   shapes %d   contacts %d (at most %d)   joints %d   islands %d   %.1f kB\n",
+  put(out,
+      "  bodies %d (%d awake)   shapes %d   contacts %d (at most %d)   joints %d   islands %d   %.1f kB (at most "
+      "%.1f)\n",
       r.counters.bodies, r.counters.awake_bodies, r.counters.shapes, r.counters.touching_contacts, r.most_contacts,
-      r.counters.joints, r.counters.islands, double(r.counters.bytes) / 1024);
+      r.counters.joints, r.counters.islands, double(r.counters.bytes) / 1024, double(r.counters.peak_bytes) / 1024);
   std::string budget;
   row(budget, "kinetic energy", r.start.kinetic, r.end.kinetic, "J");
   row(budget, "potential energy", r.start.potential, r.end.potential, "J");

@@ -45,6 +45,7 @@ struct WorldDef {
   float joint_damping_ratio = 2.0f;
   float maximum_linear_speed = 4.0e3f;  ///< m/s
   float sleep_time = 0.5f;              ///< s below the sleep speed before an island sleeps
+  bool move_events = false;             ///< tell after every step where each awake body now is
 };
 
 /// How much a world is to have room for.
@@ -84,7 +85,8 @@ struct BodyDef {
   std::string_view name{};  ///< for reports and pictures; copied
 };
 
-/// How a surface behaves. Mixed for a pair: friction √(ab), restitution max(a, b), resistance max(a, b).
+/// How a surface behaves. Mixed for a pair: friction √(ab), restitution max(a, b), resistance max(a, b), unless the
+/// world has a rule for the two user_ids (World::set_pair_rule).
 struct Material {
   float friction = 0.6f;         ///< Coulomb's μ, ≥ 0
   float restitution = 0;         ///< 0 … 1
@@ -92,6 +94,16 @@ struct Material {
   float tangent_speed = 0;       ///< m/s along the surface (2D), a conveyor
   std::uint32_t user_id = 0;
   friend bool operator==(const Material&, const Material&) = default;
+};
+/// What holds between two materials instead of the mixture: rubber on ice is neither.
+struct PairRule {
+  float friction = 0.6f;         ///< ≥ 0
+  float restitution = 0;         ///< 0 … 1
+  float rolling_resistance = 0;  ///< ≥ 0
+};
+struct MaterialPair {
+  std::uint32_t material_a = 0, material_b = 0;  ///< user_ids
+  PairRule rule{};
 };
 
 /// Two shapes collide where each one's category is in the other's mask, unless they share a non-zero group:
@@ -109,10 +121,27 @@ struct ShapeDef {
   float density = 1000;           ///< kg/m³ (2D: kg/m²), ≥ 0
   Material material{};
   Filter filter{};
-  bool sensor = false;         ///< reports overlaps, pushes nothing
-  bool contact_events = true;  ///< begin and end events
-  bool hit_events = false;     ///< an event with impulse and speed on every hard impact
+  bool sensor = false;           ///< reports overlaps, pushes nothing
+  bool contact_events = true;    ///< begin and end events
+  bool hit_events = false;       ///< an event with impulse and speed on every hard impact
+  bool modify_contacts = false;  ///< the world's contact modifier is asked about its contacts in every step
+  /// m/s, in the shape's frame: the surface runs like a belt, the shape stays. Friction carries what lies on it.
+  typename D::Vector surface_velocity{};
+  /// In the shape's frame, any length: holds bodies that come against this direction and lets through what comes from
+  /// elsewhere, until it is out again. {0, 1} is a platform to jump through from below. Zero: solid.
+  typename D::Vector one_way{};
   std::uint64_t user_data = 0;
+};
+
+/// An impulse outward from a point, for all dynamic bodies near it (World::explode).
+template <class D>
+struct ExplosionDef {
+  typename D::Position center{};
+  float radius = 5;            ///< m of full strength, measured to the nearest point of a shape
+  float falloff = 0;           ///< m beyond, over which it falls to nothing
+  float impulse_per_area = 0;  ///< N·s/m² (2D: N·s/m) on the area that a shape turns to the centre; negative: pulls
+  float speed = 0;             ///< m/s given besides to every body, whatever its mass
+  std::uint64_t mask = ~std::uint64_t{0};  ///< categories of shapes that feel it
 };
 
 enum class JointType : std::uint8_t { distance, ball, hinge, slider, weld, motor, mouse };

@@ -18,6 +18,7 @@ struct ContactHitEvent {
   typename D::Position point{};
   typename D::Vector normal{};  ///< from A to B
   float approach_speed = 0;     ///< m/s
+  float slip_speed = 0;         ///< m/s across the surface when they met
   float impulse = 0;            ///< N·s over the step
 };
 struct SensorEvent {
@@ -25,6 +26,29 @@ struct SensorEvent {
 };
 struct SleepEvent {
   BodyId body;
+};
+/// Where an awake body is after the step, for who mirrors poses elsewhere (WorldDef::move_events).
+template <class D>
+struct MoveEvent {
+  BodyId body;
+  typename D::Pose pose{};
+};
+
+/// What a contact modifier sees of a patch of contact between two shapes, and what it may change for this step.
+template <class D>
+struct ContactModification {
+  ShapeId shape_a, shape_b;
+  typename D::Vector normal{};             ///< from A to B, world
+  typename D::Vector relative_velocity{};  ///< m/s of B against A, at the middle of the points
+  int count = 0;
+  struct Point {
+    typename D::Position point{};
+    float separation = 0;  ///< m
+  } points[D::max_points];
+
+  bool enabled = true;    ///< false: nothing is pushed in this step
+  float friction = 0;     ///< out of range or not a number: stays as mixed
+  float restitution = 0;  ///< likewise
 };
 
 template <class D>
@@ -36,6 +60,7 @@ struct Events {
   std::span<const SensorEvent> sensor_end;
   std::span<const SleepEvent> fell_asleep;
   std::span<const SleepEvent> quarantined;  ///< bodies whose state became NaN or infinite: frozen, and named here
+  std::span<const MoveEvent<D>> moved;      ///< of all bodies that were awake, if WorldDef::move_events
 };
 
 }  // namespace carom::rigid

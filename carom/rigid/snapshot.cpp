@@ -6,10 +6,8 @@
 
 #include "carom/core/hash.h"
 #include "carom/core/string.h"
-#include "carom/rigid/detail/contact_store.h"
-#include "carom/rigid/detail/joint_store.h"
 #include "carom/rigid/detail/snapshot_code.h"
-#include "carom/rigid/detail/snapshot_data.h"
+#include "carom/rigid/detail/snapshot_fold.h"
 
 namespace carom::rigid {
 namespace detail {
@@ -41,7 +39,7 @@ std::uint64_t layout() {
 
 template <class D>
 std::uint64_t digest_of(const SnapshotData<D>* data) {
-  return data == nullptr ? 0 : hash_words(data->image);
+  return data == nullptr ? 0 : hash_words(canonical_image(*data));
 }
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   std::vector<std::uint64_t> words((bytes.size() + 7) / 8);
@@ -52,6 +50,17 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 
 const std::uint32_t* words_of(const SnapshotSection& s, const std::vector<std::uint64_t>& image) {
   return reinterpret_cast<const std::uint32_t*>(image.data() + s.first);
+}
+/// Do the bodies of a slot differ in what is folded (pose, motion and record)?
+template <class D>
+bool body_differs(const SnapshotData<D>& a, const std::vector<std::uint64_t>& image_a, const SnapshotData<D>& b,
+                  const std::vector<std::uint64_t>& image_b, std::size_t slot) {
+  for (std::size_t k = 1; k < 4; ++k) {
+    const SnapshotSection &sa = a.sections[a.bodies_at + k], &sb = b.sections[b.bodies_at + k];
+    const std::size_t words = sa.element / 8;
+    if (std::memcmp(&image_a[sa.first + slot * words], &image_b[sb.first + slot * words], words * 8) != 0) return true;
+  }
+  return false;
 }
 std::size_t word_count(const SnapshotSection& s) { return std::size_t((s.count * s.element + 7) / 8); }
 
@@ -116,20 +125,31 @@ template <class D>
 std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const SnapshotData<D>* base) {
   std::vector<std::byte> bytes;
   ByteWriter out(bytes);
-  for (const std::uint64_t x : {magic, layout<D>(), digest_of<D>(base), hash_words(data.image)}) out.word(x);
+  std::vector<std::uint64_t> image = canonical_image(data), base_image;
+  if (base != nullptr) base_image = canonical_image(*base);
+  for (const std::uint64_t x :
+       {magic, layout<D>(), base != nullptr ? hash_words(base_image) : std::uint64_t{0}, hash_words(image)})
+    out.word(x);
+  const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
+  const std::size_t common_bodies =
+      base != nullptr ? std::min(bodies, std::size_t(base->sections[base->bodies_at].count)) : 0;
+  std::vector<bool> folded(bodies, true);
+  for (std::size_t i = 0; i < common_bodies; ++i) folded[i] = body_differs(data, image, *base, base_image, i);
+  fold_bodies(image, data, [&](std::size_t i) { return folded[i]; });
+  if (base != nullptr) fold_bodies(base_image, *base, [&](std::size_t i) { return i < common_bodies && folded[i]; });
   out.number(data.world_number);
   out.number(data.step_count);
   out.number(data.sections.size());
-  static const std::vector<std::uint64_t> nothing;
+  out.number(data.bodies_at);
+  out.number(data.manifolds_at);
   for (std::size_t i = 0; i < data.sections.size(); ++i) {
     const SnapshotSection& s = data.sections[i];
     const SnapshotSection b = base != nullptr ? base->sections[i] : SnapshotSection{};
     out.number(s.count);
     if (base == nullptr) out.number(s.element);
-    const std::vector<std::uint64_t>& base_image = base != nullptr ? base->image : nothing;
     const std::size_t count = word_count(s), common = std::min(count, base != nullptr ? word_count(b) : 0);
-    out.difference(words_of(s, data.image), words_of(b, base_image), 2 * common);
-    out.difference(words_of(s, data.image) + 2 * common, nullptr, 2 * (count - common));
+    out.difference(words_of(s, image), words_of(b, base_image), 2 * common);
+    out.difference(words_of(s, image) + 2 * common, nullptr, 2 * (count - common));
   }
   // Geometry by slot, where it is not as in the base.
   const bool same = base != nullptr && base->geometry == data.geometry && base->missing.empty();
@@ -156,6 +176,9 @@ template <class D>
 bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>* base) {
   const std::uint64_t sections = in.number();
   if (sections > most_sections || (base != nullptr && sections != base->sections.size())) return false;
+  data.bodies_at = std::size_t(in.number());
+  data.manifolds_at = std::size_t(in.number());
+  // The differences first: zero where the base holds.
   for (std::uint64_t i = 0; i < sections && in.sound(); ++i) {
     SnapshotSection s;
     s.count = in.number();
@@ -165,14 +188,43 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
     const std::size_t count = word_count(s);
     const std::size_t common = std::min(count, base != nullptr ? word_count(base->sections[i]) : 0);
     data.image.resize(data.image.size() + count);
-    std::uint64_t* const to = data.image.data() + s.first;
-    if (common > 0) std::memcpy(to, base->image.data() + base->sections[i].first, common * 8);
-    std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(to);
+    std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(data.image.data() + s.first);
     in.difference(words, 2 * common);
     in.difference(words + 2 * common, 2 * (count - common));
     data.sections.push_back(s);
   }
-  return in.sound();
+  const auto is = [&](std::size_t at, std::size_t element) {
+    return at < data.sections.size() && data.sections[at].element == element;
+  };
+  if (!in.sound() || data.bodies_at > sections || !is(data.bodies_at + 1, sizeof(typename D::Pose)) ||
+      !is(data.bodies_at + 2, sizeof(BodyMotion<D>)) || !is(data.bodies_at + 3, sizeof(BodyRecord)) ||
+      !is(data.manifolds_at, sizeof(ManifoldRecord<D>)))
+    return false;
+  if (base != nullptr && (base->bodies_at != data.bodies_at || base->manifolds_at != data.manifolds_at)) return false;
+  const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
+  for (std::size_t k = 1; k < 4; ++k)
+    if (data.sections[data.bodies_at + k].count != bodies) return false;
+  std::vector<bool> folded(bodies, true);
+  if (base != nullptr) {
+    const std::size_t common_bodies = std::min(bodies, std::size_t(base->sections[base->bodies_at].count));
+    for (std::size_t i = 0; i < common_bodies; ++i) {
+      folded[i] = false;
+      for (std::size_t k = 1; k < 4 && !folded[i]; ++k) {
+        const SnapshotSection& s = data.sections[data.bodies_at + k];
+        for (std::size_t w = 0; w < s.element / 8 && !folded[i]; ++w)
+          folded[i] = data.image[s.first + i * (s.element / 8) + w] != 0;
+      }
+    }
+    std::vector<std::uint64_t> base_image = canonical_image(*base);
+    fold_bodies(base_image, *base, [&](std::size_t i) { return i < common_bodies && folded[i]; });
+    for (std::size_t i = 0; i < sections; ++i) {
+      const SnapshotSection &s = data.sections[i], &b = base->sections[i];
+      const std::size_t common = std::min(word_count(s), word_count(b));
+      for (std::size_t w = 0; w < common; ++w) data.image[s.first + w] ^= base_image[b.first + w];
+    }
+  }
+  fold_bodies(data.image, data, [&](std::size_t i) { return folded[i]; });
+  return true;
 }
 
 template <class D>

@@ -1,6 +1,7 @@
 // A world of rigid bodies in two or three dimensions.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -80,6 +81,8 @@ class CAROM_API World {
   Status add_impulse(BodyId body, Vector impulse);  ///< N·s
   Status add_impulse_at(BodyId body, Vector impulse, Position point);
   Status add_angular_impulse(BodyId body, Angular impulse);
+  /// Pushes what is near; returns how many shapes felt it. What would fly off at more than 10⁶ m/s is left alone.
+  Result<int> explode(const ExplosionDef<D>& definition);
 
   // Shapes
   Result<ShapeId> add_shape(BodyId body, const Shape& shape, const ShapeDef<D>& definition = {});
@@ -90,6 +93,23 @@ class CAROM_API World {
   Result<ShapeDef<D>> shape_definition(ShapeId shape) const;
   Status set_material(ShapeId shape, const Material& material);
   Status set_filter(ShapeId shape, const Filter& filter);
+  Status set_density(ShapeId shape, float density);  ///< kg/m³ (2D: kg/m²); the body's mass follows
+  Status set_surface_velocity(ShapeId shape, Vector velocity);
+  Status set_one_way(ShapeId shape, Vector direction);  ///< zero: solid
+  Status set_modify_contacts(ShapeId shape, bool modify);
+
+  // What happens between shapes. Functions of the caller are called on the thread that calls `step`, in an order that
+  // depends on nothing but the world; they must not call the world, and they are not part of snapshots.
+  /// Instead of the mixture for materials with these user_ids, in either order; null: the mixture again.
+  Status set_pair_rule(std::uint32_t material_a, std::uint32_t material_b, const PairRule* rule);
+  void pair_rules(std::vector<MaterialPair>& out) const;
+  using ContactFilter = std::function<bool(ShapeId, ShapeId)>;
+  /// Asked, after the filters of the shapes, when the bounds of two shapes come to overlap: false, and they do not
+  /// collide until they part and meet again.
+  void set_contact_filter(ContactFilter filter);
+  using ContactModifier = std::function<void(ContactModification<D>&)>;
+  /// Asked before every step about each patch of contact of shapes that have modify_contacts.
+  void set_contact_modifier(ContactModifier modifier);
 
   // Joints. One definition struct a type (definitions.h). body_a null: the world, frame_a in world axes.
   Result<JointId> create_joint(const DistanceJointDef<D>& definition);

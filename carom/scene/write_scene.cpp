@@ -41,8 +41,7 @@ class SceneWriter {
     if (!options_.description.empty()) out += "  \"description\": " + quote(options_.description) + ",\n";
     out += "  \"dimension\": " + std::to_string(D::dimension) + ",\n  \"step\": " + digits(options_.dt) +
            ",\n  \"substeps\": " + std::to_string(def.substeps) + ",\n  \"duration\": " + digits(options_.duration) +
-           ",\n  \"gravity\": " + vector_text(def.gravity) + ",\n  \"world\": " + world_text(def) +
-           ",\n  \"bodies\": [";
+           ",\n  \"gravity\": " + vector_text(def.gravity) + ",\n  \"world\": " + world_text() + ",\n  \"bodies\": [";
     std::vector<BodyId> bodies;
     world_.bodies(bodies);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -73,13 +72,25 @@ class SceneWriter {
   }
 
  private:
-  static std::string world_text(const WorldDef<D>& d) {
+  std::string world_text() const {
+    const WorldDef<D>& d = world_.definition();
     Fields f;
     f.put("restitution_threshold", d.restitution_threshold).put("contact_frequency", d.contact_hertz);
     f.put("contact_damping_ratio", d.contact_damping_ratio).put("contact_push_speed", d.contact_push_speed);
     f.put("joint_frequency", d.joint_hertz).put("joint_damping_ratio", d.joint_damping_ratio);
     f.put("maximum_linear_speed", d.maximum_linear_speed).put("sleep_time", d.sleep_time);
     f.flag("allow_sleep", d.allow_sleep, true).flag("continuous", d.continuous, true);
+    std::vector<MaterialPair> pairs;
+    world_.pair_rules(pairs);
+    std::string list;
+    for (const MaterialPair& pair : pairs) {
+      Fields p;
+      p.put("materials", "[" + std::to_string(pair.material_a) + ", " + std::to_string(pair.material_b) + "]");
+      p.put("friction", pair.rule.friction).put("restitution", pair.rule.restitution);
+      p.unless("rolling_resistance", pair.rule.rolling_resistance, 0.0f);
+      list += (list.empty() ? "" : ", ") + p.object();
+    }
+    if (!list.empty()) f.put("material_pairs", "[" + list + "]");
     return f.object();
   }
 

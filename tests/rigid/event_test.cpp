@@ -71,6 +71,89 @@ TYPED_TEST(WorldEvents, HitTellsTheImpulse) {
   EXPECT_TRUE(world.contains(wall));
 }
 
+// What came down at 45° slid across the surface as fast as it hit it.
+TYPED_TEST(WorldEvents, HitTellsTheSlip) {
+  using D = TypeParam;
+  World<D> world(world_with<D>(0));
+  add_ground(world);
+  BodyDef<D> d;
+  d.position = at<D>(0, 1);
+  d.linear_velocity = along<D>(3, -4);
+  const BodyId ball = world.create_body(d).value();
+  ShapeDef<D> s;
+  s.hit_events = true;
+  world.add_shape(ball, ball_shape<D>(0.25f), s).value();
+  int hits = 0;
+  for (int i = 0; i < 30; ++i) {
+    world.step(frame).value();
+    for (const ContactHitEvent<D>& hit : world.events().contact_hit) {
+      ++hits;
+      EXPECT_NEAR(hit.approach_speed, 4, 1e-3);
+      EXPECT_NEAR(hit.slip_speed, 3, 1e-3);
+    }
+  }
+  EXPECT_EQ(hits, 1);
+}
+
+TYPED_TEST(WorldEvents, MovesAreToldToWhoAsks) {
+  using D = TypeParam;
+  WorldDef<D> d = world_with<D>();
+  World<D> silent(d);
+  d.move_events = true;
+  World<D> world(d);
+  add_ground(world);
+  add_box<D>(silent, at<D>(0, 5));
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 5; ++i) bodies.push_back(add_box<D>(world, at<D>(3 * i, 0.5 + i)));
+  silent.step(frame).value();
+  EXPECT_TRUE(silent.events().moved.empty());
+  for (int i = 0; i < 300; ++i) {
+    const std::size_t awake = std::size_t(world.counters().awake_bodies);
+    world.step(frame).value();
+    ASSERT_EQ(world.events().moved.size(), awake);
+    for (const MoveEvent<D>& e : world.events().moved) {
+      const BodyState<D> s = world.state(e.body).value();
+      ASSERT_TRUE(e.pose.position == s.pose.position && e.pose.rotation == s.pose.rotation);
+    }
+  }
+  EXPECT_TRUE(world.events().moved.empty());  // all asleep
+}
+
+// A caller's function that returns no number freezes its own body, names it, and harms nobody else.
+TYPED_TEST(WorldEvents, ABodyBrokenByAUserIsQuarantinedAlone) {
+  using D = TypeParam;
+  World<D> world(world_with<D>()), twin(world_with<D>());
+  std::vector<BodyId> stack, other;
+  for (World<D>* w : {&world, &twin}) {
+    add_ground(*w);
+    for (int i = 0; i < 5; ++i) (w == &world ? stack : other).push_back(add_box<D>(*w, at<D>(0, 0.5 + i)));
+  }
+  CustomEffector<D> broken;
+  broken.body = stack[2];
+  broken.model = [](const EffectorInput<D>& in) {
+    Wrench<D> w;
+    if (in.time > 0.2) w.force.y = std::numeric_limits<float>::quiet_NaN();
+    return w;
+  };
+  world.add_effector(broken).value();
+  world.add_effector(broken).value();  // twice, told once
+  int told = 0;
+  for (int i = 0; i < 240; ++i) {
+    world.step(frame).value();
+    for (const SleepEvent& e : world.events().quarantined) {
+      ++told;
+      EXPECT_EQ(e.body, stack[2]);
+    }
+    for (const BodyId body : stack) ASSERT_TRUE(math::is_finite(world.state(body).value().pose.position));
+  }
+  EXPECT_EQ(told, 1);
+  // Who stood on it has fallen on who stood below it.
+  EXPECT_NEAR(world.state(stack[3]).value().pose.position.y, 2.5, 0.05);
+  EXPECT_NEAR(world.state(stack[4]).value().pose.position.y, 3.5, 0.05);
+  ASSERT_TRUE(world.destroy_body(stack[2]).ok());
+  run(world, 10);
+}
+
 TYPED_TEST(WorldEvents, SensorSeesWhoComesAndGoes) {
   using D = TypeParam;
   World<D> world(world_with<D>(0));

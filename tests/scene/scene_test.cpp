@@ -267,14 +267,23 @@ TEST(WriteScene, KeepsEveryKindOfShape) {
       "shape": {"type": "hull", "points": [[0,0,0],[1,0,0],[0,1.1,0],[0,0,1.3],[0.7,0.7,0.7]], "radius": 0.02, "filter": {"category": [1, 40], "mask": "0xff", "group": -3}}},
     {"name": "compound", "position": [5, 5, 5], "velocity": [1, 2, 3], "angular_velocity": [0.3, 0.2, 0.1], "rotation": {"yaw": "33 deg", "pitch": "12 deg"},
       "shape": {"type": "compound", "children": [{"type": "cylinder", "height": 2}, {"type": "cone", "position": [0, 1, 0]}, {"type": "capsule", "length": 1, "radius": 0.2}]}},
-    {"name": "box", "position": [-5, 5, 5], "shape": {"type": "box", "size": [1, 2, 3], "radius": 0.1, "sensor": true}}]})"));
+    {"name": "box", "position": [-5, 5, 5], "shape": {"type": "box", "size": [1, 2, 3], "radius": 0.1, "sensor": true}},
+    {"name": "belt", "type": "fixed", "position": [0, -9, 0], "shape": {"type": "box", "size": [9, 1, 9], "material": {"user_id": 7},
+      "surface_velocity": ["2 km/h", 0, "1 m/s"], "modify_contacts": true}}],
+    "world": {"material_pairs": [{"materials": [7, 0], "friction": 0.05, "restitution": 0.5}]}})"));
   EXPECT_EQ(read(space, "compound.velocity.y"), 2) << "of the centre of mass, which the cone puts off the origin";
   const std::string text = write_scene(space).value();
   const SceneWorld copy = start(parse(text));
   EXPECT_EQ(copy.state_hash(), space.state_hash());
+  std::vector<rigid::MaterialPair> pairs;
+  copy.world3->pair_rules(pairs);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].rule.friction, 0.05f);
+  EXPECT_NE(text.find("surface_velocity"), std::string::npos);
   EXPECT_EQ(write_scene(copy).value(), text);
   const SceneWorld plane = start(parse(R"({"dimension": 2, "bodies": [
-    {"type": "fixed", "shapes": [{"type": "segment", "points": [[-1, 0], [1, 0.1]]}, {"type": "chain", "points": [[0,0],[1,0],[1,1]], "loop": true}]},
+    {"type": "fixed", "shapes": [{"type": "segment", "points": [[-1, 0], [1, 0.1]]}, {"type": "chain", "points": [[0,0],[1,0],[1,1]], "loop": true},
+      {"type": "box", "size": [4, 0.2], "position": [0, 3], "one_way": [0, 1]}]},
     {"position": [3, 3.3], "rotation": "17 deg", "shapes": [{"type": "polygon", "points": [[0,0],[1,0],[0.3,1.7]], "radius": 0.01}, {"type": "capsule"}, {"type": "box", "size": [1, 2]}, {"type": "circle", "diameter": "3 in"}]}]})"));
   const std::string flat = write_scene(plane).value();
   EXPECT_EQ(start(parse(flat)).state_hash(), plane.state_hash());

@@ -8,10 +8,17 @@ bool moves(const WorldImplementation<D>& world, std::int32_t body) {
   return body != none && world.bodies.record[std::size_t(body)].awake_index != none;
 }
 
+/// A body that could be moved and is not among those that move: asleep, disabled or quarantined.
+template <class D>
+bool rests(const WorldImplementation<D>& world, std::int32_t body) {
+  return body != none && world.bodies.is_dynamic(body) && !moves(world, body);
+}
+
+/// Joints act between bodies that move, or stand for good. Impulses on one that rests would only pile up in it.
 template <class D>
 void joint_to_graph(WorldImplementation<D>& world, std::int32_t joint) {
   JointHeader& j = world.joints.headers[std::size_t(joint)];
-  if (j.place.color >= 0) return;
+  if (j.place.color >= 0 || rests(world, j.body[0]) || rests(world, j.body[1])) return;
   j.place = world.graph.add(ConstraintKind::joint, joint, j.body[0], j.body[1], world.bodies);
 }
 template <class D>
@@ -28,7 +35,41 @@ Mat3f symmetric(const Mat3f& i) {
   const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
   return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
 }
-Mat3f world_inverse(const BodyMotion<Dim3>& m, const Quatf& q, const BodyRecord& record) {
+void set_inertia(BodyMotion<Dim2>& m, double inertia) { m.inertia = float(inertia); }
+void set_inertia(BodyMotion<Dim3>& m, const Mat3d& inertia) {
+  m.inertia = symmetric(Mat3f(inertia));
+  const double scale = (inertia.cx.x + inertia.cy.y + inertia.cz.z) / 3;
+  const auto off = [&](double x) { return math::abs(x) > 1e-4 * scale; };
+  m.gyroscopic = off(inertia.cx.y) || off(inertia.cx.z) || off(inertia.cy.z) || off(inertia.cx.x - scale) ||
+                 off(inertia.cy.y - scale) || off(inertia.cz.z - scale);
+}
+
+typename Dim2::Bounds placed(const Dim2::Shape& shape, const Pose2& pose) {
+  const geometry::Bounds2f b = geometry::bounds(shape, Transform2f{{}, pose.rotation});
+  return {pose.position + Vec2d(b.low), pose.position + Vec2d(b.high)};
+}
+typename Dim3::Bounds placed(const Dim3::Shape& shape, const Pose3& pose) {
+  const geometry::Bounds3f b = geometry::bounds(shape, Transform3f{{}, pose.rotation});
+  return {pose.position + Vec3d(b.low), pose.position + Vec3d(b.high)};
+}
+
+/// Outward to the next millimetre (2⁻¹⁰ m): a twentieth of the smallest margin at most, and numbers with few digits,
+/// which take little room in the difference of two snapshots.
+double grid_below(double x) {
+  if (!(math::abs(x) < 1e12)) return x;  // the spacing of doubles is about that of the grid
+  const double scaled = x * 1024, whole = double(std::int64_t(scaled));
+  return (whole > scaled ? whole - 1 : whole) * (1.0 / 1024);
+}
+Vec2d grid_below(const Vec2d& v) { return {grid_below(v.x), grid_below(v.y)}; }
+Vec3d grid_below(const Vec3d& v) { return {grid_below(v.x), grid_below(v.y), grid_below(v.z)}; }
+template <class V>
+geometry::Bounds<V> on_grid(const geometry::Bounds<V>& b) {
+  return {grid_below(b.low), -grid_below(-b.high)};
+}
+
+}  // namespace
+
+Mat3f inverse_inertia_in_world(const BodyMotion<Dim3>& m, const Quatf& q, const BodyRecord& record) {
   const float scale = (m.inertia.cx.x + m.inertia.cy.y + m.inertia.cz.z) * (1.0f / 3.0f);
   const int locked = record.locks >> 3 & 7;
   if (record.type != BodyType::dynamic || !(scale > 0) || locked == 7) return Mat3f::zero();
@@ -48,29 +89,9 @@ Mat3f world_inverse(const BodyMotion<Dim3>& m, const Quatf& q, const BodyRecord&
     if (locked >> k & 1) i.column(k)[k] = 0;
   return symmetric(i);
 }
-float world_inverse(const BodyMotion<Dim2>& m, const Rot2f&, const BodyRecord& record) {
+float inverse_inertia_in_world(const BodyMotion<Dim2>& m, const Rot2f&, const BodyRecord& record) {
   return record.type == BodyType::dynamic && m.inertia > 0 && (record.locks & 32) == 0 ? 1 / m.inertia : 0;
 }
-
-void set_inertia(BodyMotion<Dim2>& m, double inertia) { m.inertia = float(inertia); }
-void set_inertia(BodyMotion<Dim3>& m, const Mat3d& inertia) {
-  m.inertia = symmetric(Mat3f(inertia));
-  const double scale = (inertia.cx.x + inertia.cy.y + inertia.cz.z) / 3;
-  const auto off = [&](double x) { return math::abs(x) > 1e-4 * scale; };
-  m.gyroscopic = off(inertia.cx.y) || off(inertia.cx.z) || off(inertia.cy.z) || off(inertia.cx.x - scale) ||
-                 off(inertia.cy.y - scale) || off(inertia.cz.z - scale);
-}
-
-typename Dim2::Bounds placed(const Dim2::Shape& shape, const Pose2& pose) {
-  const geometry::Bounds2f b = geometry::bounds(shape, Transform2f{{}, pose.rotation});
-  return {pose.position + Vec2d(b.low), pose.position + Vec2d(b.high)};
-}
-typename Dim3::Bounds placed(const Dim3::Shape& shape, const Pose3& pose) {
-  const geometry::Bounds3f b = geometry::bounds(shape, Transform3f{{}, pose.rotation});
-  return {pose.position + Vec3d(b.low), pose.position + Vec3d(b.high)};
-}
-
-}  // namespace
 
 template <class D>
 void activate_body(WorldImplementation<D>& world, std::int32_t body) {
@@ -104,7 +125,7 @@ void deactivate_body(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t key = record.first_joint; key != none;) {
     const JointHeader& j = world.joints.headers[std::size_t(key >> 1)];
     const std::int32_t next = j.next[key & 1];
-    if (!moves(world, j.body[1 - (key & 1)])) joint_from_graph(world, key >> 1);
+    if (record.type == BodyType::dynamic || !moves(world, j.body[1 - (key & 1)])) joint_from_graph(world, key >> 1);
     key = next;
   }
 }
@@ -171,8 +192,8 @@ void wake_touching(WorldImplementation<D>& world, std::int32_t body) {
 template <class D>
 void update_world_inertia(WorldImplementation<D>& world, std::int32_t body) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
-  m.world_inverse_inertia =
-      world_inverse(m, world.bodies.pose[std::size_t(body)].rotation, world.bodies.record[std::size_t(body)]);
+  m.world_inverse_inertia = inverse_inertia_in_world(m, world.bodies.pose[std::size_t(body)].rotation,
+                                                     world.bodies.record[std::size_t(body)]);
 }
 
 template <class D>
@@ -241,7 +262,7 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   typename D::Bounds box = geometry::grow(shape_bounds(world, shape), double(shape.margin));
   using P = typename D::Position;
   const P ahead = P(world.bodies.solver[std::size_t(shape.body)].linear_velocity) * double(world.last_dt);
-  return {box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
+  return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 
 template <class D>

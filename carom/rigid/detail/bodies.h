@@ -30,6 +30,9 @@ void wake_touching(WorldImplementation<D>& world, std::int32_t body);
 /// The inverse of the tensor in world axes, with locked axes taken out.
 template <class D>
 void update_world_inertia(WorldImplementation<D>& world, std::int32_t body);
+/// What it is made of: a pure function of these three.
+Mat3f inverse_inertia_in_world(const BodyMotion<Dim3>& motion, const Quatf& rotation, const BodyRecord& record);
+float inverse_inertia_in_world(const BodyMotion<Dim2>& motion, const Rot2f& rotation, const BodyRecord& record);
 /// The pose of the body's origin from its centre of mass.
 template <class D>
 void pose_from_center(WorldImplementation<D>& world, std::int32_t body);

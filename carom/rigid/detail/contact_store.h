@@ -19,6 +19,9 @@ enum ContactFlag : std::uint16_t {
   contact_round = 256,       ///< a sphere or circle takes part: always computed anew, it costs little
   contact_bouncy = 512,      ///< restitution above zero: looks ahead along the velocity
   contact_at_origin = 1024,  ///< both shapes stand unmoved in their bodies
+  contact_special = 2048,    ///< one of the shapes has a ShapeExtra
+  contact_decided = 4096,    ///< a one-way surface has decided on which side the other came
+  contact_passing = 8192,    ///< and lets it through
 };
 
 /// A pair of shapes. `shape[0]` is A: normals point from it to B.
@@ -64,7 +67,9 @@ struct ManifoldRecord {
   ManifoldImpulses<D> impulses{};
   typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass
   float approach_speed = 0;                   ///< m/s at the start of the step, for hit events
+  float slip_speed = 0;                       ///< m/s across the surface at the start of the step, for hit events
   bool anchored = false;
+  bool disabled = false;  ///< pushes nothing in this step
 };
 
 template <class D>

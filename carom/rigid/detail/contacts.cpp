@@ -146,7 +146,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   if (flags & shape_hit_events) c.flags |= contact_hit_events;
   if (flags & shape_round) c.flags |= contact_round;
   if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
-  if (max(a->material.restitution, b->material.restitution) > 0) c.flags |= contact_bouncy;
+  update_contact_flags(world, index);
   c.extent = b->outer_extent;
   const float inner = min(a->inner_extent, b->inner_extent);
   c.inner = inner;
@@ -220,17 +220,44 @@ void find_pairs_again(WorldImplementation<D>& world, std::int32_t body) {
 }
 
 template <class D>
+void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact) {
+  ContactRecord<D>& c = world.contacts.at(contact);
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  c.flags &= std::uint16_t(~(contact_bouncy | contact_special));
+  if (((a.flags | b.flags) & shape_special) != 0) c.flags |= contact_special;
+  float restitution = max(a.material.restitution, b.material.restitution);
+  if (const PairRule* rule = find_pair_rule(world, a.material.user_id, b.material.user_id))
+    restitution = rule->restitution;
+  for (const std::int32_t shape : c.shape)
+    if (const ShapeExtra<D>* extra = world.shapes.extra(shape); extra != nullptr && extra->modify)
+      restitution = 1;  // a contact modifier may ask for it
+  if (restitution > 0) c.flags |= contact_bouncy;
+}
+
+template <class D>
+void set_manifold_material(WorldImplementation<D>& world, std::int32_t manifold, float friction, float restitution,
+                           float rolling_lever) {
+  ManifoldRecord<D>& m = world.contacts.manifold(manifold);
+  if (m.place.color >= 0 && needs_extra(m)) --world.graph.colors[m.place.color].extra;
+  m.friction = friction;
+  m.restitution = restitution;
+  m.rolling_lever = rolling_lever;
+  if (m.place.color >= 0 && needs_extra(m)) ++world.graph.colors[m.place.color].extra;
+}
+
+template <class D>
 void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  if (m.place.color >= 0 && needs_extra(m)) --world.graph.colors[m.place.color].extra;
-  m.friction = math::sqrt(a.material.friction * b.material.friction);
-  m.restitution = max(a.material.restitution, b.material.restitution);
   const float radius = max(round_radius(a.geometry), round_radius(b.geometry));
-  m.rolling_lever = max(a.material.rolling_resistance, b.material.rolling_resistance) * radius;
+  if (const PairRule* rule = find_pair_rule(world, a.material.user_id, b.material.user_id))
+    set_manifold_material(world, manifold, rule->friction, rule->restitution, rule->rolling_resistance * radius);
+  else
+    set_manifold_material(world, manifold, math::sqrt(a.material.friction * b.material.friction),
+                          max(a.material.restitution, b.material.restitution),
+                          max(a.material.rolling_resistance, b.material.rolling_resistance) * radius);
   m.tangent_speed = a.material.tangent_speed + b.material.tangent_speed;
-  if (m.place.color >= 0 && needs_extra(m)) ++world.graph.colors[m.place.color].extra;
   // Uniform pressure: a disc turns on 2/3 of its radius, rectangles from square to thin line on .54 … .5 of the
   // distance of their corners.
   m.patch_factor = has_round_base(a.geometry) || has_round_base(b.geometry) ? 2.0f / 3.0f : 0.53f;
@@ -305,6 +332,8 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   template void destroy_contacts_of_shape<D>(WorldImplementation<D>&, std::int32_t);                         \
   template void destroy_contacts_between<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);            \
   template void find_pairs_again<D>(WorldImplementation<D>&, std::int32_t);                                  \
+  template void update_contact_flags<D>(WorldImplementation<D>&, std::int32_t);                              \
+  template void set_manifold_material<D>(WorldImplementation<D>&, std::int32_t, float, float, float);        \
   template void mix_materials<D>(WorldImplementation<D>&, std::int32_t);                                     \
   template void add_manifold<D>(WorldImplementation<D>&, std::int32_t, const D::Manifold&, std::uint32_t);   \
   template void remove_manifold<D>(WorldImplementation<D>&, std::int32_t);                                   \

@@ -1,6 +1,8 @@
 // Creating, updating and destroying contacts: serial operations on the world's stores.
 #pragma once
 
+#include <algorithm>
+
 #include "carom/rigid/detail/world_implementation.h"
 
 namespace carom::rigid::detail {
@@ -30,6 +32,34 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
                   std::uint32_t child);
 template <class D>
 void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold);
+/// What two material ids have been given instead of the mixture, or null.
+template <class D>
+inline const PairRule* find_pair_rule(const WorldImplementation<D>& world, std::uint32_t a, std::uint32_t b) {
+  if (world.pair_rules.empty()) return nullptr;
+  const std::uint64_t key = PairRuleEntry::key_of(a, b);
+  const auto i = std::lower_bound(world.pair_rules.begin(), world.pair_rules.end(), key,
+                                  [](const PairRuleEntry& e, std::uint64_t k) { return e.key < k; });
+  return i != world.pair_rules.end() && i->key == key ? &i->rule : nullptr;
+}
+/// How fast A's surface runs against B's, world axes, where they are belts.
+template <class D>
+inline typename D::Vector surface_slip(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+  typename D::Vector slip{};
+  for (int side = 0; side < 2; ++side)
+    if (const ShapeExtra<D>* extra = world.shapes.extra(c.shape[side])) {
+      const typename D::Vector v =
+          rotate(shape_pose(world, world.shapes.at(c.shape[side])).rotation, extra->surface_velocity);
+      slip = side == 0 ? slip + v : slip - v;
+    }
+  return slip;
+}
+/// Flags that follow from the shapes and may change while a contact lives.
+template <class D>
+void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact);
+/// Keeps count of the manifolds of a colour that bounce or roll.
+template <class D>
+void set_manifold_material(WorldImplementation<D>& world, std::int32_t manifold, float friction, float restitution,
+                           float rolling_lever);
 /// Friction, restitution and so on of a pair, from its shapes.
 template <class D>
 void mix_materials(WorldImplementation<D>& world, std::int32_t manifold);

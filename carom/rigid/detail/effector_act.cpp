@@ -5,6 +5,7 @@
 #include "carom/forces/drag.h"
 #include "carom/forces/fields.h"
 #include "carom/rigid/detail/joint_record.h"
+#include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
 namespace {
@@ -72,8 +73,14 @@ struct FieldForces {
       input.state.mass = motion.mass;
       input.state.user_data = world.bodies.record[i].user_data;
       const Wrench<D> wrench = e.model(input);
-      motion.force += wrench.force;
-      motion.torque += wrench.torque;
+      if (is_finite(wrench.force) && is_finite(wrench.torque)) {
+        motion.force += wrench.force;
+        motion.torque += wrench.torque;
+      } else if ((world.bodies.record[i].flags & body_quarantined) == 0) {
+        quarantine(world, body.slot);
+        world.scratch.quarantined.push_back({input.body});
+        world.scratch.broken.push_back(body.slot);
+      }
     });
   }
   template <class Other>

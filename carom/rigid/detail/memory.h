@@ -14,6 +14,15 @@ struct ByteCounter {
   void state(const std::vector<T>& v) {
     bytes += v.capacity() * sizeof(T);
   }
+  template <class S, class P, class M>
+  void bodies(const std::vector<S>& solver, const std::vector<P>& pose, const std::vector<M>& motion,
+              const std::vector<BodyRecord>& record) {
+    state(solver), state(pose), state(motion), state(record);
+  }
+  template <class T>
+  void manifolds(const std::vector<T>& v) {
+    state(v);
+  }
   template <class T>
   void scratch(const std::vector<T>& v) {
     state(v);

@@ -1,6 +1,7 @@
 // Shapes by slot.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,7 @@ enum ShapeFlag : std::uint8_t {
   shape_moved = 16,     ///< its fat bounds changed: look for new pairs
   shape_round = 32,     ///< a sphere or circle
   shape_outgrown = 64,  ///< left its fat bounds in this step
+  shape_special = 128,  ///< has a ShapeExtra
 };
 
 /// The tree in which a shape is: after its body's type.
@@ -47,10 +49,24 @@ struct ShapeRecord : ShapeTraits<D> {
   typename D::Shape geometry{};  ///< never changes while the shape lives
 };
 
+/// What few shapes have.
+template <class D>
+struct ShapeExtra {
+  std::int32_t shape = none;
+  bool modify = false;                    ///< the contact modifier is asked
+  typename D::Vector surface_velocity{};  ///< m/s, shape frame
+  typename D::Vector one_way{};           ///< unit or zero, shape frame
+
+  bool any() const {
+    return modify || !(surface_velocity == typename D::Vector{}) || !(one_way == typename D::Vector{});
+  }
+};
+
 template <class D>
 struct ShapeStore {
   core::SlotPool<ShapeTag> slots;
   std::vector<ShapeRecord<D>> record;                    ///< by slot
+  std::vector<ShapeExtra<D>> extras;                     ///< in the order of their slots
   geometry::DynamicTree<typename D::Position> trees[3];  ///< items are slots of shapes
   /// Of all records, shared with the snapshots that were taken since a shape last came or went; else null.
   std::shared_ptr<const std::vector<typename D::Shape>> geometry_copy;
@@ -58,6 +74,26 @@ struct ShapeStore {
   explicit ShapeStore(std::uint16_t world) : slots(world) {}
   ShapeRecord<D>& at(std::int32_t slot) { return record[std::size_t(slot)]; }
   const ShapeRecord<D>& at(std::int32_t slot) const { return record[std::size_t(slot)]; }
+  /// Null for ordinary shapes.
+  const ShapeExtra<D>* extra(std::int32_t slot) const {
+    if ((at(slot).flags & shape_special) == 0) return nullptr;
+    const auto i = std::lower_bound(extras.begin(), extras.end(), slot,
+                                    [](const ShapeExtra<D>& e, std::int32_t s) { return e.shape < s; });
+    return i != extras.end() && i->shape == slot ? &*i : nullptr;
+  }
+  void set_extra(const ShapeExtra<D>& extra) {
+    const auto i = std::lower_bound(extras.begin(), extras.end(), extra.shape,
+                                    [](const ShapeExtra<D>& e, std::int32_t s) { return e.shape < s; });
+    const bool known = i != extras.end() && i->shape == extra.shape;
+    ShapeRecord<D>& shape = at(extra.shape);
+    shape.flags = std::uint8_t(extra.any() ? shape.flags | shape_special : shape.flags & ~shape_special);
+    if (extra.any() && known)
+      *i = extra;
+    else if (extra.any())
+      extras.insert(i, extra);
+    else if (known)
+      extras.erase(i);
+  }
 };
 
 }  // namespace carom::rigid::detail

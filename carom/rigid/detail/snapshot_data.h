@@ -30,6 +30,8 @@ template <class D>
 struct SnapshotData {
   std::vector<std::uint64_t> image;
   std::vector<SnapshotSection> sections;
+  std::size_t bodies_at = 0;     ///< section of solver bodies; poses, motions and records follow
+  std::size_t manifolds_at = 0;  ///< section of manifolds
   std::shared_ptr<const std::vector<typename D::Shape>> geometry;  ///< by slot of the shape
   std::vector<GeometryRecord> missing;  ///< after decoding: by slot, where `geometry` has no value yet
   std::vector<EffectorData<D>> effectors;
@@ -39,6 +41,11 @@ struct SnapshotData {
 
   std::size_t image_bytes() const { return image.size() * sizeof(std::uint64_t); }
 };
+
+template <class T, class D>
+T* section_values(std::vector<std::uint64_t>& image, const SnapshotData<D>& data, std::size_t section) {
+  return reinterpret_cast<T*>(image.data() + data.sections[section].first);
+}
 
 /// A hash of all that a shape is.
 std::uint64_t fingerprint(const geometry::Shape2& shape);

@@ -46,7 +46,10 @@ void find_pairs(WorldImplementation<D>& world) {
   // Which worker found a pair is chance; the order of creation must not be.
   std::sort(scratch.pairs.begin(), scratch.pairs.end());
   scratch.pairs.erase(std::unique(scratch.pairs.begin(), scratch.pairs.end()), scratch.pairs.end());
-  for (const FoundPair& pair : scratch.pairs) create_contact(world, pair.a, pair.b);
+  for (const FoundPair& pair : scratch.pairs)
+    if (!world.contact_filter ||
+        world.contact_filter(world.shapes.slots.handle_at(pair.a), world.shapes.slots.handle_at(pair.b)))
+      create_contact(world, pair.a, pair.b);
   for (const std::int32_t s : scratch.moved) world.shapes.at(s).flags &= std::uint8_t(~shape_moved);
   scratch.moved.clear();
 }

@@ -220,6 +220,54 @@ void prepare_rolling(const StepContext<D>& context, std::int32_t index, ContactE
   }
 }
 
+/// What only few contacts have: belts, patches that push nothing in this step, and hits that are told.
+template <class D, int W>
+void prepare_special(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block,
+                     ContactExtra<D, W>* extra, int lane) {
+  using V = typename D::Vector;
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  if ((c.flags & (contact_special | contact_hit_events)) == 0) return;
+  const V n = get(block.normal, lane), middle = get(block.patch_r_a, lane), offset = get(block.center_offset, lane);
+  if (c.flags & contact_special) {
+    const V belt = surface_slip(context.world, c);
+    if (!(belt == V{})) {
+      m.anchored = false;  // nothing sticks to one place of a belt
+      if constexpr (D::dimension == 2) {
+        block.tangent_target[lane] = m.tangent_speed + dot(belt, Vec2f{-n.y, n.x});
+      } else {
+        const Vec3f t = get(block.tangent, lane);
+        block.tangent_target[0][lane] = dot(belt, t);
+        block.tangent_target[1][lane] = dot(belt, cross(n, t));
+      }
+    }
+  }
+  if (c.flags & contact_hit_events) {
+    const SolverBody<D>&a = context.bodies[c.body[0]], &b = context.bodies[c.body[1]];
+    const V v = b.linear_velocity + cross(b.angular_velocity, middle + offset) - a.linear_velocity -
+                cross(a.angular_velocity, middle);
+    m.slip_speed = math::length(v - n * dot(n, v));
+  }
+  if (!m.disabled) return;
+  m.anchored = false;
+  for (int i = 0; i < D::max_points; ++i) {
+    block.point[i].separation[lane] = 1e3f;
+    block.point[i].impulse[lane] = 0;
+    if (extra != nullptr) extra->bounce_speed[i][lane] = 0;
+  }
+  block.friction[lane] = 0;
+  if constexpr (D::dimension == 2) {
+    block.tangent_impulse[lane] = 0;
+  } else {
+    block.tangent_impulse[0][lane] = block.tangent_impulse[1][lane] = 0;
+    block.twist_impulse[lane] = block.twist_radius[lane] = 0;
+  }
+  if (extra != nullptr) {
+    extra->rolling_lever[lane] = 0;
+    for (auto& row : extra->rolling_impulse) row[lane] = 0;
+  }
+}
+
 template <class Block>
 void zero_lane(Block& block, int width, int lane) {
   for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
@@ -326,6 +374,7 @@ void prepare_blocks(StepContext<D>& context) {
       blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
     blocks.bounces = c.extra > 0;
   }
+  const bool any_special = !world.shapes.extras.empty() || world.hit_event_shapes > 0;
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
                                 ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
     ContactRaw<D, W> raw;
@@ -340,6 +389,7 @@ void prepare_blocks(StepContext<D>& context) {
       if (raw.anchor_state[lane] > 0) set_anchor(context, m, block, lane);
       if (extra != nullptr || world.hit_event_shapes > 0) find_approach(context, m, block, extra, lane);
       if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
+      if (any_special) prepare_special(context, m, block, extra, lane);
     }
   });
 }

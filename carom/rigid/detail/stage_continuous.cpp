@@ -122,6 +122,11 @@ float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std:
       const ShapeRecord<D>& other = world.shapes.at(std::int32_t(item));
       if (other.body == body || (other.flags & shape_sensor) != 0 || !may_collide(world, shape, other)) return true;
       if (joints_forbid_collision(world, body, other.body)) return true;
+      if (passes_one_way(world, std::int32_t(item), typename D::Vector(m.center - start.center))) return true;
+      // Who has no contact may be one that the caller's filter refused.
+      if (world.contact_filter && !world.pairs.contains(PairSet::key(s, std::int32_t(item))) &&
+          !world.contact_filter(world.shapes.slots.handle_at(s), world.shapes.slots.handle_at(int(item))))
+        return true;
       const typename D::Pose& pose = world.bodies.pose[std::size_t(other.body)];
       // One that was stopped stands where it stopped: its way no longer takes the whole step.
       SweepStart<D> other_start{pose.rotation, world.bodies.motion[std::size_t(other.body)].center};
@@ -182,13 +187,17 @@ void stop_fast_bodies(StepContext<D>& context) {
     return (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;
   };
   // Fixed geometry first, each body by itself.
-  context.scheduler.parallel_for(int(scratch.fast.size()), 4, [&](int begin, int end, int) {
+  const auto stop = [&](int begin, int end, int) {
     for (int k = begin; k < end; ++k) {
       const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);
       const std::int32_t body = world.bodies.awake[place];
       if (!is_bullet(body)) move_to_fraction(world, body, place, free_fraction(world, body, place, false));
     }
-  });
+  };
+  if (world.contact_filter)
+    stop(0, int(scratch.fast.size()), 0);  // the caller's function is only ever called on the caller's thread
+  else
+    context.scheduler.parallel_for(int(scratch.fast.size()), 4, stop);
   // Then bullets, one after another, against everything where it now is.
   for (const std::int32_t place : scratch.fast) {
     const std::int32_t body = world.bodies.awake[std::size_t(place)];

@@ -11,6 +11,12 @@ void find_pairs(WorldImplementation<D>& world);
 /// Manifolds of all awake contacts; begin and end events; contacts that drifted apart are destroyed.
 template <class D>
 void update_contacts(WorldImplementation<D>& world);
+/// One-way surfaces and the caller's contact modifier, in the order of the contacts, on the calling thread.
+template <class D>
+void modify_contacts(WorldImplementation<D>& world);
+/// May the moving shape pass the one-way surface `other` on its way by `travel` (world)?
+template <class D>
+bool passes_one_way(const WorldImplementation<D>& world, std::int32_t other, const typename D::Vector& travel);
 /// Contact blocks from manifolds, and back.
 template <class D>
 void prepare_contacts(StepContext<D>& context);
@@ -37,6 +43,9 @@ void finalize_bodies(StepContext<D>& context);
 /// Marks the shapes that no longer fit their fat bounds.
 template <class D>
 bool leave_bounds(WorldImplementation<D>& world, std::int32_t body);
+/// Takes force and speed from a body whose numbers broke: it will be told and released.
+template <class D>
+void quarantine(WorldImplementation<D>& world, std::int32_t body);
 /// Bodies whose state became NaN or infinite are frozen and taken out of everything.
 template <class D>
 void release_broken_bodies(WorldImplementation<D>& world);

@@ -10,6 +10,7 @@ namespace carom::rigid::detail {
 //   state(x)       x decides how the world goes on: a number, a plain struct or a vector of them;
 //   scratch(v)     a vector of the step, whose content may be forgotten between steps;
 //   events(v)      what the last step told;
+//   bodies(v, v, v, v), manifolds(v)                     state of which a part follows from the rest;
 //   definition(d), shapes(v), names(v), effectors(v)     state that is not plain bytes.
 // Store types are deduced, so that all of this serves constant worlds too.
 
@@ -22,10 +23,7 @@ template <class Bodies, class Visit>
 void visit_bodies(Bodies& store, Visit& visit) {
   auto& [slots, solver, pose, motion, record, names, birth, awake] = store;
   visit_slots(slots, visit);
-  visit.state(solver);
-  visit.state(pose);
-  visit.state(motion);
-  visit.state(record);
+  visit.bodies(solver, pose, motion, record);
   visit.names(names);
   visit.state(birth);
   visit.state(awake);
@@ -33,10 +31,11 @@ void visit_bodies(Bodies& store, Visit& visit) {
 
 template <class Shapes, class Visit>
 void visit_shapes(Shapes& store, Visit& visit) {
-  auto& [slots, record, trees, geometry_copy] = store;
+  auto& [slots, record, extras, trees, geometry_copy] = store;
   (void)geometry_copy;
   visit_slots(slots, visit);
   visit.shapes(record);
+  visit.state(extras);
   for (auto& tree : trees) visit_slots(tree, visit);
 }
 
@@ -68,7 +67,7 @@ template <class Contacts, class Visit>
 void visit_contacts(Contacts& store, Visit& visit) {
   auto& [contacts, manifolds, free_contacts, free_manifolds, awake, count] = store;
   visit.state(contacts);
-  visit.state(manifolds);
+  visit.manifolds(manifolds);
   visit.state(free_contacts);
   visit.state(free_manifolds);
   visit.state(awake);
@@ -91,7 +90,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, solver_stages, solver_loops, moved, found_pairs, pairs, swept, fast, broken, body_changes,
          contact_changes, found_manifolds, manifolds, island_parent, island_list, island_bodies, island_ends,
          doomed_contacts, new_touches, island_restless, contact_begin, contact_end, pending_contact_end, contact_hit,
-         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined] = scratch;
+         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves] = scratch;
   (void)blocks;
   visit.scratch(solver_stages);
   visit.scratch(solver_loops);
@@ -121,6 +120,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.state(pending_sensor_end);
   visit.events(fell_asleep);
   visit.events(quarantined);
+  visit.events(body_moves);
 }
 
 /// `world` is a WorldImplementation, constant or not.
@@ -128,10 +128,10 @@ template <class World, class Visit>
 void visit_world(World& world, Visit&& visit) {
   auto& [definition, world_number, bodies, shapes, joints, effectors, contacts, pairs, graph, sleeping, own_scheduler,
          scheduler, arena, scratch, kernels, hit_event_shapes, step_count, births, time, last_dt, peak_bytes, reserved,
-         profile] = world;
+         pair_rules, contact_filter, contact_modifier, profile] = world;
   // Of this object, this machine or the last step's clock.
   (void)world_number, (void)own_scheduler, (void)scheduler, (void)arena, (void)kernels, (void)peak_bytes,
-      (void)reserved, (void)profile;
+      (void)reserved, (void)contact_filter, (void)contact_modifier, (void)profile;
   visit.definition(definition);
   visit_bodies(bodies, visit);
   visit_shapes(shapes, visit);
@@ -146,6 +146,7 @@ void visit_world(World& world, Visit&& visit) {
     visit.state(free);
   }
   visit_scratch(scratch, visit);
+  visit.state(pair_rules);
   visit.state(hit_event_shapes);
   visit.state(step_count);
   visit.state(births);

@@ -75,6 +75,7 @@ struct StepScratch {
   std::vector<ContactHitEvent<D>> contact_hit;
   std::vector<SensorEvent> sensor_begin, sensor_end, pending_sensor_end;
   std::vector<SleepEvent> fell_asleep, quarantined;
+  std::vector<MoveEvent<D>> body_moves;
 };
 
 /// Events of the last step are gone; those that wait for the next one stay.
@@ -87,6 +88,7 @@ void forget_events(StepScratch<D>& s) {
   s.sensor_end.clear();
   s.fell_asleep.clear();
   s.quarantined.clear();
+  s.body_moves.clear();
 }
 
 }  // namespace carom::rigid::detail

@@ -105,6 +105,14 @@ struct MemoryRelease {
     else if (v.capacity() > v.size())
       fit_memory(v);
   }
+  template <class S, class P, class M>
+  void bodies(std::vector<S>& solver, std::vector<P>& pose, std::vector<M>& motion, std::vector<BodyRecord>& record) {
+    state(solver), state(pose), state(motion), state(record);
+  }
+  template <class T>
+  void manifolds(std::vector<T>& v) {
+    state(v);
+  }
   template <class T>
   void scratch(std::vector<T>& v) {
     release_memory(v);
@@ -136,6 +144,13 @@ void release_scratch(WorldImplementation<D>& world) {
 template <class D>
 bool worth_a_region(const WorldImplementation<D>& world) {
   return world.scheduler->thread_count() > 1 && world.bodies.awake.size() + world.contacts.awake.size() >= 512;
+}
+
+template <class D>
+void tell_moves(WorldImplementation<D>& world) {
+  if (!world.definition.move_events) return;
+  for (const std::int32_t body : world.bodies.awake)
+    world.scratch.body_moves.push_back({world.bodies.slots.handle_at(body), world.bodies.pose[std::size_t(body)]});
 }
 
 template <class D>
@@ -220,10 +235,12 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   std::optional<core::ParallelRegion> region;
   if (worth_a_region(world)) region.emplace(*world.scheduler);
   apply_effectors(world, dt);
+  release_broken_bodies(world);  // what a caller's effector broke never meets another body
   profile.effectors = watch.lap("effectors");
   find_pairs(world);
   profile.broad_phase = watch.lap("broad phase");
   update_contacts(world);
+  modify_contacts(world);
   profile.narrow_phase = watch.lap("narrow phase");
 
   StepContext<D> context = make_context(world, dt);
@@ -241,6 +258,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   profile.finalize = watch.lap("finalize");
   stop_fast_bodies(context);
   profile.continuous = watch.lap("continuous");
+  tell_moves(world);
   update_trees(world);
   release_broken_bodies(world);
   profile.broad_phase += watch.lap("trees");

@@ -157,6 +157,7 @@ Status World<D>::destroy_body(BodyId body) {
     self_->shapes.slots.release(self_->shapes.slots.handle_at(s));
     // A slot in `moved` stays there until the next step; without a leaf it is passed over.
     const std::uint8_t moved = shape.flags & shape_moved;
+    self_->shapes.set_extra({s});
     shape = {};
     self_->shapes.geometry_copy.reset();
     shape.flags = moved;

@@ -1,6 +1,9 @@
 // World's members that push bodies. Forces wait for the next step, impulses act at once.
 #pragma once
 
+#include <algorithm>
+
+#include "carom/geometry/query.h"
 #include "carom/rigid/detail/bodies.h"
 #include "carom/rigid/detail/check.h"
 
@@ -71,7 +74,76 @@ Status add_kick(WorldImplementation<D>& world, std::string_view call, BodyId bod
   return {};
 }
 
+/// The area (2D: length) of the shape's own box as seen along `direction` (unit, shape frame).
+inline float seen_area(const geometry::Shape2& shape, const Vec2f& direction) {
+  const Vec2f half = geometry::bounds(shape, {}).extents();
+  return 2 * (half.x * math::abs(direction.y) + half.y * math::abs(direction.x));
+}
+inline float seen_area(const geometry::Shape3& shape, const Vec3f& direction) {
+  if (shape.type == geometry::ShapeType3::sphere) return pi_f * shape.sphere.radius * shape.sphere.radius;
+  const Vec3f half = geometry::bounds(shape, {}).extents();
+  return 4 * (half.y * half.z * math::abs(direction.x) + half.x * half.z * math::abs(direction.y) +
+              half.x * half.y * math::abs(direction.z));
+}
+inline geometry::Shape2 point_shape(Dim2) { return geometry::Circle{1e-4f}; }
+inline geometry::Shape3 point_shape(Dim3) { return geometry::Sphere{1e-4f}; }
+
 }  // namespace detail
+
+template <class D>
+Result<int> World<D>::explode(const ExplosionDef<D>& d) {
+  using namespace detail;
+  Complaint complaint("World::explode");
+  check_size(complaint, "center", d.center, max_coordinate);
+  check_range(complaint, "radius", d.radius, 0, max_size);
+  check_range(complaint, "falloff", d.falloff, 0, max_size);
+  check_range(complaint, "impulse_per_area", d.impulse_per_area, -max_force, max_force);
+  check_range(complaint, "speed", d.speed, -max_velocity, max_velocity);
+  if (!complaint.none_yet()) return complaint.error();
+  const float reach = d.radius + d.falloff;
+  std::vector<std::int32_t> near;
+  self_->shapes.trees[tree_dynamic].query(
+      geometry::grow(typename D::Bounds{d.center, d.center}, double(reach)), [&](std::uint32_t item) {
+        const ShapeRecord<D>& shape = self_->shapes.at(std::int32_t(item));
+        if ((shape.flags & shape_sensor) == 0 && (shape.filter.category & d.mask) != 0)
+          near.push_back(std::int32_t(item));
+        return true;
+      });
+  std::sort(near.begin(), near.end(), [&](std::int32_t a, std::int32_t b) {
+    const std::int32_t body_a = self_->shapes.at(a).body, body_b = self_->shapes.at(b).body;
+    return body_a != body_b ? body_a < body_b : a < b;
+  });
+  int count = 0;
+  std::int32_t last_pushed = none;
+  for (const std::int32_t s : near) {
+    const ShapeRecord<D>& shape = self_->shapes.at(s);
+    const typename D::Pose pose = shape_pose(*self_, shape);
+    const Vector center = local_point(pose, d.center);
+    const auto gap = geometry::distance(shape.geometry, point_shape(D{}), typename D::Transform{center, {}});
+    if (gap.distance > reach) continue;
+    const float strength = gap.distance <= d.radius || !(d.falloff > 0) ? 1 : (reach - gap.distance) / d.falloff;
+    const BodyMotion<D>& motion = self_->bodies.motion[std::size_t(shape.body)];
+    // From inside a shape, outward means away from its centre of mass.
+    Vector out =
+        gap.distance > 0 ? gap.point_a - center : inverse_rotate(pose.rotation, Vector(motion.center - d.center));
+    const float length = math::length(out);
+    if (!(length > 1e-6f)) continue;
+    out = out * (1 / length);
+    const float push = d.impulse_per_area * strength * seen_area(shape.geometry, out);
+    const Vector direction = rotate(pose.rotation, out);
+    const Position point = gap.distance > 0 ? world_point(pose, gap.point_a) : motion.center;
+    // Speed is given to a body once, by its first shape.
+    const float speed = shape.body == last_pushed ? 0 : d.speed * strength;
+    const Vector impulse = direction * push;
+    const Vector kick = direction * (speed * motion.mass);
+    const BodyId body = self_->bodies.slots.handle_at(shape.body);
+    bool felt = push != 0 && add_kick<D>(*self_, "explode", body, &impulse, nullptr, &point).ok();
+    if (speed != 0 && add_kick<D>(*self_, "explode", body, &kick, nullptr, nullptr).ok()) felt = true;
+    last_pushed = shape.body;
+    count += felt ? 1 : 0;
+  }
+  return count;
+}
 
 template <class D>
 Status World<D>::add_force(BodyId body, Vector force) {

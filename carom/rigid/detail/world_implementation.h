@@ -17,6 +17,14 @@
 
 namespace carom::rigid::detail {
 
+struct PairRuleEntry {
+  std::uint64_t key = 0;
+  PairRule rule{};
+  static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+    return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
+  }
+};
+
 template <class D>
 struct WorldImplementation {
   explicit WorldImplementation(const WorldDef<D>& definition);
@@ -43,8 +51,11 @@ struct WorldImplementation {
   std::uint64_t step_count = 0, births = 0;
   double time = 0;
   float last_dt = 0;
-  std::size_t peak_bytes = 0;  ///< the most memory held after any step
-  bool reserved = false;       ///< the caller asked for room: it is not given back when all sleeps
+  std::size_t peak_bytes = 0;             ///< the most memory held after any step
+  bool reserved = false;                  ///< the caller asked for room: it is not given back when all sleeps
+  std::vector<PairRuleEntry> pair_rules;  ///< in the order of their keys
+  typename World<D>::ContactFilter contact_filter;
+  typename World<D>::ContactModifier contact_modifier;
   StepProfile profile{};
 };
 

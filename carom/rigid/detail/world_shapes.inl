@@ -90,6 +90,35 @@ void renew_contacts(WorldImplementation<D>& world, std::int32_t shape) {
   }
 }
 
+/// Unit, or zero for solid.
+template <class D>
+typename D::Vector one_way_direction(const typename D::Vector& v) {
+  const float length = math::length(v);
+  return length > 0 ? v * (1 / length) : v;
+}
+/// Gives the shape what few have, and tells its contacts.
+template <class D>
+void change_extra(WorldImplementation<D>& world, const ShapeExtra<D>& extra) {
+  world.shapes.set_extra(extra);
+  const std::int32_t body = world.shapes.at(extra.shape).body;
+  wake_body(world, body);
+  wake_touching(world, body);
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;
+       key = world.contacts.at(key >> 1).next[key & 1]) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    if (c.shape[key & 1] != extra.shape) continue;
+    update_contact_flags(world, key >> 1);
+    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+      world.contacts.manifold(m).disabled = false;
+      mix_materials(world, m);
+    }
+  }
+}
+template <class D>
+ShapeExtra<D> extra_of(const WorldImplementation<D>& world, std::int32_t shape) {
+  const ShapeExtra<D>* known = world.shapes.extra(shape);
+  return known != nullptr ? *known : ShapeExtra<D>{shape};
+}
 template <class D>
 void update_collider_flag(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& r = world.bodies.record[std::size_t(body)];
@@ -111,6 +140,8 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   complaint.rotation("local.q", d.local.q);
   check_range(complaint, "density", d.density, 0, max_density);
   check_material(complaint, "material", d.material);
+  check_size(complaint, "surface_velocity", d.surface_velocity, max_velocity);
+  check_size(complaint, "one_way", d.one_way, max_size);
   if (!complaint.none_yet()) return complaint.error();
   const BodyType type = self_->bodies.record[std::size_t(*slot)].type;
   if (type == BodyType::dynamic && surface_only(shape))
@@ -166,6 +197,7 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   update_mass(*self_, *slot);
   update_collider_flag(*self_, *slot);
   insert_into_tree(*self_, index);
+  self_->shapes.set_extra({index, d.modify_contacts, d.surface_velocity, one_way_direction<D>(d.one_way)});
   return id;
 }
 
@@ -184,6 +216,7 @@ Status World<D>::destroy_shape(ShapeId shape) {
   *link = s.next;
   if (s.flags & shape_hit_events) --self_->hit_event_shapes;
   const std::uint8_t moved = s.flags & shape_moved;
+  self_->shapes.set_extra({*slot});
   s = {};
   self_->shapes.geometry_copy.reset();
   s.flags = moved;
@@ -225,6 +258,11 @@ Result<ShapeDef<D>> World<D>::shape_definition(ShapeId shape) const {
   d.contact_events = (s.flags & shape_contact_events) != 0;
   d.hit_events = (s.flags & shape_hit_events) != 0;
   d.user_data = s.user_data;
+  if (const ShapeExtra<D>* extra = self_->shapes.extra(*slot)) {
+    d.surface_velocity = extra->surface_velocity;
+    d.one_way = extra->one_way;
+    d.modify_contacts = extra->modify;
+  }
   return d;
 }
 
@@ -243,13 +281,61 @@ Status World<D>::set_material(ShapeId shape, const Material& material) {
   for (std::int32_t key = self_->bodies.record[std::size_t(s.body)].first_contact; key != none;) {
     ContactRecord<D>& c = self_->contacts.at(key >> 1);
     if (c.shape[key & 1] == *slot) {
-      const float e =
-          max(self_->shapes.at(c.shape[0]).material.restitution, self_->shapes.at(c.shape[1]).material.restitution);
-      c.flags = std::uint16_t(e > 0 ? c.flags | contact_bouncy : c.flags & ~contact_bouncy);
+      update_contact_flags(*self_, key >> 1);
       for (std::int32_t m = c.first_manifold; m != none; m = self_->contacts.manifold(m).next) mix_materials(*self_, m);
     }
     key = c.next[key & 1];
   }
+  return {};
+}
+
+template <class D>
+Status World<D>::set_density(ShapeId shape, float density) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_density", shape);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_density");
+  check_range(complaint, "density", density, 0, max_density);
+  if (!complaint.none_yet()) return complaint.error();
+  wake_body(*self_, self_->shapes.at(*slot).body);
+  self_->shapes.at(*slot).density = density;
+  update_mass(*self_, self_->shapes.at(*slot).body);
+  return {};
+}
+template <class D>
+Status World<D>::set_surface_velocity(ShapeId shape, Vector velocity) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_surface_velocity", shape);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_surface_velocity");
+  check_size(complaint, "velocity", velocity, max_velocity);
+  if (!complaint.none_yet()) return complaint.error();
+  ShapeExtra<D> extra = extra_of(*self_, *slot);
+  extra.surface_velocity = velocity;
+  change_extra(*self_, extra);
+  return {};
+}
+template <class D>
+Status World<D>::set_one_way(ShapeId shape, Vector direction) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_one_way", shape);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_one_way");
+  check_size(complaint, "direction", direction, max_size);
+  if (!complaint.none_yet()) return complaint.error();
+  ShapeExtra<D> extra = extra_of(*self_, *slot);
+  extra.one_way = one_way_direction<D>(direction);
+  change_extra(*self_, extra);
+  return {};
+}
+template <class D>
+Status World<D>::set_modify_contacts(ShapeId shape, bool modify) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_modify_contacts", shape);
+  if (!slot.ok()) return slot.error();
+  ShapeExtra<D> extra = extra_of(*self_, *slot);
+  extra.modify = modify;
+  change_extra(*self_, extra);
   return {};
 }
 

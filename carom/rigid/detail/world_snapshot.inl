@@ -37,6 +37,15 @@ class SnapshotWriter {
   void state(const T& x) {
     put(&x, 1);
   }
+  void bodies(const std::vector<SolverBody<D>>& solver, const std::vector<typename D::Pose>& pose,
+              const std::vector<BodyMotion<D>>& motion, const std::vector<BodyRecord>& record) {
+    to_.bodies_at = to_.sections.size();
+    state(solver), state(pose), state(motion), state(record);
+  }
+  void manifolds(const std::vector<ManifoldRecord<D>>& v) {
+    to_.manifolds_at = to_.sections.size();
+    state(v);
+  }
   template <class T>
   void scratch(const T&) {}
   template <class T>
@@ -92,6 +101,15 @@ class SnapshotChecker {
   void state(const T&) {
     expect(sizeof(T), true);
   }
+  template <class S, class P, class M>
+  void bodies(const std::vector<S>& solver, const std::vector<P>& pose, const std::vector<M>& motion,
+              const std::vector<BodyRecord>& record) {
+    state(solver), state(pose), state(motion), state(record);
+  }
+  template <class T>
+  void manifolds(const std::vector<T>& v) {
+    state(v);
+  }
   template <class T>
   void scratch(const T&) {}
   template <class T>
@@ -137,6 +155,14 @@ class SnapshotReader {
   template <class T>
   void state(T& x) {
     std::memcpy(static_cast<void*>(&x), place(from_.sections[next_++]), sizeof(T));
+  }
+  template <class S, class P, class M>
+  void bodies(std::vector<S>& solver, std::vector<P>& pose, std::vector<M>& motion, std::vector<BodyRecord>& record) {
+    state(solver), state(pose), state(motion), state(record);
+  }
+  template <class T>
+  void manifolds(std::vector<T>& v) {
+    state(v);
   }
   template <class T>
   void scratch(const T&) {}

@@ -100,6 +100,7 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.pending_sensor_end.reserve(contacts);
   s.fell_asleep.reserve(bodies);
   s.quarantined.reserve(bodies);
+  if (world.definition.move_events) s.body_moves.reserve(bodies);
   // Blocks of the solver: a lane a manifold, and for every colour one that is not full.
   using Block = ContactBlock<D, 16>;
   using Extra = ContactExtra<D, 16>;
@@ -141,6 +142,54 @@ Status World<D>::set_gravity(Vector gravity) {
 }
 
 template <class D>
+Status World<D>::set_pair_rule(std::uint32_t material_a, std::uint32_t material_b, const PairRule* rule) {
+  using namespace detail;
+  if (rule != nullptr) {
+    Complaint complaint("World::set_pair_rule");
+    check_range(complaint, "friction", rule->friction, 0, 1e6);
+    check_range(complaint, "restitution", rule->restitution, 0, 1);
+    check_range(complaint, "rolling_resistance", rule->rolling_resistance, 0, 1e6);
+    if (!complaint.none_yet()) return complaint.error();
+  }
+  const std::uint64_t key = PairRuleEntry::key_of(material_a, material_b);
+  std::vector<PairRuleEntry>& rules = self_->pair_rules;
+  const auto i = std::lower_bound(rules.begin(), rules.end(), key,
+                                  [](const PairRuleEntry& e, std::uint64_t k) { return e.key < k; });
+  const bool known = i != rules.end() && i->key == key;
+  if (rule == nullptr && known)
+    rules.erase(i);
+  else if (rule != nullptr && known)
+    i->rule = *rule;
+  else if (rule != nullptr)
+    rules.insert(i, {key, *rule});
+  for (std::size_t k = 0; k < self_->contacts.contacts.size(); ++k) {
+    const ContactRecord<D>& c = self_->contacts.contacts[k];
+    if ((c.flags & contact_in_use) == 0 || PairRuleEntry::key_of(self_->shapes.at(c.shape[0]).material.user_id,
+                                                                 self_->shapes.at(c.shape[1]).material.user_id) != key)
+      continue;
+    update_contact_flags(*self_, std::int32_t(k));
+    for (std::int32_t m = c.first_manifold; m != none; m = self_->contacts.manifold(m).next) mix_materials(*self_, m);
+    if (c.first_manifold != none)
+      for (const std::int32_t body : {c.body[0], c.body[1]}) wake_body(*self_, body);
+  }
+  return {};
+}
+template <class D>
+void World<D>::pair_rules(std::vector<MaterialPair>& out) const {
+  out.clear();
+  for (const detail::PairRuleEntry& e : self_->pair_rules)
+    out.push_back({std::uint32_t(e.key >> 32), std::uint32_t(e.key), e.rule});
+}
+template <class D>
+void World<D>::set_contact_filter(ContactFilter filter) {
+  self_->contact_filter = std::move(filter);
+}
+template <class D>
+void World<D>::set_contact_modifier(ContactModifier modifier) {
+  self_->contact_modifier = std::move(modifier);
+}
+
+template <class D>
 Status World<D>::reserve(const Capacity& capacity) {
   using namespace detail;
   Complaint complaint("World::reserve");
@@ -169,7 +218,8 @@ double World<D>::time() const {
 template <class D>
 Events<D> World<D>::events() const {
   const detail::StepScratch<D>& s = self_->scratch;
-  return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin, s.sensor_end, s.fell_asleep, s.quarantined};
+  return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin,
+          s.sensor_end,    s.fell_asleep, s.quarantined, s.body_moves};
 }
 
 template <class D>

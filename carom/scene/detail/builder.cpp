@@ -33,6 +33,35 @@ bool read_world(Reader& reader, const Object& scene, const InstantiateOptions& o
   return !reader.failed() && reader.accept(World<D>::check(def), *scene.node, "world");
 }
 
+template <class D>
+bool read_material_pairs(Reader& reader, const Object& scene, World<D>& world) {
+  const Node* settings = scene.find("world");
+  const Node* list = settings != nullptr ? settings->find("material_pairs") : nullptr;
+  if (list == nullptr) return true;
+  const std::string path = "world.material_pairs";
+  if (!list->is_array()) return reader.expected(*list, path, "a list"), false;
+  for (std::size_t i = 0; i < list->children.size() && !reader.failed(); ++i) {
+    Object o;
+    if (!reader.open(list->children[i], index_path(path, i), *tables().material_pair, o)) return false;
+    const Node& ids = *o.find("materials");
+    if (!ids.is_array() || ids.children.size() != 2)
+      return reader.expected(ids, o.path_of("materials"), "the user_ids of two materials"), false;
+    std::uint32_t id[2] = {};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double x = reader.value(ids.children[k], index_path(o.path_of("materials"), k), Measure::plain);
+      if (!(x >= 0 && x <= 0x7FFFFFFF && x == double(std::uint32_t(x))))
+        return reader.expected(ids.children[k], index_path(o.path_of("materials"), k), "a whole number"), false;
+      id[k] = std::uint32_t(x);
+    }
+    PairRule rule;
+    rule.friction = float(reader.number(o, "friction", rule.friction));
+    rule.restitution = float(reader.number(o, "restitution", rule.restitution));
+    rule.rolling_resistance = float(reader.number(o, "rolling_resistance", rule.rolling_resistance));
+    if (reader.failed() || !reader.accept(world.set_pair_rule(id[0], id[1], &rule), *o.node, o.path)) return false;
+  }
+  return !reader.failed();
+}
+
 bool read_mass_properties(Reader& reader, const Object& m, geometry::MassProperties2& out) {
   out.mass = reader.number(m, "mass", 0);
   const math::Vec3d center = reader.vector(m, "center");
@@ -382,6 +411,7 @@ bool build(Reader& reader, const Scene& scene, const Object& o, const Instantiat
   WorldDef<D> def;
   if (!read_world<D>(reader, o, options, def)) return false;
   world_slot(out, static_cast<D*>(nullptr)) = std::make_unique<World<D>>(def);
+  if (!read_material_pairs(reader, o, *world_slot(out, static_cast<D*>(nullptr)))) return false;
   return Builder<D>(reader, scene, out, false).run();
 }
 template <class D>

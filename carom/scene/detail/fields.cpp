@@ -116,6 +116,9 @@ constexpr Field shape_fields[] = {
     {"sensor", T::flag, M::plain, "reports overlaps, pushes nothing"},
     {"contact_events", T::flag},
     {"hit_events", T::flag},
+    {"modify_contacts", T::flag, M::plain, "a program that runs the scene is asked about its contacts"},
+    {"surface_velocity", T::vector, M::speed, "the surface runs like a belt; in the shape's frame"},
+    {"one_way", T::vector, M::plain, "holds what comes against this direction, lets through the rest; shape's frame"},
     {"user_data", T::bits},
 };
 const ObjectKind shape_kind{"shape", "A collision shape.", shape_fields};
@@ -329,6 +332,15 @@ constexpr Field expectation_fields[] = {
 };
 const ObjectKind expectation_kind{"expectation", "A number that the run must reach.", expectation_fields};
 
+constexpr Field material_pair_fields[] = {
+    {"materials", T::number_list, M::plain, "the user_ids of the two materials", nullptr, {}, true},
+    {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0"},
+    {"restitution", T::quantity, M::plain, "0 to 1"},
+    {"rolling_resistance", T::quantity, M::plain, "lever arm over radius, at least 0"},
+};
+const ObjectKind material_pair_kind{"material_pair", "What holds between two materials instead of the mixture.",
+                                    material_pair_fields};
+
 constexpr Field world_fields[] = {
     {"restitution_threshold", T::quantity, M::speed, "slower impacts do not bounce"},
     {"contact_frequency", T::quantity, M::frequency, "stiffness of contacts"},
@@ -340,6 +352,7 @@ constexpr Field world_fields[] = {
     {"sleep_time", T::quantity, M::time, "below the sleep speed before an island sleeps"},
     {"allow_sleep", T::flag},
     {"continuous", T::flag, M::plain, "fast bodies never pass through static geometry"},
+    {"material_pairs", T::list, M::plain, "rules for pairs of materials", &material_pair_kind},
 };
 const ObjectKind world_kind{"world", "Settings of the engine.", world_fields};
 
@@ -439,11 +452,11 @@ constexpr Field preset_fields[] = {
 const ObjectKind preset_kind{"preset", "Values under a name, for the key preset.", preset_fields};
 
 const ObjectKind* const all_kinds[] = {
-    &scene_kind,    &world_kind,  &parameter_kind,       &material_kind,    &filter_kind, &shape_kind,
-    &rotation_kind, &body_kind,   &mass_properties_kind, &group_kind,       &joint_kind,  &frame_kind,
-    &spring_kind,   &limit_kind,  &motor_kind,           &effector_kind,    &wave_kind,   &camera_kind,
-    &plot_kind,     &axis_kind,   &series_kind,          &expectation_kind, &flight_kind, &earth_kind,
-    &vehicle_kind,  &initial_kind};
+    &scene_kind,  &world_kind,    &material_pair_kind, &parameter_kind,       &material_kind,    &filter_kind,
+    &shape_kind,  &rotation_kind, &body_kind,          &mass_properties_kind, &group_kind,       &joint_kind,
+    &frame_kind,  &spring_kind,   &limit_kind,         &motor_kind,           &effector_kind,    &wave_kind,
+    &camera_kind, &plot_kind,     &axis_kind,          &series_kind,          &expectation_kind, &flight_kind,
+    &earth_kind,  &vehicle_kind,  &initial_kind};
 
 }  // namespace
 
@@ -451,6 +464,7 @@ const FieldTables& tables() {
   static const FieldTables t{.scene = &scene_kind,
                              .part = &part_kind,
                              .world = &world_kind,
+                             .material_pair = &material_pair_kind,
                              .parameter = &parameter_kind,
                              .material = &material_kind,
                              .filter = &filter_kind,

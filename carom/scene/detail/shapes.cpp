@@ -5,6 +5,7 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/scene/detail/joints.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -334,6 +335,10 @@ bool read_shape(Reader& reader, const Library& library, const Node& node, const 
   d.sensor = reader.flag(o, "sensor", d.sensor);
   d.contact_events = reader.flag(o, "contact_events", d.contact_events);
   d.hit_events = reader.flag(o, "hit_events", d.hit_events);
+  d.modify_contacts = reader.flag(o, "modify_contacts", d.modify_contacts);
+  if (o.has("surface_velocity"))
+    d.surface_velocity = vector_for(reader.vector(o, "surface_velocity"), static_cast<D*>(nullptr));
+  if (o.has("one_way")) d.one_way = vector_for(reader.vector(o, "one_way"), static_cast<D*>(nullptr));
   d.user_data = reader.bits(o, "user_data", 0);
   return !reader.failed();
 }

@@ -175,7 +175,10 @@ std::string shape_text(const typename D::Shape& shape, const ShapeDef<D>& d) {
   }
   f.flag("sensor", d.sensor, false)
       .flag("contact_events", d.contact_events, true)
-      .flag("hit_events", d.hit_events, false);
+      .flag("hit_events", d.hit_events, false)
+      .flag("modify_contacts", d.modify_contacts, false);
+  if (!(d.surface_velocity == typename D::Vector{})) f.put("surface_velocity", vector_text(d.surface_velocity));
+  if (!(d.one_way == typename D::Vector{})) f.put("one_way", vector_text(d.one_way));
   if (d.user_data != 0) f.put("user_data", bits_text(d.user_data));
   return f.object();
 }

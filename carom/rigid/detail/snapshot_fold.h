@@ -1,0 +1,55 @@
+// What of a snapshot follows from the rest of it, so that a difference need not carry it.
+#pragma once
+
+#include <cstring>
+
+#include "carom/rigid/detail/bodies.h"
+#include "carom/rigid/detail/snapshot_data.h"
+
+namespace carom::rigid::detail {
+
+template <class T>
+void exclusive_or(T& x, const T& y) {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0);
+  std::uint32_t a[sizeof(T) / 4], b[sizeof(T) / 4];
+  std::memcpy(a, &x, sizeof(T));
+  std::memcpy(b, &y, sizeof(T));
+  for (std::size_t i = 0; i < sizeof(T) / 4; ++i) a[i] ^= b[i];
+  std::memcpy(static_cast<void*>(&x), a, sizeof(T));
+}
+
+/// Combines the position of the origin with what the centre of mass says of it, and the inverse inertia with what the
+/// attitude says: both become zero where they agree to the bit. Done twice, it undoes itself: lossless.
+template <class D>
+void fold_body(typename D::Pose& pose, BodyMotion<D>& motion, const BodyRecord& record) {
+  exclusive_or(pose.position, motion.center - typename D::Position(rotate(pose.rotation, motion.local_center)));
+  exclusive_or(motion.world_inverse_inertia, inverse_inertia_in_world(motion, pose.rotation, record));
+}
+
+/// The image without what manifolds of awake bodies only report of the last step (impulses in all, approach speed):
+/// the next step writes them anew and nothing reads them before.
+template <class D>
+std::vector<std::uint64_t> canonical_image(const SnapshotData<D>& data) {
+  std::vector<std::uint64_t> image = data.image;
+  ManifoldRecord<D>* const manifolds = section_values<ManifoldRecord<D>>(image, data, data.manifolds_at);
+  for (std::size_t i = 0; i < data.sections[data.manifolds_at].count; ++i) {
+    ManifoldRecord<D>& m = manifolds[i];
+    if (m.contact == none || m.place.color < 0) continue;
+    for (float& total : m.impulses.total) total = 0;
+    m.impulses.friction_total = {};
+    m.approach_speed = 0;
+  }
+  return image;
+}
+
+/// Folds the bodies of `image` for which `changed(slot)`.
+template <class D, class Changed>
+void fold_bodies(std::vector<std::uint64_t>& image, const SnapshotData<D>& data, Changed&& changed) {
+  auto* const pose = section_values<typename D::Pose>(image, data, data.bodies_at + 1);
+  auto* const motion = section_values<BodyMotion<D>>(image, data, data.bodies_at + 2);
+  auto* const record = section_values<BodyRecord>(image, data, data.bodies_at + 3);
+  for (std::size_t i = 0; i < data.sections[data.bodies_at].count; ++i)
+    if (changed(i)) fold_body<D>(pose[i], motion[i], record[i]);
+}
+
+}  // namespace carom::rigid::detail

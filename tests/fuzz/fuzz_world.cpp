@@ -1,0 +1,500 @@
+// Calls of the interface in any order with any numbers: valid, invalid, stale, foreign, huge, not finite. A refused
+// call leaves the world as it was, nothing ever stops being finite, and snapshots go there and back.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "carom/carom.h"
+
+namespace {
+using namespace carom;
+using namespace carom::rigid;
+
+void require(bool truth, const char* what) {
+  if (truth) return;
+  std::fprintf(stderr, "fuzz_world: %s\n", what);
+  std::abort();
+}
+
+class Source {
+ public:
+  Source(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+  bool empty() const { return size_ == 0; }
+  std::uint8_t byte() {
+    if (size_ == 0) return 0;
+    --size_;
+    return *data_++;
+  }
+  bool flag() { return (byte() & 1) != 0; }
+  /// Mostly what a game says, sometimes what nobody should.
+  float number(float scale = 1) {
+    const std::uint8_t kind = byte();
+    if (kind < 200) return scale * (float(byte()) - 100) / 32;
+    switch (kind % 8) {
+      case 0:
+        return std::numeric_limits<float>::quiet_NaN();
+      case 1:
+        return std::numeric_limits<float>::infinity();
+      case 2:
+        return -1e30f;
+      case 3:
+        return 1e12f;
+      case 4:
+        return 1e-30f;
+      case 5:
+        return -0.0f;
+      case 6: {
+        std::uint32_t bits = 0;
+        for (int i = 0; i < 4; ++i) bits = bits << 8 | byte();
+        float x;
+        std::memcpy(&x, &bits, 4);
+        return x;
+      }
+      default:
+        return scale * 1e5f;
+    }
+  }
+  /// Of a size that can be: mostly.
+  float size() { return byte() < 240 ? 0.05f + float(byte()) / 128 : number(); }
+  std::vector<std::byte> rest(std::size_t most) {
+    std::vector<std::byte> bytes;
+    while (size_ > 0 && bytes.size() < most) bytes.push_back(std::byte(byte()));
+    return bytes;
+  }
+
+ private:
+  const std::uint8_t* data_;
+  std::size_t size_;
+};
+
+template <class D>
+struct Player {
+  using Vector = typename D::Vector;
+  Source in;
+  WorldDef<D> definition{};
+  World<D> world, foreign;
+  std::vector<BodyId> bodies;  ///< alive or not
+  std::vector<ShapeId> shapes;
+  std::vector<JointId> joints;
+  std::vector<EffectorId> effectors;
+  Snapshot<D> snapshot;
+  std::uint64_t snapshot_hash = 0;
+  int steps = 0;
+
+  Player(Source source, const WorldDef<D>& d) : in(source), definition(d), world(d), foreign(d) {
+    bodies.push_back(foreign.create_body({}).value());
+    shapes.push_back(foreign.add_shape(bodies[0], geometry_of()).value());
+    bodies.push_back({});
+    shapes.push_back({});
+    joints.push_back({});
+    effectors.push_back({});
+    BodyDef<D> ground;
+    ground.type = BodyType::fixed;
+    bodies.push_back(world.create_body(ground).value());
+    if constexpr (D::dimension == 2)
+      shapes.push_back(world.add_shape(bodies.back(), geometry::make_box2({50, 1})).value());
+    else
+      shapes.push_back(world.add_shape(bodies.back(), geometry::Box{{50, 1, 50}}).value());
+  }
+  static typename D::Shape geometry_of() {
+    if constexpr (D::dimension == 2)
+      return geometry::Circle{0.5f};
+    else
+      return geometry::Sphere{0.5f};
+  }
+
+  Vector vector(float scale = 1) {
+    Vector v{};
+    for (int i = 0; i < D::dimension; ++i) v[i] = in.number(scale);
+    return v;
+  }
+  typename D::Angular angular() {
+    if constexpr (D::dimension == 2)
+      return in.number();
+    else
+      return vector();
+  }
+  typename D::Rotation rotation() {
+    typename D::Rotation q{};
+    if (in.byte() < 128) return q;
+    if constexpr (D::dimension == 2)
+      q = {in.number(), in.number()};
+    else
+      q = {in.number(), in.number(), in.number(), in.number()};
+    return in.byte() < 200 ? math::normalize(q) : q;
+  }
+  typename D::Position position() { return typename D::Position(vector(2)) * (in.byte() > 250 ? 1e9 : 1.0); }
+  typename D::Transform transform() { return {vector(0.2f), rotation()}; }
+  BodyId body() { return bodies[in.byte() % bodies.size()]; }
+  ShapeId shape() { return shapes[in.byte() % shapes.size()]; }
+
+  typename D::Shape any_shape() {
+    if constexpr (D::dimension == 2) {
+      switch (in.byte() % 5) {
+        case 0:
+          return geometry::Circle{in.size()};
+        case 1:
+          return geometry::Capsule2{in.size(), in.size()};
+        case 2: {
+          const Vector points[5] = {vector(), vector(), vector(), vector(), vector()};
+          const auto polygon = geometry::make_polygon(points, in.flag() ? in.size() : 0);
+          return polygon.ok() ? geometry::Shape2(*polygon) : geometry::Shape2(geometry::Circle{1});
+        }
+        case 3: {
+          auto chain = geometry::make_chain({vector(5), vector(5), vector(5), vector(5)}, in.flag());
+          return chain.ok() ? geometry::Shape2(*chain) : geometry::Shape2(geometry::Segment{vector(), vector()});
+        }
+        default:
+          return in.byte() < 200 ? geometry::make_box2({0.1f + math::abs(float(in.byte())) / 128, 0.3f})
+                                 : geometry::make_box2({in.size(), in.size()});
+      }
+    } else {
+      switch (in.byte() % 9) {
+        case 0:
+          return geometry::Sphere{in.size()};
+        case 1:
+          return geometry::Capsule3{in.size(), in.size()};
+        case 2:
+          return geometry::Cylinder{in.size(), in.size()};
+        case 3:
+          return geometry::Cone{in.size(), in.size()};
+        case 4: {
+          const Vector points[6] = {vector(), vector(), vector(), vector(), vector(), vector()};
+          const auto hull = geometry::make_hull(points);
+          return hull.ok() ? geometry::Shape3(*hull) : geometry::Shape3(geometry::Sphere{1});
+        }
+        case 5: {
+          auto mesh = geometry::make_triangle_mesh({vector(5), vector(5), vector(5), vector(5)}, {0, 1, 2, 0, 2, 3});
+          return mesh.ok() ? geometry::Shape3(*mesh) : geometry::Shape3(geometry::Plane{});
+        }
+        case 6: {
+          auto field = geometry::make_height_field(3, 3, {in.size(), in.size()},
+                                                   {0, in.number(), 0, in.number(), 0, in.number(), 0, 0.1f, 0});
+          return field.ok() ? geometry::Shape3(*field) : geometry::Shape3(geometry::Plane{vector()});
+        }
+        case 7: {
+          auto compound = geometry::make_compound({{geometry::Box{{in.size(), in.size(), in.size()}}, transform()},
+                                                   {geometry::Sphere{in.size()}, transform()}});
+          return compound.ok() ? geometry::Shape3(*compound) : geometry::Shape3(geometry::Box{});
+        }
+        default:
+          return geometry::Box{{in.size(), in.size(), in.size()}, in.flag() ? in.size() : 0};
+      }
+    }
+  }
+
+  bool add_body() {
+    BodyDef<D> d;
+    d.type = BodyType(in.byte() % (in.byte() < 250 ? 3 : 200));
+    d.position = position();
+    d.rotation = rotation();
+    d.linear_velocity = vector(4);
+    d.angular_velocity = angular();
+    const std::uint8_t options = in.byte();
+    d.bullet = (options & 1) != 0;
+    d.awake = (options & 2) == 0;
+    d.enabled = (options & 12) != 12;
+    d.allow_sleep = (options & 16) == 0;
+    d.locks.x = (options & 96) == 96;
+    d.locks.rotation_z = (options & 192) == 192;
+    if (options == 77) d.name = "named";
+    if (in.byte() > 200) d.linear_damping = in.number(), d.gravity_scale = in.number();
+    const auto made = world.create_body(d);
+    if (made.ok()) bodies.push_back(*made);
+    return made.ok();
+  }
+  bool add_shape() {
+    ShapeDef<D> d;
+    const std::uint8_t options = in.byte();
+    d.sensor = (options & 7) == 7;
+    d.hit_events = (options & 8) != 0;
+    d.modify_contacts = (options & 48) == 48;
+    if ((options & 192) == 192) d.local = transform();
+    if (in.byte() > 180) {
+      d.density = in.number(1000);
+      d.material = {in.number(), in.number(), in.number(), in.number(), in.byte() % 4u};
+      d.filter = {in.byte(), in.byte(), std::int32_t(in.byte()) - 128};
+    }
+    if (in.byte() > 230) d.surface_velocity = vector();
+    if (in.byte() > 230) d.one_way = vector();
+    const auto made = world.add_shape(body(), any_shape(), d);
+    if (made.ok()) shapes.push_back(*made);
+    return made.ok();
+  }
+  template <class Def>
+  bool make_joint(Def d) {
+    d.body_a = body();
+    d.body_b = body();
+    d.frame_a = transform();
+    d.frame_b = transform();
+    d.collide_connected = in.flag();
+    if constexpr (requires { d.spring; }) d.spring = {in.number(4), in.number()};
+    if constexpr (requires { d.limit; }) d.limit = {in.flag(), in.number(), in.number()};
+    if constexpr (requires { d.motor; }) d.motor = {in.flag(), in.number(), in.number(100)};
+    if constexpr (requires { d.target; }) d.target = position();
+    if constexpr (requires { d.length; }) d.length = in.number();
+    const auto made = world.create_joint(d);
+    if (made.ok()) joints.push_back(*made);
+    return made.ok();
+  }
+  bool add_joint() {
+    switch (in.byte() % 7) {
+      case 0:
+        return make_joint(DistanceJointDef<D>{});
+      case 1:
+        return make_joint(BallJointDef<D>{});
+      case 2:
+        return make_joint(HingeJointDef<D>{});
+      case 3:
+        return make_joint(SliderJointDef<D>{});
+      case 4:
+        return make_joint(WeldJointDef<D>{});
+      case 5:
+        return make_joint(MotorJointDef<D>{});
+      default:
+        return make_joint(MouseJointDef<D>{});
+    }
+  }
+  EffectorDef<D> any_effector() {
+    switch (in.byte() % 7) {
+      case 0: {
+        LinearDrag<D> e;
+        e.body = in.flag() ? body() : BodyId{};
+        e.coefficient = double(in.number(10));
+        return e;
+      }
+      case 1:
+        return Wind<D>{vector()};
+      case 2: {
+        SpringDamper<D> e;
+        e.body_a = body();
+        e.body_b = in.flag() ? body() : BodyId{};
+        e.point_b = position();
+        e.stiffness = double(in.number(1000));
+        e.damping = double(in.number(10));
+        return e;
+      }
+      case 3: {
+        Buoyancy<D> e;
+        e.level = double(in.number());
+        e.linear_drag = double(in.number());
+        return e;
+      }
+      case 4: {
+        RadialField<D> e;
+        e.center = position();
+        e.strength = double(in.number());
+        e.exponent = double(in.number());
+        return e;
+      }
+      case 5: {
+        CustomEffector<D> e;
+        e.body = in.flag() ? body() : BodyId{};
+        const float x = in.number(100);  // not finite, too
+        e.model = [x](const EffectorInput<D>&) {
+          Wrench<D> w;
+          w.force.x = x;
+          return w;
+        };
+        return e;
+      }
+      default: {
+        QuadraticDrag<D> e;
+        e.area = double(in.number());
+        return e;
+      }
+    }
+  }
+
+  bool snapshots() {
+    switch (in.byte() % 4) {
+      case 0:
+        world.snapshot(snapshot);
+        snapshot_hash = world.state_hash();
+        return true;
+      case 1: {
+        const bool there = !snapshot.empty();
+        const Status restored = world.restore(snapshot);
+        require(restored.ok() == there, "a snapshot that was taken restores, an empty one does not");
+        if (restored.ok()) require(world.state_hash() == snapshot_hash, "the restored state is the saved one");
+        return restored.ok();
+      }
+      case 2: {
+        const Snapshot<D> now = world.snapshot();
+        const auto back = Snapshot<D>::decode(now.encode(snapshot), snapshot);
+        require(back.ok(), "what was encoded decodes");
+        require(back->digest() == now.digest(), "there and back gives the same state");
+        const std::uint64_t hash = world.state_hash();
+        require(world.restore(*back).ok(), "what was decoded restores");
+        require(world.state_hash() == hash, "and is the same");
+        return true;
+      }
+      default: {
+        std::vector<std::byte> bytes = world.snapshot().encode();
+        const std::size_t place = (std::size_t(in.byte()) << 8 | in.byte()) % bytes.size();
+        if (in.flag())
+          bytes.resize(place);
+        else
+          bytes[place] ^= std::byte(1 + in.byte() % 255);
+        require(!Snapshot<D>::decode(bytes).ok(), "a broken snapshot is refused");
+        return !Snapshot<D>::decode(in.rest(200)).ok();
+      }
+    }
+  }
+
+  bool query() {
+    std::vector<RayHit<D>> hits;
+    std::vector<ShapeId> found;
+    switch (in.byte() % 5) {
+      case 0:
+        return world.ray_cast(position(), vector(8)).ok();
+      case 1:
+        return world.ray_cast_all(position(), vector(8), hits).ok();
+      case 2:
+        return world.shape_cast(any_shape(), {position(), rotation()}, vector(8)).ok();
+      case 3:
+        return world.overlap(any_shape(), {position(), rotation()}, found).ok();
+      default:
+        return world.overlap_bounds({position(), position()}, found).ok();
+    }
+  }
+
+  /// False where the call was refused.
+  bool act() {
+    switch (in.byte() % 32) {
+      case 0:
+      case 1:
+        return bodies.size() < 40 && add_body();
+      case 2:
+      case 3:
+      case 4:
+        return shapes.size() < 60 && add_shape();
+      case 5:
+        return joints.size() < 40 && add_joint();
+      case 6:
+        return world.destroy_body(body()).ok();
+      case 7:
+        return world.destroy_shape(shape()).ok();
+      case 8:
+        return world.destroy_joint(joints[in.byte() % joints.size()]).ok();
+      case 9: {
+        if (effectors.size() >= 12) return false;
+        const auto made = world.add_effector(any_effector());
+        if (made.ok()) effectors.push_back(*made);
+        return made.ok();
+      }
+      case 10:
+        return world.destroy_effector(effectors[in.byte() % effectors.size()]).ok();
+      case 11:
+        return world.set_pose(body(), position(), rotation()).ok();
+      case 12:
+        return world.set_velocity(body(), vector(10), angular()).ok();
+      case 13:
+        return world.set_type(body(), BodyType(in.byte() % 4)).ok();
+      case 14:
+        return world.set_awake(body(), in.flag()).ok();
+      case 15:
+        return world.set_enabled(body(), in.flag()).ok();
+      case 16:
+        return world.set_locks(body(), {in.flag(), in.flag(), in.flag(), in.flag(), in.flag(), in.flag()}).ok();
+      case 17:
+        return world.add_force_at(body(), vector(1e4f), position()).ok();
+      case 18:
+        return world.add_impulse_at(body(), vector(1e3f), position()).ok();
+      case 19:
+        return world.add_angular_impulse(body(), angular()).ok();
+      case 20: {
+        Material m{in.number(), in.number(), in.number(), in.number(), in.byte() % 4u};
+        return world.set_material(shape(), m).ok();
+      }
+      case 21:
+        return world.set_filter(shape(), {in.byte(), in.byte(), std::int32_t(in.byte()) - 128}).ok();
+      case 22:
+        switch (in.byte() % 4) {
+          case 0:
+            return world.set_surface_velocity(shape(), vector()).ok();
+          case 1:
+            return world.set_one_way(shape(), vector()).ok();
+          case 2:
+            return world.set_modify_contacts(shape(), in.flag()).ok();
+          default:
+            return world.set_density(shape(), in.number(1000)).ok();
+        }
+      case 23: {
+        const PairRule rule{in.number(), in.number(), in.number()};
+        return world.set_pair_rule(in.byte() % 4, in.byte() % 4, in.flag() ? &rule : nullptr).ok();
+      }
+      case 24:
+        return world.explode({position(), in.number(), in.number(), in.number(100), in.number()}).ok();
+      case 25:
+        return world.set_target_pose(body(), position(), rotation(), in.number()).ok();
+      case 26:
+        return world.set_gravity(vector(5)).ok();
+      case 27:
+        return query();
+      case 28:
+      case 29:
+        return snapshots();
+      default: {
+        if (steps > 40) return false;
+        const int count = 1 + in.byte() % 8;
+        for (int i = 0; i < count; ++i, ++steps)
+          if (!world.step(in.byte() < 245 ? 1.0f / 60 : in.number()).ok()) return i > 0;
+        return true;
+      }
+    }
+  }
+
+  void play() {
+    world.set_contact_filter([](ShapeId a, ShapeId b) { return (a.index + b.index) % 13 != 5; });
+    world.set_contact_modifier([](ContactModification<D>& c) {
+      if ((c.shape_a.index + c.shape_b.index) % 3 == 0) c.enabled = false;
+      c.friction = c.count == 1 ? std::numeric_limits<float>::quiet_NaN() : 0.1f;
+      c.restitution = 0.5f;
+    });
+    for (int calls = 0; calls < 300 && !in.empty(); ++calls) {
+      const std::uint64_t before = world.state_hash();
+      if (!act()) require(world.state_hash() == before, "a refused call leaves the world as it was");
+    }
+    for (int i = 0; i < 5; ++i) require(world.step(1.0f / 60).ok(), "the world goes on");
+    for (const BodyId b : bodies) {
+      const auto s = world.state(b);
+      if (s.ok())
+        require(math::is_finite(s->pose.position) && math::is_finite(s->linear_velocity), "bodies stay finite");
+    }
+    (void)world.totals();
+    (void)world.counters();
+    (void)world.worst_penetration();
+    (void)world.worst_joint_error();
+    std::vector<ContactView<D>> contacts;
+    world.contacts(contacts);
+    const Snapshot<D> end = world.snapshot();
+    require(world.restore(end).ok(), "the end restores");
+  }
+};
+
+template <class D>
+void play(Source in) {
+  WorldDef<D> d;
+  const std::uint8_t options = in.byte();
+  d.threads = (options & 15) == 15 ? 2 : 1;
+  d.continuous = (options & 16) == 0;
+  d.allow_sleep = (options & 32) == 0;
+  d.move_events = (options & 64) != 0;
+  d.sleep_time = 0.05f;
+  d.substeps = (options & 128) != 0 ? 2 : 4;
+  Player<D>(in, d).play();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size < 4 || size > 4096) return 0;
+  Source in(data, size);
+  if (in.flag())
+    play<Dim2>(in);
+  else
+    play<Dim3>(in);
+  return 0;
+}
