@@ -8,7 +8,7 @@ namespace {
 template <class D>
 RecipeOutcome run(const Recipe& recipe, const RecipeSettings& settings) {
   ListScene<D> scene(recipe);
-  Outcome o = run_scene<D>(scene, {}, recipe.steps, {settings.threads, 4, settings.simd_width, settings.steps});
+  Outcome o = run_scene<D>(scene, {}, recipe.steps, {settings.threads, 4, settings.simd_width, settings.steps, false});
   return {std::move(o.step_ms), o.worst_drift,     o.rms_speed, o.worst_speed,
           o.worst_penetration,  o.worst_joint_gap, o.escaped};
 }

@@ -108,7 +108,7 @@ Outcome run_scene(Scene<D>& scene, rigid::WorldDef<D> definition, int steps, con
     begin = std::chrono::steady_clock::now();
     scene.before_step(world, i);
     outcome.action_ms += milliseconds_since(begin) / steps;
-    begin = std::chrono::steady_clock::now();
+    if (!settings.timed_actions) begin = std::chrono::steady_clock::now();
     const core::Status stepped = world.step(1.0f / 60.0f);
     outcome.step_ms.push_back(milliseconds_since(begin));
     stepped.value();
@@ -131,7 +131,9 @@ Outcome run_scene(Scene<D>& scene, rigid::WorldDef<D> definition, int steps, con
 template Outcome run_scene(Scene<rigid::Dim2>&, rigid::WorldDef<rigid::Dim2>, int, const Settings&);
 template Outcome run_scene(Scene<rigid::Dim3>&, rigid::WorldDef<rigid::Dim3>, int, const Settings&);
 
-Outcome run_scene(const SceneInfo& info, const Settings& settings) {
+Outcome run_scene(const SceneInfo& info, const Settings& chosen) {
+  Settings settings = chosen;
+  settings.timed_actions = info.acts;
   const auto run = [&](auto make, auto definition) {
     define_suite(info.suite, definition);
     return run_scene(*make(), definition, info.steps, settings);

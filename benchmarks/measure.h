@@ -9,7 +9,8 @@ struct Settings {
   int threads = 1;
   int substeps = 4;
   int simd_width = 0;
-  int steps = 0;  ///< 0: the scene's own
+  int steps = 0;               ///< 0: the scene's own
+  bool timed_actions = false;  ///< a step's time includes what is done before it
 };
 
 /// What a run came to: time of every step, counts, and the state that tells its quality.

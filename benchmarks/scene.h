@@ -29,6 +29,7 @@ struct SceneInfo {
   const char* name;
   int steps;
   int hash_steps = 0;                       ///< steps of the determinism hash; 0: not one of them
+  bool acts = false;                        ///< what is done before a step is part of its time, as the peer counts it
   const char* missing = nullptr;            ///< what Carom lacks for it, or how it differs from its recipe
   SceneMaker<rigid::Dim2> make2 = nullptr;  ///< one of the two is set, or none where the scene cannot be built yet
   SceneMaker<rigid::Dim3> make3 = nullptr;
