@@ -89,6 +89,7 @@ std::unique_ptr<Scene<Dim3>> make() {
 
 }  // namespace
 
+std::unique_ptr<Scene<Dim3>> make_characters();           // characters_jolt.cpp
 std::unique_ptr<Scene<Dim3>> make_ragdolls();             // ragdolls_jolt.cpp
 std::unique_ptr<Scene<Dim3>> make_ragdoll_single_pile();  // ragdolls_jolt.cpp
 
@@ -97,7 +98,12 @@ std::span<const SceneInfo> jolt_scenes() {
       {.suite = "jolt", .name = "pyramid", .steps = 500, .make3 = [] { return list_scene<Dim3>(wide_pyramid(true)); }},
       {.suite = "jolt", .name = "convex_vs_mesh", .steps = 500, .hash_steps = 120, .make3 = make<ConvexVsMesh>},
       {.suite = "jolt", .name = "high_speed", .steps = 500, .hash_steps = 60, .make3 = make<HighSpeed>},
-      {.suite = "jolt", .name = "character_virtual", .steps = 500, .missing = "needs the character controller"},
+      {.suite = "jolt",
+       .name = "character_virtual",
+       .steps = 500,
+       .hash_steps = 120,
+       .acts = true,
+       .make3 = make_characters},
       {.suite = "jolt",
        .name = "ragdoll",
        .steps = 500,

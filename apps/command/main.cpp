@@ -131,7 +131,8 @@ int main(int count, char** arguments) {
       ->check(CLI::IsMember({"box3d", "box2d", "jolt", "common", "all"}));
   bench_command
       ->add_option("--threads,-t", bench_options.threads,
-                   "worker threads, one number or several; 0: all processors (1 and 2)")
+                   "worker threads, one number or several (1,2); 0: all processors (1 and 2)")
+      ->delimiter(',')
       ->check(CLI::Range(0, 64));
   bench_command
       ->add_option("--rounds,--repeats", bench_options.rounds,
