@@ -7,11 +7,13 @@ namespace carom::host {
 
 namespace {
 constexpr DemoFactory factories[] = {
-    demo::make_wrecking_ball, demo::make_pyramids,   demo::make_joints,          demo::make_rewind,
-    demo::make_walker,        demo::make_hovercraft, demo::make_collision_lab3,  demo::make_collision_lab2,
-    demo::make_conveyor,      demo::make_rolling,    demo::make_bullets,         demo::make_chain,
-    demo::make_far_away,      demo::make_target,     demo::make_mass_properties, demo::make_race_orbit,
-    demo::make_race_spring,   demo::make_race_ship,  demo::make_tumbling_brick,  demo::make_intermediate_axis,
+    demo::make_wrecking_ball,   demo::make_pyramids,       demo::make_joints,
+    demo::make_rewind,          demo::make_walker,         demo::make_hovercraft,
+    demo::make_collision_lab3,  demo::make_collision_lab2, demo::make_conveyor,
+    demo::make_platforms,       demo::make_rolling,        demo::make_bullets,
+    demo::make_chain,           demo::make_far_away,       demo::make_target,
+    demo::make_mass_properties, demo::make_race_orbit,     demo::make_race_spring,
+    demo::make_race_ship,       demo::make_tumbling_brick, demo::make_intermediate_axis,
 };
 }  // namespace
 

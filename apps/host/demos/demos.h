@@ -25,6 +25,7 @@ std::unique_ptr<Demo> make_rewind();
 std::unique_ptr<Demo> make_conveyor();
 std::unique_ptr<Demo> make_joints();
 std::unique_ptr<Demo> make_chain();
+std::unique_ptr<Demo> make_platforms();
 std::unique_ptr<Demo> make_walker();
 std::unique_ptr<Demo> make_rolling();
 std::unique_ptr<Demo> make_bullets();
