@@ -258,6 +258,9 @@ class Adviser {
   /// Joints that hold up: rigid in position, to what is nearer the ground by joints.
   void joints() {
     supports_.clear();
+    // The direct solver gives way to nothing; whom an automatic world gives to it shows after the first step.
+    if (definition_.joint_solver == JointSolver::direct) return;
+    if (definition_.joint_solver == JointSolver::automatic && world_.step_count() == 0) return;
     struct Link {
       int a, b;
       JointId id;
@@ -268,7 +271,7 @@ class Adviser {
     for (const JointId id : ids) {
       const auto definition = world_.joint_definition(id);
       const auto state = world_.joint_state(id);
-      if (!definition.ok() || !state.ok()) continue;
+      if (!definition.ok() || !state.ok() || state->direct) continue;
       const bool rigid = std::visit(
           [](const auto& d) {
             using Def = std::remove_cvref_t<decltype(d)>;

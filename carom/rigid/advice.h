@@ -35,7 +35,8 @@ struct AdviceOptions {
 /// What to expect of steps of dt seconds. The stack law: a soft contact under the load P closes by P/(Σ m_eff ω²), with
 /// ω = 2π · contact_hertz (twice that on the ground) and the effective masses of its points; loads come from the
 /// weights of what rests on a body, shared evenly by what carries it. Joints likewise with joint_hertz and what hangs
-/// on them. See docs/computation.md. Allocates; time in proportion to bodies and their neighbours.
+/// on them, where they are solved by iteration (in an automatic world that is known after the first step). See
+/// docs/computation.md. Allocates; time in proportion to bodies and their neighbours.
 template <class D>
 CAROM_API std::vector<Advice> advise(const World<D>& world, float dt, const AdviceOptions& options = {});
 

@@ -27,6 +27,14 @@ constexpr typename D::Vector default_gravity() {
     return {0, -9.80665f, 0};
 }
 
+/// Who holds the rigid rows of joints. Iteration is cheap, and gives way under loads far heavier than the joint's own
+/// bodies; the direct solver holds trees of joints at any mass ratio, for some microseconds a joint and step.
+enum class JointSolver : std::uint8_t {
+  automatic,  ///< direct for trees in which some joint carries many times its own bodies
+  iterative,
+  direct,  ///< for every tree
+};
+
 template <class D>
 struct WorldDef {
   typename D::Vector gravity = default_gravity<D>();  ///< m/s², uniform
@@ -43,6 +51,7 @@ struct WorldDef {
   float contact_push_speed = 3.0f;  ///< m/s: overlapping bodies separate no faster
   float joint_hertz = 60.0f;        ///< stiffness of joints, capped at 1/4 of the substep rate
   float joint_damping_ratio = 2.0f;
+  JointSolver joint_solver = JointSolver::automatic;
   float maximum_linear_speed = 4.0e3f;  ///< m/s
   float sleep_time = 0.5f;              ///< s below the sleep speed before an island sleeps
   bool move_events = false;             ///< tell after every step where each awake body now is
@@ -144,13 +153,28 @@ struct ExplosionDef {
   std::uint64_t mask = ~std::uint64_t{0};  ///< categories of shapes that feel it
 };
 
-enum class JointType : std::uint8_t { distance, ball, hinge, slider, weld, motor, mouse };
+enum class JointType : std::uint8_t {
+  distance,
+  ball,
+  hinge,
+  slider,
+  weld,
+  motor,
+  mouse,
+  generic,
+  gear,
+  rack,
+  screw,
+  pulley
+};
 
 template <class D>
 struct JointFrames {
   BodyId body_a{}, body_b{};
   typename D::Transform frame_a{}, frame_b{};  ///< joint frame in each body's frame
   bool collide_connected = false;
+  float break_force = 0;   ///< N, 0: never. Above it after a step, the joint is destroyed and told of in an event.
+  float break_torque = 0;  ///< N·m, likewise
 };
 
 /// A spring toward the joint's rest state: natural frequency (Hz, 0: none) and damping ratio of what moves on it. Exact
@@ -227,6 +251,89 @@ struct MouseJointDef : JointFrames<D> {
   typename D::Position target{};
   JointSpring spring{5.0f, 1.0f};
   float max_force = 1e4f;  ///< N
+};
+
+/// One coordinate of a generic joint: held at zero, or free and then with what one wants of these.
+struct JointAxis {
+  bool free = false;
+  JointLimit limit{};
+  JointSpring spring{};        ///< toward `target`
+  float target = 0;            ///< m or rad
+  float max_spring_force = 0;  ///< N or N·m, 0: as much as it takes. With a stiff spring: a motor to a position.
+  JointMotor motor{};
+  float friction = 0;  ///< N or N·m, where no motor is enabled
+  friend bool operator==(const JointAxis&, const JointAxis&) = default;
+};
+
+/// Six degrees of freedom (2D: three), each free or held. Linear: of B's origin along x, y, z of frame A. Angular, in
+/// space: Cardan angles about x of frame A, then y, then z of frame B; the middle one keeps within ±90°.
+template <class D>
+struct GenericJointDef : JointFrames<D> {
+  JointAxis linear[D::dimension];
+  JointAxis angular[D::dimension == 2 ? 1 : 3];
+};
+/// Slides along x of the frames and turns about it.
+template <class D>
+GenericJointDef<D> make_cylindrical_joint(const JointFrames<D>& frames)
+  requires(D::dimension == 3)
+{
+  GenericJointDef<D> d{frames, {}, {}};
+  d.linear[0].free = d.angular[0].free = true;
+  return d;
+}
+/// Slides in the plane of x and y and turns about z.
+template <class D>
+GenericJointDef<D> make_planar_joint(const JointFrames<D>& frames)
+  requires(D::dimension == 3)
+{
+  GenericJointDef<D> d{frames, {}, {}};
+  d.linear[0].free = d.linear[1].free = d.angular[2].free = true;
+  return d;
+}
+/// Turns about x of frame A and z of frame B, which stay at right angles: Cardan's joint.
+template <class D>
+GenericJointDef<D> make_universal_joint(const JointFrames<D>& frames)
+  requires(D::dimension == 3)
+{
+  GenericJointDef<D> d{frames, {}, {}};
+  d.angular[0].free = d.angular[2].free = true;
+  return d;
+}
+/// A wheel B on its carrier A: a spring along y, rolling about z, in space steered about y where `angular[1]` is freed.
+template <class D>
+GenericJointDef<D> make_wheel_joint(const JointFrames<D>& frames, JointSpring suspension, JointLimit travel) {
+  GenericJointDef<D> d{frames, {}, {}};
+  d.linear[1].free = true;
+  d.linear[1].spring = suspension;
+  d.linear[1].limit = travel;
+  d.angular[D::dimension == 2 ? 0 : 2].free = true;
+  return d;
+}
+
+/// Keeps the spin of B about z of its frame at `ratio` times that of A about z of its own. Wheels that mesh outside
+/// have a negative ratio. Each needs a hinge of its own.
+template <class D>
+struct GearJointDef : JointFrames<D> {
+  float ratio = -1;  ///< not 0
+};
+/// Keeps the speed of B along x of its frame, as seen from the centre of A, at `radius` times the spin of A about z of
+/// its frame. The pinion A needs a hinge, the rack B a slider.
+template <class D>
+struct RackJointDef : JointFrames<D> {
+  float radius = 1;  ///< m, not 0; the sign says which way
+};
+/// Along x of frame A, B moves by `pitch` a turn that it makes about x against A. Space only; needs a cylindrical
+/// joint.
+template <class D>
+struct ScrewJointDef : JointFrames<D> {
+  float pitch = 0.01f;  ///< m a turn, not 0; positive: right-handed
+};
+/// A rope from frame_a.p over `ground_a` and `ground_b` to frame_b.p: |a − ground_a| + ratio |b − ground_b| ≤ length.
+template <class D>
+struct PulleyJointDef : JointFrames<D> {
+  typename D::Position ground_a{}, ground_b{};  ///< world
+  float length = 1;                             ///< m
+  float ratio = 1;                              ///< > 0; a block and tackle on B's side
 };
 
 }  // namespace carom::rigid

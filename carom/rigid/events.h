@@ -51,6 +51,15 @@ struct ContactModification {
   float restitution = 0;  ///< likewise
 };
 
+/// A joint gave way (JointFrames::break_force, break_torque) and is gone.
+template <class D>
+struct JointBreakEvent {
+  JointId joint;  ///< no longer exists
+  BodyId body_a, body_b;
+  typename D::Vector force{};    ///< N, on B, in the last substep
+  typename D::Angular torque{};  ///< N·m, on B
+};
+
 template <class D>
 struct Events {
   std::span<const ContactBeginEvent> contact_begin;
@@ -61,6 +70,7 @@ struct Events {
   std::span<const SleepEvent> fell_asleep;
   std::span<const SleepEvent> quarantined;  ///< bodies whose state became NaN or infinite: frozen, and named here
   std::span<const MoveEvent<D>> moved;      ///< of all bodies that were awake, if WorldDef::move_events
+  std::span<const JointBreakEvent<D>> joint_break;
 };
 
 }  // namespace carom::rigid

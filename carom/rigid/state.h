@@ -31,11 +31,13 @@ struct JointState {
   float speed = 0;
   float linear_error = 0;   ///< m by which the joint is pulled apart
   float angular_error = 0;  ///< rad
+  bool direct = false;      ///< in the last step its rigid rows were solved directly (WorldDef::joint_solver)
 };
 
 template <class D>
 using AnyJointDef = std::variant<DistanceJointDef<D>, BallJointDef<D>, HingeJointDef<D>, SliderJointDef<D>,
-                                 WeldJointDef<D>, MotorJointDef<D>, MouseJointDef<D>>;
+                                 WeldJointDef<D>, MotorJointDef<D>, MouseJointDef<D>, GenericJointDef<D>,
+                                 GearJointDef<D>, RackJointDef<D>, ScrewJointDef<D>, PulleyJointDef<D>>;
 
 template <class D>
 struct ContactView {

@@ -119,6 +119,11 @@ class CAROM_API World {
   Result<JointId> create_joint(const WeldJointDef<D>& definition);
   Result<JointId> create_joint(const MotorJointDef<D>& definition);
   Result<JointId> create_joint(const MouseJointDef<D>& definition);
+  Result<JointId> create_joint(const GenericJointDef<D>& definition);
+  Result<JointId> create_joint(const GearJointDef<D>& definition);
+  Result<JointId> create_joint(const RackJointDef<D>& definition);
+  Result<JointId> create_joint(const ScrewJointDef<D>& definition);  ///< space only
+  Result<JointId> create_joint(const PulleyJointDef<D>& definition);
   Status destroy_joint(JointId joint);
   bool contains(JointId joint) const;
   Result<JointState<D>> joint_state(JointId joint) const;
@@ -126,6 +131,8 @@ class CAROM_API World {
   Status set_motor(JointId joint, const JointMotor& motor);      ///< distance, hinge, slider
   Status set_limit(JointId joint, const JointLimit& limit);      ///< distance, ball (its twist), hinge, slider
   Status set_spring(JointId joint, const JointSpring& spring);   ///< both springs of a weld or motor joint
+  /// Of a generic joint: the linear axes come first, then the angular ones. Whether it is free stays as it was made.
+  Status set_axis(JointId joint, int axis, const JointAxis& settings);
   Status set_mouse_target(JointId joint, Position target);
 
   // Effectors: forces that act on their own every step (effector.h).

@@ -78,6 +78,8 @@ class SceneWriter {
     f.put("restitution_threshold", d.restitution_threshold).put("contact_frequency", d.contact_hertz);
     f.put("contact_damping_ratio", d.contact_damping_ratio).put("contact_push_speed", d.contact_push_speed);
     f.put("joint_frequency", d.joint_hertz).put("joint_damping_ratio", d.joint_damping_ratio);
+    constexpr const char* solvers[] = {"automatic", "iterative", "direct"};
+    if (d.joint_solver != JointSolver::automatic) f.put("joint_solver", quote(solvers[int(d.joint_solver)]));
     f.put("maximum_linear_speed", d.maximum_linear_speed).put("sleep_time", d.sleep_time);
     f.flag("allow_sleep", d.allow_sleep, true).flag("continuous", d.continuous, true);
     std::vector<MaterialPair> pairs;
@@ -180,6 +182,7 @@ class SceneWriter {
     f.put("type", quote(type));
     if (with_a) f.put("body_a", quoted_name(j.body_a)).put("frame_a", frame(j.frame_a));
     f.put("body_b", quoted_name(j.body_b)).put("frame_b", frame(j.frame_b));
+    f.unless("break_force", j.break_force, 0.0f).unless("break_torque", j.break_torque, 0.0f);
     return f.flag("collide_connected", j.collide_connected, false);
   }
   static std::string spring_text(const JointSpring& s) {
@@ -242,6 +245,45 @@ class SceneWriter {
     return f.put("target", vector_text(j.target))
         .put("spring", spring_text(j.spring))
         .put("max_force", j.max_force)
+        .object();
+  }
+
+  static std::string axis_text(const JointAxis& a, bool angular) {
+    Fields f;
+    if (!(a.limit == JointLimit{})) f.put("limit", limit_text(a.limit));
+    if (!(a.spring == JointSpring{})) f.put("spring", spring_text(a.spring));
+    if (!(a.motor == JointMotor{})) f.put("motor", motor_text(a.motor, angular));
+    f.unless("target", a.target, 0.0f);
+    f.unless(angular ? "max_spring_torque" : "max_spring_force", a.max_spring_force, 0.0f);
+    f.unless(angular ? "friction_torque" : "friction", a.friction, 0.0f);
+    return f.flag("free", a.free, true).object();
+  }
+  std::string joint_text(const GenericJointDef<D>& j) const {
+    Fields axes;
+    constexpr const char* lines[] = {"x", "y", "z"};
+    constexpr const char* turns[] = {"turn_x", "turn_y", "turn_z"};
+    constexpr int first = D::dimension == 2 ? 2 : 0;
+    for (int i = 0; i < D::dimension; ++i)
+      if (!(j.linear[i] == JointAxis{})) axes.put(lines[i], axis_text(j.linear[i], false));
+    for (int i = first; i < 3; ++i)
+      if (!(j.angular[i - first] == JointAxis{})) axes.put(turns[i], axis_text(j.angular[i - first], true));
+    return joint_fields("generic", j).put("axes", axes.object()).object();
+  }
+  std::string joint_text(const GearJointDef<D>& j) const {
+    return joint_fields("gear", j).put("ratio", j.ratio).object();
+  }
+  std::string joint_text(const RackJointDef<D>& j) const {
+    return joint_fields("rack", j).put("radius", j.radius).object();
+  }
+  std::string joint_text(const ScrewJointDef<D>& j) const {
+    return joint_fields("screw", j).put("pitch", j.pitch).object();
+  }
+  std::string joint_text(const PulleyJointDef<D>& j) const {
+    return joint_fields("pulley", j)
+        .put("ground_a", vector_text(j.ground_a))
+        .put("ground_b", vector_text(j.ground_b))
+        .put("length", j.length)
+        .put("ratio", j.ratio)
         .object();
   }
 

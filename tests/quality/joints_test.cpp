@@ -26,7 +26,7 @@ TYPED_TEST(QualityJoints, ChainWithAHeavyBall) {
     chain.run(15);
     const std::string what =
         "chain of 20 links with a ball of " + std::to_string(int(ratio)) + " times their mass: widest gap in 15 s";
-    Gate(3, what, D::dimension, "m").not_yet(ratio < 500 ? 0.13 : 1e16).at_most(chain.worst_gap, 0.01);
+    Gate(3, what, D::dimension, "m").at_most(chain.worst_gap, 0.01);
   }
 }
 
@@ -36,13 +36,11 @@ TYPED_TEST(QualityJoints, HundredLinksUnderTheirOwnWeight) {
   Chain<D> chain(100, 0);
   chain.run(15);
   Gate(3, "chain of 100 links falls from level: widest gap in 15 s", D::dimension, "m")
-      .not_yet(0.25)
+      .not_yet(0.017)
       .at_most(chain.worst_gap, 0.01);
   Chain<D> hanging(100, 0, true);
   hanging.run(10);
-  Gate(3, "chain of 100 links hangs: widest gap in 10 s", D::dimension, "m")
-      .not_yet(0.026)
-      .at_most(hanging.worst_gap, 0.01);
+  Gate(3, "chain of 100 links hangs: widest gap in 10 s", D::dimension, "m").at_most(hanging.worst_gap, 0.01);
 }
 
 // Issue of the engine, 2: ten welded beams of 1 m × .2 × .2, built into a wall.
@@ -72,7 +70,7 @@ TYPED_TEST(QualityJoints, CantileverOfTenBeams) {
     world.step(frame).value();
     if (i >= 600) lowest = std::min(lowest, world.state(beam).value().pose.position.y);
   }
-  Gate(3, "cantilever of ten welded beams of 1 m: sags", D::dimension, "m").not_yet(3.0).at_most(-lowest, 0.05);
+  Gate(3, "cantilever of ten welded beams of 1 m: sags", D::dimension, "m").at_most(-lowest, 0.05);
 }
 
 /// The first period of a point mass on 1 m released at `degrees`, or the energy left after a minute.
@@ -126,10 +124,8 @@ TYPED_TEST(QualityJoints, PendulumAtLargeAmplitude) {
     const std::string what = ball ? "pendulum on a ball joint" : "pendulum on a rod";
     for (const auto& [angle, period] : {std::pair{60.0, 2.1529}, {90.0, 2.3678}, {120.0, 2.7541}})
       Gate(10, what + " from " + std::to_string(int(angle)) + "°: first period", D::dimension, "s")
-          .not_yet(1)
           .near(Pendulum<D>(angle, ball).period(), period, 0.005);
     Gate(10, what + " from 90°, 60 s: energy left", D::dimension, "of it")
-        .not_yet(1e7)
         .near(Pendulum<D>(90, ball).energy_after_a_minute(), 1, 0.05);
   }
 }

@@ -223,7 +223,15 @@ TEST(SceneJoints, OfEveryTypeInBothDimensions) {
     {"type": "weld", "body_a": "a", "body_b": "c", "anchor": [A0], "angular_spring": {"frequency": "1 Hz"}},
     {"type": "ball", "body_a": "a", "body_b": "c", "anchor": [A0]},
     {"type": "motor", "body_a": "b", "body_b": "c", "max_force": "10 N"},
-    {"type": "mouse", "body_b": "c", "anchor": [A1], "target": [A0]}])";
+    {"type": "mouse", "body_b": "c", "anchor": [A1], "target": [A0]},
+    {"type": "generic", "body_a": "a", "body_b": "b", "anchor": [A0], "break_force": "40 kN", "break_torque": "9 kN*m",
+     "axes": {"x": {"limit": {"lower": "-1 m", "upper": "2 m"}, "spring": {"frequency": "1 Hz"}, "target": "10 cm", "max_spring_force": "50 N"},
+              "y": {"friction": "3 N"}, "turn_z": {"motor": {"speed": "1 rpm", "max_torque": "2 N*m"}, "limit": {"lower": "-20 deg", "upper": "20 deg"}}}},
+    {"type": "wheel", "body_a": "a", "body_b": "c", "anchor": [A0], "spring": {"frequency": "2 Hz", "damping_ratio": 0.7},
+     "limit": {"lower": "-10 cm", "upper": "10 cm"}, "motor": {"speed": "10 rpm", "max_torque": "1 N*m"}},
+    {"type": "gear", "body_a": "a", "body_b": "b", "ratio": -2},
+    {"type": "rack", "body_a": "a", "body_b": "b", "slide_axis": [A1], "radius": "20 cm"},
+    {"type": "pulley", "body_a": "a", "body_b": "b", "anchor": [A0], "ground_a": [A1], "ground_b": [A0], "ratio": 2}])";
   for (const int dimension : {2, 3}) {
     std::string text = "{\"dimension\": " + std::to_string(dimension) + ", \"bodies\": [";
     for (const char* name : {"a", "b", "c"})
@@ -234,7 +242,7 @@ TEST(SceneJoints, OfEveryTypeInBothDimensions) {
                                    {"[A1]", dimension == 2 ? "[1, 1]" : "[1, 1, 1]"}})
       for (std::size_t at = 0; (at = text.find(from)) != std::string::npos;) text.replace(at, from.size(), to);
     SceneWorld world = start(parse(text));
-    EXPECT_EQ(world.joints.size(), 7u);
+    EXPECT_EQ(world.joints.size(), 12u);
     EXPECT_EQ(world.bodies.size(), 4u) << "and the body \"world\"";
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(world.step().ok());
     const Result<std::string> written = write_scene(world);
@@ -242,6 +250,36 @@ TEST(SceneJoints, OfEveryTypeInBothDimensions) {
     EXPECT_EQ(start(parse(*written)).state_hash(), world.state_hash());
     EXPECT_EQ(write_scene(start(parse(*written))).value(), *written);
   }
+}
+
+TEST(SceneJoints, OfSpaceOnly) {
+  const std::string bodies =
+      R"("bodies": [{"name": "a", "shape": {"type": "SHAPE"}}, {"name": "b", "shape": {"type": "SHAPE"}}])";
+  for (const char* type : {"cylindrical", "planar", "universal", "screw"}) {
+    const std::string joint = std::string(R"("joints": [{"type": ")") + type +
+                              R"(", "body_a": "a", "body_b": "b", "anchor": ORIGIN, "axis": AXIS}])";
+    const auto text = [&](int dimension) {
+      std::string t = "{\"dimension\": " + std::to_string(dimension) + ", " + bodies + ", " + joint + "}";
+      for (const auto& [from, to] : {std::pair<std::string, std::string>{"SHAPE", dimension == 2 ? "circle" : "sphere"},
+                                     {"ORIGIN", dimension == 2 ? "[0, 0]" : "[0, 0, 0]"},
+                                     {"AXIS", dimension == 2 ? "[0, 1]" : "[0, 1, 0]"}})
+        for (std::size_t at = 0; (at = t.find(from)) != std::string::npos;) t.replace(at, from.size(), to);
+      return t;
+    };
+    const SceneWorld world = start(parse(text(3)));
+    ASSERT_EQ(world.joints.size(), 1u) << type;
+    const std::string written = write_scene(world).value();
+    EXPECT_EQ(write_scene(start(parse(written))).value(), written) << type;
+    const Result<Scene> flat = parse_scene(text(2), "t");
+    ASSERT_FALSE(flat.ok()) << type;
+    EXPECT_NE(flat.error().message.find("for space"), std::string::npos) << flat.error().message;
+  }
+}
+
+TEST(SceneJoints, SolverIsASetting) {
+  const SceneWorld world = start(parse(R"({"world": {"joint_solver": "direct"}, "bodies": []})"));
+  EXPECT_EQ(world.world3->definition().joint_solver, rigid::JointSolver::direct);
+  EXPECT_NE(write_scene(world).value().find("\"joint_solver\": \"direct\""), std::string::npos);
 }
 
 TEST(SceneEffectors, OfEveryTypeComeBackTheSame) {

@@ -19,12 +19,14 @@ template <class D>
 void joint_to_graph(WorldImplementation<D>& world, std::int32_t joint) {
   JointHeader& j = world.joints.headers[std::size_t(joint)];
   if (j.place.color >= 0 || rests(world, j.body[0]) || rests(world, j.body[1])) return;
+  world.joints.trees.stale = true;
   j.place = world.graph.add(ConstraintKind::joint, joint, j.body[0], j.body[1], world.bodies);
 }
 template <class D>
 void joint_from_graph(WorldImplementation<D>& world, std::int32_t joint) {
   JointHeader& j = world.joints.headers[std::size_t(joint)];
   if (j.place.color < 0) return;
+  world.joints.trees.stale = true;
   const std::int32_t moved = world.graph.remove(ConstraintKind::joint, j.place, j.body[0], j.body[1], world.bodies);
   if (moved != none) world.joints.headers[std::size_t(moved)].place = j.place;
   j.place = {};
@@ -210,6 +212,7 @@ void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
 
 template <class D>
 void update_mass(WorldImplementation<D>& world, std::int32_t body) {
+  world.joints.trees.stale = true;
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   const typename D::Vector old_center = m.local_center;

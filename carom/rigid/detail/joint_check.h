@@ -67,6 +67,21 @@ class Complaint {
     finite(core::text(field, ".speed"), m.speed);
     not_negative(core::text(field, ".max_force"), m.max_force);
   }
+  void not_zero(std::string_view field, double x) {
+    if (!is_finite(x) || x == 0) say(core::refused(field, x, "a finite number other than 0"));
+  }
+  void axis(std::string_view field, const JointAxis& a, bool angular) {
+    const std::string limits = core::text(field, ".limit");
+    if (angular)
+      angle_limit(limits, a.limit);
+    else
+      limit(limits, a.limit);
+    spring(core::text(field, ".spring"), a.spring);
+    finite(core::text(field, ".target"), a.target);
+    not_negative(core::text(field, ".max_spring_force"), a.max_spring_force);
+    motor(core::text(field, ".motor"), a.motor);
+    not_negative(core::text(field, ".friction"), a.friction);
+  }
   core::Error error() const { return core::Error{message_}; }
 
  private:
@@ -77,54 +92,48 @@ class Complaint {
   std::string message_;
 };
 
-template <class D>
-void check_joint(Complaint& c, const DistanceJointDef<D>& d) {
-  c.not_negative("length", d.length);
-  c.spring("spring", d.spring);
-  c.distance_limit("limit", d.limit);
-  c.motor("motor", d.motor);
-}
-template <class D>
-void check_joint(Complaint& c, const BallJointDef<D>& d) {
-  c.spring("spring", d.spring);
-  c.finite("cone_angle", d.cone_angle);
-  if (d.cone_angle > pi_f) c.say(core::refused("cone_angle", d.cone_angle, "at most π rad"));
-  if (D::dimension == 2 && d.cone_angle >= 0)
-    c.say(core::refused("cone_angle", d.cone_angle, "none (−1) in the plane: use twist"));
-  c.angle_limit("twist", d.twist);
-  c.not_negative("friction_torque", d.friction_torque);
-}
-template <class D>
-void check_joint(Complaint& c, const HingeJointDef<D>& d) {
-  c.spring("spring", d.spring);
-  c.finite("target_angle", d.target_angle);
-  c.angle_limit("limit", d.limit);
-  c.motor("motor", d.motor);
-}
-template <class D>
-void check_joint(Complaint& c, const SliderJointDef<D>& d) {
-  c.spring("spring", d.spring);
-  c.finite("target_translation", d.target_translation);
-  c.limit("limit", d.limit);
-  c.motor("motor", d.motor);
-}
-template <class D>
-void check_joint(Complaint& c, const WeldJointDef<D>& d) {
-  c.spring("linear", d.linear);
-  c.spring("angular", d.angular);
-}
-template <class D>
-void check_joint(Complaint& c, const MotorJointDef<D>& d) {
-  c.spring("linear", d.linear);
-  c.spring("angular", d.angular);
-  c.not_negative("max_force", d.max_force);
-  c.not_negative("max_torque", d.max_torque);
-}
-template <class D>
-void check_joint(Complaint& c, const MouseJointDef<D>& d) {
-  c.vector("target", d.target);
-  c.spring("spring", d.spring);
-  c.not_negative("max_force", d.max_force);
+/// What all definitions have under the same name is checked once; the rest by type.
+template <class D, class Def>
+void check_joint(Complaint& c, const Def& d) {
+  constexpr bool distance = std::is_same_v<Def, DistanceJointDef<D>>, ball = std::is_same_v<Def, BallJointDef<D>>;
+  if constexpr (requires { d.spring.hertz; }) c.spring("spring", d.spring);
+  if constexpr (requires { d.linear.hertz; }) c.spring("linear", d.linear);
+  if constexpr (requires { d.angular.hertz; }) c.spring("angular", d.angular);
+  if constexpr (requires { d.motor; }) c.motor("motor", d.motor);
+  if constexpr (requires { d.max_force; }) c.not_negative("max_force", d.max_force);
+  if constexpr (requires { d.max_torque; }) c.not_negative("max_torque", d.max_torque);
+  if constexpr (requires { d.target; }) c.vector("target", d.target);
+  if constexpr (requires { d.target_angle; }) c.finite("target_angle", d.target_angle);
+  if constexpr (requires { d.target_translation; }) c.finite("target_translation", d.target_translation);
+  if constexpr (requires { d.length; }) c.not_negative("length", d.length);
+  if constexpr (distance)
+    c.distance_limit("limit", d.limit);
+  else if constexpr (std::is_same_v<Def, HingeJointDef<D>>)
+    c.angle_limit("limit", d.limit);
+  else if constexpr (std::is_same_v<Def, SliderJointDef<D>>)
+    c.limit("limit", d.limit);
+  else if constexpr (ball) {
+    c.finite("cone_angle", d.cone_angle);
+    if (d.cone_angle > pi_f) c.say(core::refused("cone_angle", d.cone_angle, "at most π rad"));
+    if (D::dimension == 2 && d.cone_angle >= 0)
+      c.say(core::refused("cone_angle", d.cone_angle, "none (−1) in the plane: use twist"));
+    c.angle_limit("twist", d.twist);
+    c.not_negative("friction_torque", d.friction_torque);
+  } else if constexpr (std::is_same_v<Def, GenericJointDef<D>>) {
+    for (int i = 0; i < D::dimension; ++i) c.axis(core::text("linear[", i, "]"), d.linear[i], false);
+    for (int i = 0; i < (D::dimension == 2 ? 1 : 3); ++i) c.axis(core::text("angular[", i, "]"), d.angular[i], true);
+  } else if constexpr (std::is_same_v<Def, GearJointDef<D>>) {
+    c.not_zero("ratio", d.ratio);
+  } else if constexpr (std::is_same_v<Def, RackJointDef<D>>) {
+    c.not_zero("radius", d.radius);
+  } else if constexpr (std::is_same_v<Def, ScrewJointDef<D>>) {
+    c.not_zero("pitch", d.pitch);
+    if (D::dimension == 2) c.say("a screw joint is for space, expected another type in the plane");
+  } else if constexpr (std::is_same_v<Def, PulleyJointDef<D>>) {
+    c.vector("ground_a", d.ground_a);
+    c.vector("ground_b", d.ground_b);
+    c.positive("ratio", d.ratio);
+  }
 }
 
 /// q of unit length. What is so already, to rounding, keeps its bits: a world that is saved and loaded stays the same.

@@ -24,6 +24,45 @@ float relative_angle(const typename D::Rotation& q) {
     return math::length(rotation_vector_of(q));
 }
 
+/// The first free coordinate; how far the others are from where they are held or may be.
+template <class D>
+void measure_generic(const GenericJointDef<D>& def, const typename D::Rotation& frame_a,
+                     const typename D::Rotation& frame_b, typename D::Vector d, typename D::Vector v,
+                     typename D::Angular spin, JointState<D>& out) {
+  bool found = false;
+  const auto note = [&](const JointAxis& axis, float x, float speed, float& error) {
+    if (!axis.free) {
+      error = max(error, math::abs(x));
+      return;
+    }
+    if (!found) {
+      out.coordinate = x;
+      out.speed = speed;
+      found = true;
+    }
+    error = max(error, outside(x, axis.limit));
+  };
+  BodyPair<D> pair;
+  for (int i = 0; i < D::dimension; ++i) {
+    typename D::Vector n{};
+    n[i] = 1;
+    n = rotate(frame_a, n);
+    note(def.linear[i], dot(n, d), dot(n, v), out.linear_error);
+  }
+  for (int i = 0; i < (D::dimension == 2 ? 1 : 3); ++i) {
+    AngularAxis<D> axis;
+    axis.frame_a = frame_a;
+    axis.frame_b = frame_b;
+    if constexpr (D::dimension == 3) axis.kind = AngleKind(int(AngleKind::cardan_x) + i);
+    float angle;
+    const auto n = axis.row(pair, true, angle);
+    const JointLimit& limit = def.angular[i].limit;
+    const float middle = 0.5f * (limit.lower + limit.upper);
+    if (limit.enabled) angle = middle + wrap_angle(angle - middle);
+    note(def.angular[i], angle, inner(n, spin), out.angular_error);
+  }
+}
+
 }  // namespace
 
 template <class D>
@@ -46,6 +85,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
   out.body_b = frames.body_b;
   out.force = data.force;
   out.torque = data.torque;
+  out.direct = world.joints.tree_of(joint) != none;
 
   typename D::Position anchor_a = data.world_anchor;
   typename D::Rotation frame_a = frames.frame_a.q;
@@ -144,6 +184,25 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
     case JointType::mouse:
       out.linear_error = distance;
       break;
+    case JointType::generic:
+      measure_generic(std::get<GenericJointDef<D>>(data.definition), frame_a, frame_b, d, v - cross(spin_a, d), spin,
+                      out);
+      break;
+    case JointType::gear:
+      out.angular_error = math::abs(data.memory.drift);
+      break;
+    case JointType::rack:
+    case JointType::screw:
+      out.linear_error = math::abs(data.memory.drift);
+      break;
+    case JointType::pulley: {
+      const auto& def = std::get<PulleyJointDef<D>>(data.definition);
+      const Vector to_a = Vector(anchor_a - def.ground_a),
+                   to_b = Vector(world_point(bodies.pose[b], frames.frame_b.p) - def.ground_b);
+      out.coordinate = math::length(to_a) + def.ratio * math::length(to_b);
+      out.linear_error = max(out.coordinate - def.length, 0.0f);
+      break;
+    }
   }
   return out;
 }

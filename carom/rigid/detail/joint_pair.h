@@ -23,6 +23,7 @@ struct BodyPair {
   float inverse_mass_a = 0, inverse_mass_b = 0;
   Inertia inverse_inertia_a{}, inverse_inertia_b{};  ///< world axes
   typename D::Rotation turn_a{}, turn_b{};           ///< since the step began
+  Vector moved_a{};                                  ///< displacement of the centre of A since the step began
   Vector shift{};  ///< centre of B minus centre of A, less what it was when the step began
 
   Vector point_velocity(Vector arm_a, Vector arm_b) const {

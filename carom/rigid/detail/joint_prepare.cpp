@@ -1,51 +1,8 @@
 // From definitions to the records of a step, and back.
-#include "carom/rigid/detail/joint_record.h"
-#include "carom/rigid/detail/world_implementation.h"
+#include "carom/rigid/detail/joint_place.h"
 
 namespace carom::rigid::detail {
 namespace {
-
-bool axis_is_used(const JointSpring& spring, const JointMotor& motor, const JointLimit& limit) {
-  return spring.hertz > 0 || motor.enabled || limit.enabled;
-}
-
-/// Where the two bodies and the joint's frames are when the step begins.
-template <class D>
-struct JointPlacement {
-  typename D::Vector arm_a{}, arm_b{}, offset{};
-  typename D::Rotation frame_a{}, frame_b{};
-};
-
-template <class D>
-JointPlacement<D> place_joint(const BodyStore<D>& bodies, const JointHeader& header, const JointData<D>& data) {
-  const JointFrames<D>& frames = frames_of(data.definition);
-  JointPlacement<D> at;
-  typename D::Position center_a{};
-  if (header.body[0] != none) {
-    const std::size_t a = std::size_t(header.body[0]);
-    const auto rotation = bodies.pose[a].rotation;
-    at.arm_a = rotate(rotation, frames.frame_a.p - bodies.motion[a].local_center);
-    at.frame_a = rotation * frames.frame_a.q;
-    center_a = bodies.motion[a].center;
-  } else {
-    center_a = data.world_anchor;
-    at.frame_a = frames.frame_a.q;
-  }
-  const std::size_t b = std::size_t(header.body[1]);
-  const auto rotation = bodies.pose[b].rotation;
-  at.arm_b = rotate(rotation, frames.frame_b.p - bodies.motion[b].local_center);
-  at.frame_b = rotation * frames.frame_b.q;
-  at.offset = typename D::Vector(bodies.motion[b].center - center_a);
-  return at;
-}
-
-template <class D>
-typename D::Vector axis_x(const typename D::Rotation& q) {
-  if constexpr (D::dimension == 2)
-    return rotate(q, Vec2f{1, 0});
-  else
-    return rotate(q, Vec3f{1, 0, 0});
-}
 
 void fill_limit(AxisLaw& law, const JointLimit& limit) {
   if (!limit.enabled) return;
@@ -59,6 +16,23 @@ void fill_motor(AxisLaw& law, const JointMotor& motor, float h) {
   law.speed = motor.speed;
   law.max_motor_impulse = motor.max_force * h;
 }
+template <class D>
+inline constexpr int last_turn = D::dimension == 2 ? 0 : 2;
+
+/// Which axis of a generic joint (others have their first linear one) a block is for.
+int axis_of_part(JointPart part) {
+  switch (part) {
+    case part_linear_y:
+    case part_turn_y:
+      return 1;
+    case part_linear_z:
+    case part_turn_z:
+      return 2;
+    default:
+      return 0;
+  }
+}
+
 /// `stiffer`: √(mass that moves with the coordinate once the rest of the joint holds / mass of the row alone). A user's
 /// frequency is that of the whole joint: a rod on a hinge swings about the hinge, not about its own centre.
 void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, float h, float stiffer = 1) {
@@ -66,6 +40,20 @@ void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, float h, f
   law.flags |= AxisLaw::spring;
   law.rest = rest;
   law.response = spring_response(stiffer * spring.hertz, stiffer * spring.damping_ratio, h);
+}
+/// A coordinate of a generic joint, held or free.
+void fill_axis(AxisLaw& law, const JointAxis& axis, float h, float stiffer) {
+  if (!axis.free) {
+    law.flags |= AxisLaw::spring | AxisLaw::rigid;
+    return;
+  }
+  fill_spring(law, axis.spring, axis.target, h, stiffer);
+  law.max_spring_impulse = axis.max_spring_force * h;
+  fill_limit(law, axis.limit);
+  if (axis.motor.enabled)
+    fill_motor(law, axis.motor, h);
+  else if (axis.friction > 0)
+    fill_motor(law, {true, 0, axis.friction}, h);
 }
 float mass_ratio_root(float row_mobility, float held_mobility) {
   if (!(row_mobility > 0)) return 1;
@@ -103,11 +91,11 @@ void memorise(const AxisLaw& law, Axis& memory) {
 
 template <class D>
 void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, JointRecord<D>& record,
-                 float h) {
+                 float h, int axis) {
   block.arm_a = at.arm_a;
   block.arm_b = at.arm_b;
   block.offset = at.offset;
-  block.axis = axis_x<D>(at.frame_a);
+  block.axis = axis_of<D>(at.frame_a, axis);
   AxisLaw& law = block.law;
   if (const auto* slider = std::get_if<SliderJointDef<D>>(&data.definition)) {
     block.between_anchors = false;
@@ -123,6 +111,9 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
     fill_spring(law, slider->spring, slider->target_translation, h, stiffer);
     fill_motor(law, slider->motor, h);
     fill_limit(law, slider->limit);
+  } else if (const auto* generic = std::get_if<GenericJointDef<D>>(&data.definition)) {
+    block.between_anchors = false;
+    fill_axis(law, generic->linear[axis], h, 1);
   } else if (const auto* distance = std::get_if<DistanceJointDef<D>>(&data.definition)) {
     fill_spring(law, distance->spring, distance->length, h);
     fill_motor(law, distance->motor, h);
@@ -140,12 +131,12 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
         law.flags = std::uint8_t((law.flags | AxisLaw::upper) & ~AxisLaw::lower);
         law.high = distance->limit.enabled ? distance->limit.upper : distance->length;
       }
-    } else if (!axis_is_used(distance->spring, distance->motor, distance->limit)) {
+    } else if (is_rod(data)) {
       law.flags |= AxisLaw::spring | AxisLaw::rigid;
       law.rest = distance->length;
     }
   }
-  remember(law, data.memory.linear);
+  remember(law, data.memory.linear[axis]);
 }
 
 template <class D>
@@ -172,17 +163,65 @@ void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlac
   } else if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition)) {
     fill_limit(block.law, ball->twist);
   }
-  remember(block.law, data.memory.twist);
+  remember(block.law, data.memory.turn[last_turn<D>]);
 }
 
 template <class D>
 void fill_cone(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
-  block.cone = true;
+  block.kind = AngleKind::cone;
   block.law.flags = AxisLaw::upper;
   block.law.high = std::get<BallJointDef<D>>(data.definition).cone_angle;
-  remember(block.law, data.memory.cone);
+  remember(block.law, data.memory.turn[0]);
+}
+
+template <class D>
+void fill_turn(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h, int axis) {
+  block.frame_a = at.frame_a;
+  block.frame_b = at.frame_b;
+  if constexpr (D::dimension == 3) block.kind = AngleKind(int(AngleKind::cardan_x) + axis);
+  block.law.flags = AxisLaw::periodic;
+  fill_axis(block.law, std::get<GenericJointDef<D>>(data.definition).angular[axis], h, 1);
+  remember(block.law, data.memory.turn[axis]);
+}
+
+template <class D>
+typename D::Angular spin_axis(const typename D::Rotation& q, int i) {
+  if constexpr (D::dimension == 2)
+    return 1;
+  else
+    return axis_of<D>(q, i);
+}
+
+template <class D>
+void fill_coupling(CouplingBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at) {
+  block.arm_a = at.arm_a;
+  block.arm_b = at.arm_b;
+  block.offset = at.offset;
+  block.impulse = data.memory.coupling;
+  block.drift = data.memory.drift;
+  block.spin_axis_a = spin_axis<D>(at.frame_a, 2);
+  block.spin_axis_b = spin_axis<D>(at.frame_b, 2);
+  if (const auto* gear = std::get_if<GearJointDef<D>>(&data.definition)) {
+    block.ratio = gear->ratio;
+  } else if (const auto* rack = std::get_if<RackJointDef<D>>(&data.definition)) {
+    block.kind = CouplingKind::rack;
+    block.ratio = rack->radius;
+    block.slide_axis = axis_of<D>(at.frame_b, 0);
+  } else if (const auto* screw = std::get_if<ScrewJointDef<D>>(&data.definition)) {
+    block.kind = CouplingKind::screw;
+    block.ratio = screw->pitch / (2 * pi_f);
+    block.slide_axis = axis_of<D>(at.frame_a, 0);
+    block.spin_axis_a = spin_axis<D>(at.frame_a, 0);
+    block.slid = dot(at.offset + at.arm_b - at.arm_a, block.slide_axis);
+  } else if (const auto* pulley = std::get_if<PulleyJointDef<D>>(&data.definition)) {
+    block.kind = CouplingKind::pulley;
+    block.ratio = pulley->ratio;
+    block.length = pulley->length;
+    block.from_ground_a = typename D::Vector(at.center_a - pulley->ground_a);
+    block.from_ground_b = typename D::Vector(at.center_a - pulley->ground_b) + at.offset;
+  }
 }
 
 template <class D>
@@ -261,15 +300,19 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
     using Block = std::remove_reference_t<decltype(raw)>;
     Block& block = *::new (static_cast<void*>(&raw)) Block{};
     if constexpr (std::is_same_v<Block, LinearAxis<D>>)
-      fill_linear(block, data, at, record, h), note(block);
+      fill_linear(block, data, at, record, h, axis_of_part(part)), note(block);
     else if constexpr (std::is_same_v<Block, PointBlock<D>>) {
       fill_point(block, data, at, h);
       if (!block.rigid) block.note_speed(moving());
     } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
       if (part == part_cone)
         fill_cone(block, data, at);
-      else
+      else if (part == part_twist)
         fill_twist(block, data, at, record, h), note(block);
+      else
+        fill_turn(block, data, at, h, axis_of_part(part)), note(block);
+    } else if constexpr (std::is_same_v<Block, CouplingBlock<D>>) {
+      fill_coupling(block, data, at);
     } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
       if (part == part_friction) {
         block.friction = true;
@@ -305,63 +348,39 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   });
 }
 
-/// Do both bodies turn alike about every axis?
-template <class D>
-bool is_isotropic(const WorldImplementation<D>& world, std::int32_t joint) {
-  if constexpr (D::dimension == 2) return true;
-  constexpr std::uint8_t turning_locks = 56;
-  for (const std::int32_t body : world.joints.headers[std::size_t(joint)].body) {
-    if (body == none || !world.bodies.is_dynamic(body)) continue;
-    if (world.bodies.motion[std::size_t(body)].gyroscopic ||
-        (world.bodies.record[std::size_t(body)].locks & turning_locks) != 0)
-      return false;
-  }
-  return true;
-}
-
 }  // namespace
-
-template <class D>
-std::uint16_t parts_of(const JointData<D>& data) {
-  const auto parts = [](const auto& d) -> int {
-    using Def = std::remove_cvref_t<decltype(d)>;
-    if constexpr (std::is_same_v<Def, DistanceJointDef<D>>) {
-      return part_linear;
-    } else if constexpr (std::is_same_v<Def, BallJointDef<D>>) {
-      return part_pin | (d.spring.hertz > 0 ? part_angular : 0) | (d.friction_torque > 0 ? part_friction : 0) |
-             (D::dimension == 3 && d.cone_angle >= 0 ? part_cone : 0) | (d.twist.enabled ? part_twist : 0);
-    } else if constexpr (std::is_same_v<Def, HingeJointDef<D>>) {
-      return part_pin | (D::dimension == 3 ? part_hinge : 0) |
-             (axis_is_used(d.spring, d.motor, d.limit) ? part_twist : 0);
-    } else if constexpr (std::is_same_v<Def, SliderJointDef<D>>) {
-      return part_slide | part_angular | (axis_is_used(d.spring, d.motor, d.limit) ? part_linear : 0);
-    } else if constexpr (std::is_same_v<Def, MouseJointDef<D>>) {
-      return part_point | (d.spring.hertz > 0 ? part_angular : 0);
-    } else if constexpr (std::is_same_v<Def, WeldJointDef<D>>) {
-      return (d.linear.hertz > 0 ? part_point : part_pin) | part_angular;
-    } else {
-      return part_point | part_angular;
-    }
-  };
-  return std::uint16_t(std::visit(parts, data.definition));
-}
 
 template <class D>
 void prepare_joints(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   JointStore<D>& joints = world.joints;
+  build_trees(world);
   joints.order.clear();
   joints.offset.clear();
   joints.color_begin.clear();
+  joints.pins.clear();
+  joints.pin_begin.clear();
+  joints.pin_kernels = pin_kernels_of<D>(world.kernels.width);
+  const std::size_t width = std::size_t(joints.pin_kernels.width);
   std::uint32_t units = 0;
   for (const GraphColor& color : world.graph.colors) {
+    const bool overflows = &color == &world.graph.colors[overflow_color];
     joints.color_begin.push_back(std::int32_t(joints.order.size()));
+    joints.pin_begin.push_back(std::int32_t(joints.pins.size() / width));
     for (const std::int32_t joint : color.joints) {
+      if (!overflows && goes_wide(world, joint)) {
+        joints.pins.push_back(joint);
+        continue;
+      }
       joints.order.push_back(joint);
       joints.offset.push_back(units);
+      const std::int32_t tree = joints.tree_of(joint);
+      if (tree != none) joints.trees.joints[std::size_t(tree)].record = units;
       units += record_units<D>(parts_of(joints.data[std::size_t(joint)]), is_isotropic(world, joint));
     }
+    while (joints.pins.size() % width != 0) joints.pins.push_back(none);
   }
+  joints.pin_begin.push_back(std::int32_t(joints.pins.size() / width));
   joints.color_begin.push_back(std::int32_t(joints.order.size()));
   joints.offset.push_back(units);
   if (joints.records.size() < units) joints.records.resize(units);
@@ -371,15 +390,20 @@ void prepare_joints(StepContext<D>& context) {
       record.joint = joints.order[std::size_t(i)];
       record.isotropic = is_isotropic(world, record.joint);
       record.parts = parts_of(joints.data[std::size_t(record.joint)]);
+      record.direct = joints.tree_of(record.joint) != none;
       fill_record(record, world, context.h);
     }
   });
+  prepare_trees(context);
+  prepare_pins(context);
 }
 
 /// Keeps the impulses for the next step, and what the joint exerted.
 template <class D>
 void store_joints(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
+  store_trees(context);
+  store_pins(context);
   context.scheduler.parallel_for(int(joints.order.size()), 64, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
@@ -392,18 +416,24 @@ void store_joints(StepContext<D>& context) {
       for_each_block(record, [&](JointPart part, auto& block) {
         using Block = std::remove_cvref_t<decltype(block)>;
         if constexpr (std::is_same_v<Block, LinearAxis<D>>) {
-          memorise(block.law, memory.linear);
+          memorise(block.law, memory.linear[axis_of_part(part)]);
           force += block.law.total() * block.row(pair).n;
         } else if constexpr (std::is_same_v<Block, PointBlock<D>> || std::is_same_v<Block, PinBlock<D>>) {
           memory.point = block.impulse;
           force += block.impulse;
         } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
-          memorise(block.law, part == part_cone ? memory.cone : memory.twist);
+          memorise(block.law, memory.turn[part == part_twist ? last_turn<D> : axis_of_part(part)]);
           float unused;
           torque += block.law.total() * block.row(pair, false, unused);
         } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
           (part == part_friction ? memory.friction : memory.angular) = block.impulse;
           torque += block.impulse;
+        } else if constexpr (std::is_same_v<Block, CouplingBlock<D>>) {
+          const auto row = block.row(pair);
+          memory.coupling = block.impulse;
+          if (block.kind != CouplingKind::pulley) memory.drift = row.error;
+          force += block.impulse * row.along_b;
+          torque += block.impulse * row.about_b;
         } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
           typename Block::Row row[Block::rows];
           block.directions(pair, row);
@@ -425,8 +455,6 @@ void store_joints(StepContext<D>& context) {
   });
 }
 
-template std::uint16_t parts_of(const JointData<Dim2>&);
-template std::uint16_t parts_of(const JointData<Dim3>&);
 template void prepare_joints(StepContext<Dim2>&);
 template void prepare_joints(StepContext<Dim3>&);
 template void store_joints(StepContext<Dim2>&);

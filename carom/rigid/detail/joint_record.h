@@ -4,10 +4,16 @@
 #include <new>
 #include <type_traits>
 
-#include "carom/rigid/detail/joint_blocks.h"
+#include "carom/rigid/detail/joint_axis.h"
+#include "carom/rigid/detail/joint_coupling.h"
 #include "carom/rigid/detail/joint_store.h"
 
 namespace carom::rigid::detail {
+
+template <class D>
+struct WorldImplementation;
+template <class D>
+struct StepContext;
 
 /// The blocks of a joint in the order in which they are solved: what matters most is last.
 enum JointPart : std::uint16_t {
@@ -20,7 +26,16 @@ enum JointPart : std::uint16_t {
   part_slide = 64,    ///< SlideBlock
   part_point = 128,   ///< PointBlock
   part_pin = 256,     ///< PinBlock
+  // Of generic joints: part_linear along x, and
+  part_linear_y = 512,
+  part_linear_z = 1024,
+  part_turn_x = 2048,  ///< AngularAxis
+  part_turn_y = 4096,
+  part_turn_z = 8192,
+  part_coupling = 16384,  ///< CouplingBlock
 };
+constexpr JointPart linear_part(int axis) { return axis == 0 ? part_linear : JointPart(part_linear_y << (axis - 1)); }
+constexpr JointPart turn_part(int axis) { return JointPart(part_turn_x << axis); }
 
 /// In space two tensors follow where the bodies do not turn alike about every axis (not `isotropic`).
 template <class D>
@@ -30,6 +45,7 @@ struct JointRecord {
   std::uint16_t parts = 0;
   bool dynamic_a = false, dynamic_b = false;  ///< only dynamic bodies are written to
   bool isotropic = true;
+  bool direct = false;  ///< its rigid rows are solved by the tree it is in
   float inverse_mass_a = 0, inverse_mass_b = 0;
   float inverse_inertia_a = 0, inverse_inertia_b = 0;
 
@@ -54,6 +70,24 @@ void load_masses(BodyPair<D, I>& pair, JointRecord<D>& record) {
   }
 }
 
+/// Calls f(part, type) for what blocks a record may have, in their order.
+template <class D, class F>
+void visit_parts(F&& f) {
+  constexpr std::type_identity<AngularAxis<D>> turn{};
+  constexpr std::type_identity<LinearAxis<D>> line{};
+  f(part_friction, std::type_identity<AngularBlock<D>>{});
+  f(part_coupling, std::type_identity<CouplingBlock<D>>{});
+  for (int i = 0; i < (D::dimension == 2 ? 1 : 3); ++i) f(turn_part(i), turn);
+  for (int i = 0; i < D::dimension; ++i) f(linear_part(i), line);
+  f(part_cone, turn);
+  f(part_twist, turn);
+  f(part_angular, std::type_identity<AngularBlock<D>>{});
+  if constexpr (D::dimension == 3) f(part_hinge, std::type_identity<HingeBlock>{});
+  f(part_slide, std::type_identity<SlideBlock<D>>{});
+  f(part_point, std::type_identity<PointBlock<D>>{});
+  f(part_pin, std::type_identity<PinBlock<D>>{});
+}
+
 /// Calls visit(part, block) for each block of the record.
 template <class D, class Visit>
 void for_each_block(JointRecord<D>& record, Visit&& visit) {
@@ -66,32 +100,19 @@ void for_each_block(JointRecord<D>& record, Visit&& visit) {
     at += sizeof(Block);
     return block;
   };
-  if (parts & part_friction) visit(part_friction, next(std::type_identity<AngularBlock<D>>{}));
-  if (parts & part_linear) visit(part_linear, next(std::type_identity<LinearAxis<D>>{}));
-  if (parts & part_cone) visit(part_cone, next(std::type_identity<AngularAxis<D>>{}));
-  if (parts & part_twist) visit(part_twist, next(std::type_identity<AngularAxis<D>>{}));
-  if (parts & part_angular) visit(part_angular, next(std::type_identity<AngularBlock<D>>{}));
-  if constexpr (D::dimension == 3) {
-    if (parts & part_hinge) visit(part_hinge, next(std::type_identity<HingeBlock>{}));
-  }
-  if (parts & part_slide) visit(part_slide, next(std::type_identity<SlideBlock<D>>{}));
-  if (parts & part_point) visit(part_point, next(std::type_identity<PointBlock<D>>{}));
-  if (parts & part_pin) visit(part_pin, next(std::type_identity<PinBlock<D>>{}));
+  const auto at_part = [&]<class Block>(JointPart part, std::type_identity<Block> type) {
+    if (parts & part) visit(part, next(type));
+  };
+  visit_parts<D>(at_part);
 }
 
 /// Units of 16 bytes that a record with these parts takes.
 template <class D>
 constexpr std::uint32_t record_units(std::uint16_t parts, bool isotropic) {
   std::size_t bytes = sizeof(JointRecord<D>) + (isotropic ? 0 : 2 * sizeof(Mat3f));
-  if (parts & part_friction) bytes += sizeof(AngularBlock<D>);
-  if (parts & part_linear) bytes += sizeof(LinearAxis<D>);
-  if (parts & part_cone) bytes += sizeof(AngularAxis<D>);
-  if (parts & part_twist) bytes += sizeof(AngularAxis<D>);
-  if (parts & part_angular) bytes += sizeof(AngularBlock<D>);
-  if (D::dimension == 3 && (parts & part_hinge)) bytes += sizeof(HingeBlock);
-  if (parts & part_slide) bytes += sizeof(SlideBlock<D>);
-  if (parts & part_point) bytes += sizeof(PointBlock<D>);
-  if (parts & part_pin) bytes += sizeof(PinBlock<D>);
+  visit_parts<D>([&]<class Block>(JointPart part, std::type_identity<Block>) {
+    if (parts & part) bytes += sizeof(Block);
+  });
   return std::uint32_t((bytes + 15) / 16);
 }
 
@@ -105,12 +126,33 @@ void load_turns(BodyPair<D, I>& pair, const JointRecord<D>& record, const Solver
   }
   pair.turn_b = bodies[record.body_b].delta_rotation;
   moved_b = bodies[record.body_b].delta_position;
+  pair.moved_a = moved_a;
   pair.shift = moved_b - moved_a;
 }
 
 /// The blocks that this joint needs now.
 template <class D>
 std::uint16_t parts_of(const JointData<D>& data);
+/// Does it hold the distance itself?
+template <class D>
+bool is_rod(const JointData<D>& data);
+/// Does its part_angular hold the frames' attitude without a spring?
+template <class D>
+bool turns_rigidly(const JointData<D>& data);
+
+/// Is it a generic joint that holds some axis?
+template <class D>
+bool holds_axes(const JointData<D>& data);
+
+// joint_pins.cpp: pins whose rows nothing but their own impulses act on go to the wide solver.
+template <class D>
+bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint);
+template <class D>
+PinKernels<D> pin_kernels_of(int width);
+template <class D>
+void prepare_pins(StepContext<D>& context);
+template <class D>
+void store_pins(StepContext<D>& context);
 
 template <class D>
 const JointFrames<D>& frames_of(const AnyJointDef<D>& definition) {
@@ -118,7 +160,10 @@ const JointFrames<D>& frames_of(const AnyJointDef<D>& definition) {
 }
 
 template <class D>
-struct WorldImplementation;
+bool may_break(const AnyJointDef<D>& definition) {
+  return frames_of(definition).break_force > 0 || frames_of(definition).break_torque > 0;
+}
+
 /// Detaches the joint and frees its slot.
 template <class D>
 void release_joint(WorldImplementation<D>& world, std::int32_t joint);

@@ -1,5 +1,5 @@
 // The joints' passes of a substep.
-#include "carom/rigid/detail/joint_record.h"
+#include "carom/rigid/detail/joint_rows.h"
 #include "carom/rigid/detail/world_implementation.h"
 
 namespace carom::rigid::detail {
@@ -46,8 +46,22 @@ template <class I, class D, class Act>
 void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
   BodyPair<D, I> pair;
   load_pair(pair, record, bodies);
-  for_each_block(record, [&](JointPart, auto& block) { act(pair, block); });
+  for_each_block(record, [&](JointPart, auto& block) {
+    if (!record.direct || !is_rigid(block)) act(pair, block);
+  });
   save_pair(pair, record, bodies);
+}
+
+/// Runs f on the blocks of pins of a colour.
+template <class D, class F>
+void for_pins(StepContext<D>& context, int color, F&& f) {
+  const JointStore<D>& joints = context.world.joints;
+  const int first = joints.pin_begin[std::size_t(color)], count = joints.pin_begin[std::size_t(color) + 1] - first;
+  if (count == 0) return;
+  const int threads = context.scheduler.thread_count();
+  if (threads == 1 || count <= 16) return f(first, first + count);
+  const int grain = max(8, (count + 3 * threads - 1) / (3 * threads));
+  context.scheduler.parallel_for(count, grain, [&](int begin, int end, int) { f(first + begin, first + end); });
 }
 
 /// Runs `act` on the records of a colour: side by side, but for the overflow one after the other.
@@ -80,6 +94,9 @@ void for_each_record(StepContext<D>& context, int color, const Act& act) {
 template <class D>
 void warm_start_joints(StepContext<D>& context, int color) {
   for_each_record<true>(context, color, [](auto& pair, auto& block) { block.warm_start(pair); });
+  const JointStore<D>& joints = context.world.joints;
+  for_pins(context, color,
+           [&](int begin, int end) { joints.pin_kernels.warm_start(context.bodies, joints.pin_blocks, begin, end); });
 }
 
 template <class D>
@@ -88,6 +105,14 @@ void solve_joints(StepContext<D>& context, int color, bool use_bias) {
   const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
   const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
   for_each_record<false>(context, color, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
+  const JointStore<D>& joints = context.world.joints;
+  for_pins(context, color, [&](int begin, int end) {
+    if (use_bias)
+      joints.pin_kernels.solve(context.bodies, joints.pin_blocks, begin, end,
+                               {biased.velocity, biased.position, biased.memory});
+    else
+      joints.pin_kernels.relax(context.bodies, joints.pin_blocks, begin, end);
+  });
 }
 
 template <class D>
@@ -103,6 +128,7 @@ void release_joint(WorldImplementation<D>& world, std::int32_t joint) {
   JointStore<D>& joints = world.joints;
   detach_joint(world, joint);
   if (joints.data[std::size_t(joint)].internal) --joints.internal_count;
+  if (may_break(joints.data[std::size_t(joint)].definition)) --joints.breakable_count;
   joints.data[std::size_t(joint)] = {};
   joints.headers[std::size_t(joint)] = {};
   joints.slots.release(joints.slots.handle_at(joint));

@@ -6,6 +6,8 @@
 
 #include "carom/core/pool.h"
 #include "carom/rigid/detail/joint_header.h"
+#include "carom/rigid/detail/joint_lanes.h"
+#include "carom/rigid/detail/joint_tree.h"
 #include "carom/rigid/state.h"
 
 namespace carom::rigid::detail {
@@ -19,7 +21,10 @@ struct JointMemory {
   typename D::Vector point{};
   typename D::Angular angular{}, friction{};
   Vec2f hinge{}, slide{};
-  Axis linear{}, twist{}, cone{};
+  Axis linear[D::dimension]{};             ///< along x, y, z of frame A; of others than generic joints the first
+  Axis turn[D::dimension == 2 ? 1 : 3]{};  ///< about them; twist: the last, cone: the first
+  float coupling = 0;
+  float drift = 0;  ///< of a gear, rack or screw: what its coordinates have come apart so far, m or rad
 };
 
 template <class D>
@@ -42,6 +47,7 @@ struct JointStore {
   std::vector<JointData<D>> data;    ///< by slot
   std::uint64_t births = 0;
   int internal_count = 0;  ///< joints in `slots` that belong to effectors
+  int breakable_count = 0;
 
   // Of the step, in the order of the graph: records of joint_record.h, one after another.
   std::vector<std::int32_t> order;        ///< slots
@@ -51,9 +57,19 @@ struct JointStore {
     unsigned char bytes[16];
   };
   std::vector<Unit> records;
+  JointTrees<D> trees;
+  // Pins that are solved side by side, likewise of the step (joint_lanes.h).
+  std::vector<std::int32_t> pins;       ///< slots, each colour filled up with `none` to whole blocks
+  std::vector<std::int32_t> pin_begin;  ///< block at which each colour begins, one more at the end
+  void* pin_blocks = nullptr;           ///< PinLanes, in the arena of the step
+  PinKernels<D> pin_kernels{};
 
   explicit JointStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size() - internal_count; }
+  /// Place in JointTrees::joints, or `none`: solved by iteration.
+  std::int32_t tree_of(std::int32_t joint) const {
+    return std::size_t(joint) < trees.of_joint.size() ? trees.of_joint[std::size_t(joint)] : none;
+  }
 };
 
 }  // namespace carom::rigid::detail

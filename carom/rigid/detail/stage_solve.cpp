@@ -23,6 +23,14 @@ void add_body_stage(StepContext<D>& context, SolverPass pass) {
   context.world.scratch.solver_loops.push_back({int(context.world.bodies.awake.size()), body_grain});
 }
 
+template <class D>
+void add_tree_stage(StepContext<D>& context, SolverPass pass) {
+  const int count = int(context.world.joints.trees.trees.size());
+  if (count == 0) return;
+  context.world.scratch.solver_stages.push_back({pass, 0, 0});
+  context.world.scratch.solver_loops.push_back({count, tree_grain(context.world.joints.trees)});
+}
+
 /// One stage for every colour, but one for neighbours that are small or serial: no result depends on how the colours
 /// are cut, because one chunk runs them in their order.
 template <class D>
@@ -58,11 +66,20 @@ void list_stages(StepContext<D>& context) {
   scratch.solver_loops.reserve(most_solver_stages(context.substeps));
   for (int substep = 0; substep < context.substeps; ++substep) {
     add_body_stage(context, SolverPass::velocities);
+    add_tree_stage(context, SolverPass::begin_trees);
     add_color_stages(context, SolverPass::warm_start);
     add_color_stages(context, SolverPass::solve);
+    add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
+    add_tree_stage(context, SolverPass::factorise_trees);
     add_color_stages(context, SolverPass::relax);
+    add_tree_stage(context, SolverPass::settle_trees);
   }
+}
+
+bool is_of_trees(SolverPass pass) {
+  return pass == SolverPass::begin_trees || pass == SolverPass::solve_trees || pass == SolverPass::factorise_trees ||
+         pass == SolverPass::settle_trees;
 }
 
 template <class D>
@@ -81,6 +98,7 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
   if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end);
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
+  if (is_of_trees(stage.pass)) return run_trees(context, stage.pass, begin, end);
   const bool whole = context.world.scratch.solver_loops[std::size_t(index)].count == 1;
   for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank) {
     const ColorBlocks& blocks = context.world.scratch.blocks[color_of_rank(rank)];
@@ -91,7 +109,8 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
 template <class D>
 void run_joints(StepContext<D>& context, SolverStage stage) {
   const int color = color_of_rank(stage.first_rank);
-  if (stage.pass == SolverPass::velocities || stage.pass == SolverPass::positions || !has_joints(context, color))
+  if (stage.pass == SolverPass::velocities || stage.pass == SolverPass::positions || is_of_trees(stage.pass) ||
+      !has_joints(context, color))
     return;
   if (stage.pass == SolverPass::warm_start)
     warm_start_joints(context, color);
@@ -104,8 +123,9 @@ void run_joints(StepContext<D>& context, SolverStage stage) {
 template <class D>
 void solve_constraints(StepContext<D>& context) {
   list_stages(context);
+  prepare_drives(context);
   const StepScratch<D>& scratch = context.world.scratch;
-  if (context.world.joints.order.empty())
+  if (context.world.joints.order.empty() && context.world.joints.pins.empty())
     return context.scheduler.run_stages(
         scratch.solver_loops, [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
   for (std::size_t i = 0; i < scratch.solver_stages.size(); ++i) {

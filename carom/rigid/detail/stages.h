@@ -33,6 +33,9 @@ void solve_constraints(StepContext<D>& context);
 template <class D>
 void restitute_contacts(StepContext<D>& context);
 /// Of the bodies in places [begin, end) of the list of awake bodies, by one substep.
+/// What integration needs of bodies through all substeps.
+template <class D>
+void prepare_drives(StepContext<D>& context);
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end);
 template <class D>

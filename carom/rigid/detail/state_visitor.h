@@ -41,16 +41,24 @@ void visit_shapes(Shapes& store, Visit& visit) {
 
 template <class Joints, class Visit>
 void visit_joints(Joints& store, Visit& visit) {
-  auto& [slots, headers, data, births, internal_count, order, offset, color_begin, records] = store;
+  auto& [slots, headers, data, births, internal_count, breakable_count, order, offset, color_begin, records, trees,
+         pins, pin_begin, pin_blocks, pin_kernels] = store;
+  (void)pin_blocks, (void)pin_kernels;
   visit_slots(slots, visit);
   visit.state(headers);
   visit.state(data);
   visit.state(births);
   visit.state(internal_count);
+  visit.state(breakable_count);
   visit.scratch(order);
   visit.scratch(offset);
   visit.scratch(color_begin);
   visit.scratch(records);
+  visit.scratch(trees.trees);
+  visit.scratch(trees.bodies);
+  visit.scratch(trees.joints);
+  visit.scratch(trees.of_joint);
+  visit.scratch(pins);
 }
 
 template <class Effectors, class Visit>
@@ -90,7 +98,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, solver_stages, solver_loops, moved, found_pairs, pairs, swept, fast, broken, body_changes,
          contact_changes, found_manifolds, manifolds, island_parent, island_list, island_bodies, island_ends,
          doomed_contacts, new_touches, island_restless, contact_begin, contact_end, pending_contact_end, contact_hit,
-         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves] = scratch;
+         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
   (void)blocks;
   visit.scratch(solver_stages);
   visit.scratch(solver_loops);
@@ -121,6 +129,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.events(fell_asleep);
   visit.events(quarantined);
   visit.events(body_moves);
+  visit.events(joint_break);
 }
 
 /// `world` is a WorldImplementation, constant or not.

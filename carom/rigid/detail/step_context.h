@@ -22,6 +22,18 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
   return {omega / a1, a2 * a3, a3};
 }
 
+/// What a substep does to the motion of an awake body besides its constraints: the same in every substep, so that the
+/// cold parts of bodies are read once a step.
+template <class D>
+struct BodyDrive {
+  enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4 };
+  std::int32_t body = none;                 ///< slot
+  std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint
+  float linear_keep = 1, angular_keep = 1;  ///< what damping leaves of velocities
+  typename D::Vector linear_gain{};         ///< m/s, of gravity and forces
+  typename D::Angular angular_gain{};       ///< rad/s
+};
+
 template <class D>
 struct StepContext {
   WorldImplementation<D>& world;
@@ -33,6 +45,7 @@ struct StepContext {
   Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
   float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
   SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones
+  BodyDrive<D>* drives = nullptr;   ///< in the order of BodyStore::awake
 };
 
 }  // namespace carom::rigid::detail

@@ -31,7 +31,17 @@ struct ColorBlocks {
 };
 
 /// A pass over bodies or over the constraints of some colours: what the solver does between two barriers.
-enum class SolverPass : std::uint8_t { velocities, warm_start, solve, positions, relax };
+enum class SolverPass : std::uint8_t {
+  velocities,
+  begin_trees,
+  warm_start,
+  solve,
+  solve_trees,
+  positions,
+  factorise_trees,
+  relax,
+  settle_trees
+};
 struct SolverStage {
   SolverPass pass = SolverPass::velocities;
   std::uint8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
@@ -39,7 +49,7 @@ struct SolverStage {
 
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps) {
-  return std::size_t(substeps) * (2 + 3 * (color_count + 1));
+  return std::size_t(substeps) * (6 + 3 * (color_count + 1));
 }
 
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
@@ -76,6 +86,7 @@ struct StepScratch {
   std::vector<SensorEvent> sensor_begin, sensor_end, pending_sensor_end;
   std::vector<SleepEvent> fell_asleep, quarantined;
   std::vector<MoveEvent<D>> body_moves;
+  std::vector<JointBreakEvent<D>> joint_break;
 };
 
 /// Events of the last step are gone; those that wait for the next one stay.
@@ -89,6 +100,7 @@ void forget_events(StepScratch<D>& s) {
   s.fell_asleep.clear();
   s.quarantined.clear();
   s.body_moves.clear();
+  s.joint_break.clear();
 }
 
 }  // namespace carom::rigid::detail

@@ -261,6 +261,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   tell_moves(world);
   update_trees(world);
   release_broken_bodies(world);
+  break_joints(world);
   profile.broad_phase += watch.lap("trees");
   ++world.step_count;
   world.time += double(dt);

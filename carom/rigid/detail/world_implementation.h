@@ -96,6 +96,9 @@ template <class D>
 void solve_joints(StepContext<D>& context, int color, bool use_bias);
 template <class D>
 void store_joints(StepContext<D>& context);
+/// Destroys joints that were loaded above what they bear, and tells of it.
+template <class D>
+void break_joints(WorldImplementation<D>& world);
 /// Destroys every joint of a body (detaching each), before the body goes.
 template <class D>
 void destroy_joints_of(WorldImplementation<D>& world, std::int32_t body);

@@ -30,7 +30,9 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   complaint.rotation("frame_a.q", def.frame_a.q);
   complaint.vector("frame_b.p", def.frame_b.p);
   complaint.rotation("frame_b.q", def.frame_b.q);
-  check_joint(complaint, def);
+  complaint.not_negative("break_force", def.break_force);
+  complaint.not_negative("break_torque", def.break_torque);
+  check_joint<D>(complaint, def);
   if (!complaint.none_yet()) return complaint.error();
 
   def.frame_a.q = unit_rotation(def.frame_a.q);
@@ -53,6 +55,7 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   joints.headers[slot] = {};
   joints.headers[slot].body[0] = a;
   joints.headers[slot].body[1] = b;
+  if (may_break(data.definition)) ++joints.breakable_count;
   joints.headers[slot].collide_connected = def.collide_connected || a == none;
   attach_joint(world, std::int32_t(slot));
   return id;
@@ -65,13 +68,19 @@ Result<std::int32_t> find_joint(const WorldImplementation<D>& world, JointId joi
     return core::Error{core::text(call, ": ", s.error().message)};
   return std::int32_t(world.joints.slots.slot(joint));
 }
+/// After a change of its definition.
 template <class D>
 void wake_joint(WorldImplementation<D>& world, std::int32_t joint) {
+  const AnyJointDef<D>& any = world.joints.data[std::size_t(joint)].definition;
+  // Only these two may have become rigid, or no longer be.
+  if (std::holds_alternative<DistanceJointDef<D>>(any) || std::holds_alternative<WeldJointDef<D>>(any))
+    world.joints.trees.stale = true;
   for (const std::int32_t body : world.joints.headers[std::size_t(joint)].body)
     if (body != none && world.bodies.is_dynamic(body)) wake_body(world, body);
 }
 inline std::string_view joint_type_name(std::size_t index) {
-  constexpr std::string_view names[] = {"distance", "ball", "hinge", "slider", "weld", "motor", "mouse"};
+  constexpr std::string_view names[] = {"distance", "ball",    "hinge", "slider", "weld",  "motor",
+                                        "mouse",    "generic", "gear",  "rack",   "screw", "pulley"};
   return names[index];
 }
 inline core::Error wrong_joint(std::string_view call, std::size_t index, std::string_view expected) {
@@ -106,6 +115,26 @@ Result<JointId> World<D>::create_joint(const MotorJointDef<D>& d) {
 }
 template <class D>
 Result<JointId> World<D>::create_joint(const MouseJointDef<D>& d) {
+  return detail::make_joint<D>(*self_, d);
+}
+template <class D>
+Result<JointId> World<D>::create_joint(const GenericJointDef<D>& d) {
+  return detail::make_joint<D>(*self_, d);
+}
+template <class D>
+Result<JointId> World<D>::create_joint(const GearJointDef<D>& d) {
+  return detail::make_joint<D>(*self_, d);
+}
+template <class D>
+Result<JointId> World<D>::create_joint(const RackJointDef<D>& d) {
+  return detail::make_joint<D>(*self_, d);
+}
+template <class D>
+Result<JointId> World<D>::create_joint(const ScrewJointDef<D>& d) {
+  return detail::make_joint<D>(*self_, d);
+}
+template <class D>
+Result<JointId> World<D>::create_joint(const PulleyJointDef<D>& d) {
   return detail::make_joint<D>(*self_, d);
 }
 
@@ -197,16 +226,41 @@ Status World<D>::set_spring(JointId joint, const JointSpring& spring) {
   detail::Complaint complaint(call);
   complaint.spring("spring", spring);
   if (!complaint.none_yet()) return complaint.error();
+  if (const std::size_t type = self_->joints.data[std::size_t(*slot)].definition.index();
+      type >= std::size_t(JointType::generic))
+    return detail::wrong_joint(call, type, "one with a spring of its own (of a generic joint: set_axis)");
   std::visit(
       [&](auto& d) {
         if constexpr (requires { d.spring; }) {
           d.spring = spring;
-        } else {  // weld and motor joints have two
+        } else if constexpr (requires { d.angular.hertz; }) {  // weld and motor joints have two
           d.linear = spring;
           d.angular = spring;
         }
       },
       self_->joints.data[std::size_t(*slot)].definition);
+  detail::wake_joint<D>(*self_, *slot);
+  return {};
+}
+
+template <class D>
+Status World<D>::set_axis(JointId joint, int axis, const JointAxis& settings) {
+  constexpr std::string_view call = "World::set_axis";
+  const auto slot = detail::find_joint<D>(*self_, joint, call);
+  if (!slot.ok()) return slot.error();
+  AnyJointDef<D>& any = self_->joints.data[std::size_t(*slot)].definition;
+  auto* generic = std::get_if<GenericJointDef<D>>(&any);
+  if (generic == nullptr) return detail::wrong_joint(call, any.index(), "a generic joint");
+  constexpr int turning = D::dimension == 2 ? 1 : 3;
+  if (axis < 0 || axis >= D::dimension + turning)
+    return core::Error{core::text(call, ": axis is ", axis, ", expected 0 to ", D::dimension + turning - 1)};
+  JointAxis& now = axis < D::dimension ? generic->linear[axis] : generic->angular[axis - D::dimension];
+  detail::Complaint complaint(call);
+  complaint.axis("settings", settings, axis >= D::dimension);
+  if (settings.free != now.free)
+    complaint.say(core::text("settings.free is ", settings.free ? "true" : "false", ", expected as it was made"));
+  if (!complaint.none_yet()) return complaint.error();
+  now = settings;
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }

@@ -317,6 +317,7 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
     if (custom != nullptr && !custom->model && i < kept.size())
       if (auto* own = std::get_if<CustomEffector<D>>(&kept[i].definition)) custom->model = own->model;
   }
+  world.joints.trees.stale = true;
   if (data.world_number != world.world_number) adopt_handles(world);
   return {};
 }

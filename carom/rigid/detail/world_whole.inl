@@ -61,6 +61,11 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   world.joints.order.reserve(joints);
   world.joints.offset.reserve(joints + 1);
   world.joints.color_begin.reserve(color_count + 2);
+  world.joints.pins.reserve(joints + 16 * (color_count + 1));
+  world.joints.pin_begin.reserve(color_count + 2);
+  world.joints.trees.of_joint.reserve(joints);
+  world.joints.trees.visited.reserve(joints);
+  world.joints.trees.place.reserve(bodies);
   world.joints.records.reserve(joints * 24);  // the longest record of a joint takes about that
   world.contacts.contacts.reserve(contacts);
   world.contacts.free_contacts.reserve(contacts);
@@ -101,12 +106,15 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.fell_asleep.reserve(bodies);
   s.quarantined.reserve(bodies);
   if (world.definition.move_events) s.body_moves.reserve(bodies);
+  s.joint_break.reserve(joints);
   // Blocks of the solver: a lane a manifold, and for every colour one that is not full.
   using Block = ContactBlock<D, 16>;
   using Extra = ContactExtra<D, 16>;
   const std::size_t blocks = manifolds / 16 + color_count + 1;
   world.arena.reset();
-  world.arena = core::Arena(blocks * (sizeof(Block) + sizeof(Extra)) + 2 * (color_count + 1) * core::Arena::alignment);
+  const std::size_t pins = joints / 16 + color_count + 1;
+  world.arena = core::Arena(blocks * (sizeof(Block) + sizeof(Extra)) + pins * sizeof(PinLanes<D, 16>) +
+                            bodies * sizeof(BodyDrive<D>) + 2 * (color_count + 2) * core::Arena::alignment);
 }
 
 }  // namespace detail
@@ -218,8 +226,8 @@ double World<D>::time() const {
 template <class D>
 Events<D> World<D>::events() const {
   const detail::StepScratch<D>& s = self_->scratch;
-  return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin,
-          s.sensor_end,    s.fell_asleep, s.quarantined, s.body_moves};
+  return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin, s.sensor_end,
+          s.fell_asleep,   s.quarantined, s.body_moves,  s.joint_break};
 }
 
 template <class D>

@@ -25,6 +25,7 @@ bool read_world(Reader& reader, const Object& scene, const InstantiateOptions& o
     def.contact_push_speed = float(reader.number(w, "contact_push_speed", def.contact_push_speed));
     def.joint_hertz = float(reader.number(w, "joint_frequency", def.joint_hertz));
     def.joint_damping_ratio = float(reader.number(w, "joint_damping_ratio", def.joint_damping_ratio));
+    def.joint_solver = JointSolver(reader.choice(w, "joint_solver", int(def.joint_solver)));
     def.maximum_linear_speed = float(reader.number(w, "maximum_linear_speed", def.maximum_linear_speed));
     def.sleep_time = float(reader.number(w, "sleep_time", def.sleep_time));
     def.allow_sleep = reader.flag(w, "allow_sleep", def.allow_sleep);

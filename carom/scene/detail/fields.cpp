@@ -10,7 +10,10 @@ constexpr std::string_view body_types[] = {"fixed", "kinematic", "dynamic"};
 constexpr std::string_view shape_types[] = {"sphere", "capsule", "box",     "cylinder",     "cone",
                                             "hull",   "plane",   "mesh",    "height_field", "compound",
                                             "circle", "polygon", "segment", "chain"};
-constexpr std::string_view joint_types[] = {"distance", "ball", "hinge", "slider", "weld", "motor", "mouse"};
+constexpr std::string_view joint_types[] = {"distance",    "ball",    "hinge",     "slider", "weld",  "motor",
+                                            "mouse",       "generic", "gear",      "rack",   "screw", "pulley",
+                                            "cylindrical", "planar",  "universal", "wheel"};
+constexpr std::string_view joint_solvers[] = {"automatic", "iterative", "direct"};
 constexpr std::string_view effector_types[] = {
     "spherical_gravity", "linear_drag", "quadratic_drag", "wind",        "spring",
     "buoyancy",          "thrust",      "radial_field",   "vortex_field"};
@@ -194,6 +197,29 @@ constexpr Field motor_fields[] = {
 };
 const ObjectKind motor_kind{"motor", "Drives a joint's coordinate.", motor_fields};
 
+constexpr Field joint_axis_fields[] = {
+    {"free", T::flag, M::plain, "by default true"},
+    {"limit", T::object, M::plain, "", &limit_kind},
+    {"spring", T::object, M::plain, "", &spring_kind},
+    {"target", T::quantity, M::count_, "length or angle, of the spring"},
+    {"max_spring_force", T::quantity, M::force, "of a linear axis; with a stiff spring a motor to a position"},
+    {"max_spring_torque", T::quantity, M::torque, "of an angular axis"},
+    {"motor", T::object, M::plain, "", &motor_kind},
+    {"friction", T::quantity, M::force, "of a linear axis, where no motor is"},
+    {"friction_torque", T::quantity, M::torque, "of an angular axis, where no motor is"},
+};
+const ObjectKind joint_axis_kind{"joint_axis", "A coordinate of a generic joint.", joint_axis_fields};
+constexpr Field joint_axes_fields[] = {
+    {"x", T::object, M::plain, "along x of frame A", &joint_axis_kind},
+    {"y", T::object, M::plain, "", &joint_axis_kind},
+    {"z", T::object, M::plain, "", &joint_axis_kind, {}, false, 3},
+    {"turn_x", T::object, M::plain, "Cardan angle about x of frame A", &joint_axis_kind, {}, false, 3},
+    {"turn_y", T::object, M::plain, "then about y, within ±90°", &joint_axis_kind, {}, false, 3},
+    {"turn_z", T::object, M::plain, "then about z, of frame B", &joint_axis_kind},
+};
+const ObjectKind joint_axes_kind{"joint_axes", "What is free, and how. Axes that are not named are held.",
+                                 joint_axes_fields};
+
 constexpr Field joint_fields[] = {
     {"preset", T::text, M::plain, "name of a preset file, without .json"},
     {"name", T::text},
@@ -209,7 +235,16 @@ constexpr Field joint_fields[] = {
     {"frame_a", T::object, M::plain, "instead of anchor and axis", &frame_kind},
     {"frame_b", T::object, M::plain, "instead of anchor and axis", &frame_kind},
     {"collide_connected", T::flag},
-    {"length", T::quantity, M::length, "distance joint; by default the distance of the anchors"},
+    {"break_force", T::quantity, M::force, "above it the joint gives way; 0: never"},
+    {"break_torque", T::quantity, M::torque, "likewise"},
+    {"axes", T::object, M::plain, "generic, cylindrical, planar, universal and wheel joints", &joint_axes_kind},
+    {"slide_axis", T::vector, M::plain, "in the world: of a rack, whose pinion turns about \"axis\""},
+    {"ratio", T::quantity, M::plain, "gear: spin of B over spin of A; pulley: of B's side"},
+    {"radius", T::quantity, M::length, "rack: of its pinion"},
+    {"pitch", T::quantity, M::length, "screw: of a turn"},
+    {"ground_a", T::vector, M::length, "pulley, in the world"},
+    {"ground_b", T::vector, M::length, "pulley, in the world"},
+    {"length", T::quantity, M::length, "distance joint and pulley; by default as the anchors are"},
     {"rope", T::flag, M::plain, "distance joint that only pulls"},
     {"spring", T::object, M::plain, "", &spring_kind},
     {"linear_spring", T::object, M::plain, "weld and motor joints", &spring_kind},
@@ -348,6 +383,7 @@ constexpr Field world_fields[] = {
     {"contact_push_speed", T::quantity, M::speed, "overlapping bodies separate no faster"},
     {"joint_frequency", T::quantity, M::frequency, "stiffness of joints"},
     {"joint_damping_ratio", T::quantity, M::plain},
+    {"joint_solver", T::choice, M::plain, "who holds joints: automatic, iterative or direct", nullptr, joint_solvers},
     {"maximum_linear_speed", T::quantity, M::speed},
     {"sleep_time", T::quantity, M::time, "below the sleep speed before an island sleeps"},
     {"allow_sleep", T::flag},
@@ -452,11 +488,12 @@ constexpr Field preset_fields[] = {
 const ObjectKind preset_kind{"preset", "Values under a name, for the key preset.", preset_fields};
 
 const ObjectKind* const all_kinds[] = {
-    &scene_kind,  &world_kind,    &material_pair_kind, &parameter_kind,       &material_kind,    &filter_kind,
-    &shape_kind,  &rotation_kind, &body_kind,          &mass_properties_kind, &group_kind,       &joint_kind,
-    &frame_kind,  &spring_kind,   &limit_kind,         &motor_kind,           &effector_kind,    &wave_kind,
-    &camera_kind, &plot_kind,     &axis_kind,          &series_kind,          &expectation_kind, &flight_kind,
-    &earth_kind,  &vehicle_kind,  &initial_kind};
+    &scene_kind,  &world_kind, &material_pair_kind, &parameter_kind,  &material_kind,
+    &filter_kind, &shape_kind, &rotation_kind,      &body_kind,       &mass_properties_kind,
+    &group_kind,  &joint_kind, &frame_kind,         &joint_axis_kind, &joint_axes_kind,
+    &spring_kind, &limit_kind, &motor_kind,         &effector_kind,   &wave_kind,
+    &camera_kind, &plot_kind,  &axis_kind,          &series_kind,     &expectation_kind,
+    &flight_kind, &earth_kind, &vehicle_kind,       &initial_kind};
 
 }  // namespace
 
@@ -473,6 +510,8 @@ const FieldTables& tables() {
                              .mass_properties = &mass_properties_kind,
                              .group = &group_kind,
                              .joint = &joint_kind,
+                             .joint_axis = &joint_axis_kind,
+                             .joint_axes = &joint_axes_kind,
                              .frame = &frame_kind,
                              .spring = &spring_kind,
                              .limit = &limit_kind,

@@ -55,8 +55,8 @@ struct ObjectKind {
 
 struct FieldTables {
   const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *shape, *body,
-      *mass_properties, *group, *joint, *frame, *spring, *limit, *motor, *effector, *wave, *camera, *plot, *axis,
-      *series, *expectation, *rotation, *preset, *flight, *earth, *vehicle, *initial;
+      *mass_properties, *group, *joint, *joint_axis, *joint_axes, *frame, *spring, *limit, *motor, *effector, *wave,
+      *camera, *plot, *axis, *series, *expectation, *rotation, *preset, *flight, *earth, *vehicle, *initial;
   std::span<const ObjectKind* const> all;
 };
 const FieldTables& tables();

@@ -4,7 +4,30 @@ namespace carom::scene::detail {
 namespace {
 using namespace rigid;
 
-enum JointChoice { distance_joint, ball_joint, hinge_joint, slider_joint, weld_joint, motor_joint, mouse_joint };
+enum JointChoice {
+  distance_joint,
+  ball_joint,
+  hinge_joint,
+  slider_joint,
+  weld_joint,
+  motor_joint,
+  mouse_joint,
+  generic_joint,
+  gear_joint,
+  rack_joint,
+  screw_joint,
+  pulley_joint,
+  cylindrical_joint,
+  planar_joint,
+  universal_joint,
+  wheel_joint
+};
+/// Is the joint's axis x of its frames? Others have it along z.
+bool along_x(int type) {
+  return type == slider_joint || type == screw_joint || type == cylindrical_joint || type == universal_joint;
+}
+/// Do the frames sit at the bodies' origins unless something else is said?
+bool needs_no_anchor(int type) { return type == motor_joint || type == gear_joint || type == rack_joint; }
 
 /// The rotation that turns `from` (x or z) onto the axis by the shortest way.
 math::Rot2d onto_axis(math::Vec3d axis, math::Vec3d, Dim2*) { return {axis.x, axis.y}; }
@@ -43,6 +66,29 @@ JointMotor read_motor(Reader& reader, const Object& o, bool angular) {
   return motor;
 }
 
+JointAxis read_axis(Reader& reader, const Object& axes, const char* key, JointAxis axis, bool angular) {
+  Object a;
+  if (!axes.has(key) || !reader.open(*axes.find(key), axes.path_of(key), *tables().joint_axis, a)) return axis;
+  axis.free = reader.flag(a, "free", true);
+  axis.limit = a.has("limit") ? read_limit(reader, a, "limit", angular ? Measure::angle : Measure::length) : axis.limit;
+  axis.spring = read_spring(reader, a, "spring", axis.spring);
+  axis.target = float(reader.number(a, "target", 0, angular ? Measure::angle : Measure::length));
+  axis.max_spring_force = float(reader.number(a, angular ? "max_spring_torque" : "max_spring_force", 0));
+  if (a.has("motor")) axis.motor = read_motor(reader, a, angular);
+  axis.friction = float(reader.number(a, angular ? "friction_torque" : "friction", 0));
+  return axis;
+}
+template <class D>
+void read_axes(Reader& reader, const Object& o, GenericJointDef<D>& d) {
+  Object axes;
+  if (!o.has("axes") || !reader.open(*o.find("axes"), o.path_of("axes"), *tables().joint_axes, axes)) return;
+  constexpr const char* lines[] = {"x", "y", "z"};
+  constexpr const char* turns[] = {"turn_x", "turn_y", "turn_z"};
+  constexpr int first = D::dimension == 2 ? 2 : 0;
+  for (int i = 0; i < D::dimension; ++i) d.linear[i] = read_axis(reader, axes, lines[i], d.linear[i], false);
+  for (int i = first; i < 3; ++i) d.angular[i - first] = read_axis(reader, axes, turns[i], d.angular[i - first], true);
+}
+
 /// Frames from "frame_a" and "frame_b", or from anchors and an axis in the world.
 template <class D>
 class FrameReader {
@@ -69,20 +115,24 @@ class FrameReader {
   }
   typename D::Transform anchored(BodyId body, const char* key) {
     typename D::Transform t{};
-    if (!o_.has("anchor") && !o_.has(key)) {
-      if (type_ == motor_joint) return t;
+    const bool anchored = o_.has("anchor") || o_.has(key);
+    if (!anchored && !needs_no_anchor(type_)) {
       reader_.fail(*o_.node, o_.path, std::string("the joint needs the key \"anchor\", ") + quote(key) + " or a frame");
     }
     if (reader_.failed()) return t;
     const Result<BodyState<D>> state = world_.state(body);
     if (!reader_.accept(state.ok() ? Status{} : Status{state.error()}, *o_.node, o_.path)) return t;
     const math::Vec3d point = o_.has(key) ? reader_.vector(o_, key) : reader_.vector(o_, "anchor");
-    t.p = math::local_point(state->pose, position_of(point, static_cast<D*>(nullptr)));
-    const math::Vec3d unit = type_ == slider_joint ? math::Vec3d{1, 0, 0} : math::Vec3d{0, 0, 1};
-    const bool turned = o_.has("axis") && (D::dimension == 3 || type_ == slider_joint);
-    const math::Vec3d axis = turned ? math::normalize(reader_.vector(o_, "axis")) : unit;
+    if (anchored) t.p = math::local_point(state->pose, position_of(point, static_cast<D*>(nullptr)));
+    if (!anchored && type_ == motor_joint) return t;
+    const bool rack = type_ == rack_joint && key[7] == 'b';
+    const char* const name = rack ? "slide_axis" : "axis";
+    const math::Vec3d unit = rack || along_x(type_) ? math::Vec3d{1, 0, 0} : math::Vec3d{0, 0, 1};
+    const bool turned = o_.has(name) && (D::dimension == 3 || rack || type_ == slider_joint);
+    if (rack && !turned) reader_.fail(*o_.node, o_.path, "the rack needs the key \"slide_axis\" or \"frame_b\"");
+    const math::Vec3d axis = turned ? math::normalize(reader_.vector(o_, name)) : unit;
     if (!reader_.failed() && axis == math::Vec3d{})
-      reader_.fail(*o_.find("axis"), o_.path_of("axis"), "the axis has no direction");
+      reader_.fail(*o_.find(name), o_.path_of(name), "the axis has no direction");
     using Rotation = typename D::Rotation;
     const Rotation world_rotation = turned ? Rotation(onto_axis(axis, unit, static_cast<D*>(nullptr))) : Rotation{};
     t.q = math::normalize(math::conjugate(state->pose.rotation) * world_rotation);
@@ -117,13 +167,16 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
   if (reader.failed()) return false;
   frames.collide_connected = reader.flag(o, "collide_connected", false);
   FrameReader<D>(reader, world, o, type).read(frames);
+  frames.break_force = float(reader.number(o, "break_force", 0));
+  frames.break_torque = float(reader.number(o, "break_torque", 0));
   const bool angular = type == hinge_joint;
-  out.has_spring = o.has("spring");
-  out.has_limit = o.has("limit");
-  out.has_motor = o.has("motor");
+  const bool wheel = type == wheel_joint;
+  out.has_spring = !wheel && o.has("spring");
+  out.has_limit = !wheel && o.has("limit");
+  out.has_motor = !wheel && o.has("motor");
   out.spring = read_spring(reader, o, "spring", type == mouse_joint ? JointSpring{5, 1} : JointSpring{});
   out.limit = read_limit(reader, o, "limit", angular ? Measure::angle : Measure::length);
-  out.motor = read_motor(reader, o, angular);
+  out.motor = read_motor(reader, o, angular || wheel);
   switch (type) {
     case distance_joint: {
       DistanceJointDef<D> d{frames};
@@ -183,6 +236,63 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
       d.angular = read_spring(reader, o, "angular_spring", d.angular);
       d.max_force = float(reader.number(o, "max_force", d.max_force));
       d.max_torque = float(reader.number(o, "max_torque", d.max_torque));
+      out.definition = d;
+      break;
+    }
+    case generic_joint:
+    case cylindrical_joint:
+    case planar_joint:
+    case universal_joint:
+    case wheel_joint: {
+      GenericJointDef<D> d{frames, {}, {}};
+      if (wheel) {
+        d = make_wheel_joint<D>(frames, out.spring, out.limit);
+        d.angular[D::dimension == 2 ? 0 : 2].motor = out.motor;
+      } else if constexpr (D::dimension == 3) {
+        if (type == cylindrical_joint) d = make_cylindrical_joint<D>(frames);
+        if (type == planar_joint) d = make_planar_joint<D>(frames);
+        if (type == universal_joint) d = make_universal_joint<D>(frames);
+      } else if (type != generic_joint) {
+        reader.fail(*o.find("type"), o.path_of("type"), "this joint is for space, expected another type in the plane");
+      }
+      read_axes<D>(reader, o, d);
+      out.definition = d;
+      break;
+    }
+    case gear_joint: {
+      GearJointDef<D> d{frames};
+      d.ratio = float(reader.number(o, "ratio", d.ratio));
+      out.definition = d;
+      break;
+    }
+    case rack_joint: {
+      RackJointDef<D> d{frames};
+      d.radius = float(reader.number(o, "radius", d.radius));
+      out.definition = d;
+      break;
+    }
+    case screw_joint: {
+      ScrewJointDef<D> d{frames};
+      d.pitch = float(reader.number(o, "pitch", d.pitch));
+      out.definition = d;
+      break;
+    }
+    case pulley_joint: {
+      PulleyJointDef<D> d{frames};
+      for (const char* key : {"ground_a", "ground_b"})
+        if (!o.has(key))
+          reader.fail(*o.node, o.path, std::string("the key ") + quote(key) + " is missing in a pulley joint");
+      d.ground_a = position_of(reader.vector(o, "ground_a"), static_cast<D*>(nullptr));
+      d.ground_b = position_of(reader.vector(o, "ground_b"), static_cast<D*>(nullptr));
+      d.ratio = float(reader.number(o, "ratio", d.ratio));
+      if (o.has("length")) {
+        d.length = float(reader.number(o, "length", 1));
+      } else if (!reader.failed()) {
+        const auto a = world.state(frames.body_a), b = world.state(frames.body_b);
+        if (a.ok() && b.ok())
+          d.length = float(math::distance(math::world_point(a->pose, frames.frame_a.p), d.ground_a) +
+                           double(d.ratio) * math::distance(math::world_point(b->pose, frames.frame_b.p), d.ground_b));
+      }
       out.definition = d;
       break;
     }

@@ -1,0 +1,91 @@
+// What joints are made of, and when they break.
+#include "carom/rigid/detail/joint_place.h"
+
+namespace carom::rigid::detail {
+
+template <class D>
+std::uint16_t parts_of(const JointData<D>& data) {
+  const auto parts = [](const auto& d) -> int {
+    using Def = std::remove_cvref_t<decltype(d)>;
+    if constexpr (std::is_same_v<Def, DistanceJointDef<D>>) {
+      return part_linear;
+    } else if constexpr (std::is_same_v<Def, BallJointDef<D>>) {
+      return part_pin | (d.spring.hertz > 0 ? part_angular : 0) | (d.friction_torque > 0 ? part_friction : 0) |
+             (D::dimension == 3 && d.cone_angle >= 0 ? part_cone : 0) | (d.twist.enabled ? part_twist : 0);
+    } else if constexpr (std::is_same_v<Def, HingeJointDef<D>>) {
+      return part_pin | (D::dimension == 3 ? part_hinge : 0) |
+             (axis_is_used(d.spring, d.motor, d.limit) ? part_twist : 0);
+    } else if constexpr (std::is_same_v<Def, SliderJointDef<D>>) {
+      return part_slide | part_angular | (axis_is_used(d.spring, d.motor, d.limit) ? part_linear : 0);
+    } else if constexpr (std::is_same_v<Def, MouseJointDef<D>>) {
+      return part_point | (d.spring.hertz > 0 ? part_angular : 0);
+    } else if constexpr (std::is_same_v<Def, WeldJointDef<D>>) {
+      return (d.linear.hertz > 0 ? part_point : part_pin) | part_angular;
+    } else if constexpr (std::is_same_v<Def, GenericJointDef<D>>) {
+      int all = 0;
+      for (int i = 0; i < D::dimension; ++i)
+        if (acts(d.linear[i])) all |= linear_part(i);
+      for (int i = 0; i < (D::dimension == 2 ? 1 : 3); ++i)
+        if (acts(d.angular[i])) all |= turn_part(i);
+      return all;
+    } else if constexpr (std::is_same_v<Def, MotorJointDef<D>>) {
+      return part_point | part_angular;
+    } else {
+      return part_coupling;
+    }
+  };
+  return std::uint16_t(std::visit(parts, data.definition));
+}
+
+template <class D>
+bool is_rod(const JointData<D>& data) {
+  const auto* d = std::get_if<DistanceJointDef<D>>(&data.definition);
+  return d != nullptr && !data.internal && !d->rope && !axis_is_used(d->spring, d->motor, d->limit);
+}
+template <class D>
+bool turns_rigidly(const JointData<D>& data) {
+  if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition)) return !(weld->angular.hertz > 0);
+  return std::holds_alternative<SliderJointDef<D>>(data.definition);
+}
+template <class D>
+bool holds_axes(const JointData<D>& data) {
+  const auto* d = std::get_if<GenericJointDef<D>>(&data.definition);
+  if (d == nullptr) return false;
+  for (const JointAxis& axis : d->linear)
+    if (!axis.free) return true;
+  for (const JointAxis& axis : d->angular)
+    if (!axis.free) return true;
+  return false;
+}
+
+template <class D>
+void break_joints(WorldImplementation<D>& world) {
+  JointStore<D>& joints = world.joints;
+  if (joints.breakable_count == 0) return;
+  const auto test = [&](std::int32_t joint) {
+    const JointData<D>& data = joints.data[std::size_t(joint)];
+    const JointFrames<D>& frames = frames_of(data.definition);
+    const auto above = [](float x, float limit) { return limit > 0 && x > limit; };
+    if (above(math::length(data.force), frames.break_force) || above(magnitude(data.torque), frames.break_torque))
+      world.scratch.joint_break.push_back(
+          {joints.slots.handle_at(joint), frames.body_a, frames.body_b, data.force, data.torque});
+  };
+  for (const std::int32_t joint : joints.order) test(joint);
+  for (const std::int32_t joint : joints.pins)
+    if (joint != none) test(joint);
+  for (const JointBreakEvent<D>& event : world.scratch.joint_break)
+    release_joint(world, std::int32_t(joints.slots.slot(event.joint)));
+}
+
+template std::uint16_t parts_of(const JointData<Dim2>&);
+template std::uint16_t parts_of(const JointData<Dim3>&);
+template bool is_rod(const JointData<Dim2>&);
+template bool is_rod(const JointData<Dim3>&);
+template bool turns_rigidly(const JointData<Dim2>&);
+template bool turns_rigidly(const JointData<Dim3>&);
+template bool holds_axes(const JointData<Dim2>&);
+template bool holds_axes(const JointData<Dim3>&);
+template void break_joints(WorldImplementation<Dim2>&);
+template void break_joints(WorldImplementation<Dim3>&);
+
+}  // namespace carom::rigid::detail

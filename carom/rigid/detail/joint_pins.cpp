@@ -1,0 +1,127 @@
+// Pins side by side (joint_lanes.h): who they are, and their way into the blocks and back.
+#include "carom/rigid/detail/joint_place.h"
+
+namespace carom::rigid::detail {
+namespace {
+
+/// Calls f.operator()<W>() for the width of the kernels.
+template <class F>
+void for_width(int width, F&& f) {
+  if (width == 16) return f.template operator()<16>();
+  if (width == 8) return f.template operator()<8>();
+  f.template operator()<4>();
+}
+
+template <class D, int W>
+void fill_lane(PinLanes<D, W>& block, int lane, std::int32_t slot, const WorldImplementation<D>& world) {
+  block.joint[lane] = slot;
+  block.read_a[lane] = block.read_b[lane] = block.write_a[lane] = block.write_b[lane] = none;
+  if (slot == none) return;
+  const JointHeader& header = world.joints.headers[std::size_t(slot)];
+  const JointData<D>& data = world.joints.data[std::size_t(slot)];
+  const auto masses = [&](std::int32_t body, std::int32_t& read, std::int32_t& write, float& mass, float& inertia) {
+    read = body;
+    if (body == none || !world.bodies.is_dynamic(body)) return;
+    write = body;
+    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
+    mass = motion.inverse_mass;
+    if constexpr (D::dimension == 2)
+      inertia = motion.world_inverse_inertia;
+    else
+      inertia = motion.world_inverse_inertia.cx.x;
+  };
+  masses(header.body[0], block.read_a[lane], block.write_a[lane], block.inverse_mass_a[lane],
+         block.inverse_inertia_a[lane]);
+  masses(header.body[1], block.read_b[lane], block.write_b[lane], block.inverse_mass_b[lane],
+         block.inverse_inertia_b[lane]);
+  const JointPlacement<D> at = place_joint(world.bodies, header, data);
+  const typename D::Vector reach_a = at.offset + at.arm_b, error = reach_a - at.arm_a;
+  for (int i = 0; i < D::dimension; ++i) {
+    block.arm_a[i][lane] = at.arm_a[i];
+    block.arm_b[i][lane] = block.reach_b[i][lane] = at.arm_b[i];
+    block.offset[i][lane] = at.offset[i];
+    block.reach_a[i][lane] = reach_a[i];
+    block.error[i][lane] = error[i];
+    block.impulse[i][lane] = data.memory.point[i];
+  }
+}
+
+}  // namespace
+
+template <class D>
+bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint) {
+  return world.joints.tree_of(joint) == none && parts_of(world.joints.data[std::size_t(joint)]) == part_pin &&
+         is_isotropic(world, joint);
+}
+
+template <class D>
+PinKernels<D> pin_kernels_of(int width) {
+#if defined(__x86_64__)
+  if (width == 16) {
+    if constexpr (D::dimension == 2)
+      return pin_kernels_avx512::kernels2();
+    else
+      return pin_kernels_avx512::kernels3();
+  }
+  if (width == 8) {
+    if constexpr (D::dimension == 2)
+      return pin_kernels_avx2::kernels2();
+    else
+      return pin_kernels_avx2::kernels3();
+  }
+#else
+  (void)width;
+#endif
+  if constexpr (D::dimension == 2)
+    return pin_kernels_baseline::kernels2();
+  else
+    return pin_kernels_baseline::kernels3();
+}
+
+template <class D>
+void prepare_pins(StepContext<D>& context) {
+  JointStore<D>& joints = context.world.joints;
+  for_width(joints.pin_kernels.width, [&]<int W>() {
+    const int count = int(joints.pins.size()) / W;
+    if (count == 0) return;
+    const auto blocks = context.arena.template allocate<PinLanes<D, W>>(std::size_t(count));
+    joints.pin_blocks = blocks.data();
+    context.scheduler.parallel_for(count, 8, [&](int begin, int end, int) {
+      for (int b = begin; b < end; ++b) {
+        PinLanes<D, W>& block = *::new (static_cast<void*>(&blocks[std::size_t(b)])) PinLanes<D, W>{};
+        for (int lane = 0; lane < W; ++lane)
+          fill_lane(block, lane, joints.pins[std::size_t(b * W + lane)], context.world);
+      }
+    });
+  });
+}
+
+template <class D>
+void store_pins(StepContext<D>& context) {
+  JointStore<D>& joints = context.world.joints;
+  for_width(joints.pin_kernels.width, [&]<int W>() {
+    const auto* const blocks = static_cast<const PinLanes<D, W>*>(joints.pin_blocks);
+    context.scheduler.parallel_for(int(joints.pins.size()) / W, 8, [&](int begin, int end, int) {
+      for (int b = begin; b < end; ++b) {
+        for (int lane = 0; lane < W; ++lane) {
+          if (blocks[b].joint[lane] == none) continue;
+          JointData<D>& data = joints.data[std::size_t(blocks[b].joint[lane])];
+          for (int i = 0; i < D::dimension; ++i) data.memory.point[i] = blocks[b].impulse[i][lane];
+          data.force = data.memory.point * context.inverse_h;
+          data.torque = {};
+        }
+      }
+    });
+  });
+}
+
+template bool goes_wide(const WorldImplementation<Dim2>&, std::int32_t);
+template bool goes_wide(const WorldImplementation<Dim3>&, std::int32_t);
+template PinKernels<Dim2> pin_kernels_of(int);
+template PinKernels<Dim3> pin_kernels_of(int);
+template void prepare_pins(StepContext<Dim2>&);
+template void prepare_pins(StepContext<Dim3>&);
+template void store_pins(StepContext<Dim2>&);
+template void store_pins(StepContext<Dim3>&);
+
+}  // namespace carom::rigid::detail

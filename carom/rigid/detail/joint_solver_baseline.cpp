@@ -1,0 +1,9 @@
+// The pin kernels for 4 lanes.
+#include "carom/math/simd.h"
+#include "carom/rigid/detail/joint_lanes.h"
+
+#define CAROM_PIN_NAMESPACE pin_kernels_baseline
+#define CAROM_PIN_WIDTH 4
+#include "carom/rigid/detail/joint_kernel.inl"
+#undef CAROM_PIN_NAMESPACE
+#undef CAROM_PIN_WIDTH
