@@ -169,6 +169,27 @@ TYPED_TEST(BadInput, EnormousButAllowedNumbersStayFinite) {
   EXPECT_TRUE(world.events().quarantined.empty());
 }
 
+// Found by the fuzzer: a joint pulled at a disabled body for ever, until its speed was no number.
+TYPED_TEST(BadInput, AJointToADisabledBodyHoldsNothing) {
+  using D = TypeParam;
+  World<D> world(world_with<D>(10));
+  const BodyId held = add_box<D>(world, at<D>(0, 100)), loose = add_box<D>(world, at<D>(2, 100));
+  BallJointDef<D> joint;
+  joint.body_a = held;
+  joint.body_b = loose;
+  joint.frame_a.p = along<D>(1, 0);
+  joint.frame_b.p = along<D>(-1, 0);
+  world.create_joint(joint).value();
+  ASSERT_TRUE(world.set_enabled(held, false).ok());
+  run(world, 60);
+  EXPECT_EQ(math::length(world.state(held).value().linear_velocity), 0.0f);
+  EXPECT_NEAR(world.state(loose).value().pose.position.y, 95, 1e-3);
+  EXPECT_NEAR(world.state(loose).value().pose.position.x, 2, 1e-6);
+  ASSERT_TRUE(world.set_enabled(held, true).ok());
+  run(world, 60);  // joined again
+  EXPECT_LT(world.worst_joint_error(), 0.02f);
+}
+
 TYPED_TEST(BadInput, DefinitionsReadBackAsGiven) {
   using D = TypeParam;
   World<D> world(world_with<D>());
