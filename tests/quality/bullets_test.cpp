@@ -129,7 +129,7 @@ TYPED_TEST(QualityBullets, MovingWall) {
     }
     passed += int(std::count(through.begin(), through.end(), 1));
   }
-  Gate(15, "2 000 bullets at 400 m/s, moving wall of .1 m: passed", D::dimension).not_yet(221).exactly(passed, 0);
+  Gate(15, "2 000 bullets at 400 m/s, moving wall of .1 m: passed", D::dimension).not_yet(240).exactly(passed, 0);
 }
 
 TYPED_TEST(QualityBullets, EachOther) {
