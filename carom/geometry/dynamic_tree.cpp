@@ -74,10 +74,44 @@ void DynamicTree<V>::enlarge(int leaf, const Box& box) {
 }
 
 template <class V>
+void DynamicTree<V>::set_bounds(int leaf, const Box& box) {
+  nodes_[std::size_t(leaf)].box = within_range(box);
+}
+
+template <class V>
+bool DynamicTree<V>::refit() {
+  if (count_ < 2) return false;
+  Node* nodes = nodes_.data();
+  inner_.clear();
+  detail::TraversalStack stack;
+  stack.push(std::uint32_t(root_));
+  while (!stack.empty()) {
+    const std::uint32_t i = stack.pop();
+    inner_.push_back(std::int32_t(i));
+    const Node& node = nodes[i];
+    if (nodes[node.child_b].child_b >= 0) stack.push(std::uint32_t(node.child_b));
+    if (nodes[node.child_a].child_b >= 0) stack.push(std::uint32_t(node.child_a));
+  }
+  // Whatever stands above comes earlier in the list.
+  double sum = 0;
+  for (std::size_t k = inner_.size(); k-- > 0;) {
+    Node& node = nodes[inner_[k]];
+    node.box = merge(nodes[node.child_a].box, nodes[node.child_b].box);
+    node.enlarged = 0;
+    sum += double(detail::surface(node.box));
+  }
+  if (!(least_cost_ > 0) || sum < least_cost_) least_cost_ = sum;
+  if (!(sum > 1.2 * least_cost_)) return false;
+  rebuild();
+  return true;
+}
+
+template <class V>
 void DynamicTree<V>::clear() {
   nodes_.clear();
   root_ = free_ = -1;
   count_ = 0;
+  least_cost_ = 0;
 }
 
 template <class V>
@@ -241,6 +275,7 @@ int DynamicTree<V>::build(std::span<detail::BuildItem<V>> items) {
 template <class V>
 void DynamicTree<V>::rebuild() {
   if (count_ < 2) return;
+  least_cost_ = 0;
   build_.clear();
   // The free list is rebuilt in ascending order too, so that inner nodes lie in depth-first order.
   inner_.clear();

@@ -30,6 +30,11 @@ class CAROM_API DynamicTree {
   void enlarge(int leaf, const Box& box);
   /// Rebuilds the parts above enlarged leaves. Returns how many subtrees were sorted into new places.
   int rebuild_enlarged();
+  /// Gives the leaf a new box and leaves everything else wrong until `refit`: for when most leaves move.
+  void set_bounds(int leaf, const Box& box);
+  /// Tightens all inner boxes to their leaves, and builds the whole tree anew once it has become a fifth worse than
+  /// the best that it was. True if it did.
+  bool refit();
   /// Builds the whole tree anew from its leaves (binned surface area heuristic); leaves keep their names.
   void rebuild();
   /// Inserts all boxes at once: leaves[i] (if not null) is the leaf of boxes[i], items[i] its item. Much faster, and a
@@ -54,6 +59,11 @@ class CAROM_API DynamicTree {
   /// Calls visit(item) for every leaf whose box meets `box`; visit returns false to stop.
   template <class Visit>
   void query(const Box& box, Visit&& visit) const {
+    query_boxes(box, [&](std::uint32_t item, const Box&) { return visit(item); });
+  }
+  /// The same with the leaf's box: visit(item, box).
+  template <class Visit>
+  void query_boxes(const Box& box, Visit&& visit) const {
     if (root_ < 0) return;
     detail::TraversalStack stack;
     std::int32_t index = root_;
@@ -61,7 +71,7 @@ class CAROM_API DynamicTree {
     while (true) {
       const Node& node = nodes_[std::size_t(index)];
       if (node.child_b < 0) {
-        if (!visit(std::uint32_t(node.child_a))) return;
+        if (!visit(std::uint32_t(node.child_a), node.box)) return;
       } else {
         const bool a = detail::boxes_meet(nodes_[std::size_t(node.child_a)].box, box);
         const bool b = detail::boxes_meet(nodes_[std::size_t(node.child_b)].box, box);
@@ -173,6 +183,7 @@ class CAROM_API DynamicTree {
     visit(tree.root_);
     visit(tree.free_);
     visit(tree.count_);
+    visit(tree.least_cost_);
   }
 
   /// For tests and reports: levels below the root, summed surface of inner nodes over that of the root, and whether
@@ -209,6 +220,7 @@ class CAROM_API DynamicTree {
   std::vector<std::int32_t> inner_;
   std::int32_t root_ = -1, free_ = -1;
   int count_ = 0;
+  double least_cost_ = 0;  ///< summed surface of inner nodes when it was least since the last build; 0: not known
 };
 
 extern template class CAROM_API DynamicTree<Vec2d>;

@@ -155,12 +155,23 @@ void add_measures(Hull& hull) {
   hull.inner_radius = float(max(inner, 0.0));
 }
 
+std::vector<float> lanes_of(std::size_t count, auto&& vector) {
+  std::vector<float> lanes((count + 3) / 4 * 12);
+  for (std::size_t i = 0; i < lanes.size() / 3; ++i) {
+    const Vec3f v = vector(i < count ? i : count - 1);
+    for (std::size_t axis = 0; axis < 3; ++axis) lanes[i / 4 * 12 + 4 * axis + i % 4] = v[int(axis)];
+  }
+  return lanes;
+}
+
 Hull assemble(std::span<const Vec3f> points, const Cloud& cloud, const detail::HullLoops& faces, float radius) {
   Hull hull;
   hull.radius = radius;
   for (const std::uint32_t i : cloud.source) hull.vertices.push_back(points[i]);
   for (const auto& loop : faces.loops) hull.planes.push_back(plane_of(hull.vertices, loop));
   if (add_topology(hull, faces.loops)) add_measures(hull);
+  hull.vertex_lanes = lanes_of(hull.vertices.size(), [&](std::size_t i) { return hull.vertices[i]; });
+  hull.normal_lanes = lanes_of(hull.planes.size(), [&](std::size_t i) { return hull.planes[i].normal; });
   return hull;
 }
 

@@ -32,6 +32,8 @@ struct Hull {
   float volume = 0;
   float inner_radius = 0;  ///< radius of the largest sphere about the centroid inside the polyhedron
   float radius = 0;
+  /// Vertices and face normals once more, four at a time (x x x x y y y y z z z z, the last repeated), for searches.
+  std::vector<float> vertex_lanes, normal_lanes;
 };
 
 /// The convex hull of at least four points that are not in one plane, with coplanar triangles merged into faces.

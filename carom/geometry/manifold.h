@@ -36,7 +36,8 @@ struct PairCache {
   std::uint32_t d = 0;
 };
 
-/// Contacts of A and B with separation ≤ margin. Returns nothing (count 0) where they are farther apart.
+/// Contacts of A and B with separation ≤ margin. Returns nothing (count 0) where they are farther apart: if
+/// points[0].separation exceeds the margin then, the shapes are known to be at least that far (m) from each other.
 /// b_in_a is B's pose seen from A. Any pair of convex shapes, and convex against chain segments, in either order.
 CAROM_API void collide(const Shape2& a, const Shape2& b, const Transform2f& b_in_a, float margin, PairCache& cache,
                        Manifold2& out);

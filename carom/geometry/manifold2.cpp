@@ -18,7 +18,10 @@ void single(Vec2f a, float ra, Vec2f b, float rb, Vec2f n, float d, std::uint32_
 void point_point(Vec2f a, float ra, Vec2f b, float rb, float margin, std::uint32_t id, Manifold2& out) {
   const Vec2f d = b - a;
   const float l2 = dot(d, d), reach = ra + rb + margin;
-  if (l2 > reach * reach) return;
+  if (l2 > reach * reach) {
+    out.points[0].separation = sqrt(l2) - ra - rb;
+    return;
+  }
   const float l = sqrt(l2);
   single(a, ra, b, rb, l > 1e-12f ? d * (1 / l) : Vec2f{0, 1}, l, id, out);
 }
@@ -108,18 +111,22 @@ bool grazes(const Rounded2& a, const Rounded2& b, Vec2f n, float best, float tol
 void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cache, Manifold2& out) {
   const float radius = a.radius + b.radius;
   // The edge that parted them last is asked first.
+  const auto apart = [&](float separation) {
+    out.points[0].separation = separation - radius;
+    return out.points[0].separation > margin;
+  };
   if (cache.kind == 1 && cache.a < a.count) {
-    if (detail::separation_along(a, cache.a, b) > radius + margin) return;
+    if (apart(detail::separation_along(a, cache.a, b))) return;
   } else if (cache.kind == 2 && cache.a < b.count) {
-    if (detail::separation_along(b, cache.a, a) > radius + margin) return;
+    if (apart(detail::separation_along(b, cache.a, a))) return;
   }
   const detail::EdgeAxis ea = detail::best_edge(a, b);
-  if (ea.separation > radius + margin) {
+  if (apart(ea.separation)) {
     cache.kind = 1, cache.a = std::uint8_t(ea.edge);
     return;
   }
   const detail::EdgeAxis eb = detail::best_edge(b, a);
-  if (eb.separation > radius + margin) {
+  if (apart(eb.separation)) {
     cache.kind = 2, cache.a = std::uint8_t(eb.edge);
     return;
   }
@@ -139,7 +146,7 @@ void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cac
   const bool lines = a.count == 2 && b.count == 2;
   if (axis.separation > 1e-4f * slack || (lines && axis.separation > -1e-5f)) {
     const detail::CoreDistance2 d = detail::core_distance(a, b);
-    if (d.distance - radius > margin) return;
+    if (apart(d.distance)) return;
     if (dot(d.normal, of_b ? -r.n[axis.edge] : r.n[axis.edge]) < 0.9999f && d.distance > 1e-6f) {
       single(d.point_a, a.radius, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
       const Vec2f n = of_b ? -r.n[axis.edge] : r.n[axis.edge];
@@ -236,20 +243,21 @@ bool convex_shape(const Shape2& s) { return s.type <= ShapeType2::segment; }
 void collide(const Shape2& a, const Shape2& b, const Transform2f& x, float margin, PairCache& cache, Manifold2& out) {
   using namespace pairs2;
   out.count = 0;
+  out.points[0].separation = margin;
   if (a.type == ShapeType2::chain || b.type == ShapeType2::chain) return;  // segment by segment: Chain::segment
   if (a.type == ShapeType2::circle && b.type == ShapeType2::circle)
     return point_point({}, a.circle.radius, x.p, b.circle.radius, margin, 0, out);
   if (a.type == ShapeType2::chain_segment) {
     if (!convex_shape(b)) return;
-    return chain_any(a.chain_segment, detail::placed(detail::rounded_of(b), x), margin, out);
+    return chain_any(a.chain_segment, detail::placed(b, x), margin, out);
   }
   if (b.type == ShapeType2::chain_segment) {
-    chain_any(b.chain_segment, detail::placed(detail::rounded_of(a), inverse(x)), margin, out);
+    chain_any(b.chain_segment, detail::placed(a, inverse(x)), margin, out);
     out.normal = -rotate(x.q, out.normal);
     for (int i = 0; i < out.count; ++i) out.points[i].point = transform_point(x, out.points[i].point);
     return;
   }
-  const Rounded2 ra = detail::rounded_of(a), rb = detail::placed(detail::rounded_of(b), x);
+  const Rounded2 ra = detail::rounded_of(a), rb = detail::placed(b, x);
   if (rb.count == 1) {
     if (ra.count == 1) return point_point(ra.v[0], ra.radius, rb.v[0], rb.radius, margin, 0, out);
     return against_point(ra, rb.v[0], rb.radius, margin, out);

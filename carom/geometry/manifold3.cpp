@@ -6,10 +6,13 @@ namespace pairs3 {
 
 using detail::closest_on_segments;
 
+// Surfaces whose cores are √l2 apart.
+void apart(float l2, float radii, Manifold3& out) { out.points[0].separation = sqrt(l2) - radii; }
+
 void point_point(Vec3f a, float ra, Vec3f b, float rb, float margin, std::uint32_t id, Manifold3& out) {
   const Vec3f d = b - a;
   const float l2 = dot(d, d), reach = ra + rb + margin;
-  if (l2 > reach * reach) return;
+  if (l2 > reach * reach) return apart(l2, ra + rb, out);
   const float l = sqrt(l2);
   const Vec3f n = l > 1e-12f ? d * (1 / l) : Vec3f{0, 1, 0};
   const float s = l - ra - rb;
@@ -35,7 +38,7 @@ void capsule_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, flo
   closest_on_segments(p1, d1, p2, d2, s, t);
   const Vec3f ca = p1 + d1 * s, cb = p2 + d2 * t, gap = cb - ca;
   const float l2 = dot(gap, gap), reach = ra + rb + margin;
-  if (l2 > reach * reach) return;
+  if (l2 > reach * reach) return apart(l2, ra + rb, out);
   // Nearly parallel: the two ends of the common stretch.
   const float across = axis.x * axis.x + axis.z * axis.z;
   if (across < 1e-3f && ha > 0 && hb > 0) {
@@ -72,7 +75,7 @@ void box_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, float ma
   const Vec3f q{clamp(c.x, -h.x, h.x), clamp(c.y, -h.y, h.y), clamp(c.z, -h.z, h.z)};
   const Vec3f d = c - q;
   const float l2 = dot(d, d), r = b.sphere.radius, reach = a.box.radius + r + margin;
-  if (l2 > reach * reach) return;
+  if (l2 > reach * reach) return apart(l2, a.box.radius + r, out);
   const Vec3f gap = abs(c) - h;
   const int axis = gap.x >= gap.y && gap.x >= gap.z ? 0 : (gap.y >= gap.z ? 1 : 2);
   if (l2 > 1e-12f * dot(h, h)) {
@@ -105,7 +108,10 @@ void box_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, float m
   const Vec3f axis = rotate(x.q, Vec3f{0, 1, 0}), half = axis * b.capsule.half_length, reach = abs(half);
   const Vec3f s = abs(x.p) - h - reach;
   const int face = s.x >= s.y && s.x >= s.z ? 0 : (s.y >= s.z ? 1 : 2);
-  if (s[face] > radius + margin) return;
+  if (s[face] > radius + margin) {
+    out.points[0].separation = s[face] - radius;
+    return;
+  }
   // On a face: part of the segment stands over it, and it is not deeper there than the radius allows to see.
   Vec3f n{};
   n[face] = x.p[face] < 0 ? -1.0f : 1.0f;
@@ -196,6 +202,7 @@ void collide(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float 
              Manifold3& out) {
   out.count = 0;
   out.child = 0;
+  out.points[0].separation = margin;
   if (a.type > ShapeType3::plane || b.type > ShapeType3::plane) return;
   pairs3::table[int(a.type)][int(b.type)](a, b, b_in_a, margin, cache, out);
 }

@@ -82,7 +82,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
-    if (!detail::collide_triangle(triangle, t.flat_edges, solid, b, x, margin, points, n)) return true;
+    if (!detail::collide_triangle(triangle, t.edges, solid, b, x, margin, points, n)) return true;
     // Corners of the moving shape keep their names from triangle to triangle; points cut by an edge are the triangle's.
     for (int i = 0; i < points.count; ++i)
       if (points.point[i].feature > 0xff) points.point[i].feature ^= t.index * 2654435761u;

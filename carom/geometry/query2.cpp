@@ -1,6 +1,7 @@
 // Distance, overlap, casts and time of impact in the plane.
 #include "carom/geometry/query.h"
 
+#include "carom/geometry/detail/chain_tree.h"
 #include "carom/geometry/detail/rounded2.h"
 
 namespace carom::geometry {
@@ -14,13 +15,10 @@ bool is_chain(const Shape2& s) { return s.type == ShapeType2::chain; }
 /// Calls use(segment, index) for every segment of a chain that may meet `box`; use returns false to stop.
 template <class Use>
 void segments_near(const Chain& chain, const Bounds2f& box, Use&& use) {
-  const int count = chain.segment_count();
-  for (int i = 0; i < count; ++i) {
-    const Vec2f p = chain.points[std::size_t(i)];
-    const Vec2f q = chain.points[std::size_t(i) + 1 < chain.points.size() ? std::size_t(i) + 1 : 0];
-    if (!overlaps(Bounds2f{min(p, q), max(p, q)}, box)) continue;
-    if (!use(Segment{p, q}, i)) return;
-  }
+  detail::visit_segments(chain, box, [&](int i) {
+    const std::size_t next = std::size_t(i) + 1;
+    return use(Segment{chain.points[std::size_t(i)], chain.points[next < chain.points.size() ? next : 0]}, i);
+  });
 }
 constexpr Bounds2f everywhere{{-3e38f, -3e38f}, {3e38f, 3e38f}};
 
@@ -179,6 +177,17 @@ TimeOfImpact impact(const Rounded2& ca, Motion a, const Rounded2& cb, Motion b, 
   return {ImpactState::hit, float(t)};
 }
 
+/// Bounds, in the frame of what `still` carries, of all places of a shape that moves. Everything, where `still` moves.
+Bounds2f way_seen_from(const Sweep2& still, const Shape2& shape, const Sweep2& sweep) {
+  if (still.c0 != still.c1 || still.q0.c != still.q1.c || still.q0.s != still.q1.s) return everywhere;
+  const detail::Rounded2 r = detail::rounded_of(shape);
+  float reach = 0;
+  for (int i = 0; i < r.count; ++i) reach = max(reach, length(r.v[i] - sweep.local_center));
+  const Transform2f frame{still.c0 - rotate(still.q0, still.local_center), still.q0};
+  const Vec2f from = inverse_transform_point(frame, sweep.c0), to = inverse_transform_point(frame, sweep.c1);
+  return grow(Bounds2f{min(from, to), max(from, to)}, 1.0001f * (reach + r.radius));
+}
+
 void keep_first(TimeOfImpact& first, const TimeOfImpact& t) {
   if (t.state == ImpactState::separated) return;
   if (first.state == ImpactState::separated || t.time < first.time) first = t;
@@ -188,7 +197,7 @@ void keep_first(TimeOfImpact& first, const TimeOfImpact& t) {
 
 Distance2 distance(const Shape2& a, const Shape2& b, const Transform2f& x) {
   using namespace query2;
-  if (!is_chain(a) && !is_chain(b)) return between(detail::rounded_of(a), detail::placed(detail::rounded_of(b), x));
+  if (!is_chain(a) && !is_chain(b)) return between(detail::rounded_of(a), detail::placed(b, x));
   if (!is_chain(a)) {
     Distance2 d = distance(b, a, inverse(x));
     const Vec2f p = d.point_a;
@@ -210,10 +219,16 @@ Distance2 distance(const Shape2& a, const Shape2& b, const Transform2f& x) {
 bool overlap(const Shape2& a, const Shape2& b, const Transform2f& b_in_a) {
   using namespace query2;
   if (!is_chain(a) && !is_chain(b)) {
-    const detail::Rounded2 ra = detail::rounded_of(a), rb = detail::placed(detail::rounded_of(b), b_in_a);
+    const detail::Rounded2 ra = detail::rounded_of(a), rb = detail::placed(b, b_in_a);
     return detail::core_distance(ra, rb).distance <= ra.radius + rb.radius;
   }
-  return distance(a, b, b_in_a).distance <= 0;
+  if (!is_chain(a)) return overlap(b, a, inverse(b_in_a));
+  bool any = false;
+  segments_near(*a.chain, bounds(b, b_in_a), [&](const Segment& s, int) {
+    any = distance(Shape2(s), b, b_in_a).distance <= 0;
+    return !any;
+  });
+  return any;
 }
 
 CastHit2 ray_cast(const Shape2& s, Vec2f origin, Vec2f translation) {
@@ -234,7 +249,7 @@ CastHit2 ray_cast(const Shape2& s, Vec2f origin, Vec2f translation) {
 CastHit2 shape_cast(const Shape2& a, const Shape2& b, const Transform2f& x, Vec2f translation) {
   using namespace query2;
   if (is_chain(b)) return {};
-  const detail::Rounded2 moving = detail::placed(detail::rounded_of(b), x);
+  const detail::Rounded2 moving = detail::placed(b, x);
   if (!is_chain(a)) {
     const detail::Rounded2 fixed = detail::rounded_of(a);
     return cast_rounded(fixed, moving, translation, 1, a.type == ShapeType2::chain_segment && fixed.count == 2);
@@ -258,11 +273,14 @@ TimeOfImpact time_of_impact(const Shape2& a, const Sweep2& sweep_a, const Shape2
     TimeOfImpact first;
     const Chain& chain = is_chain(a) ? *a.chain : *b.chain;
     if (is_chain(a) && is_chain(b)) return {ImpactState::failed, 1};
-    for (int i = 0; i < chain.segment_count(); ++i) {
+    const Shape2& moving = is_chain(a) ? b : a;
+    const Bounds2f box = way_seen_from(is_chain(a) ? sweep_a : sweep_b, moving, is_chain(a) ? sweep_b : sweep_a);
+    detail::visit_segments(chain, grow(box, 2 * target), [&](int i) {
       const Shape2 s(chain.segment(i));
       keep_first(first, is_chain(a) ? time_of_impact(s, sweep_a, b, sweep_b, target)
                                     : time_of_impact(a, sweep_a, s, sweep_b, target));
-    }
+      return true;
+    });
     return first;
   }
   const double near = max(double(target), 1e-6);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "carom/geometry/detail/chain_tree.h"
 #include "carom/geometry/detail/text.h"
 
 namespace carom::geometry {
@@ -185,7 +186,9 @@ core::Result<std::shared_ptr<const Chain>> make_chain(std::vector<Vec2f> points,
     if (!(length(Vec2d(points[next]) - Vec2d(points[i])) >= min_length))
       return detail::error("make_chain: points %zu and %zu are closer than %g m", i, next, min_length);
   }
-  return std::shared_ptr<const Chain>(std::make_shared<Chain>(Chain{std::move(points), loop}));
+  Chain chain{std::move(points), loop};
+  chain.tree = detail::build_chain_tree(chain);
+  return std::shared_ptr<const Chain>(std::make_shared<Chain>(std::move(chain)));
 }
 
 core::Status validate(const Shape2& shape) {

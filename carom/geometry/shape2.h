@@ -44,6 +44,8 @@ struct ChainSegment {
 struct Chain {
   std::vector<Vec2f> points;
   bool loop = false;
+  /// A heap of bounds over runs of segments (detail/chain_tree.h), made by make_chain; without it searches are linear.
+  std::vector<Bounds2f> tree{};
   int segment_count() const { return loop ? int(points.size()) : int(points.size()) - 1; }
   CAROM_API ChainSegment segment(int i) const;
 };

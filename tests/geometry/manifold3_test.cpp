@@ -105,6 +105,27 @@ TEST(Manifold3, PushingOutByTheDepthSeparates) {
       }
 }
 
+TEST(Manifold3, WhatIsToldOfTheDistanceIsNeverMoreThanIt) {
+  Draw draw;
+  int told = 0;
+  for (int ka = 0; ka < convex_kinds; ++ka)
+    for (int kb = 0; kb < convex_kinds; ++kb) {
+      const Shape3 a = random_convex(draw, ka), b = random_convex(draw, kb);
+      PairCache cache;
+      Transform3f x{draw.vector(1.5, 4), draw.rotation()};
+      for (int k = 0; k < 30; ++k) {  // a slow motion, so that the cache is used
+        x.p += draw.vector(0.01, 0.1);
+        x.q = normalize(Quatf{1, draw.vector(0.01, 0.05)} * x.q);
+        Manifold3 m;
+        collide(a, b, x, 0.02f, cache, m);
+        if (m.count > 0 || m.points[0].separation <= 0.02f) continue;
+        ++told;
+        ASSERT_LE(double(m.points[0].separation), reference(a, b, x) + 1e-4) << kind_name(ka) << " " << kind_name(kb);
+      }
+    }
+  EXPECT_GT(told, 500);
+}
+
 TEST(Manifold3, DoesNotChangeWithTheFrame) {
   // Turning both shapes together (boxes are symmetric under quarter turns) turns the manifold.
   Draw draw;

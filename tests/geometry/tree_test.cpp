@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "carom/geometry/detail/chain_tree.h"
 #include "carom/geometry/dynamic_tree.h"
 #include "carom/geometry/static_tree.h"
 
@@ -218,4 +219,55 @@ TEST(StaticTree, AnswersAsALoopDoesAndStaysShallow) {
   query(tree, {{-1, -1, -1}, {2, 2, 2}}, [&](std::uint32_t) { return ++visited, true; });
   EXPECT_EQ(visited, nested.size());
 }
+TEST(DynamicTree, RefitAfterAllMoved) {
+  Draw draw;
+  DynamicTree3 tree;
+  std::vector<Bounds3d> boxes;
+  std::vector<int> leaves;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    boxes.push_back(draw.box(50, 2));
+    leaves.push_back(tree.insert(boxes.back(), i));
+  }
+  int rebuilt = 0;
+  for (int step = 0; step < 60; ++step) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const Vec3d d{draw.in(-1, 1), draw.in(-1, 1), draw.in(-1, 1)};
+      boxes[i] = {boxes[i].low + d, boxes[i].high + d};
+      tree.set_bounds(leaves[i], boxes[i]);
+    }
+    rebuilt += tree.refit() ? 1 : 0;
+    ASSERT_TRUE(tree.valid());
+    for (int k = 0; k < 20; ++k) {
+      const Bounds3d box = draw.box(50, 5);
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        if (overlaps(boxes[i], box)) expected.push_back(i);
+      ASSERT_EQ(found(tree, box), expected);
+    }
+  }
+  EXPECT_GT(rebuilt, 0);
+  EXPECT_LT(rebuilt, 30);
+}
+
+TEST(ChainTree, VisitsWhatALoopVisits) {
+  Draw draw;
+  for (const int count : {2, 3, 4, 5, 17, 360}) {
+    for (const bool loop : {false, true}) {
+      if (loop && count < 3) continue;
+      std::vector<Vec2f> points;
+      for (int i = 0; i < count; ++i) points.push_back({float(i), float(draw.in(-3, 3))});
+      const auto chain = make_chain(points, loop).value();
+      for (int k = 0; k < 50; ++k) {
+        const Vec2f c{float(draw.in(-1, count)), float(draw.in(-4, 4))}, h{float(draw.in(0, 3)), float(draw.in(0, 3))};
+        const Bounds2f box{c - h, c + h};
+        std::vector<int> expected, visited;
+        for (int i = 0; i < chain->segment_count(); ++i)
+          if (overlaps(geometry::detail::segment_bounds(*chain, i), box)) expected.push_back(i);
+        geometry::detail::visit_segments(*chain, box, [&](int i) { return visited.push_back(i), true; });
+        ASSERT_EQ(visited, expected);
+      }
+    }
+  }
+}
+
 }  // namespace

@@ -45,10 +45,10 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& b_in_a, 
 void collide_box_box(const Box& a, const Box& b, const Transform3f& b_in_a, float margin, PairCache& cache,
                      Manifold3& out);
 void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_a, float margin, Manifold3& out);
-/// One side of a surface's triangle (A): adds to `out` and sets its normal. Contacts that lean over an edge named in
-/// `flat_edges` (bits of EdgeFlags) are the neighbour's. `solid`: there is matter below, to any depth.
-/// False where there is none.
-bool collide_triangle(const Convex& triangle, std::uint8_t flat_edges, bool solid, const Convex& b,
+/// One side of a surface's triangle (A): adds to `out` and sets its normal. `edges` are EdgeFlags: contacts that lean
+/// over a flat edge are the neighbour's, and nothing that hardly dips below the plane catches on an open one. `solid`:
+/// there is matter below, to any depth. False where there is none.
+bool collide_triangle(const Convex& triangle, std::uint8_t edges, bool solid, const Convex& b,
                       const Transform3f& b_in_a, float margin, ContactPoints& out, Vec3f& normal);
 
 }  // namespace carom::geometry::detail

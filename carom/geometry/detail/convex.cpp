@@ -1,5 +1,7 @@
 #include "carom/geometry/detail/convex.h"
 
+#include "carom/math/simd.h"
+
 namespace carom::geometry::detail {
 
 Convex convex_of(const Shape3& s) {
@@ -98,6 +100,29 @@ static Vec3d rim_point(const Convex& c, double y, Vec3d d) {
   return {d.x * k, y, d.z * k};
 }
 
+int farthest(const std::vector<float>& lanes, Vec3f d) {
+  using Four = math::WideFloat<4>;
+  const Four x = Four::splat(d.x), y = Four::splat(d.y), z = Four::splat(d.z);
+  const float* p = lanes.data();
+  const std::int32_t blocks = std::int32_t(lanes.size() / 12);
+  Four most = Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z;
+  math::WideInt<4> where = math::WideInt<4>::zero();
+  for (std::int32_t i = 1; i < blocks; ++i) {
+    p += 12;
+    const Four along = Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z;
+    const math::WideMask<4> more = along > most;
+    most = select(more, along, most);
+    where = select(more, math::WideInt<4>::splat(i), where);
+  }
+  int best = 4 * where[0];
+  float value = most[0];
+  for (int lane = 1; lane < 4; ++lane) {
+    const int index = 4 * where[lane] + lane;
+    if (most[lane] > value || (most[lane] == value && index < best)) value = most[lane], best = index;
+  }
+  return best;
+}
+
 Vec3d support(const Convex& c, Vec3d d) {
   switch (c.kind) {
     case CoreKind::point:
@@ -113,16 +138,8 @@ Vec3d support(const Convex& c, Vec3d d) {
       const Vec3d base = rim_point(c, -double(c.half.y), d), apex{0, double(c.half.y), 0};
       return dot(apex, d) >= dot(base, d) ? apex : base;
     }
-    case CoreKind::hull: {
-      const std::vector<Vec3f>& v = c.hull->vertices;
-      std::size_t best = 0;
-      double most = dot(Vec3d(v[0]), d);
-      for (std::size_t i = 1; i < v.size(); ++i) {
-        const double x = dot(Vec3d(v[i]), d);
-        if (x > most) most = x, best = i;
-      }
-      return Vec3d(v[best]);
-    }
+    case CoreKind::hull:
+      return Vec3d(c.hull->vertices[std::size_t(farthest(c.hull->vertex_lanes, Vec3f(d)))]);
     case CoreKind::triangle: {
       const Vec3d p[3] = {Vec3d(c.corner[0]), Vec3d(c.corner[1]), Vec3d(c.corner[2])};
       const double x = dot(p[0], d), y = dot(p[1], d), z = dot(p[2], d);
@@ -280,16 +297,8 @@ void feature(const Convex& c, Vec3f d, Feature& out) {
       out.add({0, c.half.y, 0}, 41);
       return;
     }
-    case CoreKind::hull: {
-      const std::vector<HullPlane>& planes = c.hull->planes;
-      std::size_t best = 0;
-      float most = dot(planes[0].normal, d);
-      for (std::size_t i = 1; i < planes.size(); ++i) {
-        const float x = dot(planes[i].normal, d);
-        if (x > most) most = x, best = i;
-      }
-      return face_feature(c, int(best), d, out);
-    }
+    case CoreKind::hull:
+      return face_feature(c, farthest(c.hull->normal_lanes, d), d, out);
     case CoreKind::triangle:
       face_feature(c, 0, d, out);
       if (dot(c.normal, d) < 0) {

@@ -1,20 +1,10 @@
 // Convex shapes as a core and a radius, and what the general algorithms ask of them: support points and features.
 #pragma once
 
+#include "carom/geometry/detail/raw_array.h"
 #include "carom/geometry/hull.h"
 
 namespace carom::geometry::detail {
-
-/// Room for N values that are written before they are read: clearing it in every call costs more than the work done.
-template <class T, int N>
-struct RawArray {
-  union {
-    T items[N];
-  };
-  RawArray() {}
-  T& operator[](int i) { return items[i]; }
-  const T& operator[](int i) const { return items[i]; }
-};
 
 enum class CoreKind : std::uint8_t { point, segment, box, cylinder, cone, hull, triangle };
 
@@ -42,6 +32,8 @@ bool is_round(const Convex& c);       ///< cylinder or cone
 bool is_polyhedron(const Convex& c);  ///< box, hull or triangle
 
 Vec3d support(const Convex& c, Vec3d direction);
+/// Which of the vectors of Hull::vertex_lanes or normal_lanes lies farthest along d; the first among equals.
+int farthest(const std::vector<float>& lanes, Vec3f d);
 
 /// Faces that are flat and bounded: candidates for a reference face.
 int face_count(const Convex& c);

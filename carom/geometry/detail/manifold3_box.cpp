@@ -76,9 +76,17 @@ void collide_box_box(const Box& box_a, const Box& box_b, const Transform3f& x, f
 
   // The axis that parted them last is asked first.
   const Vec3f sa = abs(t) - ea - (Q[0] * eb.x + Q[1] * eb.y + Q[2] * eb.z);
-  if (max(sa.x, max(sa.y, sa.z)) > margin) return;
+  const float apart_a = max(sa.x, max(sa.y, sa.z));
+  if (apart_a > margin) {
+    out.points[0].separation = apart_a;
+    return;
+  }
   const Vec3f sb = abs(tb) - eb - Vec3f{dot(Q[0], ea), dot(Q[1], ea), dot(Q[2], ea)};
-  if (max(sb.x, max(sb.y, sb.z)) > margin) return;
+  const float apart_b = max(sb.x, max(sb.y, sb.z));
+  if (apart_b > margin) {
+    out.points[0].separation = apart_b;
+    return;
+  }
 
   int axis = 0;
   for (int i = 1; i < 3; ++i)
@@ -107,7 +115,10 @@ void collide_box_box(const Box& box_a, const Box& box_b, const Transform3f& x, f
       const float scale = 1 / math::sqrt(l2);
       const float ra = ea[i1] * Q[j][i2] + ea[i2] * Q[j][i1], rb = eb[j1] * Q[j2][i] + eb[j2] * Q[j1][i];
       const float s = (abs(t[i2] * r1 - t[i1] * r2) - ra - rb) * scale;
-      if (s > margin) return;
+      if (s > margin) {
+        out.points[0].separation = s;
+        return;
+      }
       if (s > edge) edge = s, edge_i = i, edge_j = j, edge_scale = scale;
     }
   }

@@ -1,6 +1,7 @@
 // Contacts of general convex cores: the axis by distance or depth, the points by clipping the features that face it.
 #include "carom/geometry/detail/contact_points.h"
 #include "carom/geometry/detail/gjk.h"
+#include "carom/geometry/triangle_mesh.h"
 
 namespace carom::geometry::detail {
 namespace core_pair {
@@ -49,6 +50,11 @@ struct Pair {
     const Vec3f s = Vec3f(support(a, Vec3d(-rotate(x.q, p.normal))));
     return dot(p.normal, inverse_transform_point(x, s)) - p.offset;
   }
+  // Separation of the cores along n, from A to B in A's frame.
+  float along(Vec3f n) const {
+    const Vec3f on_a = Vec3f(support(a, Vec3d(n))), on_b = Vec3f(support(b, Vec3d(-inverse_rotate(x.q, n))));
+    return dot(n, transform_point(x, on_b) - on_a);
+  }
   void clip_a(const Feature& face, ContactPoints& points) const {
     Feature incident;
     feature(b, -inverse_rotate(x.q, face.normal), incident);
@@ -78,6 +84,7 @@ bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold
   const float s = of_a ? pair.along_a(plane) : pair.along_b(plane);
   if (s - pair.radius() > pair.margin) {
     apart = true;
+    out.points[0].separation = s - pair.radius();
     return true;
   }
   if (s < -shallow) return false;
@@ -97,16 +104,9 @@ bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold
 }
 
 int face_index(const Convex& c, Vec3f n) {
+  if (c.kind == CoreKind::hull) return farthest(c.hull->normal_lanes, n);
   float most = -2;
   int best = -1;
-  if (c.kind == CoreKind::hull) {
-    const std::vector<HullPlane>& planes = c.hull->planes;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const float d = dot(planes[i].normal, n);
-      if (d > most) most = d, best = int(i);
-    }
-    return best;
-  }
   const int count = face_count(c);
   for (int i = 0; i < count; ++i) {
     const float d = dot(face_plane(c, i).normal, n);
@@ -244,13 +244,22 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
     bool apart = false;
     if (keep_face(pair, cache, 0.04f * small + 0.5f * pair.radius(), out, apart)) return;
   }
-  const Vec3f guess = cache.kind == direction ? unpack(cache.d) : Vec3f{};
+  Vec3f guess{};
+  if (cache.kind == direction) {
+    guess = unpack(cache.d);
+    const float s = pair.along(guess) - pair.radius();
+    if (s > margin) {
+      out.points[0].separation = s;
+      return;
+    }
+  }
   const Placed pa(a), pb(b, x);
   CoreDistance found;
   core_distance(pa, pb, double(pair.radius()) + double(margin), Vec3d(guess), found);
   if (!found.overlap && found.distance > double(pair.radius()) + double(margin)) {
     cache.kind = direction;
-    cache.d = pack(normalize(Vec3f(found.normal)));
+    cache.d = pack(Vec3f(found.normal));
+    out.points[0].separation = float(found.distance) - pair.radius();
     return;
   }
   if (found.overlap && !core_depth(pa, pb, found)) {
@@ -261,9 +270,10 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   points_for(pair, found, 5e-4f * small, cache, out);
 }
 
-bool collide_triangle(const Convex& t, std::uint8_t flat_edges, bool solid, const Convex& b, const Transform3f& x,
+bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const Transform3f& x,
                       float margin, ContactPoints& out, Vec3f& normal) {
   using namespace core_pair;
+  const int flat_edges = edges & (edge0_flat | edge1_flat | edge2_flat);
   const Pair pair{t, b, x, margin};
   const Vec3f center = transform_point(x, inner_point(b));
   const float behind = dot(t.normal, center - t.corner[0]);
@@ -284,11 +294,11 @@ bool collide_triangle(const Convex& t, std::uint8_t flat_edges, bool solid, cons
     return out.count > before;
   };
   const float small = max(inner_size(b), 1e-6f);
-  if ((flat_edges & 7) == 7 || along_face > -0.02f * small) {
+  if (flat_edges == 7 || along_face > -0.02f * small) {
     // Nothing but the face may push, or it is shallow: where something stands over the face, the face it is.
-    if ((flat_edges & 7) == 7 || along_face <= 0)
+    if (flat_edges == 7 || along_face <= 0)
       if (on_face()) return true;
-    if ((flat_edges & 7) == 7) return false;
+    if (flat_edges == 7) return false;
   }
   const Placed pa(t), pb(b, x);
   CoreDistance found;
@@ -298,13 +308,17 @@ bool collide_triangle(const Convex& t, std::uint8_t flat_edges, bool solid, cons
   const Vec3f n = normalize(Vec3f(found.normal)), p = Vec3f(found.point_a);
   // The Gauss map of the surface, edge by edge: a direction that leans over a flat or concave edge is not on it.
   bool legal = dot(n, t.normal) > -1e-3f;
+  const bool grazes = along_face - pair.radius() > -min(0.02f * small, 0.005f);
   for (int e = 0; e < 3; ++e) {
-    if ((flat_edges >> e & 1) == 0) continue;
+    const bool open = grazes && (edges & edge0_open << e) != 0;
+    if ((flat_edges >> e & 1) == 0 && !open) continue;
     const Vec3f a = t.corner[e], d = t.corner[e == 2 ? 0 : e + 1] - a;
     const Vec3f outward = cross(d, t.normal);
     const float l = length(outward);
     if (dot(outward, p - a) < -1e-3f * l * l) continue;
-    if (dot(n, outward) > 1e-3f * l) legal = false;
+    if (dot(n, outward) <= 1e-3f * l) continue;
+    if (open) return false;
+    legal = false;
   }
   if (!legal) return on_face();
   PairCache cache;

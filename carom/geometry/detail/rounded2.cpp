@@ -30,6 +30,7 @@ Rounded2 rounded_of(const Shape2& s) {
     default: {
       Rounded2 r;
       r.count = 1;
+      r.v[0] = {};
       r.radius = s.circle.radius;
       return r;
     }
@@ -41,6 +42,18 @@ Rounded2 placed(const Rounded2& s, const Transform2f& t) {
   r.count = s.count;
   r.radius = s.radius;
   for (int i = 0; i < s.count; ++i) r.v[i] = transform_point(t, s.v[i]), r.n[i] = rotate(t.q, s.n[i]);
+  return r;
+}
+
+Rounded2 placed(const Shape2& s, const Transform2f& t) {
+  if (s.type != ShapeType2::polygon) return placed(rounded_of(s), t);
+  Rounded2 r;
+  r.count = s.polygon.count;
+  r.radius = s.polygon.radius;
+  for (int i = 0; i < r.count; ++i) {
+    r.v[i] = transform_point(t, s.polygon.vertices[i]);
+    r.n[i] = rotate(t.q, s.polygon.normals[i]);
+  }
   return r;
 }
 

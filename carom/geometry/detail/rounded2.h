@@ -1,14 +1,15 @@
 // Convex shapes of the plane as one to eight corners swept by a circle; all pairs are pairs of these.
 #pragma once
 
+#include "carom/geometry/detail/raw_array.h"
 #include "carom/geometry/shape2.h"
 
 namespace carom::geometry::detail {
 
 /// A line is a polygon of two corners with a normal to either side; a circle has one corner and no normal.
 struct Rounded2 {
-  Vec2f v[max_polygon_vertices];
-  Vec2f n[max_polygon_vertices];  ///< n[i] of the edge from v[i] to v[i + 1]
+  RawArray<Vec2f, max_polygon_vertices> v;
+  RawArray<Vec2f, max_polygon_vertices> n;  ///< n[i] of the edge from v[i] to v[i + 1]
   int count = 0;
   float radius = 0;
   int next(int i) const { return i + 1 < count ? i + 1 : 0; }
@@ -16,6 +17,7 @@ struct Rounded2 {
 };
 Rounded2 rounded_of(const Shape2& shape);  ///< convex shapes and chain segments (both sides)
 Rounded2 placed(const Rounded2& shape, const Transform2f& t);
+Rounded2 placed(const Shape2& shape, const Transform2f& t);
 Vec2f center_of(const Rounded2& shape);
 float size_of(const Rounded2& shape);  ///< half the smallest extent, roughly; 0 for a sharp line
 

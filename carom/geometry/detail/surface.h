@@ -9,14 +9,14 @@ namespace carom::geometry::detail {
 
 struct SurfaceTriangle {
   Vec3f corner[3];
-  std::uint8_t flat_edges = 0;  ///< bits edge0_flat …
+  std::uint8_t edges = 0;  ///< EdgeFlags
   std::uint32_t index = 0;
 };
 
 inline SurfaceTriangle triangle_of(const TriangleMesh& mesh, std::uint32_t i) {
   SurfaceTriangle t;
   for (std::uint32_t k = 0; k < 3; ++k) t.corner[k] = mesh.vertices[mesh.indices[3 * i + k]];
-  t.flat_edges = mesh.edge_flags[i] & 7;
+  t.edges = mesh.edge_flags[i];
   t.index = i;
   return t;
 }
@@ -47,10 +47,13 @@ struct HeightFieldCells {
     const int far[2][3][2] = {{{i, j + 1}, {i + 2, j + 1}, {i, j - 1}}, {{i - 1, j}, {i + 1, j + 2}, {i + 1, j}}};
     const int cell[2][3][2] = {{{i, j}, {i + 1, j}, {i, j - 1}}, {{i - 1, j}, {i, j + 1}, {i, j}}};
     for (int e = 0; e < 3; ++e) {
-      if (!exists(cell[k][e][0], cell[k][e][1])) continue;
+      if (!exists(cell[k][e][0], cell[k][e][1])) {
+        t.edges = std::uint8_t(t.edges | edge0_open << e);
+        continue;
+      }
       const Vec3f d = vertex(far[k][e][0], far[k][e][1]) - t.corner[e];
       // Not below the plane by more than 1° of its distance.
-      if (dot(d, n) >= -0.0174524f * length(d) * length(n)) t.flat_edges = std::uint8_t(t.flat_edges | 1 << e);
+      if (dot(d, n) >= -0.0174524f * length(d) * length(n)) t.edges = std::uint8_t(t.edges | edge0_flat << e);
     }
     return t;
   }
