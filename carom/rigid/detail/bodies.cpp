@@ -277,6 +277,7 @@ void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
                                               : (record.type == BodyType::kinematic ? tree_kinematic : tree_dynamic);
   shape.leaf = world.shapes.trees[shape.tree].insert(fat_bounds(world, shape), std::uint32_t(s));
   world.bodies.motion[std::size_t(shape.body)].slack = 0;
+  world.scratch.old_bounds.clear();  // its pairs have not been looked for
   if ((shape.flags & shape_moved) == 0) {
     shape.flags |= shape_moved;
     world.scratch.moved.push_back(s);

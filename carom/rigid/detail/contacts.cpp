@@ -211,6 +211,7 @@ void destroy_contacts_between(WorldImplementation<D>& world, std::int32_t a, std
 
 template <class D>
 void find_pairs_again(WorldImplementation<D>& world, std::int32_t body) {
+  world.scratch.old_bounds.clear();
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none || (shape.flags & shape_moved) != 0) continue;
@@ -309,6 +310,7 @@ void activate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   if (c.awake_index != none) return;
   c.awake_index = std::int32_t(world.contacts.awake.size());
   world.contacts.awake.push_back(contact);
+  if (!world.scratch.watches.empty()) world.scratch.watches.emplace_back();
   for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) enter_graph(world, m);
 }
 
@@ -322,6 +324,11 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   awake[std::size_t(c.awake_index)] = last;
   world.contacts.at(last).awake_index = c.awake_index;
   awake.pop_back();
+  std::vector<ContactWatch>& watches = world.scratch.watches;
+  if (!watches.empty()) {
+    watches[std::size_t(c.awake_index)] = watches.back();
+    watches.pop_back();
+  }
   c.awake_index = none;
 }
 

@@ -1,12 +1,12 @@
 #include <algorithm>
 
+#include "carom/rigid/detail/found_contacts.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
 namespace {
 
 constexpr int contact_grain = 128;
-constexpr int max_manifolds = 8;          ///< of one pair
 constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
 constexpr float recycle_share = 0.02f;    ///< of the smaller half thickness: manifolds stay while the pair slid less
 
@@ -17,59 +17,6 @@ enum ContactChange : std::uint8_t {
   change_begin = 8,
   change_end = 16,
 };
-
-template <class D>
-struct Found {
-  typename D::Manifold manifold[max_manifolds];
-  std::uint32_t child[max_manifolds];
-  int count = 0;
-};
-
-/// Segments of a chain are children, like the triangles of a mesh.
-void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, const Transform2f& b_in_a, float margin,
-                 Found<Dim2>& found) {
-  const geometry::Bounds2f box = geometry::grow(geometry::bounds(b, b_in_a), margin);
-  struct Candidate {
-    float depth;
-    int segment;
-  } best[max_manifolds];
-  geometry::Manifold2 manifolds[max_manifolds];
-  int count = 0;
-  const geometry::Chain& chain = *a.chain;
-  for (int i = 0; i < chain.segment_count(); ++i) {
-    const Vec2f p = chain.points[std::size_t(i)];
-    const Vec2f q = chain.points[std::size_t(i) + 1 < chain.points.size() ? std::size_t(i) + 1 : 0];
-    if (!overlaps(geometry::Bounds2f{min(p, q), max(p, q)}, box)) continue;
-    geometry::PairCache cache;
-    geometry::Manifold2 m;
-    geometry::collide(geometry::Shape2(chain.segment(i)), b, b_in_a, margin, cache, m);
-    if (m.count == 0) continue;
-    float depth = m.points[0].separation;
-    for (int k = 1; k < m.count; ++k) depth = min(depth, m.points[k].separation);
-    int place = count < max_manifolds ? count++ : max_manifolds;
-    while (place > 0 && depth < best[place - 1].depth) {
-      if (place < max_manifolds) {
-        best[place] = best[place - 1];
-        manifolds[place] = manifolds[place - 1];
-      }
-      --place;
-    }
-    if (place < max_manifolds) {
-      best[place] = {depth, i};
-      manifolds[place] = m;
-    }
-  }
-  for (int i = 0; i < count; ++i) {
-    found.manifold[i] = manifolds[i];
-    found.child[i] = std::uint32_t(best[i].segment);
-  }
-  found.count = count;
-}
-void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
-                 Found<Dim3>& found) {
-  found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
-  for (int i = 0; i < found.count; ++i) found.child[i] = found.manifold[i].child;
-}
 
 template <class D>
 float smallest_separation(const typename D::Manifold& m) {
@@ -107,8 +54,8 @@ float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity);
 template <class D>
 float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
   const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
-  const float turning = spin(a) * world.bodies.motion[std::size_t(c.body[0])].outer_extent +
-                        spin(b) * world.bodies.motion[std::size_t(c.body[1])].outer_extent;
+  const float turning =
+      world.scratch.paths[std::size_t(c.body[0])].turning + world.scratch.paths[std::size_t(c.body[1])].turning;
   const float way = world.last_dt * (math::length(b.linear_velocity - a.linear_velocity) + min(turning, 100.0f));
   return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
 }
@@ -118,8 +65,8 @@ float closing_way(const WorldImplementation<D>& world, const ContactRecord<D>& c
   const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
   typename D::Vector n = rotate(world.shapes.at(c.shape[0]).local.q, normal);
   n = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, n);
-  const float turning = spin(a) * world.bodies.motion[std::size_t(c.body[0])].outer_extent +
-                        spin(b) * world.bodies.motion[std::size_t(c.body[1])].outer_extent;
+  const float turning =
+      world.scratch.paths[std::size_t(c.body[0])].turning + world.scratch.paths[std::size_t(c.body[1])].turning;
   return world.last_dt * max(0.0f, dot(n, a.linear_velocity - b.linear_velocity) + min(turning, 100.0f));
 }
 
@@ -159,6 +106,56 @@ std::uint8_t update_sensor(WorldImplementation<D>& world, ContactRecord<D>& c, c
   return is ? change_begin : change_end;
 }
 
+/// B in A is now at `x`, `moved` m by `motion` from the place where the gap was measured.
+template <class D>
+void watch_contact(WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Transform& x,
+                   float moved) {
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  const float apart = math::length(x.p), slack = c.gap - c.margin - moved;
+  // Seen from A, the origin of B moves by what both origins do, and by A's turn at its distance.
+  const float lever[2] = {apart + c.extent + math::length(a.local.p), c.extent + math::length(b.local.p)};
+  ContactWatch& w = world.scratch.watches[std::size_t(c.awake_index)];
+  w.limit = -1;
+  for (int side = 0; side < 2; ++side)
+    if (lever[side] > path_lever * world.bodies.motion[std::size_t(c.body[side])].outer_extent &&
+        !world.bodies.is_fixed(c.body[side]))
+      return;
+  w.body[0] = c.body[0], w.body[1] = c.body[1];
+  w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
+  w.limit = world.scratch.paths[std::size_t(c.body[0])].way + world.scratch.paths[std::size_t(c.body[1])].way +
+            double(min(slack, most_slack)) - double(1e-4f + 1e-6f * apart);
+}
+
+/// Follows the bodies' ways. Fixed ones have none: set_pose forgets all watches.
+template <class D>
+void follow_paths(WorldImplementation<D>& world) {
+  StepScratch<D>& scratch = world.scratch;
+  if (scratch.watches.size() != world.contacts.awake.size()) scratch.watches.assign(world.contacts.awake.size(), {});
+  if (world.contacts.awake.empty()) return;
+  scratch.paths.resize(world.bodies.pose.size());
+  scratch.path_ends.resize(world.bodies.pose.size());
+  for (const std::int32_t body : scratch.followed)
+    scratch.paths[std::size_t(body)].reach = scratch.paths[std::size_t(body)].turning = 0;
+  scratch.followed.assign(world.bodies.awake.begin(), world.bodies.awake.end());
+  world.scheduler->parallel_for(int(world.bodies.awake.size()), 512, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const std::size_t body = std::size_t(world.bodies.awake[std::size_t(i)]);
+      BodyPath& path = scratch.paths[body];
+      PathEnd<D>& last = scratch.path_ends[body];
+      const typename D::Pose& pose = world.bodies.pose[body];
+      const SolverBody<D>& s = world.bodies.solver[body];
+      const float outer = world.bodies.motion[body].outer_extent;
+      if (last.known)
+        path.way += double(math::length(typename D::Vector(pose.position - last.pose.position)) +
+                           path_lever * outer * chord(last.pose.rotation, pose.rotation));
+      if (outer < last.outer_extent) path.way += 2 * double(most_slack);  // turns counted for more until now
+      last = {pose, outer, true};
+      path.turning = spin(s) * outer;
+      path.reach = 1.0001f * world.last_dt * (math::length(s.linear_velocity) + min(path.turning, 100.0f));
+    }
+  });
+}
+
 /// Recomputes one contact. Writes only to the contact, its manifolds and the worker's list.
 template <class D>
 std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_index,
@@ -181,7 +178,11 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     // far below the size of features, so that nothing sticks to a stale edge.
     if (c.flags & contact_known) {
       if (c.first_manifold == none) {
-        if (motion(c.base, b_in_a, c.extent) + margin < c.gap) return 0;
+        const float moved = motion(c.base, b_in_a, c.extent);
+        if (moved + margin < c.gap) {
+          watch_contact(world, c, b_in_a, moved);
+          return 0;
+        }
       } else if ((c.flags & contact_round) == 0) {
         const typename D::Vector normal = store.manifold(c.first_manifold).manifold.normal;
         const float separation = c.gap + dot(normal, b_in_a.p - c.base.p);
@@ -196,6 +197,7 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   if (c.flags & contact_sensor) return update_sensor(world, c, a, b, b_in_a);
 
+  world.scratch.watches[std::size_t(awake_index)].limit = -1;
   c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
   c.base = b_in_a;
   Found<D> found;
@@ -207,6 +209,11 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     found.count = found.manifold[0].count > 0 ? 1 : 0;
   }
   float separation = reach;
+  if (found.count == 0) {
+    // Pairs are to be looked at before they leave each other's bounds for good; of a large surface nobody does.
+    if (!many) found.apart = min(found.manifold[0].points[0].separation, reach + 0.25f * c.inner);
+    separation = max(reach, found.apart);
+  }
   int kept = 0;
   for (int i = 0; i < found.count; ++i) {
     const float s = smallest_separation<D>(found.manifold[i]);
@@ -227,6 +234,8 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
       change = change_apart;
     else if (c.first_manifold != none)
       change = change_empty;
+    else
+      watch_contact(world, c, b_in_a, 0.0f);
     return std::uint8_t(change | touch_change(c, separation, false));
   }
   int matched = 0;
@@ -326,10 +335,26 @@ void update_contacts(WorldImplementation<D>& world) {
   scratch.contact_changes.resize((count + 7) / 8 * 8);
   std::fill(scratch.contact_changes.begin(), scratch.contact_changes.end(), std::uint8_t(0));
   for (std::vector<FoundManifold<D>>& list : scratch.found_manifolds) list.clear();
+  follow_paths(world);
   world.scheduler->parallel_for(int(count), contact_grain, [&](int begin, int end, int worker) {
-    for (int i = begin; i < end; ++i) {
-      if (i + 4 < end) __builtin_prefetch(&world.contacts.at(world.contacts.awake[std::size_t(i) + 4]));
-      scratch.contact_changes[std::size_t(i)] = update_contact(world, i, scratch.found_manifolds[std::size_t(worker)]);
+    std::int32_t due[contact_grain];
+    while (begin < end) {
+      const int stop = min(begin + contact_grain, end);
+      int number = 0;
+      for (; begin < stop; ++begin)
+        if (!still_apart(scratch.paths, scratch.watches[std::size_t(begin)])) due[number++] = begin;
+      for (int k = 0; k < number; ++k) {
+        if (k + 6 < number) __builtin_prefetch(&world.contacts.at(world.contacts.awake[std::size_t(due[k + 6])]));
+        if (k + 3 < number) {
+          const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k + 3])]);
+          for (const std::int32_t body : soon.body) {
+            __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
+            __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
+          }
+        }
+        scratch.contact_changes[std::size_t(due[k])] =
+            update_contact(world, due[k], scratch.found_manifolds[std::size_t(worker)]);
+      }
     }
   });
   level_room(scratch.found_manifolds);

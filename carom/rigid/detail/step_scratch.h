@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "carom/rigid/detail/contact_store.h"
+#include "carom/rigid/detail/contact_watch.h"
 #include "carom/rigid/events.h"
 
 namespace carom::rigid::detail {
@@ -62,13 +62,26 @@ struct SweepStart {
   bool stopped = false;  ///< continuous collision cut its way
 };
 
+/// A sensor and a shape that met in a fast body's way.
+struct SensorMeeting {
+  std::int32_t own, other;  ///< slots of shapes
+  float time;               ///< fraction of the step
+};
+
 template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
   std::vector<SolverStage> solver_stages;
   std::vector<core::TaskScheduler::Stage> solver_loops;  ///< of the same places
-  std::vector<std::int32_t> moved;                       ///< shapes whose fat bounds changed
-  std::vector<std::vector<FoundPair>> found_pairs;       ///< by worker
+  std::vector<BodyPath> paths;                           ///< by slot of the body
+  std::vector<PathEnd<D>> path_ends;                     ///< by slot of the body
+  std::vector<std::int32_t> followed;                    ///< bodies whose paths have a reach
+  std::vector<ContactWatch> watches;                     ///< by place in ContactStore::awake, or empty: look at all
+  std::vector<typename D::Bounds> old_bounds;       ///< by place in `moved`: fat bounds when pairs were last looked for
+  std::vector<std::int32_t> moved_place;            ///< by slot of the shape: place in old_bounds, or −1
+  std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
+  std::vector<std::vector<FoundPair>> found_pairs;  ///< by worker
+  std::vector<std::vector<SensorMeeting>> met_sensors;  ///< by worker
   std::vector<FoundPair> pairs;
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake

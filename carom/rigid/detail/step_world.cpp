@@ -191,6 +191,7 @@ WorldImplementation<D>::WorldImplementation(const WorldDef<D>& d)
     scheduler = own_scheduler.get();
   }
   scratch.found_pairs.resize(std::size_t(scheduler->thread_count()));
+  scratch.met_sensors.resize(std::size_t(scheduler->thread_count()));
   scratch.found_manifolds.resize(std::size_t(scheduler->thread_count()));
 }
 

@@ -21,6 +21,7 @@ Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
   center_from_pose(*self_, *slot);
   update_world_inertia(*self_, *slot);
   refresh_bounds(*self_, *slot);
+  if (self_->bodies.is_fixed(*slot)) self_->scratch.watches.clear();  // no path is kept of it
   return {};
 }
 

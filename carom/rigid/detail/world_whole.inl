@@ -82,6 +82,12 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   StepScratch<D>& s = world.scratch;
   s.solver_stages.reserve(most_solver_stages(world.definition.substeps));
   s.solver_loops.reserve(most_solver_stages(world.definition.substeps));
+  s.paths.reserve(bodies);
+  s.path_ends.reserve(bodies);
+  s.followed.reserve(bodies);
+  s.watches.reserve(contacts);
+  s.old_bounds.reserve(shapes);
+  s.moved_place.reserve(shapes);
   s.moved.reserve(shapes);
   for (auto& list : s.found_pairs) list.reserve(contacts);
   s.pairs.reserve(contacts);

@@ -1,0 +1,64 @@
+// The manifolds of pairs of which one has many parts: chains, meshes, height fields, compounds.
+#pragma once
+
+#include "carom/geometry/detail/chain_tree.h"
+#include "carom/rigid/dimension.h"
+
+namespace carom::rigid::detail {
+
+inline constexpr int max_manifolds = 8;  ///< of one pair
+
+template <class D>
+struct Found {
+  typename D::Manifold manifold[max_manifolds];
+  std::uint32_t child[max_manifolds];
+  int count = 0;
+  float apart = 0;  ///< m: where nothing is found, the shapes are known to be that far from each other
+};
+
+/// Segments of a chain are children, like the triangles of a mesh.
+inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, const Transform2f& b_in_a, float margin,
+                        Found<Dim2>& found) {
+  const geometry::Bounds2f box = geometry::grow(geometry::bounds(b, b_in_a), margin);
+  struct Candidate {
+    float depth;
+    int segment;
+  } best[max_manifolds];
+  geometry::Manifold2 manifolds[max_manifolds];
+  int count = 0;
+  const geometry::Chain& chain = *a.chain;
+  geometry::detail::visit_segments(chain, box, [&](int i) {
+    geometry::PairCache cache;
+    geometry::Manifold2 m;
+    geometry::collide(geometry::Shape2(chain.segment(i)), b, b_in_a, margin, cache, m);
+    if (m.count == 0) return true;
+    float depth = m.points[0].separation;
+    for (int k = 1; k < m.count; ++k) depth = min(depth, m.points[k].separation);
+    int place = count < max_manifolds ? count++ : max_manifolds;
+    while (place > 0 && depth < best[place - 1].depth) {
+      if (place < max_manifolds) {
+        best[place] = best[place - 1];
+        manifolds[place] = manifolds[place - 1];
+      }
+      --place;
+    }
+    if (place < max_manifolds) {
+      best[place] = {depth, i};
+      manifolds[place] = m;
+    }
+    return true;
+  });
+  if (count == 0) found.apart = margin + geometry::detail::clearance(chain, box, 100.0f);
+  for (int i = 0; i < count; ++i) {
+    found.manifold[i] = manifolds[i];
+    found.child[i] = std::uint32_t(best[i].segment);
+  }
+  found.count = count;
+}
+inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
+                        Found<Dim3>& found) {
+  found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
+  for (int i = 0; i < found.count; ++i) found.child[i] = found.manifold[i].child;
+}
+
+}  // namespace carom::rigid::detail
