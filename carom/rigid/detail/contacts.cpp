@@ -225,6 +225,8 @@ void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact) {
   ContactRecord<D>& c = world.contacts.at(contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   c.flags &= std::uint16_t(~(contact_bouncy | contact_special));
+  std::vector<ContactWatch>& watches = world.scratch.watches;
+  if (c.awake_index != none && !watches.empty()) watches[std::size_t(c.awake_index)].limit = -1;
   if (((a.flags | b.flags) & shape_special) != 0) c.flags |= contact_special;
   float restitution = max(a.material.restitution, b.material.restitution);
   if (const PairRule* rule = find_pair_rule(world, a.material.user_id, b.material.user_id))

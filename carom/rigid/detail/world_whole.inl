@@ -196,6 +196,9 @@ void World<D>::pair_rules(std::vector<MaterialPair>& out) const {
 }
 template <class D>
 void World<D>::set_contact_filter(ContactFilter filter) {
+  if (self_->contact_filter) {  // whom the old one refused is to be asked about again
+    for (std::size_t body = 0; body < self_->bodies.record.size(); ++body) find_pairs_again(*self_, std::int32_t(body));
+  }
   self_->contact_filter = std::move(filter);
 }
 template <class D>
