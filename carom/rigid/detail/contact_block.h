@@ -85,6 +85,7 @@ struct alignas(64) ContactExtra {
   float rolling_impulse[angular][W];
   float bounce_speed[D::max_points][W];  ///< m/s to leave the surface with, 0: does not bounce
   float closing_acceleration[W];         ///< m/s² along the normal
+  std::int32_t struck[W];                ///< what stage_impact.cpp knows of it
 };
 
 /// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.

@@ -63,6 +63,16 @@ void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int 
   }
 }
 
+/// n·(R r) − n·r = (Rᵀn − n)·r: the change only, so that no precision is lost for large r. Without what is along n: a
+/// point below the centre of a body that rolls is another one at every moment, and the surface stays where it is. What
+/// faces lose by that is of second order.
+template <int W>
+CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], const WideVec2<W>& n) {
+  const WideVec2<W> change = {q[2] * n.x + q[3] * n.y - n.x, q[2] * n.y - q[3] * n.x - n.y};
+  const WideFloat<W> lift = dot(change, n);
+  return {change.x - n.x * lift, change.y - n.y * lift};
+}
+
 template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
                                       Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
@@ -77,9 +87,7 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
   gather<W>(bodies, c.read_a, 4, pa);
   gather<W>(bodies, c.read_b, 4, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
-  // n·(R r) − n·r = (Rᵀn − n)·r: the change only, so that no precision is lost for large r.
-  const WideVec2<W> na = {pa[2] * n.x + pa[3] * n.y - n.x, pa[2] * n.y - pa[3] * n.x - n.y};
-  const WideVec2<W> nb = {pb[2] * n.x + pb[3] * n.y - n.x, pb[2] * n.y - pb[3] * n.x - n.y};
+  const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
   for (int i = 0; i < 2; ++i) {
     auto& point = c.point[i];
     const WideVec2<W> ra = load2<W>(point.r_a), rb = add(ra, offset);
@@ -175,9 +183,13 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     gather<W>(bodies, c.read_a, 4, pa);
     gather<W>(bodies, c.read_b, 4, pb);
     const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
-    const WideVec2<W> na = {pa[2] * n.x + pa[3] * n.y - n.x, pa[2] * n.y - pa[3] * n.x - n.y};
-    const WideVec2<W> nb = {pb[2] * n.x + pb[3] * n.y - n.x, pb[2] * n.y - pb[3] * n.x - n.y};
-    const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
+    const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+      const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
+    // Where one point of a face struck, those beside it did too, though the solver may have found that its neighbours
+    // carry the blow for it.
+    F struck = zero;
+    for (int i = 0; i < 2; ++i) struck += F::load(c.point[i].total);
+    const F reach = F::splat(2e-3f);
     // The points of a face push each other back: repeat until they agree.
     for (int pass = 0; pass < 16; ++pass) {
       const int i = pass % 2;
@@ -190,7 +202,7 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
       const F turn_a = cross(ra, n), turn_b = turn_a + offset_turn;
       const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
       const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
-      const F delta = keep((full > zero) & (total > zero), lambda - old);
+      const F delta = keep((full > zero) & ((total > zero) | ((struck > zero) & (s < reach))), lambda - old);
       (old + delta).store(point.impulse);
       (total + delta).store(point.total);
       const WideVec2<W> p = {delta * n.x, delta * n.y};

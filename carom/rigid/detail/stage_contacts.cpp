@@ -1,4 +1,5 @@
 // From manifolds to the blocks of the wide solver, and from the solved blocks back.
+#include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -6,51 +7,6 @@ namespace {
 
 constexpr int block_grain = 8;
 constexpr float anchor_rate = 0.05f;  ///< part of the slip that sticking friction takes back in a step
-
-template <int W>
-void put(float (&to)[2][W], int lane, const Vec2f& v) {
-  to[0][lane] = v.x;
-  to[1][lane] = v.y;
-}
-template <int W>
-void put(float (&to)[3][W], int lane, const Vec3f& v) {
-  to[0][lane] = v.x;
-  to[1][lane] = v.y;
-  to[2][lane] = v.z;
-}
-template <int W>
-void put(float (&to)[6][W], int lane, const Mat3f& m) {
-  to[0][lane] = m.cx.x;
-  to[1][lane] = m.cy.y;
-  to[2][lane] = m.cz.z;
-  to[3][lane] = m.cy.x;
-  to[4][lane] = m.cz.x;
-  to[5][lane] = m.cz.y;
-}
-template <int W>
-void put(float (&to)[W], int lane, float v) {
-  to[lane] = v;
-}
-template <int W>
-void put(float (&to)[2][W], int lane, const Rot2f& q) {
-  to[0][lane] = q.c;
-  to[1][lane] = q.s;
-}
-template <int W>
-void put(float (&to)[4][W], int lane, const Quatf& q) {
-  to[0][lane] = q.w;
-  to[1][lane] = q.x;
-  to[2][lane] = q.y;
-  to[3][lane] = q.z;
-}
-template <int W>
-Vec2f get(const float (&from)[2][W], int lane) {
-  return {from[0][lane], from[1][lane]};
-}
-template <int W>
-Vec3f get(const float (&from)[3][W], int lane) {
-  return {from[0][lane], from[1][lane], from[2][lane]};
-}
 
 /// A contact as it stands now: in the shape frame of A.
 template <class D>
@@ -268,6 +224,15 @@ void prepare_special(const StepContext<D>& context, std::int32_t index, ContactB
   }
 }
 
+/// May it bounce in this step?
+template <class D, int W>
+std::uint8_t bounce_mark(ContactExtra<D, W>& extra, int lane) {
+  extra.struck[lane] = 0;
+  for (const auto& speed : extra.bounce_speed)
+    if (speed[lane] > 0) return mark_bounces;
+  return 0;
+}
+
 template <class Block>
 void zero_lane(Block& block, int width, int lane) {
   for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
@@ -335,7 +300,7 @@ void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std:
   }
 }
 
-/// Calls f(manifolds of the colour, first, lanes, block) for the blocks of every colour, in parallel.
+/// Calls f(manifolds of the colour, first, lanes, block, extra, marks) for the blocks of every colour, in parallel.
 template <class D, int W, class F>
 void for_blocks(StepContext<D>& context, F&& f) {
   WorldImplementation<D>& world = context.world;
@@ -349,7 +314,7 @@ void for_blocks(StepContext<D>& context, F&& f) {
         const int first = k * lanes;
         f(std::span<const std::int32_t>(manifolds), std::size_t(first), min(lanes, int(manifolds.size()) - first),
           static_cast<ContactBlock<D, W>*>(blocks.blocks)[k],
-          blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k);
+          blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k, blocks.marks + first);
       }
     };
     if (blocks.count <= block_grain)
@@ -372,11 +337,11 @@ void prepare_blocks(StepContext<D>& context) {
     blocks.blocks = context.arena.template allocate<ContactBlock<D, W>>(std::size_t(blocks.count)).data();
     if (c.extra > 0)
       blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
-    blocks.bounces = c.extra > 0;
+    blocks.marks = context.arena.template allocate_zeroed<std::uint8_t>((c.manifolds.size() + 7) / 8 * 8).data();
   }
   const bool any_special = !world.shapes.extras.empty() || world.hit_event_shapes > 0;
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
-                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
+                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra, std::uint8_t* marks) {
     ContactRaw<D, W> raw;
     for (int lane = 0; lane < lanes; ++lane) {
       prefetch_manifold(world, manifolds, first + std::size_t(lane));
@@ -390,6 +355,7 @@ void prepare_blocks(StepContext<D>& context) {
       if (extra != nullptr || world.hit_event_shapes > 0) find_approach(context, m, block, extra, lane);
       if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
       if (any_special) prepare_special(context, m, block, extra, lane);
+      if (extra != nullptr) marks[lane] = bounce_mark(*extra, lane);
     }
   });
 }
@@ -397,7 +363,7 @@ void prepare_blocks(StepContext<D>& context) {
 template <class D, int W>
 void store_blocks(StepContext<D>& context) {
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
-                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra) {
+                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra, std::uint8_t*) {
     for (int lane = 0; lane < lanes; ++lane) {
       const std::size_t i = first + std::size_t(lane);
       if (i + 12 < manifolds.size()) {

@@ -52,7 +52,10 @@ void integrate_velocities(StepContext<D>& context, int begin, int end) {
     const float spin = speed_of(s.angular_velocity);
     if (spin * h > max_turn) s.angular_velocity *= max_turn / (spin * h);
     // Free flight: the mean of the velocities makes ½at² exact. In contact it would fight the contact.
-    if ((drive.flags & BodyDrive<D>::in_flight) != 0) s.delta_position += (0.5f * h) * (before + s.linear_velocity);
+    if ((drive.flags & BodyDrive<D>::in_flight) != 0)
+      s.delta_position += (0.5f * h) * (before + s.linear_velocity);
+    else
+      context.flights[i] = {s.linear_velocity, before};
   }
 }
 
@@ -64,7 +67,13 @@ void integrate_positions(StepContext<D>& context, int begin, int end) {
     const BodyDrive<D>& drive = context.drives[i];
     SolverBody<D>& s = context.bodies[drive.body];
     if (drive.locks != 0) apply_locks(s, drive.locks);
-    if ((drive.flags & BodyDrive<D>::in_flight) == 0) s.delta_position += h * s.linear_velocity;
+    if ((drive.flags & BodyDrive<D>::in_flight) == 0) {
+      // What others are near but do not touch flies too: nothing has changed its velocity.
+      if ((drive.flags & BodyDrive<D>::dynamic) != 0 && s.linear_velocity == context.flights[i].after)
+        s.delta_position += (0.5f * h) * (context.flights[i].before + s.linear_velocity);
+      else
+        s.delta_position += h * s.linear_velocity;
+    }
     if ((drive.flags & BodyDrive<D>::gyroscopic) != 0 && spins(s.angular_velocity))
       turn_freely(s, bodies.motion[std::size_t(drive.body)], bodies.pose[std::size_t(drive.body)].rotation, h);
     else

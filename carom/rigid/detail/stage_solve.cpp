@@ -125,13 +125,18 @@ void solve_constraints(StepContext<D>& context) {
   list_stages(context);
   prepare_drives(context);
   const StepScratch<D>& scratch = context.world.scratch;
-  if (context.world.joints.order.empty() && context.world.joints.pins.empty())
+  if (context.world.joints.order.empty() && context.world.joints.pins.empty() && scratch.impacts.empty())
     return context.scheduler.run_stages(
         scratch.solver_loops, [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
+  int left = context.substeps;
   for (std::size_t i = 0; i < scratch.solver_stages.size(); ++i) {
     run_joints(context, scratch.solver_stages[i]);
     context.scheduler.parallel_for(scratch.solver_loops[i].count, scratch.solver_loops[i].grain,
                                    [&](int begin, int end, int) { run_stage(context, int(i), begin, end); });
+    if (scratch.solver_stages[i].pass == SolverPass::velocities)
+      solve_impacts(context, ImpactMoment::after_forces);
+    else if (scratch.solver_stages[i].pass == SolverPass::positions)
+      solve_impacts(context, --left > 0 ? ImpactMoment::end_of_substep : ImpactMoment::end_of_step);
   }
 }
 

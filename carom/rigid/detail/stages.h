@@ -22,6 +22,14 @@ template <class D>
 void prepare_contacts(StepContext<D>& context);
 template <class D>
 void store_contacts(StepContext<D>& context);
+/// Impacts at their moment (stage_impact.cpp): which may happen in this step, and those of a substep: after its forces
+/// acted, before its end (the relaxing pass looks a substep ahead: what strikes there strikes first), and the last
+/// time.
+enum class ImpactMoment : std::uint8_t { after_forces, end_of_substep, end_of_step };
+template <class D>
+void find_impacts(StepContext<D>& context);
+template <class D>
+void solve_impacts(StepContext<D>& context, ImpactMoment moment);
 /// Where a manifold's points are now, in the world.
 template <class D>
 void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecord<D>& manifold,

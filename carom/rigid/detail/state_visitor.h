@@ -95,12 +95,15 @@ void visit_graph(Graph& graph, Visit& visit) {
 
 template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
-  auto& [blocks, solver_stages, solver_loops, paths, path_ends, followed, watches, old_bounds, moved_place, moved,
-         found_pairs, met_sensors, pairs, swept, fast, broken, body_changes, contact_changes, found_manifolds,
-         manifolds, island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches,
-         island_restless, contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin, sensor_end,
-         pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
+  auto& [blocks, flights, impacts, impact_queue, solver_stages, solver_loops, paths, path_ends, followed, watches,
+         old_bounds, moved_place, moved, found_pairs, met_sensors, pairs, swept, fast, broken, body_changes,
+         contact_changes, found_manifolds, manifolds, island_parent, island_list, island_bodies, island_ends,
+         doomed_contacts, new_touches, island_restless, contact_begin, contact_end, pending_contact_end, contact_hit,
+         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
   (void)blocks;
+  visit.scratch(flights);
+  visit.scratch(impacts);
+  visit.scratch(impact_queue);
   visit.scratch(solver_stages);
   visit.scratch(solver_loops);
   visit.scratch(paths);

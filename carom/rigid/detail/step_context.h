@@ -9,6 +9,8 @@ namespace carom::rigid::detail {
 
 template <class D>
 struct WorldImplementation;
+template <class D>
+struct Flight;  // step_scratch.h
 
 /// A soft constraint's constants for a substep h (implicit spring and damper, Catto, "Soft constraints", GDC 2011;
 /// "Solver2D" 2024): Δλ = −mass_scale·m_eff·(v + bias_rate·C) − impulse_scale·λ.
@@ -44,6 +46,7 @@ struct StepContext {
   int substeps = 1;
   Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
   float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
+  Flight<D>* flights = nullptr;     ///< by place in BodyStore::awake, of this substep
   SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones
   BodyDrive<D>* drives = nullptr;   ///< in the order of BodyStore::awake
 };

@@ -22,10 +22,14 @@ struct FoundPair {
   friend bool operator==(const FoundPair& l, const FoundPair& r) { return l.a == r.a && l.b == r.b; }
 };
 
+enum ContactMark : std::uint8_t {
+  mark_bounces = 1,  ///< may bounce in this step
+};
 /// Where a colour's contacts are in the arena of the step.
 struct ColorBlocks {
   void* blocks = nullptr;
   void* extra = nullptr;
+  std::uint8_t* marks = nullptr;  ///< ContactMark by place in the colour's list
   int count = 0;
   bool bounces = false;
 };
@@ -68,9 +72,17 @@ struct SensorMeeting {
   float time;               ///< fraction of the step
 };
 
+/// A body's velocities before and after a substep's forces.
+template <class D>
+struct Flight {
+  typename D::Vector after, before;
+};
+
 template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
+  std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
+  std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now
   std::vector<SolverStage> solver_stages;
   std::vector<core::TaskScheduler::Stage> solver_loops;  ///< of the same places
   std::vector<BodyPath> paths;                           ///< by slot of the body

@@ -169,6 +169,8 @@ StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
       make_softness(min(definition.joint_hertz, 0.25f * context.inverse_h), definition.joint_damping_ratio, context.h);
   context.push_speed = definition.contact_push_speed;
   context.bodies = world.bodies.solver.data();
+  world.scratch.flights.resize(world.bodies.awake.size());
+  context.flights = world.scratch.flights.data();
   return context;
 }
 
@@ -247,6 +249,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   StepContext<D> context = make_context(world, dt);
   prepare_joints(context);
   prepare_contacts(context);
+  find_impacts(context);
   profile.prepare = watch.lap("prepare");
   solve_constraints(context);
   profile.solve = watch.lap("solve");

@@ -88,6 +88,9 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.watches.reserve(contacts);
   s.old_bounds.reserve(shapes);
   s.moved_place.reserve(shapes);
+  s.flights.reserve(bodies);
+  s.impacts.reserve(manifolds);
+  s.impact_queue.resize(manifolds);
   s.moved.reserve(shapes);
   for (auto& list : s.found_pairs) list.reserve(contacts);
   s.pairs.reserve(contacts);
