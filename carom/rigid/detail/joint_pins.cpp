@@ -90,7 +90,7 @@ void prepare_pins(StepContext<D>& context) {
       for (int b = begin; b < end; ++b) {
         PinLanes<D, W>& block = *::new (static_cast<void*>(&blocks[std::size_t(b)])) PinLanes<D, W>{};
         for (int lane = 0; lane < W; ++lane)
-          fill_lane(block, lane, joints.pins[std::size_t(b * W + lane)], context.world);
+          fill_lane(block, lane, joints.pins[std::size_t(b) * W + std::size_t(lane)], context.world);
       }
     });
   });

@@ -189,8 +189,10 @@ class Builder {
         inverse_turn += inverse_inertia(parent.body);
       }
       const double carried = grounded ? load.mass : min(load.mass, total - load.mass);
-      const bool turns = (parts_of(joints_.data[std::size_t(joint.joint)]) &
-                          (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0;
+      const JointData<D>& data = joints_.data[std::size_t(joint.joint)];
+      const bool turns =
+          (parts_of(data) & (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0 &&
+          (grounded || turns_rigidly(data));  // the hinges of a free figure bear little
       if (carried * inverse_mass > direct_mass_ratio) return true;
       if (m * d * d * inverse_inertia(body.body) > direct_arm_ratio) return true;
       if (turns && load.inertia * (carried / load.mass) * inverse_turn > direct_inertia_ratio) return true;
