@@ -70,12 +70,11 @@ TYPED_TEST(QualityImpacts, RestitutionHeights) {
     }
     const std::string what = box ? "box falls flat" : "ball falls";
     Gate(12, what + ", e .2 to .95, .7 to 40 m, up to 10 bounces: worst apex off by", D::dimension, "%")
-        .not_yet(40)
         .at_most(100 * lossy.apex, 1);
-    Gate(12, what + ": time of the apexes off by", D::dimension, "%").not_yet(9.6).at_most(100 * lossy.time, 1);
-    Gate(12, what + ", e 1: ten bounces off by", D::dimension, "%").not_yet(53).at_most(100 * lossless.apex, 1);
+    Gate(12, what + ": time of the apexes off by", D::dimension, "%").at_most(100 * lossy.time, 1);
+    Gate(12, what + ", e 1: ten bounces off by", D::dimension, "%").at_most(100 * lossless.apex, 1);
     Gate(12, what + ", e 1: rises above the start by", D::dimension, "%")
-        .not_yet(0.43)
+        .not_yet(!box && D::dimension == 3 ? 0.43 : -1)
         .at_most(100 * lossless.gain, 0.01);
   }
 }
@@ -112,9 +111,9 @@ TYPED_TEST(QualityImpacts, NewtonsCradle) {
     }
     const std::string what = "cradle of 5 balls struck by " + std::to_string(strikers);
     this->RecordProperty("velocities", all);
-    Gate(13, what + ": worst velocity off by (of 5 m/s)", D::dimension, "%").not_yet(65).at_most(100 * worst / 5, 2);
+    Gate(13, what + ": worst velocity off by (of 5 m/s)", D::dimension, "%").at_most(100 * worst / 5, 2);
     Gate(13, what + ": momentum", D::dimension, "of it").near(momentum / (5 * strikers), 1, 1e-4);
-    Gate(13, what + ": energy", D::dimension, "of it").not_yet(0.36).near(energy / (25 * strikers), 1, 0.02);
+    Gate(13, what + ": energy", D::dimension, "of it").near(energy / (25 * strikers), 1, 0.02);
   }
 }
 
@@ -134,10 +133,8 @@ TYPED_TEST(QualityImpacts, BilliardBreak) {
   run(world, 60);
   const Totals<D> after = world.totals();
   Gate(13, "billiard break: momentum off by (of all)", D::dimension)
-
       .at_most(length(after.momentum - before.momentum) / length(before.momentum), 1e-6);
   Gate(13, "billiard break, e 1: energy", D::dimension, "of it")
-      .not_yet(0.44)
       .near(after.kinetic_energy / before.kinetic_energy, 1, 0.02);
 }
 
