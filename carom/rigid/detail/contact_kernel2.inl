@@ -184,7 +184,7 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     gather<W>(bodies, c.read_b, 4, pb);
     const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
     const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-      const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
+    const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
     // Where one point of a face struck, those beside it did too, though the solver may have found that its neighbours
     // carry the blow for it.
     F struck = zero;
