@@ -80,7 +80,7 @@ test('every demo opens, moves or stands, shows its numbers, and is accessible', 
   for (const demo of demos) {
     await page.evaluate((d) => { location.hash = d; }, demo);
     await page.waitForFunction((d) => document.querySelector(`#demos a[aria-current]`)?.dataset.demo === d, demo);
-    await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 5, null, {timeout: 20000});
+    await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 5, null, {timeout: 60000}); // software GL, and scenes of thousands of bodies
     await page.waitForTimeout(250);
     await page.screenshot({path: join(pictures, `${demo.replace(/\W/g, '_')}.png`)});
     assert.notEqual(await page.textContent('#numbers'), '', demo);
