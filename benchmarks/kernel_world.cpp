@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/scene_list.h"
+#include "benchmarks/scene_pieces.h"
 #include "carom/math/random.h"
 
 namespace {
@@ -114,16 +115,6 @@ BENCHMARK(BM_BoxCast)->DenseRange(0, 2);
 BENCHMARK(BM_SphereOverlap)->DenseRange(0, 2);
 BENCHMARK(BM_BoundsOverlap)->DenseRange(0, 2);
 
-/// n separate boxes at rest on nothing: no gravity, asleep.
-World3 sleeping_boxes(int n) {
-  rigid::WorldDef<Dim3> definition;
-  definition.gravity = {};
-  World3 world(definition);
-  for (int i = 0; i < n; ++i)
-    add_body<Dim3>(world, {.position = {2.0 * (i % 100), 2.0 * (i / 100 % 100), 2.0 * (i / 10000)}, .awake = false},
-                   geometry::Box{{0.5f, 0.5f, 0.5f}}, {});
-  return world;
-}
 void BM_CreateAndDestroyBody(benchmark::State& state) {
   World3 world = sleeping_boxes(int(state.range(0)));
   math::Random random(3);

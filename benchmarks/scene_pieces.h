@@ -39,6 +39,16 @@ inline BodyId add_fixed(World3& world, math::Vec3d position, const geometry::Sha
   surface.material.restitution = restitution;
   return add_body<Dim3>(world, {.type = BodyType::fixed, .position = position}, shape, surface);
 }
+/// n separate boxes at rest on nothing: no gravity, asleep.
+inline World3 sleeping_boxes(int n) {
+  rigid::WorldDef<Dim3> definition;
+  definition.gravity = {};
+  World3 world(definition);
+  for (int i = 0; i < n; ++i)
+    add_body<Dim3>(world, {.position = {2.0 * (i % 100), 2.0 * (i / 100 % 100), 2.0 * (i / 10000)}, .awake = false},
+                   geometry::Box{{0.5f, 0.5f, 0.5f}}, {});
+  return world;
+}
 /// A box as one more shape of a body.
 inline void add_box(World3& world, BodyId body, math::Vec3f center, math::Vec3f half, const ShapeDef<Dim3>& surface) {
   ShapeDef<Dim3> placed = surface;

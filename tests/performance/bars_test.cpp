@@ -36,16 +36,6 @@ TEST(Bars, FiveThousandBodiesInAFrame) {
   }
 }
 
-/// n separate sleeping boxes, without gravity.
-World3 sleeping_boxes(int n) {
-  rigid::WorldDef<Dim3> definition;
-  definition.gravity = {};
-  World3 world(definition);
-  for (int i = 0; i < n; ++i)
-    add_body<Dim3>(world, {.position = {2.0 * (i % 100), 2.0 * (i / 100 % 100), 2.0 * (i / 10000)}, .awake = false},
-                   geometry::Box{{0.5f, 0.5f, 0.5f}}, {});
-  return world;
-}
 void add_spinning_boxes(World3& world, int n) {
   for (int i = 0; i < n; ++i)
     add_body<Dim3>(world,

@@ -8,37 +8,6 @@ namespace {
 constexpr int block_grain = 8;
 constexpr float anchor_rate = 0.05f;  ///< part of the slip that sticking friction takes back in a step
 
-/// A contact as it stands now: in the shape frame of A.
-template <class D>
-struct Geometry {
-  typename D::Vector point[D::max_points];
-  float separation[D::max_points];
-};
-template <class D>
-void current_geometry(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m,
-                      Geometry<D>& g) {
-  if ((c.flags & contact_recycled) == 0) {
-    for (int i = 0; i < m.count; ++i) {
-      g.point[i] = m.points[i].point;
-      g.separation[i] = m.points[i].separation;
-    }
-    return;
-  }
-  typename D::Transform now;
-  if (c.flags & contact_at_origin)
-    now = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
-  else
-    now = relative(shape_pose(world, world.shapes.at(c.shape[0])), shape_pose(world, world.shapes.at(c.shape[1])));
-  const typename D::Transform motion = now * inverse(c.base);
-  for (int i = 0; i < m.count; ++i) {
-    const typename D::Vector half = (0.5f * m.points[i].separation) * m.normal;
-    const typename D::Vector on_a = m.points[i].point - half;
-    const typename D::Vector on_b = transform_point(motion, m.points[i].point + half);
-    g.separation[i] = dot(on_b - on_a, m.normal);
-    g.point[i] = 0.5f * (on_a + on_b);
-  }
-}
-
 template <class D>
 typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t body) {
   if (!context.world.bodies.is_dynamic(body)) return {};
@@ -405,16 +374,22 @@ void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecor
                         typename D::Position (&points)[D::max_points], float (&separations)[D::max_points],
                         typename D::Vector& normal) {
   const ContactRecord<D>& c = world.contacts.at(m.contact);
-  // After a step the bodies have moved on from where the manifold was made: follow them as recycling does.
-  ContactRecord<D> moved = c;
-  moved.flags |= contact_recycled;
-  Geometry<D> g;
-  current_geometry(world, moved, m.manifold, g);
+  // After a step the bodies have moved on from where the manifold was made: follow them as the kernel does for recycled
+  // contacts (prepare_points2, prepare_points3).
   const typename D::Pose pose = shape_pose(world, world.shapes.at(c.shape[0]));
+  typename D::Transform now;
+  if (c.flags & contact_at_origin)
+    now = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
+  else
+    now = relative(pose, shape_pose(world, world.shapes.at(c.shape[1])));
+  const typename D::Transform motion = now * inverse(c.base);
   normal = rotate(pose.rotation, m.manifold.normal);
   for (int i = 0; i < m.manifold.count; ++i) {
-    points[i] = world_point(pose, g.point[i]);
-    separations[i] = g.separation[i];
+    const auto& point = m.manifold.points[i];
+    const typename D::Vector half = (0.5f * point.separation) * m.manifold.normal, on_a = point.point - half;
+    const typename D::Vector on_b = transform_point(motion, point.point + half);
+    separations[i] = dot(on_b - on_a, m.manifold.normal);
+    points[i] = world_point(pose, 0.5f * (on_a + on_b));
   }
 }
 
