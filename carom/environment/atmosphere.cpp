@@ -63,11 +63,18 @@ AirState standard_atmosphere_geopotential(double altitude, const AtmosphereOffse
     air.pressure *= math::exp(-detail::gravity * (altitude - highest) / (detail::gas_constant * standard_temperature));
   air.pressure *= offset.sea_level_pressure / 101325.0;
   air.temperature = math::max(standard_temperature + offset.temperature, 1.0);
-  air.density = air.pressure / (detail::gas_constant * air.temperature);
-  air.speed_of_sound = math::sqrt(detail::gamma * detail::gas_constant * air.temperature);
+  // Water vapour has .622 of the molar mass of dry air; γ is taken as that of dry air.
+  const double vapour = offset.relative_humidity * saturation_vapour_pressure(air.temperature);
+  air.density = (air.pressure - 0.378 * math::min(vapour, air.pressure)) / (detail::gas_constant * air.temperature);
+  air.speed_of_sound = math::sqrt(detail::gamma * air.pressure / air.density);
   air.viscosity = detail::sutherland_beta * air.temperature * math::sqrt(air.temperature) /
                   (air.temperature + detail::sutherland_temperature);
   return air;
+}
+
+double saturation_vapour_pressure(double temperature) {
+  const double celsius = temperature - 273.15;
+  return celsius > -100 ? 611.21 * math::exp(17.502 * celsius / (240.97 + celsius)) : 0;
 }
 
 AirState standard_atmosphere(double altitude, const AtmosphereOffset& offset) {

@@ -17,6 +17,7 @@ struct AirState {
 struct AtmosphereOffset {
   double temperature = 0;              ///< K, added at every height
   double sea_level_pressure = 101325;  ///< Pa (QNH)
+  double relative_humidity = 0;  ///< 0 … 1, the same at every height; damp air is lighter and carries sound faster
 };
 
 /// H = r₀Z/(r₀ + Z) with r₀ = 6 356 766 m, and back.
@@ -30,5 +31,8 @@ CAROM_API double geometric_altitude(double geopotential);
 CAROM_API AirState standard_atmosphere(double altitude, const AtmosphereOffset& offset = {});
 /// The same by geopotential altitude H (m).
 CAROM_API AirState standard_atmosphere_geopotential(double altitude, const AtmosphereOffset& offset = {});
+/// Pressure (Pa) of water vapour over water at saturation; temperature in K. A. L. Buck, J. Appl. Meteorol. 20 (1981)
+/// 1527–1532, e_w1: within .2 % from −40 to 50 °C.
+CAROM_API double saturation_vapour_pressure(double temperature);
 
 }  // namespace carom::environment

@@ -1,0 +1,126 @@
+#include "carom/ballistics/batch.h"
+
+#include "carom/ballistics/detail/batch_step.h"
+
+namespace carom::ballistics {
+
+using math::Vec3d;
+
+namespace detail {
+
+/// A row of values as a table row wants it: every value with the difference to the next row's.
+template <int Values>
+void append_rows(std::vector<float>& table, int rows, const auto& values_of) {
+  double here[Values], next[Values];
+  values_of(0, here);
+  for (int i = 0; i < rows; ++i) {
+    values_of(i + 1, next);
+    for (int k = 0; k < Values; ++k) {
+      table.push_back(float(here[k]));
+      table.push_back(float(next[k]) - float(here[k]));
+      here[k] = next[k];
+    }
+  }
+}
+
+constexpr std::size_t padding = 16;
+constexpr int drag_nodes = 1024, levels = 2048;
+constexpr double lowest_height = -500, highest_height = 19980;  // 10 m a level
+
+}  // namespace detail
+
+ProjectileBatch::ProjectileBatch(const DragCurve& drag, const Conditions& conditions, Vec3d origin, int lanes)
+    : origin_(origin) {
+  const double last = math::max(drag.points().back().mach, 0.1);
+  nodes_per_mach_ = float(detail::drag_nodes / last);
+  detail::append_rows<1>(drag_, detail::drag_nodes,
+                         [&](int i, double* value) { value[0] = drag(last * i / detail::drag_nodes); });
+  const double spacing = (detail::highest_height - detail::lowest_height) / detail::levels;
+  lowest_ = float(detail::lowest_height - origin.y);
+  levels_per_metre_ = float(1 / spacing);
+  detail::append_rows<5>(air_, detail::levels, [&](int i, double* value) {
+    const double height = detail::lowest_height + spacing * i;
+    const environment::AirColumn::Air air = conditions.air.at(height);
+    const Vec3d wind = conditions.wind.at(height);
+    value[0] = air.density;
+    value[1] = 1 / air.speed_of_sound;
+    value[2] = wind.x;
+    value[3] = wind.y;
+    value[4] = wind.z;
+  });
+  gravity_ = float(conditions.gravity);
+  for (int k = 0; k < 3; ++k) turning_[k] = float(-2 * conditions.rotation[k]);
+  const math::InstructionSet set =
+      lanes == 0 ? math::detect_instruction_set() : math::choose_instruction_set(math::instruction_set_of_width(lanes));
+  lanes_ = math::simd_width(set);
+}
+
+void ProjectileBatch::reserve(std::size_t count) {
+  for (std::vector<float>& array : data_)
+    array.reserve((count + detail::padding - 1) / detail::padding * detail::padding);
+}
+
+std::size_t ProjectileBatch::add(const FlightPoint& start, double area_per_mass) {
+  if (count_ == data_[0].size())
+    for (std::vector<float>& array : data_) array.resize(count_ + detail::padding, 0.0f);
+  const std::size_t i = count_++;
+  const Vec3d position = start.position - origin_;
+  for (int k = 0; k < 3; ++k) {
+    data_[k][i] = data_[6 + k][i] = float(position[k]);
+    data_[3 + k][i] = float(start.velocity[k]);
+  }
+  data_[9][i] = float(0.5 * area_per_mass);
+  return i;
+}
+
+void ProjectileBatch::remove(std::size_t index) {
+  if (index >= count_) return;
+  --count_;
+  for (std::vector<float>& array : data_) {
+    array[index] = array[count_];
+    array[count_] = 0;  // padding flies too, and must stay finite
+  }
+}
+
+void ProjectileBatch::clear() {
+  count_ = 0;
+  for (std::vector<float>& array : data_) array.clear();
+}
+
+void ProjectileBatch::step(double dt, std::size_t from, std::size_t to) {
+  to = math::min(to, count_);
+  if (from >= to) return;
+  detail::BatchStep batch{};
+  for (int k = 0; k < 3; ++k) {
+    batch.position[k] = data_[k].data();
+    batch.velocity[k] = data_[3 + k].data();
+    batch.previous[k] = data_[6 + k].data();
+    batch.turning[k] = turning_[k];
+  }
+  batch.half_area_per_mass = data_[9].data();
+  batch.drag = drag_.data();
+  batch.air = air_.data();
+  batch.nodes_per_mach = nodes_per_mach_;
+  // The last cell is never left: a hair below the end keeps the node within the table.
+  batch.last_node = float(detail::drag_nodes) - 0.001f;
+  batch.lowest = lowest_;
+  batch.levels_per_metre = levels_per_metre_;
+  batch.last_level = float(detail::levels) - 0.001f;
+  batch.gravity = gravity_;
+  batch.dt = float(dt);
+#if defined(__x86_64__)
+  if (lanes_ == 16) return detail::batch_avx512::step(batch, from, to);
+  if (lanes_ == 8) return detail::batch_avx2::step(batch, from, to);
+#endif
+  detail::batch_baseline::step(batch, from, to);
+}
+
+FlightPoint ProjectileBatch::at(std::size_t i) const {
+  return {origin_ + Vec3d{data_[0][i], data_[1][i], data_[2][i]}, {data_[3][i], data_[4][i], data_[5][i]}};
+}
+
+Vec3d ProjectileBatch::previous_position(std::size_t i) const {
+  return origin_ + Vec3d{data_[6][i], data_[7][i], data_[8][i]};
+}
+
+}  // namespace carom::ballistics

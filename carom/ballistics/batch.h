@@ -1,0 +1,53 @@
+// Projectiles by the hundred thousand: one kind of projectile, a structure of arrays, Runge–Kutta steps in lanes
+// (chapter 18.1). The same bits for any width.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "carom/ballistics/flight.h"
+#include "carom/math/cpu.h"
+
+namespace carom::ballistics {
+
+/// Point masses that share a drag curve. Positions are floats about an origin in double: a millimetre at 10 km from it.
+/// The air and the wind are those of the height in the middle of a step; gravity is uniform, and the frame may turn.
+class CAROM_API ProjectileBatch {
+ public:
+  /// `lanes`: 4, 8 or 16; 0: the widest that the machine has. The results do not depend on it.
+  ProjectileBatch(const DragCurve& drag, const Conditions& conditions, math::Vec3d origin = {}, int lanes = 0);
+
+  /// Index of the new one: the number of those before it.
+  std::size_t add(const FlightPoint& start, double area_per_mass);
+  /// The last one takes its index.
+  void remove(std::size_t index);
+  void clear();
+  void reserve(std::size_t count);
+  std::size_t size() const { return count_; }
+
+  /// All by `dt` s: one classic Runge–Kutta step each. An index of `from … to` can be stepped by another thread.
+  void step(double dt) { step(dt, 0, count_); }
+  /// Those of [from, to) only; `from` must be a multiple of 16.
+  void step(double dt, std::size_t from, std::size_t to);
+
+  FlightPoint at(std::size_t index) const;
+  /// Where it was before the last step (m): with `at` the segment to be swept for hits.
+  math::Vec3d previous_position(std::size_t index) const;
+  math::Vec3d origin() const { return origin_; }
+
+  /// The arrays themselves, in floats about the origin, `size()` long: x, y, z in m, then velocities in m/s.
+  std::span<const float> array(int component) const { return {data_[component].data(), count_}; }
+
+ private:
+  math::Vec3d origin_{};
+  std::size_t count_ = 0;
+  std::vector<float> data_[10];  // position, velocity, previous position, A/2m; padded to whole registers
+  std::vector<float> drag_;      // C_D by Mach number: a value and the difference to the next, node by node
+  std::vector<float> air_;       // by height: density, 1/speed of sound and wind, likewise
+  float nodes_per_mach_ = 0, lowest_ = 0, levels_per_metre_ = 0;
+  float gravity_ = 0, turning_[3] = {0, 0, 0};
+  int lanes_ = 4;
+};
+
+}  // namespace carom::ballistics

@@ -1,0 +1,9 @@
+// The step of ProjectileBatch for 4 lanes.
+#include "carom/ballistics/detail/batch_step.h"
+#include "carom/math/simd.h"
+
+#define CAROM_BATCH_NAMESPACE batch_baseline
+#define CAROM_BATCH_WIDTH 4
+#include "carom/ballistics/detail/batch_kernel.inl"
+#undef CAROM_BATCH_NAMESPACE
+#undef CAROM_BATCH_WIDTH

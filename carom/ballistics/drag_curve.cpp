@@ -1,0 +1,146 @@
+#include "carom/ballistics/drag_curve.h"
+
+#include "carom/core/string.h"
+#include "carom/math/decimal.h"
+
+namespace carom::ballistics {
+
+std::string_view to_string(DragFunction function) { return drag_function_names[std::size_t(function)]; }
+
+std::optional<DragFunction> drag_function_from_name(std::string_view name) {
+  for (std::size_t i = 0; i < drag_function_names.size(); ++i)
+    if (drag_function_names[i] == name) return DragFunction(i);
+  return std::nullopt;
+}
+
+DragCurve::DragCurve(double coefficient) : points_{{0, coefficient}} {}
+
+DragCurve::DragCurve(DragFunction function, Interpolation interpolation) {
+  const std::span<const DragPoint> table = drag_table(function);
+  points_.assign(table.begin(), table.end());
+  prepare(interpolation);
+}
+
+core::Result<DragCurve> DragCurve::from_points(std::span<const DragPoint> points, Interpolation interpolation) {
+  constexpr std::size_t most = 60000;
+  if (points.empty() || points.size() > most)
+    return core::Error{core::text("a drag curve has ", points.size(), " nodes, expected 1 to ", most)};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const DragPoint& point = points[i];
+    const std::string name = core::text("node ", i + 1, " of a drag curve: ");
+    if (!math::is_finite(point.mach) || point.mach < 0)
+      return core::Error{name + core::refused("Mach number", point.mach, "a finite number >= 0")};
+    if (!math::is_finite(point.coefficient) || point.coefficient < 0)
+      return core::Error{name + core::refused("C_D", point.coefficient, "a finite number >= 0")};
+    if (i > 0 && !(point.mach > points[i - 1].mach))
+      return core::Error{
+          name + core::refused("Mach number", point.mach, core::text("more than the ", points[i - 1].mach, " before"))};
+  }
+  DragCurve curve;
+  curve.points_.assign(points.begin(), points.end());
+  curve.prepare(interpolation);
+  return curve;
+}
+
+void DragCurve::prepare(Interpolation interpolation) {
+  const double last = points_.back().mach;
+  cells_per_mach_ = last > 0 ? double(cells) / last : 0;
+  std::size_t node = 0;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    while (node + 1 < points_.size() && points_[node].mach * cells_per_mach_ < double(cell)) ++node;
+    first_[cell] = std::uint16_t(node);
+  }
+  const std::size_t intervals = points_.size() - 1;
+  cubics_.assign(intervals, {});
+  for (std::size_t i = 0; i < intervals; ++i)
+    cubics_[i].slope = (points_[i + 1].coefficient - points_[i].coefficient) / (points_[i + 1].mach - points_[i].mach);
+  if (interpolation == Interpolation::linear || intervals < 2) return;
+  // Slopes at the nodes: zero at peaks, else the harmonic mean of both sides, weighted by their lengths; at the ends
+  // that of the line.
+  std::vector<double> slope(points_.size());
+  slope.front() = cubics_.front().slope;
+  slope.back() = cubics_.back().slope;
+  for (std::size_t i = 1; i < intervals; ++i) {
+    const double before = cubics_[i - 1].slope, after = cubics_[i].slope;
+    const double h0 = points_[i].mach - points_[i - 1].mach, h1 = points_[i + 1].mach - points_[i].mach;
+    const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+    slope[i] = before * after > 0 ? (w0 + w1) / (w0 / before + w1 / after) : 0;
+  }
+  for (std::size_t i = 0; i < intervals; ++i) {
+    const double h = points_[i + 1].mach - points_[i].mach, line = cubics_[i].slope;
+    cubics_[i] = {slope[i], (3 * line - 2 * slope[i] - slope[i + 1]) / h,
+                  (slope[i] + slope[i + 1] - 2 * line) / (h * h)};
+  }
+}
+
+DragCurve DragCurve::scaled(double factor) const {
+  DragCurve curve = *this;
+  for (DragPoint& point : curve.points_) point.coefficient *= factor;
+  for (Cubic& cubic : curve.cubics_) cubic = {factor * cubic.slope, factor * cubic.square, factor * cubic.cube};
+  return curve;
+}
+
+core::Result<DragCurve> banded_drag(DragFunction function, std::span<const BallisticCoefficientBand> bands,
+                                    double reference) {
+  if (!(reference > 0) || !math::is_finite(reference))
+    return core::Error{core::refused("reference ballistic coefficient", reference, "a finite number > 0")};
+  std::vector<DragPoint> factors;
+  for (const BallisticCoefficientBand& band : bands) {
+    if (!(band.coefficient > 0) || !math::is_finite(band.coefficient))
+      return core::Error{core::text("band ", factors.size() + 1, ": ",
+                                    core::refused("ballistic coefficient", band.coefficient, "a finite number > 0"))};
+    factors.push_back({band.mach, reference / band.coefficient});
+  }
+  const core::Result<DragCurve> factor = DragCurve::from_points(factors);
+  if (!factor) return factor.error();
+  std::vector<DragPoint> points;
+  for (const DragPoint& point : drag_table(function))
+    points.push_back({point.mach, point.coefficient * factor.value()(point.mach)});
+  return DragCurve::from_points(points);
+}
+
+core::Result<DragCurve> read_drag_table(std::string_view text, std::string_view name, Interpolation interpolation) {
+  std::vector<DragPoint> points;
+  const auto separates = [](char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; };
+  int number = 0;
+  for (bool headed = false; !text.empty();) {
+    ++number;
+    const std::size_t end = math::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, math::min(text.substr(0, end).find('#'), end));
+    text.remove_prefix(math::min(end + 1, text.size()));
+    const auto skip = [&] {
+      while (!line.empty() && separates(line.front())) line.remove_prefix(1);
+    };
+    double values[2];
+    int read = 0;
+    skip();
+    if (line.empty()) continue;
+    for (; read < 2; ++read) {
+      const math::DecimalResult value = math::parse_decimal(line);
+      if (value.length == 0) break;
+      values[read] = value.value;
+      line.remove_prefix(value.length);
+      if (!line.empty() && !separates(line.front())) break;
+      skip();
+    }
+    if (read == 0 && points.empty() && !headed) {
+      headed = true;
+      continue;
+    }
+    if (read < 2 || !line.empty())
+      return core::Error{core::text(name, ":", number, ": found ",
+                                    line.empty() ? "the end of the line" : core::quoted(line),
+                                    ", expected a Mach number and a drag coefficient")};
+    points.push_back({values[0], values[1]});
+    if (points.size() > 1 && !(values[0] > points[points.size() - 2].mach))
+      return core::Error{
+          core::text(name, ":", number, ": ",
+                     core::refused("Mach number", values[0],
+                                   core::text("more than the ", points[points.size() - 2].mach, " before")))};
+  }
+  core::Result<DragCurve> curve = DragCurve::from_points(points, interpolation);
+  if (curve) return curve;
+  return core::Error{core::text(name, ": ", curve.error().message)};
+}
+
+}  // namespace carom::ballistics

@@ -1,0 +1,93 @@
+// The drag of a projectile by Mach number: standard functions, measured curves, and one's own (chapters 6.2, 18.1).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "carom/core/result.h"
+#include "carom/export.h"
+#include "carom/math/vec.h"
+
+namespace carom::ballistics {
+
+struct DragPoint {
+  double mach = 0;
+  double coefficient = 0;  ///< C_D on the frontal area π d²/4
+};
+
+/// Reference projectiles of the US Army's Ballistic Research Laboratory: G1 flat base, G2 long cone, G5 short boat
+/// tail, G6 flat base with a pointed nose, G7 long boat tail, G8 flat base with a secant ogive, GI Ingalls' G1, GS
+/// sphere of 9/16 in, RA4 a .22 rimfire bullet of 40 grains. Tables: BRL, in the public domain, as reprinted by
+/// py-ballisticcalc.
+enum class DragFunction { g1, g2, g5, g6, g7, g8, gi, gs, ra4 };
+inline constexpr std::array<std::string_view, 9> drag_function_names = {"g1", "g2", "g5", "g6", "g7",
+                                                                        "g8", "gi", "gs", "ra4"};
+CAROM_API std::string_view to_string(DragFunction function);
+CAROM_API std::optional<DragFunction> drag_function_from_name(std::string_view name);
+/// The nodes of the table, by rising Mach number.
+CAROM_API std::span<const DragPoint> drag_table(DragFunction function);
+
+/// What lies between the nodes of a curve.
+enum class Interpolation {
+  smooth,  ///< cubics with a continuous slope that never leave the range of their nodes (Fritsch & Carlson 1980)
+  linear,  ///< straight lines, as many printed tables were computed; integrators lose accuracy at the bends
+};
+
+/// C_D over Mach number, through its nodes and constant beyond them.
+class CAROM_API DragCurve {
+ public:
+  /// A constant.
+  explicit DragCurve(double coefficient = 0);
+  explicit DragCurve(DragFunction function, Interpolation interpolation = Interpolation::smooth);
+  /// At least one node; Mach numbers from 0 up, strictly rising, and finite coefficients ≥ 0. An error names the node.
+  static core::Result<DragCurve> from_points(std::span<const DragPoint> points,
+                                             Interpolation interpolation = Interpolation::smooth);
+
+  /// `mach` ≥ 0.
+  double operator()(double mach) const {
+    // One cell of a uniform grid tells the first node that can lie beyond: a step or two from there.
+    const std::size_t cell = std::size_t(math::min(math::max(mach, 0.0) * cells_per_mach_, double(cells - 1)));
+    std::size_t i = first_[cell];
+    while (i + 1 < points_.size() && points_[i].mach < mach) ++i;
+    if (i == 0 || points_[i].mach < mach) return points_[i].coefficient;
+    const DragPoint& a = points_[i - 1];
+    const Cubic& c = cubics_[i - 1];
+    const double x = mach - a.mach;
+    return math::max(a.coefficient + x * (c.slope + x * (c.square + x * c.cube)), 0.0);  // rounding, where it is zero
+  }
+
+  std::span<const DragPoint> points() const { return points_; }
+  /// The curve times a form factor.
+  DragCurve scaled(double factor) const;
+
+ private:
+  static constexpr std::size_t cells = 128;
+  struct Cubic {
+    double slope = 0, square = 0, cube = 0;
+  };
+  void prepare(Interpolation interpolation);
+  std::vector<DragPoint> points_;
+  std::vector<Cubic> cubics_;  // between a node and the next
+  std::array<std::uint16_t, cells> first_{};
+  double cells_per_mach_ = 0;
+};
+
+/// A ballistic coefficient that holds from a Mach number upward.
+struct BallisticCoefficientBand {
+  double mach = 0;
+  double coefficient = 1;  ///< lb/in²
+};
+/// Several coefficients for ranges of speed as one curve, for use with the coefficient `reference`: the function's drag
+/// times reference/coefficient, linear in between the bands' Mach numbers. Bands by rising Mach number.
+CAROM_API core::Result<DragCurve> banded_drag(DragFunction function, std::span<const BallisticCoefficientBand> bands,
+                                              double reference);
+
+/// Two columns, Mach number and C_D, separated by spaces, tabs, commas or semicolons; a heading line, empty lines and
+/// comments after # are skipped. Errors name `name`, the line, what was found and what was expected.
+CAROM_API core::Result<DragCurve> read_drag_table(std::string_view text, std::string_view name,
+                                                  Interpolation interpolation = Interpolation::smooth);
+
+}  // namespace carom::ballistics

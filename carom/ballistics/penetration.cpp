@@ -1,0 +1,91 @@
+#include "carom/ballistics/penetration.h"
+
+#include "carom/core/string.h"
+#include "carom/math/vec.h"
+
+namespace carom::ballistics {
+
+double poncelet_depth(const Penetrator& bullet, const Medium& medium) {
+  const double v2 = bullet.speed * bullet.speed;
+  if (!(medium.inertia > 0)) return bullet.mass * v2 / (2 * bullet.area * medium.strength);
+  return bullet.mass / (2 * bullet.area * medium.inertia) * math::log1p(medium.inertia * v2 / medium.strength);
+}
+
+double poncelet_residual(const Penetrator& bullet, const Medium& medium, double thickness) {
+  const double v2 = bullet.speed * bullet.speed, k = 2 * bullet.area * thickness / bullet.mass;
+  if (!(medium.inertia > 0)) return math::sqrt(math::max(v2 - k * medium.strength, 0.0));
+  // v² + a/b falls as e^{−2Abx/m}.
+  const double strength = medium.strength / medium.inertia;
+  return math::sqrt(math::max((v2 + strength) * math::exp(-k * medium.inertia) - strength, 0.0));
+}
+
+double recht_ipson_residual(double speed, double limit_speed, double mass, double plug_mass) {
+  const double v2 = speed * speed - limit_speed * limit_speed;
+  return v2 > 0 ? math::sqrt(v2) * mass / (mass + plug_mass) : 0;
+}
+
+double lambert_jonas_residual(double speed, double limit_speed, double a, double p) {
+  if (!(speed > limit_speed)) return 0;
+  return a * math::pow(math::pow(speed, p) - math::pow(limit_speed, p), 1 / p);
+}
+
+core::Result<std::vector<LayerPassage>> penetrate(const Penetrator& bullet, std::span<const Layer> layers,
+                                                  double angle) {
+  const auto bad = [](double x, bool zero) { return !math::is_finite(x) || x < 0 || (x == 0 && !zero); };
+  if (bad(bullet.mass, false))
+    return core::Error{core::refused("mass of the bullet", bullet.mass, "a finite number > 0")};
+  if (bad(bullet.area, false))
+    return core::Error{core::refused("area of the bullet", bullet.area, "a finite number > 0")};
+  if (bad(bullet.speed, true))
+    return core::Error{core::refused("speed of the bullet", bullet.speed, "a finite number >= 0")};
+  if (!(angle > 0) || angle > math::pi / 2 + 1e-9)
+    return core::Error{core::refused("angle to the surface", angle, "more than 0 and at most pi/2 rad")};
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Layer& layer = layers[i];
+    const struct {
+      const char* name;
+      double value;
+      bool zero;
+    } fields[] = {{"thickness", layer.thickness, false},   {"strength", layer.medium.strength, false},
+                  {"inertia", layer.medium.inertia, true}, {"limit_speed", layer.limit_speed, true},
+                  {"density", layer.density, true},        {"ricochet_angle", layer.ricochet_angle, true}};
+    for (const auto& field : fields)
+      if (bad(field.value, field.zero))
+        return core::Error{core::text(
+            "layer ", i + 1, ": ",
+            core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
+    if (!(layer.ricochet_restitution >= 0 && layer.ricochet_restitution <= 1))
+      return core::Error{core::text("layer ", i + 1, ": ",
+                                    core::refused("ricochet_restitution", layer.ricochet_restitution, "0 to 1"))};
+  }
+  std::vector<LayerPassage> passages;
+  double speed = bullet.speed;
+  for (const Layer& layer : layers) {
+    if (!(speed > 0)) break;
+    LayerPassage passage{.speed_in = speed};
+    Penetrator here = bullet;
+    here.speed = speed;
+    if (angle < layer.ricochet_angle) {
+      passage.outcome = LayerOutcome::ricochet;
+      passage.speed_out = layer.ricochet_restitution * speed;
+    } else {
+      passage.path = layer.thickness / math::sin(angle);
+      if (layer.limit_speed > 0) {
+        // A plate met aslant is thicker by 1/sin: its limit grows alike.
+        const double plug = layer.density * bullet.area * passage.path;
+        passage.speed_out = recht_ipson_residual(speed, layer.limit_speed / math::sin(angle), bullet.mass, plug);
+      } else {
+        passage.speed_out = poncelet_residual(here, layer.medium, passage.path);
+        if (passage.speed_out == 0) passage.path = poncelet_depth(here, layer.medium);
+      }
+      passage.outcome = passage.speed_out > 0 ? LayerOutcome::passed : LayerOutcome::stopped;
+    }
+    passage.energy = 0.5 * bullet.mass * (speed * speed - passage.speed_out * passage.speed_out);
+    speed = passage.speed_out;
+    passages.push_back(passage);
+    if (passage.outcome != LayerOutcome::passed) break;
+  }
+  return passages;
+}
+
+}  // namespace carom::ballistics

@@ -1,0 +1,263 @@
+#include "carom/ballistics/shell.h"
+
+#include "carom/core/string.h"
+#include "carom/ode/dormand_prince.h"
+
+namespace carom::ballistics {
+
+namespace detail {
+
+/// Modified point mass: position, velocity, spin.
+struct SpinningPoint {
+  math::Vec3d position{}, velocity{};
+  double spin = 0;
+  friend SpinningPoint operator+(const SpinningPoint& a, const SpinningPoint& b) {
+    return {a.position + b.position, a.velocity + b.velocity, a.spin + b.spin};
+  }
+  friend SpinningPoint operator*(double s, const SpinningPoint& a) {
+    return {s * a.position, s * a.velocity, s * a.spin};
+  }
+};
+
+/// A symmetric body: axis e and angular momentum h = I_x p e + I_t (e × ė), so that the spin itself needs no short
+/// steps, only the nutation (McCoy, Modern Exterior Ballistics, ch. 9).
+struct SymmetricBody {
+  math::Vec3d position{}, velocity{}, axis{}, momentum{};
+  friend SymmetricBody operator+(const SymmetricBody& a, const SymmetricBody& b) {
+    return {a.position + b.position, a.velocity + b.velocity, a.axis + b.axis, a.momentum + b.momentum};
+  }
+  friend SymmetricBody operator*(double s, const SymmetricBody& a) {
+    return {s * a.position, s * a.velocity, s * a.axis, s * a.momentum};
+  }
+};
+
+}  // namespace detail
+}  // namespace carom::ballistics
+
+template <>
+inline constexpr int carom::ode::components<carom::ballistics::detail::SpinningPoint> = 7;
+template <>
+inline constexpr int carom::ode::components<carom::ballistics::detail::SymmetricBody> = 12;
+
+namespace carom::ballistics {
+
+using math::Vec3d;
+
+Shell m107() {
+  return {.mass = 43.4545,
+          .diameter = .155,
+          .axial_inertia = .14705,
+          .transverse_inertia = 1.28888,
+          .twist = 20,
+          .aerodynamics = {{0, .144, 2.343, 1.763, -.767, -.023, 3.355, -5.1, -.500},
+                           {.6, .144, 2.343, 1.763, -.767, -.023, 3.378, -5.1, -.500},
+                           {.8, .146, 2.847, 1.783, -.767, -.022, 3.571, -5.1, -.355},
+                           {.9, .167, 3.372, 1.827, -.857, -.021, 3.957, -7.4, -.112},
+                           {.95, .221, 3.730, 2.038, -1.082, -.020, 3.886, -9.9, .085},
+                           {1, .327, 4.180, 2.153, -.992, -.020, 3.682, -13.8, .198},
+                           {1.05, .383, 4.691, 2.207, -.902, -.020, 3.415, -13.3, .293},
+                           {1.1, .381, 5.209, 2.255, -.857, -.019, 3.384, -14.6, .334},
+                           {1.2, .370, 5.702, 2.325, -.767, -.020, 3.424, -15.8, .352},
+                           {1.35, .353, 5.130, 2.442, -.767, -.020, 3.278, -15.6, .366},
+                           {1.5, .338, 4.561, 2.556, -.767, -.020, 3.264, -15.3, .373},
+                           {1.75, .314, 3.970, 2.692, -.767, -.020, 3.201, -15.3, .381},
+                           {2, .294, 3.460, 2.747, -.767, -.021, 3.013, -15.3, .388}}};
+}
+
+ShellCoefficients coefficients_at(const Shell& shell, double mach) {
+  const auto& rows = shell.aerodynamics;
+  if (rows.empty()) return {};
+  if (!(mach > rows.front().mach)) return rows.front();
+  if (mach >= rows.back().mach) return rows.back();
+  std::size_t i = 1;
+  while (rows[i].mach < mach) ++i;
+  const ShellCoefficients &a = rows[i - 1], &b = rows[i];
+  const double t = (mach - a.mach) / (b.mach - a.mach);
+  const auto between = [t](double x, double y) { return x + t * (y - x); };
+  return {mach,
+          between(a.axial, b.axial),
+          between(a.axial_yaw, b.axial_yaw),
+          between(a.normal, b.normal),
+          between(a.magnus_force, b.magnus_force),
+          between(a.roll_damping, b.roll_damping),
+          between(a.overturning, b.overturning),
+          between(a.pitch_damping, b.pitch_damping),
+          between(a.magnus_moment, b.magnus_moment)};
+}
+
+double muzzle_spin(const Shell& shell, double speed) { return 2 * math::pi * speed / (shell.twist * shell.diameter); }
+
+namespace detail {
+inline double frontal_area(const Shell& shell) { return math::pi / 4 * shell.diameter * shell.diameter; }
+}  // namespace detail
+
+double gyroscopic_stability(const Shell& shell, double spin, double density, double speed, double mach) {
+  const double s = detail::frontal_area(shell);
+  return math::square(shell.axial_inertia * spin) / (2 * density * shell.transverse_inertia * s * shell.diameter *
+                                                     speed * speed * coefficients_at(shell, mach).overturning);
+}
+
+Vec3d yaw_of_repose(const Shell& shell, double spin, double density, Vec3d velocity, Vec3d acceleration,
+                    double overturning) {
+  const double v2 = math::length_squared(velocity);
+  return (-2 * shell.axial_inertia * spin /
+          (density * detail::frontal_area(shell) * shell.diameter * overturning * v2 * v2)) *
+         math::cross(velocity, acceleration);
+}
+
+namespace detail {
+
+/// Gravity and the turning frame: the acceleration of something without drag.
+Vec3d free_acceleration(const Conditions& conditions, Vec3d position, Vec3d velocity) {
+  static const Projectile nothing{};
+  return acceleration(nothing, conditions, {position, velocity});
+}
+
+struct PointMassMotion {
+  SpinningPoint derivative;
+  Vec3d yaw;
+};
+
+PointMassMotion modified_point_mass(const Shell& shell, const Conditions& conditions, const SpinningPoint& s) {
+  const environment::AirColumn::Air air = conditions.air.at(s.position.y);
+  const Vec3d v = s.velocity - conditions.wind.at(s.position.y),
+              g = free_acceleration(conditions, s.position, s.velocity);
+  const double speed = math::length(v), area = frontal_area(shell), d = shell.diameter;
+  if (!(speed > 1e-9) || !(air.density > 0)) return {{s.velocity, g, 0}, {}};
+  const ShellCoefficients c = coefficients_at(shell, speed / air.speed_of_sound);
+  const double k = 0.5 * air.density * area / shell.mass, rate = s.spin * d / (2 * speed);
+  // The yaw of repose depends on the acceleration that it changes: three passes from drag and gravity alone.
+  Vec3d yaw{}, a = g - (k * c.axial * speed) * v;
+  for (int pass = 0; pass < 3; ++pass) {
+    yaw = yaw_of_repose(shell, s.spin, air.density, v, a, c.overturning);
+    const double drag = c.axial + (c.axial_yaw + c.normal) * math::length_squared(yaw);
+    a = g + k * ((-drag * speed) * v + ((c.normal - c.axial) * speed * speed) * yaw +
+                 (rate * c.magnus_force * speed) * math::cross(yaw, v));
+  }
+  const double spin = 0.5 * air.density * speed * speed * area * d * rate * c.roll_damping / shell.axial_inertia;
+  return {{s.velocity, a, spin}, yaw};
+}
+
+SymmetricBody six_degrees(const Shell& shell, const Conditions& conditions, const SymmetricBody& s) {
+  const environment::AirColumn::Air air = conditions.air.at(s.position.y);
+  const Vec3d w = s.velocity - conditions.wind.at(s.position.y),
+              g = free_acceleration(conditions, s.position, s.velocity);
+  const Vec3d e = s.axis / math::length(s.axis);
+  const double p = math::dot(s.momentum, e) / shell.axial_inertia;
+  const Vec3d turn = math::cross(s.momentum, e) / shell.transverse_inertia;  // ė
+  const double speed = math::length(w), area = frontal_area(shell), d = shell.diameter;
+  if (!(speed > 1e-9) || !(air.density > 0)) return {s.velocity, g, turn, {}};
+  const ShellCoefficients c = coefficients_at(shell, speed / air.speed_of_sound);
+  const Vec3d u = w / speed, side = u - math::dot(u, e) * e;  // the wind's part across the axis
+  const double q = 0.5 * air.density * speed * speed * area, rate = p * d / (2 * speed);
+  const Vec3d force = q * (-(c.axial + c.axial_yaw * math::length_squared(side)) * e - c.normal * side +
+                           (rate * c.magnus_force) * math::cross(e, u));
+  const Vec3d spin_across = math::cross(e, turn);  // ω without its part along the axis
+  const Vec3d moment =
+      (q * d) * (c.overturning * math::cross(u, e) + (d / (2 * speed) * c.pitch_damping) * spin_across +
+                 (rate * c.magnus_moment) * side + (rate * c.roll_damping) * e);
+  return {s.velocity, g + force / shell.mass, turn, moment};
+}
+
+core::Result<void> check(const Shell& shell, const FlightPoint& start, const FlightLimits& limits) {
+  const struct {
+    const char* name;
+    double value;
+  } positive[] = {{"mass", shell.mass},
+                  {"diameter", shell.diameter},
+                  {"axial_inertia", shell.axial_inertia},
+                  {"transverse_inertia", shell.transverse_inertia},
+                  {"speed at the muzzle", math::length(start.velocity)},
+                  {"time limit", limits.time},
+                  {"tolerance", limits.tolerance}};
+  for (const auto& field : positive)
+    if (!(field.value > 0) || !math::is_finite(field.value))
+      return core::Error{core::text("shell: ", core::refused(field.name, field.value, "a finite number > 0"))};
+  if (!math::is_finite(shell.twist) || shell.twist == 0)
+    return core::Error{core::text("shell: ", core::refused("twist", shell.twist, "calibres a turn, not zero"))};
+  if (shell.aerodynamics.empty()) return core::Error{"shell: no aerodynamic coefficients, expected at least one row"};
+  for (std::size_t i = 0; i < shell.aerodynamics.size(); ++i) {
+    const ShellCoefficients& row = shell.aerodynamics[i];
+    if (!(row.mach >= 0) || (i > 0 && !(row.mach > shell.aerodynamics[i - 1].mach)))
+      return core::Error{core::text("shell: aerodynamics row ", i + 1, ": ",
+                                    core::refused("mach", row.mach, "Mach numbers from 0, rising"))};
+    if (!(row.overturning != 0) || !math::is_finite(row.overturning))
+      return core::Error{core::text("shell: aerodynamics row ", i + 1, ": ",
+                                    core::refused("overturning", row.overturning, "a finite number, not zero"))};
+  }
+  return {};
+}
+
+template <class S, class Derivative, class Record>
+core::Result<ShellFlight> integrate(const S& first, const FlightPoint& start, const FlightLimits& limits,
+                                    double longest_step, const Derivative& derivative, const Record& record) {
+  ode::DormandPrince<S> solver(
+      0, first,
+      {.relative_tolerance = limits.tolerance, .absolute_tolerance = limits.tolerance, .maximum_step = longest_step});
+  std::vector<Trajectory::Node> nodes;
+  std::vector<ShellState> states;
+  const auto add = [&] {
+    const S d = derivative(solver.t(), solver.y());
+    nodes.push_back({solver.t(), solver.y().position, d.position, d.velocity});
+    states.push_back(record(solver.t(), solver.y()));
+  };
+  const auto remaining = [&](const S& s) {
+    const double flown = math::hypot(s.position.x - start.position.x, s.position.z - start.position.z);
+    const double height = s.velocity.y < 0 ? s.position.y - limits.ground : 1e300;
+    return math::min(height, limits.distance - flown);
+  };
+  add();
+  while (solver.t() < limits.time) {
+    bool found = false;
+    const ode::Outcome outcome = solver.advance_to_event(derivative, math::min(solver.t() + longest_step, limits.time),
+                                                         [&](double, const S& s) { return remaining(s); }, found,
+                                                         {.crossing = ode::Crossing::falling});
+    if (outcome != ode::Outcome::done)
+      return core::Error{
+          core::text("the flight cannot be integrated beyond ", solver.t(), " s: ", ode::to_string(outcome))};
+    add();
+    if (found || !(remaining(solver.y()) > 0)) break;
+  }
+  return ShellFlight{Trajectory(std::move(nodes)), std::move(states)};
+}
+
+}  // namespace detail
+
+core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& conditions, const FlightPoint& start,
+                                    ShellModel model, const FlightLimits& limits, Vec3d tip) {
+  const core::Result<void> checked = detail::check(shell, start, limits);
+  if (!checked.ok()) return checked.error();
+  const double spin = muzzle_spin(shell, math::length(start.velocity));
+  const auto angle = [&](Vec3d axis, Vec3d position, Vec3d velocity) {
+    const Vec3d w = velocity - conditions.wind.at(position.y);
+    return math::atan2(math::length(math::cross(axis, w)), math::dot(axis, w));
+  };
+  if (model == ShellModel::modified_point_mass) {
+    return detail::integrate(
+        detail::SpinningPoint{start.position, start.velocity, spin}, start, limits, 0.25,
+        [&](double, const detail::SpinningPoint& s) {
+          return detail::modified_point_mass(shell, conditions, s).derivative;
+        },
+        [&](double time, const detail::SpinningPoint& s) {
+          const Vec3d yaw = detail::modified_point_mass(shell, conditions, s).yaw;
+          const Vec3d w = s.velocity - conditions.wind.at(s.position.y);
+          const Vec3d axis = math::normalize(math::normalize(w) + yaw);
+          return ShellState{time, s.position, s.velocity, s.spin, axis, angle(axis, s.position, s.velocity)};
+        });
+  }
+  const Vec3d axis = math::normalize(start.velocity);
+  const Vec3d across = tip - math::dot(tip, axis) * axis;
+  const detail::SymmetricBody first{start.position, start.velocity, axis,
+                                    (shell.axial_inertia * spin) * axis + shell.transverse_inertia * across};
+  return detail::integrate(
+      first, start, limits, 0.05,
+      [&](double, const detail::SymmetricBody& s) { return detail::six_degrees(shell, conditions, s); },
+      [&](double time, const detail::SymmetricBody& s) {
+        const Vec3d e = s.axis / math::length(s.axis);
+        return ShellState{time,       s.position,
+                          s.velocity, math::dot(s.momentum, e) / shell.axial_inertia,
+                          e,          angle(e, s.position, s.velocity)};
+      });
+}
+
+}  // namespace carom::ballistics

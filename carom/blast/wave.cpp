@@ -1,0 +1,110 @@
+#include "carom/blast/wave.h"
+
+#include <span>
+
+#include "carom/core/string.h"
+#include "carom/math/elementary.h"
+
+namespace carom::blast {
+
+namespace detail {
+
+/// exp(Σ aᵢ (ln Z)ⁱ) up to the scaled distance `until`.
+struct Fit {
+  double until;
+  double a[7];
+};
+constexpr Fit side_on_pressure[] = {{2.9, {7.2106, -2.1069, -.3229, .1117, .0685}},
+                                    {23.8, {7.5938, -3.0523, .40977, .0261, -.01267}},
+                                    {198.5, {6.0536, -1.4066}}};
+constexpr Fit reflected_pressure[] = {{2, {9.006, -2.6893, -.6295, .1011, .29255, .13505, .019736}},
+                                      {40, {8.8396, -1.733, -2.64, 2.293, -.8232, .14247, -.0099}}};
+constexpr Fit arrival[] = {{1.5, {-.7604, 1.8058, .1257, -.0437, -.0310, -.00669}},
+                           {40, {-.7137, 1.5732, .5561, -.4213, .1054, -.00929}}};
+constexpr Fit duration[] = {{1.02, {.5426, 3.2299, -1.5931, -5.9667, -4.0815, -.9149}},
+                            {2.8, {.5440, 2.7082, -9.7354, 14.3425, -9.7791, 2.8535}},
+                            {40, {-2.4608, 7.1639, -5.6215, 2.2711, -.44994, .03486}}};
+constexpr Fit impulse[] = {{.96, {5.522, 1.117, .6, -.292, -.087}},
+                           {2.38, {5.465, -.308, -1.464, 1.362, -.432}},
+                           {33.7, {5.2749, -.4677, -.2499, .0588, -.00554}},
+                           {158.7, {5.9825, -1.062}}};
+constexpr Fit reflected_impulse[] = {{40, {6.7853, -1.3466, .101, -.01123}}};
+constexpr Fit front_speed[] = {{1.5, {.1794, -.956, -.0866, .109, .0699, .01218}},
+                               {40, {.2597, -1.326, .3767, .0396, -.0351, .00432}}};
+
+double evaluate(std::span<const Fit> fits, double z) {
+  std::size_t i = 0;
+  while (i + 1 < fits.size() && z > fits[i].until) ++i;
+  const double x = math::log(z);
+  double sum = 0;
+  for (int k = 6; k >= 0; --k) sum = sum * x + fits[i].a[k];
+  return math::exp(sum);
+}
+
+}  // namespace detail
+
+core::Result<Wave> blast_wave(double charge, double distance, Burst burst) {
+  if (!(charge > 0) || !math::is_finite(charge))
+    return core::Error{core::refused("charge", charge, "a finite mass of TNT > 0 kg")};
+  if (!(distance > 0) || !math::is_finite(distance))
+    return core::Error{core::refused("distance", distance, "a finite number of metres > 0")};
+  const double mass = burst == Burst::ground ? charge : charge / 1.8;
+  const double scale = math::cbrt(mass), z = distance / scale;
+  if (z < least_scaled_distance || z > greatest_scaled_distance)
+    return core::Error{
+        core::text(distance, " m from ", charge, " kg: ", core::refused("scaled distance", z, "0.2 to 40 m/kg^(1/3)"))};
+  constexpr double kilo = 1e3, milli = 1e-3;
+  Wave wave;
+  wave.pressure = kilo * detail::evaluate(detail::side_on_pressure, z);
+  wave.reflected_pressure = kilo * detail::evaluate(detail::reflected_pressure, z);
+  wave.arrival = milli * scale * detail::evaluate(detail::arrival, z);
+  wave.duration = milli * scale * detail::evaluate(detail::duration, z);
+  wave.impulse = scale * detail::evaluate(detail::impulse, z);  // kPa·ms
+  wave.reflected_impulse = scale * detail::evaluate(detail::reflected_impulse, z);
+  wave.front_speed = kilo * detail::evaluate(detail::front_speed, z);
+  wave.decay = friedlander_decay(wave.pressure, wave.duration, wave.impulse);
+  wave.reflected_decay = friedlander_decay(wave.reflected_pressure, wave.duration, wave.reflected_impulse);
+  return wave;
+}
+
+double kinney_graham_pressure(double charge, double distance, double ambient) {
+  const double z = distance / math::cbrt(charge);
+  const auto root = [&](double scale) { return math::sqrt(1 + math::square(z / scale)); };
+  return ambient * 808 * (1 + math::square(z / 4.5)) / (root(.048) * root(.32) * root(1.35));
+}
+
+double friedlander(double peak, double duration, double decay, double time) {
+  if (time < 0 || time > duration || !(duration > 0)) return 0;
+  const double s = time / duration;
+  return peak * (1 - s) * math::exp(-decay * s);
+}
+
+double friedlander_decay(double peak, double duration, double impulse) {
+  const double wanted = impulse / (peak * duration);
+  if (!(wanted < 0.5)) return 0;
+  const auto share = [](double b) {
+    if (b < 1e-2) return 0.5 - b / 6 + b * b / 24 - b * b * b / 120;
+    return 1 / b + math::expm1(-b) / (b * b);
+  };
+  double low = 0, high = 200;
+  if (share(high) > wanted) return high;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (share(middle) > wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Damage damage_of(double side_on_pressure) {
+  constexpr double from[] = {0, 1e3, 14e3, 34e3, 70e3, 240e3};
+  int damage = 5;
+  while (damage > 0 && !(side_on_pressure >= from[damage])) --damage;
+  return Damage(damage);
+}
+
+const char* to_string(Damage damage) {
+  constexpr const char* names[] = {"none", "windows_break", "light_structures", "eardrums", "walls_collapse", "lethal"};
+  return names[int(damage)];
+}
+
+}  // namespace carom::blast

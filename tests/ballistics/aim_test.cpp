@@ -1,0 +1,149 @@
+// The aim solver: reference cases (shared reference "ballistics", 2.7), and random cases against brute force.
+#include "carom/ballistics/aim.h"
+
+#include <gtest/gtest.h>
+
+#include "carom/math/random.h"
+
+namespace ballistics_aim_test {
+using namespace carom;
+using namespace carom::ballistics;
+using math::Vec3d;
+
+// Reference axes (east, north, up), azimuth from north; here x is north, z east.
+Vec3d from_reference(double east, double north, double up) { return {north, up, east}; }
+
+TEST(Aim, ReferenceCases) {
+  const Projectile shot = projectile_from_terminal_speed(60);
+  const Conditions air{.air = environment::AirColumn::uniform(1.225)};
+  const Shooter shooter{.muzzle_speed = 120};
+  const AimOptions exact{.tolerance = 1e-7};
+  auto aims = aim(shot, air, shooter, Target{from_reference(0, 150, 10)}, exact);
+  ASSERT_TRUE(aims && *aims);
+  EXPECT_NEAR(laying(aims->low->direction).elevation, .13559332, 2e-6);
+  EXPECT_NEAR(aims->low->time, 1.55996912, 2e-5);
+  EXPECT_NEAR(math::length(aims->low->velocity), 78.93522, 2e-3);
+  EXPECT_NEAR(laying(aims->high->direction).elevation, 1.38291247, 2e-6);
+  EXPECT_NEAR(aims->high->time, 15.15337305, 2e-4);
+  aims = aim(shot, air, shooter, Target{from_reference(30, 200, 20), from_reference(-8, 5, 0)}, exact);
+  ASSERT_TRUE(aims && *aims);
+  EXPECT_NEAR(laying(aims->low->direction).azimuth, .04855582, 2e-6);
+  EXPECT_NEAR(laying(aims->low->direction).elevation, .20738306, 2e-6);
+  EXPECT_NEAR(aims->low->time, 2.46042357, 2e-5);
+  EXPECT_NEAR(math::length(aims->low->velocity), 65.71198, 2e-3);
+  EXPECT_GT(aims->high->time, 10) << "the high arc";
+  const Conditions vacuum{.air = environment::AirColumn::uniform(0.0)};
+  aims = aim({}, vacuum, shooter, Target{from_reference(300, 400, 50), from_reference(-10, 15, 2)}, exact);
+  ASSERT_TRUE(aims && *aims);
+  EXPECT_NEAR(laying(aims->low->direction).azimuth, .49461697, 1e-7);
+  EXPECT_NEAR(laying(aims->low->direction).elevation, .30097693, 1e-7);
+  EXPECT_NEAR(aims->low->time, 4.65819030, 1e-6);
+}
+
+struct Case {
+  Projectile projectile;
+  Conditions conditions;
+  Shooter shooter;
+  Target target;
+};
+
+Case draw(math::Random& random) {
+  Case c;
+  const double kind = random.uniform();
+  if (kind < .35)
+    c.projectile = projectile_from_terminal_speed(random.uniform(20.0, 300.0));
+  else if (kind < .7)
+    c.projectile = projectile_from_coefficient(DragFunction::g7, random.uniform(.1, .6));
+  else if (kind < .9)
+    c.projectile =
+        projectile_from_size(DragCurve(DragFunction::gs), random.uniform(1.0, 20.0), random.uniform(.05, .2));
+  if (random.chance(.5)) c.conditions.air = environment::AirColumn::uniform(1.225);
+  c.conditions.wind = environment::WindColumn(Vec3d{random.uniform(-12.0, 12.0), 0, random.uniform(-12.0, 12.0)});
+  c.shooter.muzzle_speed = random.uniform(30.0, 900.0);
+  if (random.chance(.5)) c.shooter.velocity = random.uniform(0.0, .3) * c.shooter.muzzle_speed * random.in_sphere();
+  c.shooter.muzzle = {random.uniform(-50.0, 50.0), random.uniform(0.0, 300.0), random.uniform(-50.0, 50.0)};
+  const double reach = math::min(c.shooter.muzzle_speed * c.shooter.muzzle_speed / 9.8, 2500.0);
+  Vec3d way = random.uniform(.02, 1.0) * reach * random.on_sphere();
+  way.y *= .3;
+  c.target.position = c.shooter.muzzle + way;
+  if (random.chance(.6)) {
+    c.target.velocity = random.uniform(0.0, .4) * c.shooter.muzzle_speed * random.in_sphere();
+    c.target.velocity.y *= .2;
+  }
+  return c;
+}
+
+/// How far the shot passes the target, by the exact integration.
+double miss(const Case& c, const Shot& shot) {
+  const Vec3d u = c.shooter.velocity + c.shooter.muzzle_speed * shot.direction;
+  const auto flight = fly(c.projectile, c.conditions, {c.shooter.muzzle, u}, {.time = shot.time, .tolerance = 1e-11});
+  if (!flight) return 1e300;
+  return math::length(flight->end().position - (c.target.position + shot.time * c.target.velocity));
+}
+
+// Every shot that is told passes within 1 cm; the callback's scan, which walks through the flight times,
+// finds the same earliest and latest hit, and none where none is told.
+TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
+  math::Random random(2026);
+  int hits = 0, none = 0, two = 0;  // two: with a high arc of its own
+  constexpr int cases = 300;
+  for (int i = 0; i < cases; ++i) {
+    const Case c = draw(random);
+    const auto aims = aim(c.projectile, c.conditions, c.shooter, c.target, {.longest_time = 60});
+    ASSERT_TRUE(aims) << aims.error().message;
+    const auto scan = aim(c.projectile, c.conditions, c.shooter,
+                          [&](double t) { return c.target.position + t * c.target.velocity; }, {.longest_time = 60});
+    ASSERT_TRUE(scan);
+    ASSERT_EQ(aims->low.has_value(), scan->low.has_value()) << i;
+    const auto low = aim(c.projectile, c.conditions, c.shooter, c.target, {.longest_time = 60, .high_arc = false});
+    ASSERT_EQ(low->low.has_value(), aims->low.has_value()) << i;
+    if (!aims->low) {
+      ++none;
+      continue;
+    }
+    ++hits;
+    two += aims->high->time > aims->low->time * 1.001;
+    EXPECT_NEAR(aims->low->time, scan->low->time, 1e-3 * aims->low->time + 1e-4) << i;
+    EXPECT_NEAR(aims->high->time, scan->high->time, 1e-3 * aims->high->time + 1e-4) << i;
+    EXPECT_LT(miss(c, *aims->low), .01) << i;
+    EXPECT_LT(miss(c, *aims->high), .01) << i;
+    EXPECT_NEAR(low->low->time, aims->low->time, 1e-3 * aims->low->time + 1e-4) << i;
+    EXPECT_NEAR(math::length(aims->low->direction), 1, 1e-9);
+  }
+
+  EXPECT_GT(hits, cases / 3);
+  EXPECT_GT(two, cases / 3);
+  EXPECT_GT(none, cases / 50);
+}
+
+// A target that flees faster than the shot can follow, and one beyond its reach: no solution, and it is said.
+TEST(Aim, NoSolutionIsSaid) {
+  const Projectile shot = projectile_from_terminal_speed(40);
+  const Shooter shooter{.muzzle_speed = 100};
+  EXPECT_FALSE(aim(shot, {}, shooter, Target{{2000, 0, 0}}).value());
+  EXPECT_FALSE(aim(shot, {}, shooter, Target{{100, 0, 0}, {150, 0, 0}}).value());
+  EXPECT_FALSE(aim(shot, {}, shooter, [](double t) { return Vec3d{100 + 150 * t, 0, 0}; }).value());
+  EXPECT_TRUE(aim(shot, {}, shooter, Target{{100, 0, 0}}).value());
+}
+
+// A target on a circle is met where it will be.
+TEST(Aim, AnyMotion) {
+  const Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
+  const Shooter shooter{.muzzle_speed = 300, .muzzle = {0, 2, 0}, .velocity = {10, 0, -5}};
+  const auto place = [](double t) { return Vec3d{400 + 50 * math::cos(.7 * t), 20, 50 * math::sin(.7 * t)}; };
+  const auto aims = aim(shot, {}, shooter, place);
+  ASSERT_TRUE(aims && *aims);
+  for (const auto& way : {aims->low, aims->high}) {
+    const auto flight = fly(shot, {}, {shooter.muzzle, shooter.velocity + 300.0 * way->direction}, {.time = way->time});
+    EXPECT_LT(math::length(flight->end().position - place(way->time)), .01);
+  }
+}
+
+TEST(Aim, BadInputIsNamed) {
+  const auto aims = aim({}, {}, {.muzzle_speed = -5}, Target{});
+  ASSERT_FALSE(aims);
+  EXPECT_EQ(aims.error().message, "aim: muzzle_speed is -5, expected a finite number > 0");
+  EXPECT_FALSE(aim({}, {}, {}, Target{{__builtin_nan(""), 0, 0}}));
+}
+
+}  // namespace ballistics_aim_test

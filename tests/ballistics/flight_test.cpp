@@ -1,0 +1,214 @@
+// Point-mass flight against closed forms, reference integrations and published tables (shared reference "ballistics",
+// sections 2.2, 2.4, 2.7). Tolerances: closed forms 1e-9, reference integrations 1e-4, published tables as stated.
+#include "carom/ballistics/flight.h"
+
+#include <gtest/gtest.h>
+
+#include "carom/math/elementary.h"
+
+namespace ballistics_flight_test {
+using namespace carom;
+using namespace carom::ballistics;
+using math::Vec3d;
+
+constexpr double degree = math::pi / 180;
+
+// Quadratic drag in units L = v_t²/g, T = v_t/g; 45°, landing at the height of the start.
+TEST(Flight, QuadraticDragIsTheCanonicalCase) {
+  const struct {
+    double ratio, range, time, apex_x, height, impact, angle;
+  } table[] = {{.5, .210305515, .673628358, .109033012, .056779297, .424945139, -49.41708},
+               {1, .589011800, 1.204724756, .325101693, .182763576, .638226942, -57.27302},
+               {2, 1.177778444, 1.876083493, .710899610, .450864745, .804353278, -68.09125},
+               {4, 1.804926897, 2.544087987, 1.184439862, .843425342, .907132843, -76.69245},
+               {8, 2.391283647, 3.150739194, 1.676760347, 1.299218898, .959469649, -82.03117}};
+  const double vt = 50, g = 9.80665, length = vt * vt / g;
+  const Conditions still{.air = environment::AirColumn::uniform(1.225)};
+  for (const auto& row : table) {
+    const auto flight = fly(projectile_from_terminal_speed(vt), still, {{}, row.ratio * vt * direction(45 * degree)},
+                            {.time = 60, .ground = 0, .tolerance = 1e-12});
+    ASSERT_TRUE(flight) << flight.error().message;
+    const auto end = flight->end(), apex = flight->apex();
+    EXPECT_NEAR(end.position.x / length, row.range, 2e-9);
+    EXPECT_NEAR(end.time * g / vt, row.time, 2e-9);
+    EXPECT_NEAR(apex.position.x / length, row.apex_x, 2e-9);
+    EXPECT_NEAR(apex.position.y / length, row.height, 2e-9);
+    EXPECT_NEAR(math::length(end.velocity) / vt, row.impact, 2e-9);
+    EXPECT_NEAR(math::atan2(end.velocity.y, end.velocity.x) / degree, row.angle, 1e-5);
+  }
+}
+
+// A 168 grain match bullet and M855: the reference integration of the same tables (air of 1.225 kg/m³, 340.294 m/s,
+// drag read linearly), line of sight level, muzzle below it by the height of the sight.
+TEST(Flight, SmallArmsAgainstTheReferenceIntegration) {
+  constexpr double yard = 0.9144, foot = 0.3048, inch = 0.0254, mph = 0.44704;
+  struct Row {
+    double yards, speed, drop, time, wind;
+  };
+  const struct {
+    double coefficient, speed, sight, zero;
+    std::vector<Row> rows;
+  } loads[] = {{.218,
+                2650,
+                1.5,
+                .00114214,
+                {{200, 2247.55, -4.333, .24589, 3.427},
+                 {300, 2060.68, -15.565, .38530, 8.038},
+                 {500, 1712.22, -64.287, .70470, 24.405},
+                 {800, 1244.82, -234.960, 1.32114, 73.126},
+                 {1000, 1036.74, -455.581, 1.85777, 127.723}}},
+               {.151,
+                3100,
+                2.6,
+                .00126231,
+                {{200, 2478.25, -1.918, .21647, 4.034},
+                 {300, 2195.23, -9.526, .34510, 9.641},
+                 {400, 1931.94, -24.390, .49079, 18.249},
+                 {600, 1453.12, -85.217, .84873, 47.184},
+                 {800, 1065.82, -214.545, 1.33559, 98.807}}}};
+  for (const auto& load : loads) {
+    const Projectile bullet = projectile_from_coefficient(DragFunction::g7, load.coefficient, Interpolation::linear);
+    Conditions conditions{.air = environment::AirColumn::uniform(1.225, 340.294)};
+    const FlightPoint start{{0, -load.sight * inch, 0}, load.speed * foot * direction(load.zero)};
+    const auto calm = fly(bullet, conditions, start, {.time = 10, .distance = 1100 * yard});
+    conditions.wind = environment::WindColumn({0, 0, 10 * mph});
+    const auto windy = fly(bullet, conditions, start, {.time = 10, .distance = 1100 * yard});
+    ASSERT_TRUE(calm && windy);
+    for (const Row& row : load.rows) {
+      const auto point = calm->first([&](const Trajectory::Point& p) { return p.position.x - row.yards * yard; });
+      const auto blown = windy->first([&](const Trajectory::Point& p) { return p.position.x - row.yards * yard; });
+      ASSERT_TRUE(point && blown);
+      EXPECT_NEAR(math::length(point->velocity) / foot, row.speed, 1e-4 * row.speed);
+      EXPECT_NEAR(point->position.y / inch, row.drop, 1e-4 * -row.drop + .002);
+      EXPECT_NEAR(point->time, row.time, 1e-4 * row.time);
+      EXPECT_NEAR(blown->position.z / inch, row.wind, 1e-4 * row.wind + .002);
+    }
+  }
+}
+
+// The lag rule: a crosswind w moves a point mass by w (T − T in vacuum), exactly.
+TEST(Flight, CrosswindDriftIsTheLagRule) {
+  const Projectile bullet = projectile_from_coefficient(DragFunction::g1, .45);
+  const double w = 6;
+  const Conditions conditions{
+      .air = environment::AirColumn::uniform(1.225), .wind = environment::WindColumn(Vec3d{0, 0, w}), .gravity = 0};
+  // Where the wind blows across, the air meets the bullet from ahead and aside; in the wind's frame the flight is
+  // straight: z = w (t − x/v_x0).
+  const auto flight = fly(bullet, conditions, {{}, {850, 0, 0}}, {.time = 3});
+  ASSERT_TRUE(flight);
+  for (const double t : {.3, 1.0, 2.5}) {
+    const auto p = flight->at(t);
+    EXPECT_NEAR(p.position.z, w * (t - p.position.x / 850), 1e-7);
+  }
+}
+
+// 65 grains, G1 .365, 2600 ft/s at 45° north, fired north: the true Coriolis force (section 2.4).
+TEST(Flight, CoriolisIsTheTrueOne) {
+  constexpr double yard = 0.9144, foot = 0.3048, inch = 0.0254;
+  const Projectile bullet = projectile_from_coefficient(DragFunction::g1, .365);
+  Conditions conditions{.air = environment::AirColumn::uniform(1.2029, 340.294)};
+  const auto range_card = [&](Vec3d rotation, double elevation) {
+    conditions.rotation = rotation;
+    return fly(bullet, conditions, {{0, -2.5 * inch, 0}, 2600 * foot * direction(elevation)},
+               {.time = 20, .distance = 2010 * yard, .tolerance = 1e-11});
+  };
+  // Zero at 100 yards, without rotation.
+  double elevation = .001;
+  for (int i = 0; i < 20; ++i)
+    elevation -= range_card({}, elevation)->at_distance(100 * yard)->position.y / (100 * yard);
+  const Vec3d rotation = earth_rotation_rate(45 * degree, 0);
+  const auto still = range_card({}, elevation), turning = range_card(rotation, elevation);
+  const auto at = [&](const core::Result<Trajectory>& t, double yards) {
+    return t->first([&](const Trajectory::Point& p) { return p.position.x - yards * yard; })->position;
+  };
+  EXPECT_NEAR(at(turning, 1000).z / inch, 3.134, .004);
+  EXPECT_NEAR(at(turning, 2000).z / inch, 17.843, .02);
+  EXPECT_NEAR(at(turning, 2000).y / at(still, 2000).y, 4574.557 / 4574.560, 1e-6);
+  EXPECT_NEAR(at(still, 1000).y / inch, -527.835, .15);
+}
+
+// A body dropped from 100 m at the equator drifts ⅓ Ω g (2h/g)^{3/2} = 21.95 mm to the east; first order in Ω.
+TEST(Flight, DroppedBodyDriftsEast) {
+  const Conditions vacuum{.air = environment::AirColumn::uniform(0), .rotation = earth_rotation_rate(0, math::pi / 2)};
+  const auto fall = fly({}, vacuum, {{0, 100, 0}, {}}, {.time = 30, .ground = 0});
+  ASSERT_TRUE(fall);
+  EXPECT_NEAR(fall->end().position.x, .02195, 5e-6) << "x is east";
+  // A vertical throw lands 4/3 Ω cos φ v³/g² to the west.
+  const auto up = fly({}, vacuum, {{}, {0, 50, 0}}, {.time = 30, .ground = 0});
+  ASSERT_TRUE(up);
+  EXPECT_NEAR(up->end().position.x, -4.0 / 3 * 7.292115e-5 * 125000 / (9.80665 * 9.80665), 1e-5);
+}
+
+TEST(Flight, VacuumIsReversibleAndScalesWithTheCoefficient) {
+  const Conditions vacuum{.air = environment::AirColumn::uniform(0)};
+  const auto there = fly({}, vacuum, {{}, {300, 200, 10}}, {.time = 20});
+  ASSERT_TRUE(there);
+  const auto end = there->end();
+  const auto back = fly({}, vacuum, {end.position, -end.velocity}, {.time = 20});
+  ASSERT_TRUE(back);
+  EXPECT_LT(math::length(back->end().position), 1e-8);
+  // Without gravity x at a given speed is proportional to the coefficient.
+  const Conditions weightless{.air = environment::AirColumn::uniform(1.225), .gravity = 0};
+  const auto slow = [&](double coefficient) {
+    const auto f =
+        fly(projectile_from_coefficient(DragFunction::g7, coefficient), weightless, {{}, {800, 0, 0}}, {.time = 9});
+    return f->first([](const Trajectory::Point& p) { return p.velocity.x - 400; })->position.x;
+  };
+  EXPECT_NEAR(slow(.5) / slow(.25), 2, 5e-6);
+}
+
+// The Napoleon's shot by the GS table in the standard atmosphere (section 2.6): 4.52 in, 12.3 lb, 1440 ft/s.
+TEST(Flight, PeriodArtilleryByTheSphereTable) {
+  const Projectile shot = projectile_from_size(DragCurve(DragFunction::gs), 12.3 * .45359237, 4.52 * .0254);
+  const struct {
+    double elevation, yards;
+  } table[] = {{1, 525.4}, {5, 1479.4}, {10, 2090.9}, {30, 3001.4}};
+  for (const auto& row : table) {
+    const auto flight =
+        fly(shot, {}, {{}, 1440 * .3048 * direction(row.elevation * degree)}, {.time = 100, .ground = 0});
+    ASSERT_TRUE(flight);
+    EXPECT_NEAR(flight->end().position.x / .9144, row.yards, 1e-3 * row.yards);
+  }
+}
+
+TEST(Flight, BadInputIsNamed) {
+  EXPECT_FALSE(fly({}, {}, {{0, __builtin_nan(""), 0}, {}}));
+  EXPECT_FALSE(fly({.area_per_mass = -1}, {}, {}));
+  EXPECT_FALSE(fly({}, {}, {}, {.time = -1}));
+  const DragPoint unsorted[] = {{0, .2}, {1, .3}, {1, .4}};
+  const auto curve = DragCurve::from_points(unsorted);
+  ASSERT_FALSE(curve);
+  EXPECT_EQ(curve.error().message, "node 3 of a drag curve: Mach number is 1, expected more than the 1 before");
+  const auto table = read_drag_table("mach cd\n0 .2\n.5, x\n", "my.drg");
+  ASSERT_FALSE(table);
+  EXPECT_EQ(table.error().message, "my.drg:3: found \"x\", expected a Mach number and a drag coefficient");
+  const auto good = read_drag_table("# radar\nM, C_D\n0.0, 0.20\n1.0;0.5 # peak\n\n2\t0.3", "my.drg");
+  ASSERT_TRUE(good) << good.error().message;
+  EXPECT_DOUBLE_EQ(good.value()(1), .5);
+  EXPECT_DOUBLE_EQ(good.value()(7), .3);
+}
+
+TEST(DragCurve, StandardTablesHaveTheirNodes) {
+  const std::size_t nodes[] = {79, 85, 76, 79, 84, 78, 81, 81, 87};
+  for (std::size_t i = 0; i < drag_function_names.size(); ++i) {
+    const auto function = drag_function_from_name(drag_function_names[i]);
+    ASSERT_TRUE(function);
+    EXPECT_EQ(drag_table(*function).size(), nodes[i]) << drag_function_names[i];
+    const DragCurve curve(*function);
+    for (const DragPoint& p : drag_table(*function)) EXPECT_NEAR(curve(p.mach), p.coefficient, 1e-15);
+    for (double mach = 0; mach < 6; mach += .0137) EXPECT_GT(curve(mach), .1);
+  }
+  EXPECT_NEAR(DragCurve(DragFunction::g7, Interpolation::linear)(1.0125), .5 * (.3803 + .4015), 1e-12);
+  // Smooth: between its nodes' values, with one slope on both sides of each.
+  const DragCurve smooth(DragFunction::g7);
+  const auto nodes_of = smooth.points();
+  for (std::size_t i = 1; i + 1 < nodes_of.size(); ++i) {
+    const double m = nodes_of[i].mach, e = 1e-6;
+    EXPECT_NEAR((smooth(m + e) - smooth(m)) / e, (smooth(m) - smooth(m - e)) / e, 2e-3) << m;
+    const double middle = smooth(m + .3 * (nodes_of[i + 1].mach - m));
+    EXPECT_GE(middle, math::min(nodes_of[i].coefficient, nodes_of[i + 1].coefficient) - 1e-15);
+    EXPECT_LE(middle, math::max(nodes_of[i].coefficient, nodes_of[i + 1].coefficient) + 1e-15);
+  }
+}
+
+}  // namespace ballistics_flight_test
