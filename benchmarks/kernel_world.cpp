@@ -4,6 +4,8 @@
 
 #include "benchmarks/scene_list.h"
 #include "benchmarks/scene_pieces.h"
+#include "carom/geometry/mesh_builders.h"
+#include "carom/geometry/triangle_mesh.h"
 #include "carom/math/random.h"
 
 namespace {
@@ -109,6 +111,32 @@ void BM_BoundsOverlap(benchmark::State& state) {
     return !found.empty();
   });
 }
+/// All 1 024 in one call, per query.
+void BM_CastRays(benchmark::State& state) {
+  const int place = int(state.range(0));
+  const World3& world = world_of(place);
+  std::vector<rigid::RayQuery<Dim3>> rays;
+  for (const Query& q : queries(place)) rays.push_back({q.origin, q.translation});
+  std::vector<rigid::RayHit<Dim3>> hits(rays.size());
+  for (auto _ : state) world.cast_rays(rays, hits).value();
+  state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(rays.size()));
+  state.SetLabel(place_names[place]);
+}
+/// A mesh of 100 352 triangles with its tree, and what it holds.
+void BM_BuildMesh(benchmark::State& state) {
+  const auto wave = [](int i, int j) { return 2 * math::sin(0.11 * i) * math::cos(0.07 * j); };
+  const geometry::Triangles t = geometry::make_terrain_mesh(224, 224, {1, 1}, wave);
+  const double triangles = double(t.indices.size() / 3);
+  for (auto _ : state) {
+    const auto mesh = geometry::make_triangle_mesh(t.positions, t.indices).value();
+    const std::size_t bytes = mesh->vertices.size() * sizeof(Vec3f) + mesh->indices.size() * sizeof(std::uint32_t) +
+                              mesh->edge_flags.size() + mesh->tree.bytes();
+    state.counters["bytes_a_triangle"] = double(bytes) / triangles;
+  }
+  state.SetItemsProcessed(std::int64_t(double(state.iterations()) * triangles));
+}
+BENCHMARK(BM_BuildMesh)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_CastRays)->DenseRange(0, 2);
 BENCHMARK(BM_RayCast)->DenseRange(0, 2);
 BENCHMARK(BM_SphereCast)->DenseRange(0, 2);
 BENCHMARK(BM_BoxCast)->DenseRange(0, 2);

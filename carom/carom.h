@@ -8,6 +8,9 @@
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/rigid/advice.h"
 #include "carom/rigid/character.h"
+#include "carom/rigid/dynamic_character.h"
+#include "carom/rigid/path.h"
+#include "carom/rigid/tile_ground.h"
 #include "carom/rigid/world.h"
 
 namespace carom {

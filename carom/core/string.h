@@ -6,6 +6,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "carom/math/decimal.h"
+
 namespace carom::core {
 
 namespace detail {
@@ -17,9 +19,13 @@ inline void append_piece(std::string& out, bool piece) { out.append(piece ? "tru
 template <class T>
   requires(std::is_arithmetic_v<T> && !std::is_same_v<T, char> && !std::is_same_v<T, bool>)
 void append_piece(std::string& out, T number) {
-  char buffer[64];
-  const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, number);
-  out.append(buffer, end.ptr);
+  if constexpr (std::is_floating_point_v<T>) {
+    out.append(math::format_decimal(number));
+  } else {
+    char buffer[32];
+    const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, number);
+    out.append(buffer, end.ptr);
+  }
 }
 }  // namespace detail
 
@@ -32,11 +38,7 @@ std::string text(const Pieces&... pieces) {
 }
 
 /// `x` with `digits` digits after the point.
-inline std::string fixed(double x, int digits) {
-  char buffer[400];
-  const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::fixed, digits);
-  return end.ec == std::errc{} ? std::string(buffer, end.ptr) : text(x);
-}
+inline std::string fixed(double x, int digits) { return math::format_fixed(x, digits); }
 
 /// "mass is -3, expected a finite number > 0": one form for every refused field.
 template <class T>

@@ -35,6 +35,7 @@ void DynamicTree<V>::give_node(int node) {
 
 template <class V>
 int DynamicTree<V>::insert(const Box& box, std::uint32_t item) {
+  ++version_;
   const int leaf = take_node();
   nodes_[std::size_t(leaf)].box = within_range(box);
   nodes_[std::size_t(leaf)].child_a = std::int32_t(item);
@@ -45,6 +46,7 @@ int DynamicTree<V>::insert(const Box& box, std::uint32_t item) {
 
 template <class V>
 void DynamicTree<V>::remove(int leaf) {
+  ++version_;
   assert(leaf >= 0 && leaf < int(nodes_.size()) && nodes_[std::size_t(leaf)].child_b < 0);
   unlink(leaf);
   give_node(leaf);
@@ -53,6 +55,7 @@ void DynamicTree<V>::remove(int leaf) {
 
 template <class V>
 void DynamicTree<V>::update(int leaf, const Box& box) {
+  ++version_;
   unlink(leaf);
   nodes_[std::size_t(leaf)].box = within_range(box);
   link(leaf);
@@ -60,6 +63,7 @@ void DynamicTree<V>::update(int leaf, const Box& box) {
 
 template <class V>
 void DynamicTree<V>::enlarge(int leaf, const Box& box) {
+  ++version_;
   Node* nodes = nodes_.data();
   nodes[leaf].box = within_range(box);
   int above = nodes[leaf].parent;
@@ -75,6 +79,7 @@ void DynamicTree<V>::enlarge(int leaf, const Box& box) {
 
 template <class V>
 void DynamicTree<V>::set_bounds(int leaf, const Box& box) {
+  ++version_;
   nodes_[std::size_t(leaf)].box = within_range(box);
 }
 
@@ -108,6 +113,7 @@ bool DynamicTree<V>::refit() {
 
 template <class V>
 void DynamicTree<V>::clear() {
+  ++version_;
   nodes_.clear();
   root_ = free_ = -1;
   count_ = 0;
@@ -323,6 +329,7 @@ int DynamicTree<V>::rebuild_enlarged() {
 
 template <class V>
 void DynamicTree<V>::insert_all(std::span<const Box> boxes, std::span<const std::uint32_t> items, int* leaves) {
+  ++version_;
   assert(boxes.size() == items.size());
   if (boxes.empty()) return;
   nodes_.reserve(nodes_.size() + 2 * boxes.size());

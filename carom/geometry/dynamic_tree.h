@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "carom/export.h"
@@ -46,7 +47,7 @@ class CAROM_API DynamicTree {
 
   const Box& bounds(int leaf) const { return nodes_[std::size_t(leaf)].box; }
   std::uint32_t item(int leaf) const { return std::uint32_t(nodes_[std::size_t(leaf)].child_a); }
-  void set_item(int leaf, std::uint32_t item) { nodes_[std::size_t(leaf)].child_a = std::int32_t(item); }
+  void set_item(int leaf, std::uint32_t item) { ++version_, nodes_[std::size_t(leaf)].child_a = std::int32_t(item); }
   int size() const { return count_; }  ///< leaves
   bool empty() const { return root_ < 0; }
   Box root_bounds() const { return root_ < 0 ? Box{} : nodes_[std::size_t(root_)].box; }
@@ -56,6 +57,9 @@ class CAROM_API DynamicTree {
            inner_.capacity() * sizeof(std::int32_t);
   }
 
+  /// Counts the changes, from 1: a copy made for another purpose is good as long as this stays.
+  std::uint64_t version() const { return version_; }
+
   /// Calls visit(item) for every leaf whose box meets `box`; visit returns false to stop.
   template <class Visit>
   void query(const Box& box, Visit&& visit) const {
@@ -64,35 +68,21 @@ class CAROM_API DynamicTree {
   /// The same with the leaf's box: visit(item, box).
   template <class Visit>
   void query_boxes(const Box& box, Visit&& visit) const {
-    if (root_ < 0) return;
-    detail::TraversalStack stack;
-    std::int32_t index = root_;
-    if (!detail::boxes_meet(nodes_[std::size_t(index)].box, box)) return;
-    while (true) {
-      const Node& node = nodes_[std::size_t(index)];
-      if (node.child_b < 0) {
-        if (!visit(std::uint32_t(node.child_a), node.box)) return;
-      } else {
-        const bool a = detail::boxes_meet(nodes_[std::size_t(node.child_a)].box, box);
-        const bool b = detail::boxes_meet(nodes_[std::size_t(node.child_b)].box, box);
-        if (a) {
-          if (b) stack.push(std::uint32_t(node.child_b));
-          index = node.child_a;
-          continue;
-        }
-        if (b) {
-          index = node.child_b;
-          continue;
-        }
-      }
-      if (stack.empty()) return;
-      index = std::int32_t(stack.pop());
-    }
+    descend([&](const Box& b) { return detail::boxes_meet(b, box); }, visit);
+  }
+  /// Calls visit(item, box) for every leaf; neighbours in space mostly follow each other.
+  template <class Visit>
+  void visit_leaves(Visit&& visit) const {
+    descend([](const Box&) { return true; },
+            [&](std::uint32_t item, const Box& box) {
+              visit(item, box);
+              return true;
+            });
   }
 
   /// The box of half extents `extents` (zero: a ray) travels from `origin` by `translation`. Calls
   /// visit(item, limit) → new limit for every leaf that it may meet before `limit` (at first 1), near ones first where
-  /// that is cheap to know: return `limit` to go on, a smaller fraction to clip, 0 to stop.
+  /// that is cheap to know: return `limit` to go on, a smaller fraction to clip, a negative one to stop.
   template <class Visit>
   void cast(V origin, V translation, V extents, Visit&& visit) const {
     if (root_ < 0) return;
@@ -105,7 +95,7 @@ class CAROM_API DynamicTree {
       if (ray.enter(node.box, limit) > limit) continue;
       if (node.child_b < 0) {
         limit = Scalar(visit(std::uint32_t(node.child_a), limit));
-        if (!(limit > 0)) return;
+        if (limit < 0) return;
         continue;
       }
       const Scalar a = ray.enter(nodes_[std::size_t(node.child_a)].box, limit);
@@ -184,6 +174,7 @@ class CAROM_API DynamicTree {
     visit(tree.free_);
     visit(tree.count_);
     visit(tree.least_cost_);
+    if constexpr (!std::is_const_v<Tree>) ++tree.version_;
   }
 
   /// For tests and reports: levels below the root, summed surface of inner nodes over that of the root, and whether
@@ -200,6 +191,34 @@ class CAROM_API DynamicTree {
     std::int32_t child_b = -1;  ///< −1: leaf
     std::uint32_t enlarged = 0;
   };
+  /// Calls visit(item, box) for the leaves whose boxes, and those above them, `wanted` says yes to.
+  template <class Wanted, class Visit>
+  void descend(Wanted&& wanted, Visit&& visit) const {
+    if (root_ < 0) return;
+    detail::TraversalStack stack;
+    std::int32_t index = root_;
+    if (!wanted(nodes_[std::size_t(index)].box)) return;
+    while (true) {
+      const Node& node = nodes_[std::size_t(index)];
+      if (node.child_b < 0) {
+        if (!visit(std::uint32_t(node.child_a), node.box)) return;
+      } else {
+        const bool a = wanted(nodes_[std::size_t(node.child_a)].box);
+        const bool b = wanted(nodes_[std::size_t(node.child_b)].box);
+        if (a) {
+          if (b) stack.push(std::uint32_t(node.child_b));
+          index = node.child_a;
+          continue;
+        }
+        if (b) {
+          index = node.child_b;
+          continue;
+        }
+      }
+      if (stack.empty()) return;
+      index = std::int32_t(stack.pop());
+    }
+  }
   struct Job {
     std::size_t first, count;
     int parent, depth;
@@ -220,6 +239,7 @@ class CAROM_API DynamicTree {
   std::vector<std::int32_t> inner_;
   std::int32_t root_ = -1, free_ = -1;
   int count_ = 0;
+  std::uint64_t version_ = 1;
   double least_cost_ = 0;  ///< summed surface of inner nodes when it was least since the last build; 0: not known
 };
 

@@ -14,6 +14,8 @@ struct ManifoldPoint2 {
 struct Manifold2 {
   Vec2f normal{};  ///< unit, from A to B, in the frame of A
   int count = 0;
+  std::uint32_t child = 0;     ///< which segment of a chain this belongs to
+  std::uint32_t material = 0;  ///< of that segment, as its maker numbered it
   ManifoldPoint2 points[2];
 };
 struct ManifoldPoint3 {
@@ -24,7 +26,8 @@ struct ManifoldPoint3 {
 struct Manifold3 {
   Vec3f normal{};
   int count = 0;
-  std::uint32_t child = 0;  ///< which triangle, cell or compound child of A or B this belongs to
+  std::uint32_t child = 0;     ///< which triangle, cell or compound child of A or B this belongs to
+  std::uint32_t material = 0;  ///< of those triangles or cells, as their maker numbered it
   ManifoldPoint3 points[4];
 };
 
@@ -37,15 +40,16 @@ struct PairCache {
 };
 
 /// Contacts of A and B with separation ≤ margin. Returns nothing (count 0) where they are farther apart: if
-/// points[0].separation exceeds the margin then, the shapes are known to be at least that far (m) from each other.
-/// b_in_a is B's pose seen from A. Any pair of convex shapes, and convex against chain segments, in either order.
+/// points[0].separation exceeds the margin then, the shapes are known to be at least that far (m) from each other; and
+/// if normal is not zero then, they are that far along it. b_in_a is B's pose seen from A. Any pair of convex shapes,
+/// and convex against chain segments, in either order.
 CAROM_API void collide(const Shape2& a, const Shape2& b, const Transform2f& b_in_a, float margin, PairCache& cache,
                        Manifold2& out);
 /// Both convex (sphere … hull), or one of them a plane.
 CAROM_API void collide(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, PairCache& cache,
                        Manifold3& out);
-/// One of the shapes may be a mesh, height field or compound: one manifold a patch of coplanar triangles or a child,
-/// deepest first, at most out.size(). Returns how many.
+/// One of the shapes may be a mesh, height field or compound, a mesh may meet a plane: one manifold a patch of coplanar
+/// triangles or a child, deepest first, at most out.size(). Returns how many.
 CAROM_API int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin,
                            std::span<Manifold3> out);
 

@@ -66,31 +66,8 @@ void clip_edges(const Rounded2& r, int e, const Rounded2& s, bool of_b, float ma
   float most = 3.4e38f;
   for (int i = 0; i < s.count; ++i)
     if (const float d = dot(n, s.n[i]); d < most) most = d, f = i;
-  const Vec2f start = r.v[e];
-  const float length_r = dot(t, r.v[r.next(e)] - start);
-  Vec2f p = s.v[s.next(f)], q = s.v[f];  // the other edge runs against t
-  float tp = dot(t, p - start), tq = dot(t, q - start);
-  if (tp > tq) {  // nearly at right angles: the order along t decides
-    const Vec2f v = p;
-    p = q, q = v;
-    const float u = tp;
-    tp = tq, tq = u;
-  }
-  out.count = 0;
-  if (tq < 0 || tp > length_r) return;
-  const float span = tq - tp;
-  const Vec2f low = tp < 0 && span > 0 ? p + (q - p) * (-tp / span) : p;
-  const Vec2f high = tq > length_r && span > 0 ? q + (p - q) * ((tq - length_r) / span) : q;
-  out.normal = of_b ? -n : n;
-  const Vec2f ends[2] = {low, high};
-  for (int k = 0; k < 2; ++k) {
-    const float d = dot(n, ends[k] - start), sep = d - r.radius - s.radius;
-    if (sep > margin) continue;
-    if (k == 1 && out.count == 1 && distance_squared(ends[0], ends[1]) < 1e-12f * length_r * length_r) continue;
-    const std::uint32_t name =
-        (of_b ? 1u << 24 : 0u) | std::uint32_t(e) << 16 | std::uint32_t(f) << 8 | std::uint32_t((of_b ? 1 - k : k) + 1);
-    out.points[out.count++] = {ends[k] + n * (0.5f * (r.radius - s.radius - d)), sep, name};
-  }
+  detail::clip_edge({n, r.v[e], dot(t, r.v[r.next(e)] - r.v[e]), e, r.radius}, {s.v[s.next(f)], s.v[f], f, s.radius},
+                    of_b, margin, out);
 }
 
 /// Polygons side by side, level with each other (a row of tiles), that meet only in a strip narrower than a small
@@ -240,9 +217,37 @@ bool convex_shape(const Shape2& s) { return s.type <= ShapeType2::segment; }
 
 }  // namespace pairs2
 
+void detail::clip_edge(const ReferenceEdge& r, const IncidentEdge& s, bool of_b, float margin, Manifold2& out) {
+  const Vec2f n = r.normal, t{-n.y, n.x}, start = r.start;
+  Vec2f p = s.first, q = s.last;
+  float tp = dot(t, p - start), tq = dot(t, q - start);
+  if (tp > tq) {  // nearly at right angles: the order along t decides
+    const Vec2f v = p;
+    p = q, q = v;
+    const float u = tp;
+    tp = tq, tq = u;
+  }
+  out.count = 0;
+  if (tq < 0 || tp > r.length) return;
+  const float span = tq - tp;
+  const Vec2f low = tp < 0 && span > 0 ? p + (q - p) * (-tp / span) : p;
+  const Vec2f high = tq > r.length && span > 0 ? q + (p - q) * ((tq - r.length) / span) : q;
+  out.normal = of_b ? -n : n;
+  const Vec2f ends[2] = {low, high};
+  for (int k = 0; k < 2; ++k) {
+    const float d = dot(n, ends[k] - start), sep = d - r.radius - s.radius;
+    if (sep > margin) continue;
+    if (k == 1 && out.count == 1 && distance_squared(ends[0], ends[1]) < 1e-12f * r.length * r.length) continue;
+    const std::uint32_t name = (of_b ? 1u << 24 : 0u) | std::uint32_t(r.number) << 16 | std::uint32_t(s.number) << 8 |
+                               std::uint32_t((of_b ? 1 - k : k) + 1);
+    out.points[out.count++] = {ends[k] + n * (0.5f * (r.radius - s.radius - d)), sep, name};
+  }
+}
+
 void collide(const Shape2& a, const Shape2& b, const Transform2f& x, float margin, PairCache& cache, Manifold2& out) {
   using namespace pairs2;
   out.count = 0;
+  out.normal = {};
   out.points[0].separation = margin;
   if (a.type == ShapeType2::chain || b.type == ShapeType2::chain) return;  // segment by segment: Chain::segment
   if (a.type == ShapeType2::circle && b.type == ShapeType2::circle)
@@ -257,6 +262,9 @@ void collide(const Shape2& a, const Shape2& b, const Transform2f& x, float margi
     for (int i = 0; i < out.count; ++i) out.points[i].point = transform_point(x, out.points[i].point);
     return;
   }
+  if (a.type == ShapeType2::polygon && b.type == ShapeType2::polygon &&
+      detail::collide_polygons(a.polygon, b.polygon, x, margin, cache, out))
+    return;
   const Rounded2 ra = detail::rounded_of(a), rb = detail::placed(b, x);
   if (rb.count == 1) {
     if (ra.count == 1) return point_point(ra.v[0], ra.radius, rb.v[0], rb.radius, margin, 0, out);

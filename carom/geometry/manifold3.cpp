@@ -179,21 +179,25 @@ using Collide = void (*)(const Shape3&, const Shape3&, const Transform3f&, float
 template <Collide F>
 void flipped(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache& cache, Manifold3& out) {
   F(b, a, inverse(x), margin, cache, out);
-  if (out.count > 0) detail::flip(out, x);
+  if (out.count > 0)
+    detail::flip(out, x);
+  else
+    out.normal = -rotate(x.q, out.normal);
 }
 void none(const Shape3&, const Shape3&, const Transform3f&, float, PairCache&, Manifold3&) {}
 
-// Rows: A; columns: B; sphere, capsule, box, cylinder, cone, hull, plane.
-constexpr Collide table[7][7] = {
+// Rows: A; columns: B; sphere, capsule, box, cylinder, cone, ellipsoid, hull, plane.
+constexpr Collide table[8][8] = {
     {sphere_sphere, flipped<capsule_sphere>, flipped<box_sphere>, flipped<general>, flipped<general>, flipped<general>,
-     flipped<plane_any>},
+     flipped<general>, flipped<plane_any>},
     {capsule_sphere, capsule_capsule, flipped<box_capsule>, flipped<general>, flipped<general>, flipped<general>,
-     flipped<plane_any>},
-    {box_sphere, box_capsule, box_box, flipped<general>, flipped<general>, general, flipped<plane_any>},
-    {general, general, general, general, flipped<general>, flipped<general>, flipped<plane_any>},
-    {general, general, general, general, general, flipped<general>, flipped<plane_any>},
-    {general, general, flipped<general>, general, general, general, flipped<plane_any>},
-    {plane_any, plane_any, plane_any, plane_any, plane_any, plane_any, none},
+     flipped<general>, flipped<plane_any>},
+    {box_sphere, box_capsule, box_box, flipped<general>, flipped<general>, general, general, flipped<plane_any>},
+    {general, general, general, general, flipped<general>, flipped<general>, flipped<general>, flipped<plane_any>},
+    {general, general, general, general, general, flipped<general>, flipped<general>, flipped<plane_any>},
+    {general, general, flipped<general>, general, general, general, flipped<general>, flipped<plane_any>},
+    {general, general, flipped<general>, general, general, general, general, flipped<plane_any>},
+    {plane_any, plane_any, plane_any, plane_any, plane_any, plane_any, plane_any, none},
 };
 
 }  // namespace pairs3
@@ -201,7 +205,8 @@ constexpr Collide table[7][7] = {
 void collide(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, PairCache& cache,
              Manifold3& out) {
   out.count = 0;
-  out.child = 0;
+  out.child = out.material = 0;
+  out.normal = {};
   out.points[0].separation = margin;
   if (a.type > ShapeType3::plane || b.type > ShapeType3::plane) return;
   pairs3::table[int(a.type)][int(b.type)](a, b, b_in_a, margin, cache, out);

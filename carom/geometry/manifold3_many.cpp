@@ -3,6 +3,7 @@
 // (Gauss map of the edge), never over a flat or concave one, so nothing catches where triangles meet.
 #include "carom/geometry/compound.h"
 #include "carom/geometry/detail/contact_points.h"
+#include "carom/geometry/detail/queries.h"
 #include "carom/geometry/detail/surface.h"
 
 namespace carom::geometry {
@@ -41,7 +42,7 @@ struct Deepest {
 struct Patch {
   Vec3f normal{};
   float depth = 0;  ///< least separation
-  std::uint32_t child = 0;
+  std::uint32_t child = 0, material = 0;
   ContactPoints points;
 };
 
@@ -68,17 +69,99 @@ void merge_into(Patch& patch, const ContactPoints& from, float same) {
   }
 }
 
+/// What a triangle must reach to be worth a look: in front of it the shape's middle, near its plane, and in the shape's
+/// own frame its box, which fits closer than the one in the surface's frame.
+struct Reach {
+  Vec3f middle{}, axis[3]{}, origin{};
+  Bounds3f own{};
+  float around = 0;
+  bool solid = false;
+
+  Reach(const Shape3& shape, const detail::Convex& core, const Transform3f& x, float margin, bool below)
+      : middle(transform_point(x, detail::inner_point(core))),
+        origin(x.p),
+        own(grow(bounds(shape, {}), margin)),
+        solid(below) {
+    const Mat3f turn = to_matrix(x.q);
+    axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
+    const Vec3f at = detail::inner_point(core);
+    around = 1.0001f * length(max(abs(own.low - at), abs(own.high - at)));
+  }
+  bool meets(const Vec3f (&corner)[3]) const {
+    const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const float above = dot(normal, middle - corner[0]);
+    if (above > 0 && above * above > around * around * length_squared(normal)) return false;
+    if (solid) return true;
+    if (above < 0) return false;
+    const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
+    for (int k = 0; k < 3; ++k) {
+      const float a = dot(axis[k], p), b = dot(axis[k], q), c = dot(axis[k], r);
+      if (min(a, min(b, c)) > own.high[k] || max(a, max(b, c)) < own.low[k]) return false;
+    }
+    return true;
+  }
+};
+
+/// A shape whose middle is in filled cells goes out by the nearest free face; the way up counts half.
+bool buried(const VoxelGrid& grid, const detail::Convex& b, const Transform3f& x, Manifold3& m) {
+  const Vec3f p = transform_point(x, detail::inner_point(b));
+  int c[3];
+  if (!detail::inside_voxels(grid, p, c)) return false;
+  constexpr int axes[6] = {1, 0, 0, 2, 2, 1}, signs[6] = {1, 1, -1, 1, -1, -1};
+  float least = 3.4e38f, plane = 0;
+  int way = 0;
+  for (int k = 0; k < 6; ++k) {
+    int at[3] = {c[0], c[1], c[2]};
+    while (grid.at(at[0], at[1], at[2]) != 0) at[axes[k]] += signs[k];
+    const float face = float(at[axes[k]] + (signs[k] > 0 ? 0 : 1)) * grid.cell;
+    const float far = float(signs[k]) * (face - p[axes[k]]);
+    if ((k == 0 ? 0.5f : 1.0f) * far < least) least = (k == 0 ? 0.5f : 1.0f) * far, plane = face, way = k;
+  }
+  Vec3f n{};
+  n[axes[way]] = float(signs[way]);
+  const Vec3f lowest = transform_point(x, Vec3f(detail::support(b, Vec3d(-inverse_rotate(x.q, n))))) - n * b.radius;
+  const float s = float(signs[way]) * (lowest[axes[way]] - plane);
+  m = {};
+  m.normal = n;
+  m.count = 1;
+  m.child = std::uint32_t(grid.index(c[0], c[1], c[2])) * 12;
+  m.material = std::uint32_t(grid.cells[grid.index(c[0], c[1], c[2])] - 1);
+  m.points[0] = {lowest - n * (0.5f * s), s, 0};
+  return true;
+}
+
+/// A shape so deep below a height field that no triangle holds it (the ground was raised over it) goes up.
+bool sunk(const HeightField& field, const detail::Convex& b, const Transform3f& x, Manifold3& m) {
+  const Vec3f p = transform_point(x, detail::inner_point(b)), up{0, 1, 0};
+  float height;
+  if (!detail::height_at(field, p.x, p.z, height) || p.y >= height) return false;
+  const Vec3f lowest = transform_point(x, Vec3f(detail::support(b, Vec3d(-inverse_rotate(x.q, up))))) - up * b.radius;
+  const std::size_t cell =
+      std::size_t(clamp(int(p.z / field.cell.y), 0, field.rows - 2)) * std::size_t(field.columns - 1) +
+      std::size_t(clamp(int(p.x / field.cell.x), 0, field.columns - 2));
+  m = {};
+  m.normal = up;
+  m.count = 1;
+  m.child = std::uint32_t(2 * cell);
+  if (!field.materials.empty()) m.material = field.materials[cell];
+  m.points[0] = {lowest + up * (0.5f * (height - lowest.y)), lowest.y - height, 0};
+  return true;
+}
+
 int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
                    std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const detail::Convex b = detail::convex_of(shape);
   const bool solid = surface.type == ShapeType3::height_field;
+  if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
   Bounds3f box = grow(bounds(shape, x), margin);
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
   const float same = 2e-3f * (detail::outer_size(b) + b.radius);
+  const Reach reach(shape, b, x, margin, solid);
   Patch patches[max_patches];
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
+    if (!reach.meets(t.corner)) return true;
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
@@ -89,7 +172,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     const float depth = least(points);
     int at = -1;
     for (int i = 0; i < count && at < 0; ++i)
-      if (dot(patches[i].normal, n) > 0.998f) at = i;
+      if (dot(patches[i].normal, n) > 0.998f && patches[i].material == t.material) at = i;
     if (at < 0) {
       if (count < max_patches) {
         at = count++;
@@ -102,6 +185,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
       }
       patches[at].points.count = 0;
       patches[at].normal = n, patches[at].depth = depth, patches[at].child = t.index;
+      patches[at].material = t.material;
     }
     Patch& patch = patches[at];
     if (depth < patch.depth) patch.depth = depth, patch.normal = n;
@@ -109,6 +193,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     merge_into(patch, points, same);
     return true;
   });
+  if (solid && count == 0) return sunk(*surface.height_field, b, x, out[0]) ? 1 : 0;
   Deepest found{out};
   for (int i = 0; i < count; ++i) {
     // The shape's own corners come before points cut by triangles' edges: in ties they are kept, with their names.
@@ -121,12 +206,52 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     Manifold3 m;
     detail::write_points(patches[i].points, patches[i].normal, m);
     m.child = patches[i].child;
+    m.material = patches[i].material;
     found.offer(m);
   }
   return found.count;
 }
 
-bool is_surface(const Shape3& s) { return s.type == ShapeType3::mesh || s.type == ShapeType3::height_field; }
+/// The corners of the mesh that are below the plane or near it: one patch.
+int mesh_plane(const TriangleMesh& mesh, const Plane& plane, const Transform3f& x, float margin,
+               std::span<Manifold3> out) {
+  const Vec3f n = rotate(x.q, plane.normal);
+  const float level = dot(n, x.p);
+  Patch patch;
+  patch.normal = -n;
+  const float same = 2e-3f * length(mesh.bounds.extents());
+  const auto add = [&](std::uint32_t triangle) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.indices[3 * triangle + k];
+      const Vec3f p = mesh.vertices[vertex];
+      const float s = dot(n, p) - level;
+      if (s > margin) continue;
+      ContactPoints one;
+      one.add(p - n * (0.5f * s), s, vertex);
+      merge_into(patch, one, same);
+    }
+  };
+  // The box of what is below the plane: along its steepest axis, for the lowest that the others can be.
+  Bounds3f box = mesh.bounds;
+  const int k = abs(n.x) >= abs(n.y) && abs(n.x) >= abs(n.z) ? 0 : (abs(n.y) >= abs(n.z) ? 1 : 2);
+  float rest = level + margin;
+  for (int other = 0; other < 3; ++other)
+    if (other != k) rest -= min(n[other] * box.low[other], n[other] * box.high[other]);
+  const float end = rest / n[k];
+  if (n[k] > 0)
+    box.high[k] = min(box.high[k], end);
+  else
+    box.low[k] = max(box.low[k], end);
+  if (box.low[k] > box.high[k]) return 0;
+  query(mesh.tree, grow(box, 1e-6f * length(mesh.bounds.extents())), [&](std::uint32_t i) {
+    add(i);
+    return true;
+  });
+  if (patch.points.count == 0) return 0;
+  out[0].child = out[0].material = 0;
+  detail::write_points(patch.points, patch.normal, out[0]);
+  return 1;
+}
 
 int compound_any(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, std::span<Manifold3> out) {
   const Compound& compound = *a.compound;
@@ -171,13 +296,16 @@ int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, fl
     return out[0].count > 0 ? 1 : 0;
   }
   if (a.type == ShapeType3::compound) return many3::compound_any(a, b, b_in_a, margin, out);
-  if (many3::is_surface(a) && is_convex(b)) return many3::surface_convex(a, b, b_in_a, margin, out);
-  if (b.type == ShapeType3::compound || (many3::is_surface(b) && is_convex(a))) {
+  if (is_surface(a) && is_convex(b)) return many3::surface_convex(a, b, b_in_a, margin, out);
+  if (a.type == ShapeType3::mesh && b.type == ShapeType3::plane)
+    return many3::mesh_plane(*a.mesh, b.plane, b_in_a, margin, out);
+  const bool plane_mesh = a.type == ShapeType3::plane && b.type == ShapeType3::mesh;
+  if (plane_mesh || b.type == ShapeType3::compound || (is_surface(b) && is_convex(a))) {
     const int count = collide_many(b, a, inverse(b_in_a), margin, out);
     for (int i = 0; i < count; ++i) detail::flip(out[std::size_t(i)], b_in_a);
     return count;
   }
-  return 0;  // two surfaces, or a surface and a plane: both static
+  return 0;  // two surfaces, or a height field and a plane
 }
 
 }  // namespace carom::geometry

@@ -2,7 +2,7 @@
 #include "carom/geometry/detail/mesh_topology.h"
 #include "carom/geometry/detail/text.h"
 #include "carom/geometry/detail/volume_integrals.h"
-#include "carom/geometry/static_tree.h"
+#include "carom/geometry/tree_walk.h"
 #include "carom/math/elementary.h"
 
 namespace carom::geometry {

@@ -5,6 +5,7 @@
 #include "carom/geometry/detail/mass_hull.h"
 #include "carom/geometry/detail/volume_integrals.h"
 #include "carom/geometry/hull.h"
+#include "carom/geometry/triangle_mesh.h"
 
 namespace carom::geometry {
 
@@ -30,6 +31,14 @@ double second_moment_of_rounded_box(double a, double b, double c, double r) {
   const double edges_across = 8 * (b + c) * (a2 * pi * r2 / 4 + 2 * a * r3 / 3 + pi * r4 / 16);
   const double corners = 8 * (a2 * pi * r3 / 6 + a * pi * r4 / 8 + pi * r5 / 30);
   return core + outward_slabs + side_slabs + edges_along + edges_across + corners;
+}
+
+MassProperties3 mass_of_ellipsoid(const Ellipsoid& e, double density) {
+  const Vec3d r(e.radii), squares = scale(r, r);
+  const double mass = density * 4.0 / 3.0 * pi * r.x * r.y * r.z;
+  return detail::mass_of_diagonal(
+      mass, {},
+      {mass / 5 * (squares.y + squares.z), mass / 5 * (squares.z + squares.x), mass / 5 * (squares.x + squares.y)});
 }
 
 MassProperties3 mass_of_box(const Box& box, double density) {
@@ -87,13 +96,20 @@ MassProperties3 mass_properties(const Shape3& shape, double density) {
       return mass_of_cylinder(shape.cylinder, density);
     case ShapeType3::cone:
       return mass_of_cone(shape.cone, density);
+    case ShapeType3::ellipsoid:
+      return mass_of_ellipsoid(shape.ellipsoid, density);
     case ShapeType3::hull:
       return mass_of_hull(*shape.hull, density);
     case ShapeType3::compound:
       return mass_of_compound(*shape.compound, density);
+    case ShapeType3::mesh: {
+      const std::vector<Vec3d> vertices(shape.mesh->vertices.begin(), shape.mesh->vertices.end());
+      const core::Result<MeshMass> m = mesh_mass_properties(vertices, shape.mesh->indices, density);
+      return m.ok() ? m->properties : MassProperties3{};
+    }
     case ShapeType3::plane:
-    case ShapeType3::mesh:
     case ShapeType3::height_field:
+    case ShapeType3::voxels:
       break;
   }
   return {};

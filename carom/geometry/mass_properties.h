@@ -20,8 +20,8 @@ struct MassProperties3 {
 
 /// density > 0: kg/m³. Segments and chains have no area: zero mass.
 CAROM_API MassProperties2 mass_properties(const Shape2& shape, double density);
-/// Planes, meshes and height fields used as collision surfaces have zero mass; a closed mesh is measured by
-/// mesh_mass_properties.
+/// Planes, height fields, voxel grids and meshes that are not closed have zero mass; what a closed mesh encloses is
+/// measured by mesh_mass_properties, which also says what is wrong with one that is not.
 CAROM_API MassProperties3 mass_properties(const Shape3& shape, double density);
 
 /// The properties of a and b together, both in the same frame.

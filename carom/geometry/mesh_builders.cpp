@@ -1,5 +1,7 @@
 #include "carom/geometry/mesh_builders.h"
 
+#include "carom/geometry/detail/voxel_faces.h"
+
 #include "carom/geometry/compound.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/triangle_mesh.h"
@@ -272,6 +274,11 @@ Triangles to_triangles(const Shape3& shape, int detail) {
       const Vec2f profile[] = {{shape.cone.radius, -shape.cone.half_height}, {0, shape.cone.half_height}};
       return make_lathe_mesh(profile, detail);
     }
+    case ShapeType3::ellipsoid: {
+      Triangles out = make_sphere_mesh(1, detail, detail / 2);
+      for (Vec3f& p : out.positions) p = scale(p, shape.ellipsoid.radii);
+      return out;
+    }
     case ShapeType3::hull:
       return to_triangles(*shape.hull, detail);
     case ShapeType3::plane:
@@ -280,6 +287,17 @@ Triangles to_triangles(const Shape3& shape, int detail) {
       return {shape.mesh->vertices, shape.mesh->indices};
     case ShapeType3::height_field:
       return mesh_building::height_field_mesh(*shape.height_field);
+    case ShapeType3::voxels: {
+      Triangles out;
+      geometry::detail::visit_voxel_faces(
+          *shape.voxels, bounds(shape, {}), [&](const geometry::detail::VoxelFace& face) {
+            const auto first = std::uint32_t(out.positions.size());
+            out.positions.insert(out.positions.end(), face.corner, face.corner + 4);
+            out.indices.insert(out.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+            return true;
+          });
+      return out;
+    }
     case ShapeType3::compound: {
       Triangles out;
       for (const CompoundChild& child : shape.compound->children)

@@ -1,14 +1,17 @@
 // Distance, overlap, casts and time of impact in the plane.
+#include "carom/geometry/detail/queries.h"
 #include "carom/geometry/query.h"
 
 #include "carom/geometry/detail/chain_tree.h"
-#include "carom/geometry/detail/rounded2.h"
+#include "carom/geometry/detail/swept2.h"
 
 namespace carom::geometry {
 namespace query2 {
 
 using detail::CoreDistance2;
+using detail::Motion2;
 using detail::Rounded2;
+using detail::Swept;
 
 bool is_chain(const Shape2& s) { return s.type == ShapeType2::chain; }
 
@@ -128,53 +131,19 @@ CastHit2 cast_rounded(const Rounded2& a, const Rounded2& b, Vec2f way, float lim
   return hit;
 }
 
-struct Motion {
-  Vec2d local_center, c0, way;
-  Rot2d q0, q1;
-  double rate = 0, reach = 0;
-
-  explicit Motion(const Sweep2& s)
-      : local_center(s.local_center),
-        c0(s.c0),
-        way(Vec2d(s.c1) - Vec2d(s.c0)),
-        q0(normalize(Rot2d(s.q0))),
-        q1(normalize(Rot2d(s.q1))) {
-    // A normalised linear interpolation turns fastest half way: 2 tan(θ/2) a unit of time for a turn by θ.
-    const Vec2d chord{q1.c - q0.c, q1.s - q0.s}, middle{(q1.c + q0.c) / 2, (q1.s + q0.s) / 2};
-    const double l = math::length(middle);
-    rate = l > 1e-6 ? math::length(chord) / l : 1e6;
+TimeOfImpact impact(const Rounded2& ca, const Motion2& a, const Rounded2& cb, const Motion2& b, double target,
+                    bool side) {
+  // One-sided: what begins behind passes.
+  if (side) {
+    const Rounded2 pa = detail::placed(ca, detail::in_float(a.at(0, a.c0)));
+    const Rounded2 pb = detail::placed(cb, detail::in_float(b.at(0, a.c0)));
+    if (dot(pa.n[0], detail::center_of(pb) - pa.v[0]) < 0) return {};
   }
-  void around(const Rounded2& core) {
-    for (int i = 0; i < core.count; ++i) reach = max(reach, math::length(Vec2d(core.v[i]) - local_center));
-  }
-  /// Seen from `origin`.
-  Transform2f at(double t, Vec2d origin) const {
-    const Rot2d q = normalize(Rot2d{q0.c + t * (q1.c - q0.c), q0.s + t * (q1.s - q0.s)});
-    return {Vec2f(c0 + way * t - rotate(q, local_center) - origin), Rot2f(q)};
-  }
-};
-
-TimeOfImpact impact(const Rounded2& ca, Motion a, const Rounded2& cb, Motion b, double target, bool side) {
-  a.around(ca);
-  b.around(cb);
-  const double radius = double(ca.radius) + double(cb.radius), tolerance = 0.25 * target;
-  double t = 0;
-  for (int i = 0; i < 200; ++i) {
-    const Vec2d origin = a.c0 + a.way * t;
-    const Rounded2 pa = detail::placed(ca, a.at(t, origin)), pb = detail::placed(cb, b.at(t, origin));
-    // One-sided: what begins behind passes.
-    if (i == 0 && side && dot(pa.n[0], detail::center_of(pb) - pa.v[0]) < 0) return {};
-    const CoreDistance2 d = detail::core_distance(pa, pb);
-    const double gap = double(d.distance) - radius;
-    if (i == 0 && gap <= 0) return {ImpactState::overlapped, 0};
-    if (gap <= target + tolerance) return {ImpactState::hit, float(t)};
-    const double closing = dot(a.way - b.way, Vec2d(d.normal)) + a.rate * a.reach + b.rate * b.reach;
-    if (!(closing * (1 - t) > gap - target)) return {};
-    t += (gap - target) / closing;
-    if (t >= 1) return {};
-  }
-  // Still near after so many small steps: stop here rather than risk to pass.
-  return {ImpactState::hit, float(t)};
+  const Swept<Vec2d> sa = detail::swept(ca, a), sb = detail::swept(cb, b);
+  detail::CoreGap2 gap{ca, cb, a, b};
+  return detail::advance<Vec2d>(
+      target, 1, gap, [&](double t, Vec2d n) { return a.speed(n, sa, t) + b.speed(-n, sb, t); },
+      [](double, Vec2d) { return false; });
 }
 
 /// Bounds, in the frame of what `still` carries, of all places of a shape that moves. Everything, where `still` moves.
@@ -286,8 +255,14 @@ TimeOfImpact time_of_impact(const Shape2& a, const Sweep2& sweep_a, const Shape2
   const double near = max(double(target), 1e-6);
   const detail::Rounded2 ra = detail::rounded_of(a), rb = detail::rounded_of(b);
   if (b.type == ShapeType2::chain_segment && rb.count == 2)
-    return impact(rb, Motion(sweep_b), ra, Motion(sweep_a), near, true);
-  return impact(ra, Motion(sweep_a), rb, Motion(sweep_b), near, a.type == ShapeType2::chain_segment && ra.count == 2);
+    return impact(rb, Motion2(sweep_b), ra, Motion2(sweep_a), near, true);
+  return impact(ra, Motion2(sweep_a), rb, Motion2(sweep_b), near, a.type == ShapeType2::chain_segment && ra.count == 2);
 }
+
+namespace detail {
+CastHit2 shape_cast_within(const Shape2& a, const Shape2& b, const Transform2f& x, Vec2f translation, float) {
+  return shape_cast(a, b, x, translation);
+}
+}  // namespace detail
 
 }  // namespace carom::geometry

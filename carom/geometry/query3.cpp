@@ -3,6 +3,7 @@
 #include "carom/geometry/detail/gjk.h"
 #include "carom/geometry/detail/queries.h"
 #include "carom/geometry/detail/surface.h"
+#include "carom/geometry/detail/sweep.h"
 
 namespace carom::geometry {
 namespace query3 {
@@ -42,28 +43,6 @@ float gap(const Bounds3f& a, const Bounds3f& b) {
   return length(d);
 }
 
-/// Visits the items of the tree whose leaf may be nearer than what look() has found so far; nearer children first.
-template <class Look>
-void nearest(const StaticTree& tree, const Bounds3f& box, float& best, Look&& look) {
-  if (tree.nodes.empty()) return;
-  std::uint32_t stack[128];
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const std::uint32_t index = stack[--top];
-    const StaticTree::Node& node = tree.nodes[index];
-    if (gap(node.bounds, box) >= best) continue;
-    if (node.count > 0) {
-      for (std::uint32_t i = 0; i < node.count && best > 0; ++i) look(tree.items[node.link + i]);
-      continue;
-    }
-    const std::uint32_t first = index + 1, second = node.link;
-    const bool swap = gap(tree.nodes[second].bounds, box) < gap(tree.nodes[first].bounds, box);
-    stack[top++] = swap ? first : second;
-    stack[top++] = swap ? second : first;
-  }
-}
-
 Distance3 none() {
   Distance3 d;
   d.distance = 3.4e38f;
@@ -84,18 +63,18 @@ Distance3 from_surface(const Shape3& surface, const Shape3& b, const Transform3f
     nearest(mesh.tree, box, best.distance, [&](std::uint32_t i) { look(detail::triangle_of(mesh, i)); });
     return best;
   }
-  const HeightField& f = *surface.height_field;
   const Vec3f center = transform_point(x, detail::inner_point(core));
-  float height;
-  if (detail::height_at(f, center.x, center.z, height) && center.y <= height) {
+  if (detail::inside_ground(surface, center)) {
     best.distance = 0;
     best.point_a = best.point_b = center;
     best.normal = {};
     return best;
   }
   // Rings that double until what was found is nearer than what was not looked at.
-  const Bounds3f all{{0, f.low, 0}, {float(f.columns - 1) * f.cell.x, f.high, float(f.rows - 1) * f.cell.y}};
-  float reach = max(f.cell.x, f.cell.y) + gap(all, box);
+  const Bounds3f all = bounds(surface, {});
+  const bool voxels = surface.type == ShapeType3::voxels;
+  const Vec2f cell = voxels ? Vec2f{surface.voxels->cell, 0} : surface.height_field->cell;
+  float reach = max(cell.x, cell.y) + gap(all, box);
   while (true) {
     const Bounds3f ring = grow(box, reach);
     detail::visit_triangles(surface, ring, false, [&](const detail::SurfaceTriangle& t) {
@@ -148,9 +127,30 @@ Distance3 any(const Shape3& a, const Shape3& b, const Transform3f& x) {
   return none();
 }
 
-/// B moves by `way` in A's frame: conservative advancement. A touch within `tolerance` counts.
+/// B moves by `way` in A's frame. Without a closed form by conservative advancement, where a touch within `tolerance`
+/// counts.
 CastHit3 cast_cores(const Convex& a, const Convex& b, const Transform3f& x, Vec3d way, float limit) {
   CastHit3 hit;
+  detail::Sweep closed;
+  if (detail::closed_cast(a, b, x, way, double(limit), closed)) {
+    hit.hit = closed.hit;
+    if (!closed.hit) return hit;
+    hit.fraction = float(closed.time);
+    hit.normal = Vec3f(closed.normal);
+    hit.point = Vec3f(closed.core_point + closed.normal * double(a.radius));
+    return hit;
+  }
+  const bool round = a.kind == detail::CoreKind::point || a.kind == detail::CoreKind::segment;
+  const Quatd q(x.q);
+  if (round && detail::closed_cast(b, a, inverse(x), -inverse_rotate(q, way), double(limit), closed)) {
+    hit.hit = closed.hit;  // the same pair seen from B
+    if (!closed.hit) return hit;
+    hit.fraction = float(closed.time);
+    hit.normal = Vec3f(-rotate(q, closed.normal));
+    const Vec3d touched = closed.core_point + closed.normal * double(b.radius);
+    hit.point = Vec3f(rotate(q, touched) + Vec3d(x.p) + way * closed.time);
+    return hit;
+  }
   const Placed pa(a);
   Placed pb(b, x);
   const Vec3d start = pb.position;
@@ -180,24 +180,33 @@ CastHit3 cast_cores(const Convex& a, const Convex& b, const Transform3f& x, Vec3
 }
 
 CastHit3 cast_any(const Shape3& a, const Shape3& b, const Transform3f& x, Vec3f way, float limit);
+bool touch(const Shape3& a, const Shape3& b, const Transform3f& x);
+
+/// Without its normal, which distances do not ask for.
+Convex bare_triangle(const detail::SurfaceTriangle& t) {
+  Convex c;
+  c.kind = detail::CoreKind::triangle;
+  for (int k = 0; k < 3; ++k) c.corner[k] = t.corner[k];
+  return c;
+}
 
 CastHit3 cast_on_surface(const Shape3& surface, const Shape3& b, const Transform3f& x, Vec3f way, float limit) {
   CastHit3 best;
   const Convex core = detail::convex_of(b);
   const Bounds3f box = bounds(b, x);
   const Vec3f center = transform_point(x, detail::inner_point(core));
-  const bool solid = surface.type == ShapeType3::height_field;
-  if (solid && any(surface, b, x).distance <= 0) {
+  const bool solid = surface.type == ShapeType3::height_field, voxels = surface.type == ShapeType3::voxels;
+  if ((solid || voxels) && touch(surface, b, x)) {
     best.hit = true;
     best.fraction = 0;
     best.point = center;
     return best;
   }
   const auto look = [&](const detail::SurfaceTriangle& t) {
-    const Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     // One-sided: what comes from behind, or moves away, passes.
-    if (!solid && dot(triangle.normal, center - t.corner[0]) < 0) return;
-    if (dot(triangle.normal, way) > 0 && !solid) return;
+    const Vec3d a(t.corner[0]), normal = cross(Vec3d(t.corner[1]) - a, Vec3d(t.corner[2]) - a);
+    if (!solid && (dot(normal, Vec3d(center) - a) < 0 || dot(normal, Vec3d(way)) > 0)) return;
+    const Convex triangle = bare_triangle(t);
     CastHit3 h = cast_cores(triangle, core, x, Vec3d(way), limit);
     if (!h.hit || (best.hit && h.fraction >= best.fraction)) return;
     h.child = t.index;
@@ -215,6 +224,25 @@ CastHit3 cast_on_surface(const Shape3& surface, const Shape3& b, const Transform
     return best;
   }
   const detail::SlabRay<Vec3f> ray(box.center(), way, extents);
+  if (voxels) {
+    // From piece to piece of the way, each as long as a few cells: what lies before the first touch is all that is
+    // seen.
+    const float piece = 4 * surface.voxels->cell + 2 * max(extents.x, max(extents.y, extents.z));
+    const int pieces = int(clamp(length(way) / piece, 0.0f, 4095.0f)) + 1;
+    for (int i = 0; i < pieces && !(best.hit && best.fraction <= float(i) / float(pieces)); ++i) {
+      const Vec3f from = way * (float(i) / float(pieces)), to = way * (float(i + 1) / float(pieces));
+      const Bounds3f part =
+          grow(merge(Bounds3f{box.low + from, box.high + from}, Bounds3f{box.low + to, box.high + to}),
+               length(extents) * 1e-3f);
+      detail::visit_triangles(surface, part, false, [&](const detail::SurfaceTriangle& t) {
+        const Bounds3f b3{min(t.corner[0], min(t.corner[1], t.corner[2])),
+                          max(t.corner[0], max(t.corner[1], t.corner[2]))};
+        if (ray.enter(b3, limit) <= limit) look(t);
+        return true;
+      });
+    }
+    return best;
+  }
   const Bounds3f swept = grow(merge(box, Bounds3f{box.low + way, box.high + way}), length(extents) * 1e-3f);
   detail::visit_triangles(surface, swept, false, [&](const detail::SurfaceTriangle& t) {
     const Bounds3f b3{min(t.corner[0], min(t.corner[1], t.corner[2])), max(t.corner[0], max(t.corner[1], t.corner[2]))};
@@ -276,6 +304,7 @@ CastHit3 cast_any(const Shape3& a, const Shape3& b, const Transform3f& x, Vec3f 
       return cast_on_plane(a.plane, b, x, way, limit);
     case ShapeType3::mesh:
     case ShapeType3::height_field:
+    case ShapeType3::voxels:
       return cast_on_surface(a, b, x, way, limit);
     case ShapeType3::compound:
       return cast_on_compound(*a.compound, b, x, way, limit);
@@ -284,29 +313,71 @@ CastHit3 cast_any(const Shape3& a, const Shape3& b, const Transform3f& x, Vec3f 
   }
 }
 
+bool cores_touch(const Convex& a, const Convex& b, const Transform3f& x) {
+  bool touching;
+  if (detail::closed_overlap(a, b, x, touching)) return touching;
+  if (a.kind == detail::CoreKind::point && detail::closed_overlap(b, a, inverse(x), touching)) return touching;
+  const double radius = double(a.radius) + double(b.radius);
+  CoreDistance d;
+  detail::core_distance(Placed(a), Placed(b, x), radius, {}, d);
+  return d.overlap || d.distance <= radius;
+}
+
+bool touch(const Shape3& a, const Shape3& b, const Transform3f& x) {
+  if (is_convex(a) && is_convex(b)) return cores_touch(detail::convex_of(a), detail::convex_of(b), x);
+  if (b.type == ShapeType3::compound || (is_convex(a) && !is_convex(b))) return touch(b, a, inverse(x));
+  if (a.type == ShapeType3::compound) {
+    const Compound& compound = *a.compound;
+    bool found = false;
+    const auto look = [&](std::uint32_t i) {
+      const CompoundChild& c = compound.children[i];
+      found = touch(c.shape, b, inverse(c.local) * x);
+      return !found;
+    };
+    if (is_convex(b))
+      query(compound.tree, bounds(b, x), look);
+    else
+      for (std::uint32_t i = 0; i < std::uint32_t(compound.children.size()) && look(i);) ++i;
+    return found;
+  }
+  if (!is_convex(b) || a.type == ShapeType3::plane) return any(a, b, x).distance <= 0;
+  const Convex core = detail::convex_of(b);
+  if (detail::inside_ground(a, transform_point(x, detail::inner_point(core)))) return true;
+  bool found = false;
+  detail::visit_triangles(a, bounds(b, x), false, [&](const detail::SurfaceTriangle& t) {
+    found = cores_touch(bare_triangle(t), core, x);
+    return !found;
+  });
+  return found;
+}
+
 }  // namespace query3
 
 Distance3 distance(const Shape3& a, const Shape3& b, const Transform3f& b_in_a) { return query3::any(a, b, b_in_a); }
 
-bool overlap(const Shape3& a, const Shape3& b, const Transform3f& b_in_a) {
-  if (is_convex(a) && is_convex(b)) {
-    const detail::Convex ca = detail::convex_of(a), cb = detail::convex_of(b);
-    const double radius = double(ca.radius) + double(cb.radius);
-    detail::CoreDistance d;
-    detail::core_distance(detail::Placed(ca), detail::Placed(cb, b_in_a), radius, {}, d);
-    return d.overlap || d.distance <= radius;
-  }
-  return query3::any(a, b, b_in_a).distance <= 0;
-}
+bool overlap(const Shape3& a, const Shape3& b, const Transform3f& b_in_a) { return query3::touch(a, b, b_in_a); }
 
 CastHit3 shape_cast(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, Vec3f translation) {
   return query3::cast_any(a, b, b_in_a, translation, 1);
 }
 
 namespace detail {
+CastHit3 shape_cast_within(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, Vec3f translation,
+                           float limit) {
+  return query3::cast_any(a, b, b_in_a, translation, limit);
+}
 CastHit3 cast_point(const Shape3& convex, Vec3f origin, Vec3f translation) {
   const Convex point;
   return query3::cast_cores(convex_of(convex), point, {origin, {}}, Vec3d(translation), 1);
+}
+bool inside_ground(const Shape3& surface, Vec3f p) {
+  if (surface.type == ShapeType3::voxels) {
+    int cell[3];
+    return inside_voxels(*surface.voxels, p, cell);
+  }
+  float height;
+  return surface.type == ShapeType3::height_field && height_at(*surface.height_field, p.x, p.z, height) &&
+         p.y <= height;
 }
 bool height_at(const HeightField& f, float x, float z, float& height) {
   const HeightFieldCells cells{f};

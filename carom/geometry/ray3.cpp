@@ -134,6 +134,15 @@ CastHit3 on_cone(const Cone& c, Vec3d o, Vec3d d) {
   return result(best, o, d);
 }
 
+/// A sphere in the frame where the half axes are one.
+CastHit3 on_ellipsoid(const Ellipsoid& e, Vec3d o, Vec3d d) {
+  const Vec3d r(e.radii), m{o.x / r.x, o.y / r.y, o.z / r.z}, w{d.x / r.x, d.y / r.y, d.z / r.z};
+  Best best;
+  sphere(best, {}, 1, m, w);
+  best.normal = {best.normal.x / r.x, best.normal.y / r.y, best.normal.z / r.z};
+  return result(best, o, d);
+}
+
 CastHit3 on_planes(const HullPlane* planes, std::size_t count, Vec3d o, Vec3d d) {
   double first = 0, last = 1;
   Vec3d normal{};
@@ -161,10 +170,31 @@ CastHit3 on_planes(const HullPlane* planes, std::size_t count, Vec3d o, Vec3d d)
 }
 
 CastHit3 on_box(const Box& b, Vec3d o, Vec3d d) {
-  const HullPlane planes[6] = {{{1, 0, 0}, b.half_extents.x}, {{-1, 0, 0}, b.half_extents.x},
-                               {{0, 1, 0}, b.half_extents.y}, {{0, -1, 0}, b.half_extents.y},
-                               {{0, 0, 1}, b.half_extents.z}, {{0, 0, -1}, b.half_extents.z}};
-  return on_planes(planes, 6, o, d);
+  const Vec3d half(b.half_extents);
+  double first = 0, last = 1;
+  int axis = -1;
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) {
+    // The face toward which it goes first, as if it went along +k.
+    const double side = d[k] < 0 ? -1 : 1, from = o[k] * side, speed = d[k] * side;
+    inside = inside && math::abs(from) <= half[k];
+    if (speed == 0) {
+      if (math::abs(from) > half[k]) return {};
+      continue;
+    }
+    const double enter = (-half[k] - from) / speed, leave = (half[k] - from) / speed;
+    if (enter > first || (enter == first && from < -half[k])) first = enter, axis = k;
+    last = min(last, leave);
+  }
+  if (first > last) return {};
+  Best best;
+  best.inside = inside;
+  if (!inside && axis >= 0) {
+    Vec3d normal{};
+    normal[axis] = d[axis] < 0 ? 1 : -1;
+    best.offer(first, normal);
+  }
+  return result(best, o, d);
 }
 
 /// Watertight enough in double: edge functions of the ray against the three corners (one-sided).
@@ -258,6 +288,61 @@ CastHit3 on_height_field(const HeightField& field, Vec3f origin, Vec3f translati
   return h;
 }
 
+/// From cell to cell (Amanatides & Woo 1987) until one is filled.
+CastHit3 on_voxels(const VoxelGrid& grid, Vec3f origin, Vec3f translation) {
+  const Vec3d o(origin), d(translation);
+  const double cell = double(grid.cell);
+  const int count[3] = {grid.columns, grid.layers, grid.rows};
+  Best best;
+  double first = 0, last = 1;
+  int entered = -1;
+  for (int k = 0; k < 3; ++k) {
+    const double high = cell * count[k];
+    if (d[k] == 0) {
+      if (o[k] < 0 || o[k] > high) return {};
+      continue;
+    }
+    const double a = -o[k] / d[k], b = (high - o[k]) / d[k];
+    if (min(a, b) > first) first = min(a, b), entered = k;
+    last = min(last, max(a, b));
+  }
+  if (first > last) return {};
+  const Vec3d p = o + d * first;
+  int at[3], step[3];
+  double next[3];
+  for (int k = 0; k < 3; ++k) {
+    step[k] = d[k] > 0 ? 1 : -1;
+    at[k] = clamp(int(p[k] / cell), 0, count[k] - 1);
+    if (k == entered) at[k] = d[k] > 0 ? 0 : count[k] - 1;
+  }
+  CastHit3 hit;
+  double t = first;
+  while (true) {
+    if (grid.at(at[0], at[1], at[2]) != 0) {
+      const std::uint32_t name = std::uint32_t(grid.index(at[0], at[1], at[2])) * 12;
+      if (entered < 0) {
+        best.inside = true;
+        hit = result(best, o, d);
+      } else {
+        Vec3d n{};
+        n[entered] = -step[entered];
+        best.offer(t, n);
+        hit = result(best, o, d);
+        hit.child = name + std::uint32_t(2 * (2 * entered + (n[entered] > 0 ? 0 : 1)));
+        return hit;
+      }
+      hit.child = name;
+      return hit;
+    }
+    for (int k = 0; k < 3; ++k) next[k] = d[k] == 0 ? 1e300 : (cell * (at[k] + (step[k] > 0 ? 1 : 0)) - o[k]) / d[k];
+    entered = next[0] <= next[1] && next[0] <= next[2] ? 0 : (next[1] <= next[2] ? 1 : 2);
+    t = next[entered];
+    if (t > last) return hit;
+    at[entered] += step[entered];
+    if (at[entered] < 0 || at[entered] >= count[entered]) return hit;
+  }
+}
+
 CastHit3 on_compound(const Compound& compound, Vec3f origin, Vec3f translation) {
   CastHit3 best;
   cast(compound.tree, origin, translation, Vec3f{}, 1, [&](std::uint32_t i, float limit) {
@@ -291,6 +376,8 @@ CastHit3 ray_cast(const Shape3& s, Vec3f origin, Vec3f translation) {
       return ray3::on_cylinder(s.cylinder, o, d);
     case ShapeType3::cone:
       return ray3::on_cone(s.cone, o, d);
+    case ShapeType3::ellipsoid:
+      return ray3::on_ellipsoid(s.ellipsoid, o, d);
     case ShapeType3::hull:
       if (s.hull->radius > 0) return detail::cast_point(s, origin, translation);
       return ray3::on_planes(s.hull->planes.data(), s.hull->planes.size(), o, d);
@@ -302,6 +389,8 @@ CastHit3 ray_cast(const Shape3& s, Vec3f origin, Vec3f translation) {
       return ray3::on_mesh(*s.mesh, origin, translation);
     case ShapeType3::height_field:
       return ray3::on_height_field(*s.height_field, origin, translation);
+    case ShapeType3::voxels:
+      return ray3::on_voxels(*s.voxels, origin, translation);
     case ShapeType3::compound:
       return ray3::on_compound(*s.compound, origin, translation);
   }

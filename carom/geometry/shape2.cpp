@@ -172,7 +172,8 @@ Polygon make_box2(Vec2f half_extents, float radius, const Transform2f& local) {
   return polygon;
 }
 
-core::Result<std::shared_ptr<const Chain>> make_chain(std::vector<Vec2f> points, bool loop) {
+core::Result<std::shared_ptr<const Chain>> make_chain(std::vector<Vec2f> points, bool loop,
+                                                      std::vector<std::uint8_t> materials) {
   const std::size_t needed = loop ? 3 : 2;
   if (points.size() < needed)
     return detail::error("make_chain: %zu points, expected at least %zu for %s chain", points.size(), needed,
@@ -187,8 +188,21 @@ core::Result<std::shared_ptr<const Chain>> make_chain(std::vector<Vec2f> points,
       return detail::error("make_chain: points %zu and %zu are closer than %g m", i, next, min_length);
   }
   Chain chain{std::move(points), loop};
+  if (!materials.empty() && materials.size() != std::size_t(chain.segment_count()))
+    return detail::error("make_chain: %zu materials, expected none or one a segment, %d", materials.size(),
+                         chain.segment_count());
+  chain.materials = std::move(materials);
   chain.tree = detail::build_chain_tree(chain);
   return std::shared_ptr<const Chain>(std::make_shared<Chain>(std::move(chain)));
+}
+
+int material_count(const Shape2& shape) {
+  if (shape.type != ShapeType2::chain || shape.chain->materials.empty()) return 0;
+  return 1 + *std::max_element(shape.chain->materials.begin(), shape.chain->materials.end());
+}
+std::uint8_t material_of_part(const Shape2& shape, std::uint32_t child) {
+  if (shape.type != ShapeType2::chain || child >= shape.chain->materials.size()) return 0;
+  return shape.chain->materials[child];
 }
 
 core::Status validate(const Shape2& shape) {

@@ -46,6 +46,7 @@ struct Chain {
   bool loop = false;
   /// A heap of bounds over runs of segments (detail/chain_tree.h), made by make_chain; without it searches are linear.
   std::vector<Bounds2f> tree{};
+  std::vector<std::uint8_t> materials{};  ///< one a segment, as the user numbers them; empty: all 0
   int segment_count() const { return loop ? int(points.size()) : int(points.size()) - 1; }
   CAROM_API ChainSegment segment(int i) const;
 };
@@ -78,8 +79,15 @@ struct Shape2 {
 CAROM_API core::Result<Polygon> make_polygon(std::span<const Vec2f> points, float radius = 0);
 /// A rectangle of the given half extents (m, > 0), centred, or placed by `local`.
 CAROM_API Polygon make_box2(Vec2f half_extents, float radius = 0, const Transform2f& local = {});
-/// A chain. Errors: not finite, too few points, neighbours closer than 1 mm.
-CAROM_API core::Result<std::shared_ptr<const Chain>> make_chain(std::vector<Vec2f> points, bool loop);
+/// A chain. `materials`: none, or one a segment. Errors: not finite, too few points, neighbours closer than 1 mm,
+/// another number of materials.
+CAROM_API core::Result<std::shared_ptr<const Chain>> make_chain(std::vector<Vec2f> points, bool loop,
+                                                                std::vector<std::uint8_t> materials = {});
+
+/// How many materials the parts of the shape name: the greatest number and one; 0 where it has none.
+CAROM_API int material_count(const Shape2& shape);
+/// The material of a segment of a chain; 0 for all else.
+CAROM_API std::uint8_t material_of_part(const Shape2& shape, std::uint32_t child);
 
 /// Says what is wrong with a shape that a user filled in by hand (a radius that is not positive and finite, …).
 CAROM_API core::Status validate(const Shape2& shape);

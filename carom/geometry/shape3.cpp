@@ -1,5 +1,6 @@
 #include "carom/geometry/shape3.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "carom/geometry/compound.h"
@@ -7,6 +8,7 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/geometry/voxels.h"
 
 namespace carom::geometry {
 
@@ -23,6 +25,14 @@ core::Status check_box(const Box& box) {
   if (auto s = detail::check_range("the least of box.half_extents", least, min_shape_size, max_shape_size); !s)
     return s;
   return detail::check_range("box.radius", box.radius, 0, max_shape_size);
+}
+
+core::Status check_ellipsoid(const Ellipsoid& e) {
+  for (const auto& [name, radius] :
+       {std::pair{"ellipsoid.radii.x", e.radii.x}, std::pair{"ellipsoid.radii.y", e.radii.y},
+        std::pair{"ellipsoid.radii.z", e.radii.z}})
+    if (auto s = detail::check_range(name, radius, min_shape_size, max_shape_size); !s) return s;
+  return {};
 }
 
 core::Status check_present(const void* pointer, const char* field, const char* maker) {
@@ -79,6 +89,32 @@ Vec3f support_of_disc(float radius, float y, Vec3f direction) {
 
 }  // namespace
 
+namespace {
+const std::vector<std::uint8_t>* materials_of(const Shape3& shape) {
+  if (shape.type == ShapeType3::mesh) return &shape.mesh->materials;
+  if (shape.type == ShapeType3::height_field) return &shape.height_field->materials;
+  return nullptr;
+}
+}  // namespace
+
+int material_count(const Shape3& shape) {
+  if (shape.type == ShapeType3::voxels)
+    return *std::max_element(shape.voxels->cells.begin(), shape.voxels->cells.end());
+  const std::vector<std::uint8_t>* all = materials_of(shape);
+  return all == nullptr || all->empty() ? 0 : 1 + *std::max_element(all->begin(), all->end());
+}
+std::uint8_t material_of_part(const Shape3& shape, std::uint32_t child) {
+  if (shape.type == ShapeType3::voxels) {  // twelve triangles a cell
+    const std::size_t cell = child / 12;
+    return cell < shape.voxels->cells.size() && shape.voxels->cells[cell] > 0
+               ? std::uint8_t(shape.voxels->cells[cell] - 1)
+               : std::uint8_t(0);
+  }
+  const std::vector<std::uint8_t>* all = materials_of(shape);
+  const std::size_t part = shape.type == ShapeType3::height_field ? child / 2 : child;  // two triangles a cell
+  return all == nullptr || part >= all->size() ? std::uint8_t(0) : (*all)[part];
+}
+
 core::Status validate(const Shape3& shape) {
   switch (shape.type) {
     case ShapeType3::sphere:
@@ -98,12 +134,16 @@ core::Status validate(const Shape3& shape) {
         return detail::error("plane.normal is (%g, %g, %g): expected a unit vector", double(shape.plane.normal.x),
                              double(shape.plane.normal.y), double(shape.plane.normal.z));
       return {};
+    case ShapeType3::ellipsoid:
+      return check_ellipsoid(shape.ellipsoid);
     case ShapeType3::hull:
       return check_present(shape.hull, "hull", "make_hull");
     case ShapeType3::mesh:
       return check_present(shape.mesh, "mesh", "make_triangle_mesh");
     case ShapeType3::height_field:
       return check_present(shape.height_field, "height_field", "make_height_field");
+    case ShapeType3::voxels:
+      return check_present(shape.voxels, "voxels", "make_voxel_grid");
     case ShapeType3::compound:
       return check_present(shape.compound, "compound", "make_compound");
   }
@@ -131,6 +171,13 @@ Bounds3f bounds(const Shape3& shape, const Transform3f& t) {
       const Vec3f base = t.p - axis * shape.cone.half_height, apex = t.p + axis * shape.cone.half_height;
       return {min(base - e, apex), max(base + e, apex)};
     }
+    case ShapeType3::ellipsoid: {
+      const Mat3f r = to_matrix(t.q);
+      const Vec3f x = r.cx * shape.ellipsoid.radii.x, y = r.cy * shape.ellipsoid.radii.y,
+                  z = r.cz * shape.ellipsoid.radii.z, squares = scale(x, x) + scale(y, y) + scale(z, z);
+      const Vec3f e{math::sqrt(squares.x), math::sqrt(squares.y), math::sqrt(squares.z)};
+      return {t.p - e, t.p + e};
+    }
     case ShapeType3::plane:
       return bounds_of_plane(shape.plane, t);
     case ShapeType3::hull:
@@ -143,6 +190,11 @@ Bounds3f bounds(const Shape3& shape, const Transform3f& t) {
       const HeightField& f = *shape.height_field;
       const Bounds3f b{{0, f.low, 0}, {float(f.columns - 1) * f.cell.x, f.high, float(f.rows - 1) * f.cell.y}};
       return bounds_of_box(b.center(), b.extents(), t);
+    }
+    case ShapeType3::voxels: {
+      const VoxelGrid& g = *shape.voxels;
+      const Vec3f half = Vec3f{float(g.columns), float(g.layers), float(g.rows)} * (0.5f * g.cell);
+      return bounds_of_box(half, half, t);
     }
     case ShapeType3::compound:
       return bounds_of_compound(*shape.compound, t);
@@ -172,6 +224,10 @@ Vec3f support(const Shape3& shape, Vec3f direction) {
       const Vec3f base = support_of_disc(shape.cone.radius, -shape.cone.half_height, direction);
       return dot(apex, direction) > dot(base, direction) ? apex : base;
     }
+    case ShapeType3::ellipsoid: {
+      const Vec3f scaled = scale(shape.ellipsoid.radii, direction);
+      return scale(shape.ellipsoid.radii, normalize_or(scaled, Vec3f{1, 0, 0}, 1e-18f));
+    }
     case ShapeType3::hull: {
       const Hull& hull = *shape.hull;
       std::size_t best = 0;
@@ -186,6 +242,7 @@ Vec3f support(const Shape3& shape, Vec3f direction) {
     case ShapeType3::plane:
     case ShapeType3::mesh:
     case ShapeType3::height_field:
+    case ShapeType3::voxels:
     case ShapeType3::compound:
       break;  // not convex
   }

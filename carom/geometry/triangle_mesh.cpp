@@ -80,7 +80,8 @@ bool degenerate(Vec3f a, Vec3f b, Vec3f c) {
 }  // namespace
 
 core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(std::vector<Vec3f> vertices,
-                                                                     std::vector<std::uint32_t> indices) {
+                                                                     std::vector<std::uint32_t> indices,
+                                                                     std::vector<std::uint8_t> materials) {
   constexpr std::size_t max_triangles = std::size_t(1) << 29;
   if (indices.empty() || indices.size() % 3 != 0 || indices.size() / 3 > max_triangles)
     return detail::error("make_triangle_mesh: %zu indices, expected three a triangle, from 1 to %zu triangles",
@@ -92,6 +93,9 @@ core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(std::vector
     if (indices[i] >= vertices.size())
       return detail::error("make_triangle_mesh: triangle %zu refers to vertex %u of %zu", i / 3, indices[i],
                            vertices.size());
+  if (!materials.empty() && materials.size() != indices.size() / 3)
+    return detail::error("make_triangle_mesh: %zu materials, expected none or one a triangle, %zu", materials.size(),
+                         indices.size() / 3);
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->vertices = std::move(vertices);
   mesh->indices.reserve(indices.size());
@@ -102,6 +106,7 @@ core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(std::vector
     if (mesh_edges::degenerate(a, b, c)) continue;
     mesh->indices.insert(mesh->indices.end(), {indices[i], indices[i + 1], indices[i + 2]});
     boxes.push_back({min(a, min(b, c)), max(a, max(b, c))});
+    if (!materials.empty()) mesh->materials.push_back(materials[i / 3]);
   }
   if (mesh->indices.empty())
     return detail::error("make_triangle_mesh: none of the %zu triangles has an area", indices.size() / 3);

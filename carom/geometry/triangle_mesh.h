@@ -1,4 +1,4 @@
-// Static triangle meshes: collision surfaces with a bounding-volume tree.
+// Triangle meshes: collision surfaces with a bounding-volume tree.
 #pragma once
 
 #include "carom/geometry/shape3.h"
@@ -21,13 +21,16 @@ struct TriangleMesh {
   std::vector<Vec3f> vertices;
   std::vector<std::uint32_t> indices;    ///< three a triangle
   std::vector<std::uint8_t> edge_flags;  ///< one a triangle; edge i runs from corner i to corner i + 1
+  std::vector<std::uint8_t> materials;   ///< one a triangle, as the user numbers them; empty: all 0
   StaticTree tree;                       ///< over the triangles
   Bounds3f bounds;
   int triangle_count() const { return int(indices.size() / 3); }
 };
 
-/// Errors: not finite, an index out of range, no triangle left after degenerate ones were dropped.
-CAROM_API core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(std::vector<Vec3f> vertices,
-                                                                               std::vector<std::uint32_t> indices);
+/// `materials`: none, or one a triangle (rigid: ShapeDef::surfaces says what they are).
+/// Errors: not finite, an index out of range, another number of materials, no triangle left after degenerate ones were
+/// dropped.
+CAROM_API core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(
+    std::vector<Vec3f> vertices, std::vector<std::uint32_t> indices, std::vector<std::uint8_t> materials = {});
 
 }  // namespace carom::geometry

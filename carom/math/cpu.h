@@ -8,6 +8,13 @@ namespace carom::math {
 /// In rising order. `baseline` is what the whole library is compiled for: SSE2, NEON or WASM SIMD128, four lanes.
 enum class InstructionSet { baseline, avx2, avx512 };
 
+/// The most lanes that a kernel may be picked with: only x86 has any that are wider than the baseline.
+#if defined(__x86_64__) || defined(_M_X64)
+inline constexpr int widest_lanes = 16;
+#else
+inline constexpr int widest_lanes = 4;
+#endif
+
 /// The best instruction set that this processor and operating system run; avx512 means F, VL, DQ and BW.
 CAROM_API InstructionSet detect_instruction_set();
 

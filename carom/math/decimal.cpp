@@ -2,6 +2,8 @@
 
 #include <charconv>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "carom/math/detail/double_double.h"
@@ -152,19 +154,62 @@ DecimalResult parse_decimal(std::string_view text) {
   return {sign * nearest_double(numerator, denominator), i};
 }
 
-std::string format_decimal(double x) {
-  if (!is_finite(x)) return x != x ? "nan" : (x > 0 ? "inf" : "-inf");
-  char buffer[40];
-  const std::to_chars_result r = std::to_chars(buffer, buffer + sizeof buffer, x);
-  return std::string(buffer, r.ptr);
+namespace {
+
+#if defined(__wasm__)
+// The C++ library prints by tables that would be an eighth of the module that a page loads. The C library there prints
+// exactly as well, knows one locale, and has no tables; it is slower, which texts do not mind.
+std::string print(const char* form, int digits, double x) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, form, digits, x);
+  return buffer;
 }
 
-std::string format_decimal(double x, int digits) {
-  if (!is_finite(x)) return format_decimal(x);
+template <class T>
+std::string shortest(T x) {
+  int precision = 0;
+  std::string text = print("%.*e", precision, double(x));
+  while (T(parse_decimal(text).value) != x && precision < 17) text = print("%.*e", ++precision, double(x));
+  // As std::to_chars: without exponent where that is not longer.
+  const int exponent = std::atoi(text.c_str() + text.find('e') + 1);
+  const std::string plain = print("%.*f", precision > exponent ? precision - exponent : 0, double(x));
+  return plain.size() <= text.size() ? plain : text;
+}
+std::string scientific(double x, int digits) { return print("%.*e", digits, x); }
+#else
+template <class T>
+std::string shortest(T x) {
+  char buffer[40];
+  return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
+}
+std::string scientific(double x, int digits) {
   char buffer[64];
-  const std::to_chars_result r =
-      std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::scientific, clamp(digits, 1, 17) - 1);
-  return format_decimal(parse_decimal(std::string_view(buffer, static_cast<std::size_t>(r.ptr - buffer))).value);
+  return std::string(buffer,
+                     std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::scientific, digits).ptr);
+}
+#endif
+
+std::string not_finite(double x) { return x != x ? "nan" : (x > 0 ? "inf" : "-inf"); }
+
+}  // namespace
+
+std::string format_decimal(double x) { return is_finite(x) ? shortest(x) : not_finite(x); }
+std::string format_decimal(float x) { return is_finite(double(x)) ? shortest(x) : not_finite(double(x)); }
+
+std::string format_decimal(double x, int digits) {
+  if (!is_finite(x)) return not_finite(x);
+  return format_decimal(parse_decimal(scientific(x, clamp(digits, 1, 17) - 1)).value);
+}
+
+std::string format_fixed(double x, int digits) {
+  if (!is_finite(x)) return not_finite(x);
+#if defined(__wasm__)
+  return print("%.*f", clamp(digits, 0, 99), x);
+#else
+  char buffer[512];
+  return std::string(
+      buffer, std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::fixed, clamp(digits, 0, 99)).ptr);
+#endif
 }
 
 }  // namespace carom::math

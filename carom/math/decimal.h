@@ -20,7 +20,11 @@ CAROM_API DecimalResult parse_decimal(std::string_view text);
 
 /// The shortest decimal that parses back to x; "inf", "-inf" or "nan" where x is not finite.
 CAROM_API std::string format_decimal(double x);
+/// Likewise the shortest that parses back to the same float.
+CAROM_API std::string format_decimal(float x);
 /// x with `digits` significant digits (1 to 17), trailing zeros dropped.
 CAROM_API std::string format_decimal(double x, int digits);
+/// x with `digits` digits (0 to 99) after the point.
+CAROM_API std::string format_fixed(double x, int digits);
 
 }  // namespace carom::math

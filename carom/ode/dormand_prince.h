@@ -86,7 +86,10 @@ class DormandPrince {
     if (!started_ || direction != direction_) start(f, direction);
     bool after_rejection = false;
     for (;;) {
-      if (budget_ > 0 && --budget_ == 0) return Outcome::too_many_steps;
+      if (budget_ > 0) {
+        --budget_;
+        if (budget_ == 0) return Outcome::too_many_steps;
+      }
       double h = math::abs(step_);
       if (options_.maximum_step > 0) h = math::min(h, options_.maximum_step);
       const double remaining = math::abs(t_end - t_);

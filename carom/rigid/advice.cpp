@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "carom/math/elementary.h"
+#include "carom/rigid/detail/load.h"
 #include "carom/rigid/detail/shape_manifolds.h"
 
 namespace carom::rigid {
@@ -31,13 +32,24 @@ struct Part {
   double height = 0;                      ///< m against gravity
   double load = 0;                        ///< N that rests or hangs on it, its own weight included
   double sag = 0;                         ///< m
+  bool jointed = false;
+  double factor = 1;  ///< the solver's mass over its own (detail/load.h)
   std::string name;
 };
 /// A contact or joint that carries `above` by `below` (none: what does not move).
 struct Support {
   int above = none, below = none;
-  double stiffness = 0;  ///< N/m
+  double stiffness = 0;  ///< N/m, of a joint; 1/s², ω² of a contact
   JointId joint{};
+  int points = 0;                      ///< of a contact
+  double mobility[2][4] = {{0}, {0}};  ///< 1/kg, of the body above and below at each point
+
+  double yields(double force, double above_factor, double below_factor) const {
+    if (points == 0) return force / stiffness;
+    double sum = 0;
+    for (int i = 0; i < points; ++i) sum += 1 / (mobility[0][i] / above_factor + mobility[1][i] / below_factor);
+    return force / (stiffness * sum);
+  }
 };
 
 float inverse_inertia_of(const World2& world, BodyId body, const BodyState<Dim2>&) {
@@ -66,7 +78,7 @@ class Adviser {
   Adviser(const World<D>& world, float dt, const AdviceOptions& options)
       : world_(world), definition_(world.definition()), options_(options), dt_(double(dt)) {
     h_ = dt_ / definition_.substeps;
-    contact_hertz_ = std::min(double(definition_.contact_hertz), 0.125 / h_);
+    contact_hertz_ = std::min(double(definition_.contact_hertz), double(detail::most_contact_turns) / h_);
     joint_hertz_ = std::min(double(definition_.joint_hertz), 0.25 / h_);
     const double g = double(math::length(definition_.gravity));
     if (g > 0) up_ = definition_.gravity / float(-g);
@@ -74,6 +86,12 @@ class Adviser {
     std::vector<BodyId> ids;
     world.bodies(ids);
     for (const BodyId id : ids) add_part(id);
+    std::vector<JointId> joints;
+    world.joints(joints);
+    for (const JointId id : joints)
+      if (const auto joint = world.joint_state(id); joint.ok())
+        for (const BodyId body : {joint->body_a, joint->body_b})
+          if (const int part = place_of(body); part != none) parts_[std::size_t(part)].jointed = true;
   }
 
   std::vector<Advice> all() {
@@ -129,7 +147,7 @@ class Adviser {
           format("%s of %.4g Hz is capped at %.4g Hz by %d substeps of %.3g ms; %d substeps would use it whole", what,
                  wanted, used, definition_.substeps, 1e3 * h_, substeps));
     };
-    look("contact_hertz", double(definition_.contact_hertz), contact_hertz_, 0.125);
+    look("contact_hertz", double(definition_.contact_hertz), contact_hertz_, double(detail::most_contact_turns));
     look("joint_hertz", double(definition_.joint_hertz), joint_hertz_, 0.25);
   }
 
@@ -237,22 +255,22 @@ class Adviser {
         (their_definition.filter.category & definition.filter.mask) == 0)
       return;
     const typename D::Pose placed = parts_[std::size_t(a)].state.pose * their_definition.local;
-    detail::for_manifolds(
-        theirs, geometry, relative(placed, pose), float(touching), [&](const typename D::Manifold& m) {
-          const typename D::Vector n = rotate(placed.rotation, m.normal);
-          const double upright = double(dot(n, up_));
-          if (std::abs(upright) < 0.5) return;
-          const int above = upright > 0 ? b : a, below = upright > 0 ? a : b;
-          if (!moves(above)) return;
-          const double omega = 2 * math::pi * contact_hertz_ * (moves(below) ? 1 : 2);
-          double stiffness = 0;
-          for (int i = 0; i < m.count; ++i) {
-            const typename D::Position point = world_point(placed, m.points[i].point);
-            const double k = mobility(parts_[std::size_t(a)], point, n) + mobility(parts_[std::size_t(b)], point, n);
-            if (k > 0) stiffness += omega * omega / k;
-          }
-          if (stiffness > 0) supports_.push_back({above, moves(below) ? below : none, stiffness, {}});
-        });
+    detail::for_manifolds(theirs, geometry, relative(placed, pose), float(touching),
+                          [&](const typename D::Manifold& m) {
+                            const typename D::Vector n = rotate(placed.rotation, m.normal);
+                            const double upright = double(dot(n, up_));
+                            if (std::abs(upright) < 0.5) return;
+                            const int above = upright > 0 ? b : a, below = upright > 0 ? a : b;
+                            if (!moves(above)) return;
+                            const double omega = 2 * math::pi * contact_hertz_ * (moves(below) ? 1 : 2);
+                            Support support{above, moves(below) ? below : none, omega * omega, {}};
+                            for (; support.points < m.count; ++support.points) {
+                              const typename D::Position point = world_point(placed, m.points[support.points].point);
+                              support.mobility[0][support.points] = mobility(parts_[std::size_t(above)], point, n);
+                              support.mobility[1][support.points] = mobility(parts_[std::size_t(below)], point, n);
+                            }
+                            supports_.push_back(support);
+                          });
   }
 
   /// Joints that hold up: rigid in position, to what is nearer the ground by joints.
@@ -335,6 +353,7 @@ class Adviser {
         const int below = supports_[std::size_t(s)].below;
         if (below != none) parts_[std::size_t(below)].load += force[std::size_t(s)];
       }
+    for (const int i : order) parts_[std::size_t(i)].factor = load_factor(parts_[std::size_t(i)]);
     std::vector<double> length(parts_.size(), 0);
     std::vector<Support> worst(parts_.size());
     for (std::size_t k = order.size(); k-- > 0;) {
@@ -344,7 +363,8 @@ class Adviser {
       for (const int s : under[std::size_t(i)]) {
         const Support& support = supports_[std::size_t(s)];
         const double below = support.below == none ? 0 : parts_[std::size_t(support.below)].sag;
-        sum += below + force[std::size_t(s)] / support.stiffness;
+        sum += below + support.yields(force[std::size_t(s)], part.factor,
+                                      support.below == none ? 1 : parts_[std::size_t(support.below)].factor);
         longest = std::max(longest, support.below == none ? 0 : length[std::size_t(support.below)]);
         root[std::size_t(i)] = support.below == none ? i : root[std::size_t(support.below)];
         worst[std::size_t(i)] = support;
@@ -368,11 +388,20 @@ class Adviser {
     if (int(worst_first.size()) > options_.most) worst_first.resize(std::size_t(options_.most));
     for (const int t : worst_first) report(kind, t, length[std::size_t(t)], share, worst[std::size_t(t)].joint);
   }
+  /// What squeezes a body beyond what it bears raises its mass for the contact solver (detail/load.h).
+  double load_factor(const Part<D>& part) const {
+    if (part.jointed) return 1;
+    const double omega = 2 * math::pi * contact_hertz_, squeeze = (part.load - part.weight) * part.inverse_mass;
+    const double borne = std::min(double(detail::load_weights) * gravity_,
+                                  double(detail::load_yield) * 0.5 * smallest_extent(part.id) * omega * omega);
+    return std::clamp(squeeze / borne, 1.0, double(detail::most_load_factor));
+  }
   void report(AdviceKind kind, int i, double length, double share, JointId joint) {
     const Part<D>& part = parts_[std::size_t(i)];
     const bool sag = kind == AdviceKind::sag;
     const double wanted = share * length / part.sag;
-    const int substeps = substeps_for(sag ? contact_hertz_ : joint_hertz_, sag ? 0.125 : 0.25, wanted);
+    const int substeps =
+        substeps_for(sag ? contact_hertz_ : joint_hertz_, sag ? double(detail::most_contact_turns) : 0.25, wanted);
     const double hertz = (sag ? contact_hertz_ : joint_hertz_) / std::sqrt(wanted);
     std::string text = format("%s will %s by %.3g m (%.2g %% of %.3g m)", part.name.c_str(), sag ? "sink" : "hang low",
                               part.sag, 100 * part.sag / length, length);
@@ -404,6 +433,21 @@ std::vector<Advice> advise(const World<D>& world, float dt, const AdviceOptions&
   return Adviser<D>(world, dt, options).all();
 }
 
+template <class D>
+int apply_advice(World<D>& world, std::span<const Advice> advice) {
+  int set = 0;
+  for (const Advice& a : advice) {
+    if (a.kind != AdviceKind::sag && a.kind != AdviceKind::stretch) continue;
+    const int substeps = std::min(a.substeps, 64);
+    const auto body = world.body_definition(a.body);
+    if (!body.ok() || substeps <= std::max(body->substeps, world.definition().substeps)) continue;
+    if (world.set_substeps(a.body, substeps).ok()) ++set;
+  }
+  return set;
+}
+
+template CAROM_API int apply_advice(World<Dim2>&, std::span<const Advice>);
+template CAROM_API int apply_advice(World<Dim3>&, std::span<const Advice>);
 template std::vector<Advice> advise(const World<Dim2>&, float, const AdviceOptions&);
 template std::vector<Advice> advise(const World<Dim3>&, float, const AdviceOptions&);
 

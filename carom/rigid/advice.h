@@ -2,6 +2,7 @@
 // settings alone, before or after the first step.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,14 @@ struct AdviceOptions {
 template <class D>
 CAROM_API std::vector<Advice> advise(const World<D>& world, float dt, const AdviceOptions& options = {});
 
+/// Gives the islands of sag and stretch the substeps that the advice names (World::set_substeps): those alone pay for
+/// it. Returns how many bodies it set. `advise` goes on to tell what the world's own settings would do.
+template <class D>
+CAROM_API int apply_advice(World<D>& world, std::span<const Advice> advice);
+
 extern template CAROM_API std::vector<Advice> advise(const World<Dim2>&, float, const AdviceOptions&);
 extern template CAROM_API std::vector<Advice> advise(const World<Dim3>&, float, const AdviceOptions&);
+extern template CAROM_API int apply_advice(World<Dim2>&, std::span<const Advice>);
+extern template CAROM_API int apply_advice(World<Dim3>&, std::span<const Advice>);
 
 }  // namespace carom::rigid

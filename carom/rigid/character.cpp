@@ -5,6 +5,7 @@
 #include "carom/geometry/manifold.h"
 #include "carom/geometry/query.h"
 #include "carom/math/elementary.h"
+#include "carom/rigid/detail/character_shape.h"
 #include "carom/rigid/detail/check.h"
 #include "carom/rigid/detail/shape_manifolds.h"
 
@@ -13,14 +14,6 @@ namespace {
 
 constexpr float tiny = 1e-6f;        // m
 constexpr float ground_gap = 2e-3f;  // m beyond the skin at which the ground still carries
-
-Rot2f upright(Vec2f up) { return {up.y, -up.x}; }
-Quatf upright(Vec3f up) {
-  if (up.y < -0.9999f) return {0, 1, 0, 0};
-  return normalize(Quatf{1 + up.y, up.z, 0, -up.x});
-}
-geometry::Shape2 make_capsule(Dim2, float half_length, float radius) { return geometry::Capsule2{half_length, radius}; }
-geometry::Shape3 make_capsule(Dim3, float half_length, float radius) { return geometry::Capsule3{half_length, radius}; }
 
 /// How far a point at `arm` from the centre of mass goes in dt with a body that moves and turns evenly.
 Vec2f way_of_point(const Vec2f& velocity, float spin, const Vec2f& arm, float dt) {
@@ -58,8 +51,8 @@ Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>
   Character c;
   c.definition_ = d;
   c.definition_.up = d.up / size;
-  c.rotation_ = upright(c.definition_.up);
-  c.capsule_ = make_capsule(D{}, d.half_length, d.radius);
+  c.rotation_ = detail::upright(c.definition_.up);
+  c.capsule_ = detail::make_capsule(D{}, d.half_length, d.radius);
   c.least_up_ = math::cos(d.max_slope);
   c.position_ = feet + Position(c.definition_.up * (d.half_length + d.radius));
   BodyDef<D> body;
@@ -264,10 +257,12 @@ void Character<D>::slide(const World<D>& world, Vector way, bool keep_height) {
   }
 }
 
-/// Goes straight in `direction` until something is at the skin; returns the way gone. Conservative advancement.
+/// Goes straight in `direction` until something is at the skin; returns the way gone. Conservative advancement. Where
+/// something stopped it, the planes are those of the place.
 template <class D>
 float Character<D>::advance(const World<D>& world, const Vector& direction, float way) {
   float gone = 0;
+  stopped_ = false;
   for (int i = 0; i < 12 && way - gone > tiny; ++i) {
     find_planes(world, way - gone);
     float step = way - gone;
@@ -277,7 +272,8 @@ float Character<D>::advance(const World<D>& world, const Vector& direction, floa
     }
     position_ += Position(direction * step);
     gone += step;
-    if (step < 10 * tiny) break;
+    stopped_ = step < 10 * tiny;
+    if (stopped_) break;
   }
   return gone;
 }
@@ -297,7 +293,7 @@ bool Character<D>::climb(const World<D>& world, const Vector& way, const Positio
   const float went = float(dot(position_ - start, Position(ahead)));
   if (went > before + 0.25f * wanted) {  // less is only the skin at an edge
     advance(world, -up, raised + ground_gap);
-    find_planes(world, ground_gap);
+    if (!stopped_) find_planes(world, ground_gap);
     // What carries it must not lie higher above where it began than a step: it has not been lifted over an edge.
     const float lifted = float(dot(position_ - start, Position(up)));
     for (const Plane& p : planes_)
@@ -354,8 +350,9 @@ template <class D>
 void Character<D>::follow_ground(const World<D>& world, bool jumped, bool stood) {
   const Vector up = definition_.up;
   const Position here = position_;
+  stopped_ = false;
   if (stood && !jumped) advance(world, -up, definition_.step_height + ground_gap);
-  find_planes(world, ground_gap);
+  if (!stopped_) find_planes(world, ground_gap);
   ground_ = {};
   const Plane* best = nullptr;
   for (const Plane& p : planes_) {

@@ -135,7 +135,8 @@ class CAROM_API Character {
   float rise_ = 0;      ///< m/s along up while it does not stand
   float least_up_ = 0;  ///< cosine of max_slope
   float dt_ = 0;
-  float approach_ = 0;  ///< m that anything near may come nearer in this move
+  bool stopped_ = false;  ///< the last advance ended at something
+  float approach_ = 0;    ///< m that anything near may come nearer in this move
   CharacterGround<D> ground_{};
   std::vector<Plane> planes_;
   std::vector<ShapeId> nearby_;

@@ -2,7 +2,9 @@
 // SI units, radians, right-handed, y up. Made for designated initialisers.
 #pragma once
 
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "carom/core/handle.h"
 #include "carom/rigid/dimension.h"
@@ -46,7 +48,7 @@ struct WorldDef {
   bool allow_sleep = true;
   bool continuous = true;              ///< fast bodies never pass through static geometry
   float restitution_threshold = 1.0f;  ///< m/s: slower impacts do not bounce
-  float contact_hertz = 30.0f;         ///< stiffness of contacts, capped at 1/8 of the substep rate
+  float contact_hertz = 36.0f;         ///< stiffness of contacts, capped at .15 of the substep rate
   float contact_damping_ratio = 10.0f;
   float contact_push_speed = 3.0f;  ///< m/s: overlapping bodies separate no faster
   float joint_hertz = 60.0f;        ///< stiffness of joints, capped at 1/4 of the substep rate
@@ -63,6 +65,7 @@ struct Capacity {
   int shapes = 0;
   int contacts = 0;  ///< pairs of shapes whose bounds overlap: about four a body in heaps
   int joints = 0;
+  int direct_joints = 0;  ///< of them solved directly (WorldDef::joint_solver) at one time: about 3 kB each
 };
 
 enum class BodyType : std::uint8_t { fixed, kinematic, dynamic };
@@ -85,6 +88,9 @@ struct BodyDef {
   float angular_damping = 0;               ///< 1/s
   float gravity_scale = 1;
   float sleep_speed = 0.05f;  ///< m/s; 0: never sleeps
+  /// 0 … 64: what touches this body or is jointed to it is solved with so many substeps at least, and with contacts and
+  /// joints stiffer in proportion (frequency × substeps/WorldDef::substeps). Other islands do not pay.
+  int substeps = 0;
   MotionLocks locks{};
   bool awake = true;  ///< false: asleep until something awake touches it
   bool allow_sleep = true;
@@ -103,6 +109,13 @@ struct Material {
   float tangent_speed = 0;       ///< m/s along the surface (2D), a conveyor
   std::uint32_t user_id = 0;
   friend bool operator==(const Material&, const Material&) = default;
+};
+/// What parts of a surface (triangles of a mesh, cells of a height field, segments of a chain) are made of.
+template <class D>
+struct SurfaceMaterial {
+  Material material{};
+  typename D::Vector surface_velocity{};  ///< m/s, in the shape's frame: the part runs like a belt
+  friend bool operator==(const SurfaceMaterial&, const SurfaceMaterial&) = default;
 };
 /// What holds between two materials instead of the mixture: rubber on ice is neither.
 struct PairRule {
@@ -129,6 +142,9 @@ struct ShapeDef {
   typename D::Transform local{};  ///< shape → body
   float density = 1000;           ///< kg/m³ (2D: kg/m²), ≥ 0
   Material material{};
+  /// For a geometry whose parts are numbered by material (make_triangle_mesh, make_height_field, make_chain): what
+  /// those numbers stand for, in place of `material` and `surface_velocity`. Empty: the same everywhere. At most 256.
+  std::vector<SurfaceMaterial<D>> surfaces{};
   Filter filter{};
   bool sensor = false;           ///< reports overlaps, pushes nothing
   bool contact_events = true;    ///< begin and end events
@@ -165,7 +181,8 @@ enum class JointType : std::uint8_t {
   gear,
   rack,
   screw,
-  pulley
+  pulley,
+  path
 };
 
 template <class D>
@@ -334,6 +351,28 @@ struct PulleyJointDef : JointFrames<D> {
   typename D::Position ground_a{}, ground_b{};  ///< world
   float length = 1;                             ///< m
   float ratio = 1;                              ///< > 0; a block and tackle on B's side
+};
+
+/// B's anchor stays on a curve that is fixed in A (body_a null: in the world): a bead on a wire, a lift, a coaster. An
+/// open path ends in stops. Held at once with what hangs on it (joint trees), so that a bead keeps its energy.
+template <class D>
+struct PathJointDef : JointFrames<D> {
+  /// m, in frame A; two or more (closed: three), each apart from the next. Copied; of a definition that is read back,
+  /// valid until the world's joints change.
+  std::span<const typename D::Vector> points{};
+  /// m from point to point, dγ/du at each point, for a piecewise cubic curve of Hermite's form. None: Catmull and
+  /// Rom's, half the way between the neighbours (Catmull & Rom, "A class of local interpolating splines", 1974).
+  std::span<const typename D::Vector> tangents{};
+  bool straight = false;  ///< lines from point to point
+  bool closed = false;    ///< from the last point on to the first
+  bool follow = false;    ///< keeps x of frame B along the path (in space, B may roll about it)
+  // Along the path, in m from its first point:
+  JointSpring spring{};        ///< toward `target_distance`; on a closed path the shorter way
+  float target_distance = 0;   ///< m
+  float max_spring_force = 0;  ///< N, 0: as much as it takes. With a stiff spring: a motor to a position.
+  JointLimit limit{};          ///< of open paths, within their ends
+  JointMotor motor{};
+  float friction = 0;  ///< N, where no motor is enabled
 };
 
 }  // namespace carom::rigid

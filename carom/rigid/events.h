@@ -7,6 +7,7 @@ namespace carom::rigid {
 
 struct ContactBeginEvent {
   ShapeId shape_a, shape_b;
+  std::uint32_t material_a = 0, material_b = 0;  ///< Material::user_id of the parts that met
 };
 struct ContactEndEvent {
   ShapeId shape_a, shape_b;  ///< may no longer exist
@@ -15,6 +16,7 @@ struct ContactEndEvent {
 template <class D>
 struct ContactHitEvent {
   ShapeId shape_a, shape_b;
+  std::uint32_t material_a = 0, material_b = 0;  ///< Material::user_id of the parts that met
   typename D::Position point{};
   typename D::Vector normal{};  ///< from A to B
   float approach_speed = 0;     ///< m/s
@@ -38,8 +40,9 @@ struct MoveEvent {
 template <class D>
 struct ContactModification {
   ShapeId shape_a, shape_b;
-  typename D::Vector normal{};             ///< from A to B, world
-  typename D::Vector relative_velocity{};  ///< m/s of B against A, at the middle of the points
+  std::uint32_t material_a = 0, material_b = 0;  ///< Material::user_id of the parts that touch
+  typename D::Vector normal{};                   ///< from A to B, world
+  typename D::Vector relative_velocity{};        ///< m/s of B against A, at the middle of the points
   int count = 0;
   struct Point {
     typename D::Position point{};

@@ -14,7 +14,7 @@ namespace detail {
 namespace {
 
 constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
-constexpr std::uint64_t format_version = 1;
+constexpr std::uint64_t format_version = 3;
 constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
 
 /// Where compilers and machines could lay out the plain bytes of a state differently.
@@ -22,11 +22,11 @@ template <class D>
 std::uint64_t layout() {
   core::StateHash hash;
   hash.add(format_version).add(std::int32_t(D::dimension));
-  const std::size_t sizes[] = {
-      sizeof(SolverBody<D>),          sizeof(typename D::Pose),  sizeof(BodyMotion<D>), sizeof(BodyRecord),
-      sizeof(ShapeTraits<D>),         sizeof(JointHeader),       sizeof(JointData<D>),  sizeof(EffectorDef<D>),
-      sizeof(ContactRecord<D>),       sizeof(ManifoldRecord<D>), sizeof(WorldDef<D>),   sizeof(std::size_t),
-      offsetof(BodyRecord, user_data)};
+  const std::size_t sizes[] = {sizeof(SolverBody<D>),  sizeof(typename D::Pose), sizeof(BodyMotion<D>),
+                               sizeof(BodyRecord),     sizeof(ShapeExtra<D>),    sizeof(PartSurface<D>),
+                               sizeof(ShapeTraits<D>), sizeof(JointHeader),      sizeof(JointData<D>),
+                               sizeof(EffectorDef<D>), sizeof(ContactRecord<D>), sizeof(ManifoldRecord<D>),
+                               sizeof(WorldDef<D>),    sizeof(std::size_t),      offsetof(BodyRecord, user_data)};
   for (const std::size_t size : sizes) hash.add(std::uint64_t{size});
   hash.add(std::endian::native == std::endian::little);
 #if defined(_LIBCPP_VERSION)
@@ -91,7 +91,8 @@ void write_effectors(ByteWriter& out, const std::vector<EffectorData<D>>& effect
           if constexpr (std::is_trivially_copyable_v<T>) {
             std::vector<std::uint32_t> words((sizeof(T) + 3) / 4);
             std::memcpy(words.data(), &value, sizeof(T));
-            out.difference(words.data(), nullptr, words.size());
+            SectionModel model(words.size());
+            out.difference(words.data(), nullptr, words.size(), model);
           } else {
             out.word(value.body.packed());  // a function of the caller: only whom it pushes
           }
@@ -110,7 +111,8 @@ bool read_effector(ByteReader& in, std::size_t index, Variant& definition) {
     T value{};
     if constexpr (std::is_trivially_copyable_v<T>) {
       std::vector<std::uint32_t> words((sizeof(T) + 3) / 4);
-      in.difference(words.data(), words.size());
+      SectionModel model(words.size());
+      in.difference(words.data(), words.size(), model);
       std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
     } else {
       const std::uint64_t packed = in.word();
@@ -121,15 +123,24 @@ bool read_effector(ByteReader& in, std::size_t index, Variant& definition) {
   }
 }
 
+void append_word(std::vector<std::byte>& out, std::uint64_t x) {
+  for (int i = 0; i < 8; ++i) out.push_back(std::byte(std::uint8_t(x >> (8 * i))));
+}
+std::uint64_t word_at(std::span<const std::byte> bytes, std::size_t at) {
+  std::uint64_t x = 0;
+  for (std::size_t i = 0; i < 8; ++i) x |= std::uint64_t{std::uint8_t(bytes[at + i])} << (8 * i);
+  return x;
+}
+
 template <class D>
 std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const SnapshotData<D>* base) {
   std::vector<std::byte> bytes;
-  ByteWriter out(bytes);
   std::vector<std::uint64_t> image = canonical_image(data), base_image;
   if (base != nullptr) base_image = canonical_image(*base);
   for (const std::uint64_t x :
        {magic, layout<D>(), base != nullptr ? hash_words(base_image) : std::uint64_t{0}, hash_words(image)})
-    out.word(x);
+    append_word(bytes, x);
+  ByteWriter out(bytes);
   const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
   const std::size_t common_bodies =
       base != nullptr ? std::min(bodies, std::size_t(base->sections[base->bodies_at].count)) : 0;
@@ -148,10 +159,12 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
     out.number(s.count);
     if (base == nullptr) out.number(s.element);
     const std::size_t count = word_count(s), common = std::min(count, base != nullptr ? word_count(b) : 0);
-    out.difference(words_of(s, image), words_of(b, base_image), 2 * common);
-    out.difference(words_of(s, image) + 2 * common, nullptr, 2 * (count - common));
+    SectionModel model(std::size_t(s.element) / 4);
+    out.difference(words_of(s, image), words_of(b, base_image), 2 * common, model);
+    out.difference(words_of(s, image) + 2 * common, nullptr, 2 * (count - common), model);
   }
   // Geometry by slot, where it is not as in the base.
+  SectionModel geometry_model(std::size(GeometryRecord{}.value));
   const bool same = base != nullptr && base->geometry == data.geometry && base->missing.empty();
   const std::vector<GeometryRecord> now = same ? std::vector<GeometryRecord>{} : known_records(&data);
   const std::vector<GeometryRecord> before = same ? std::vector<GeometryRecord>{} : known_records(base);
@@ -159,16 +172,21 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
   out.byte(same ? 0 : 1);
   for (std::size_t i = 0; i < now.size(); ++i) {
     const bool equal = i < before.size() && before[i] == now[i];
-    out.byte(equal ? 0 : (now[i].shared != 0 ? 2 : 1));
+    // A changed terrain is sent itself, unless this one came as bytes and was not yet looked up.
+    const bool sent = now[i].shared == 2 && (i >= data.missing.size() || data.missing[i].shared == 0);
+    out.byte(equal ? 0 : (sent ? 3 : (now[i].shared != 0 ? 2 : 1)));
     if (equal) continue;
     out.number(now[i].type);
-    if (now[i].shared != 0)
+    if (sent)
+      write_terrain(out, (*data.geometry)[i], i < before.size() ? &(*base->geometry)[i] : nullptr);
+    else if (now[i].shared != 0)
       out.word(now[i].fingerprint);
     else
-      out.difference(now[i].value, nullptr, std::size(now[i].value));
+      out.difference(now[i].value, nullptr, std::size(now[i].value), geometry_model);
   }
   write_effectors<D>(out, data.effectors);
-  out.word(checksum(bytes));
+  out.finish();
+  append_word(bytes, checksum(bytes));
   return bytes;
 }
 
@@ -189,8 +207,9 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
     const std::size_t common = std::min(count, base != nullptr ? word_count(base->sections[i]) : 0);
     data.image.resize(data.image.size() + count);
     std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(data.image.data() + s.first);
-    in.difference(words, 2 * common);
-    in.difference(words + 2 * common, 2 * (count - common));
+    SectionModel model(std::size_t(s.element) / 4);
+    in.difference(words, 2 * common, model);
+    in.difference(words + 2 * common, 2 * (count - common), model);
     data.sections.push_back(s);
   }
   const auto is = [&](std::size_t at, std::size_t element) {
@@ -237,10 +256,11 @@ bool read_geometry(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
     data.missing = base->missing;
     return in.sound();
   }
-  if (count > in.left()) return false;  // a byte a slot at least
+  if (count > in.left() + 8) return false;  // a byte a slot at least
   auto shapes = std::make_shared<std::vector<typename D::Shape>>(std::size_t(count));
   data.missing.resize(std::size_t(count));
   bool any = false;
+  SectionModel geometry_model(std::size(GeometryRecord{}.value));
   for (std::size_t i = 0; i < count && in.sound(); ++i) {
     GeometryRecord record;
     switch (in.byte()) {
@@ -251,7 +271,7 @@ bool read_geometry(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
         break;
       case 1:
         record.type = std::uint32_t(in.number());
-        in.difference(record.value, std::size(record.value));
+        in.difference(record.value, std::size(record.value), geometry_model);
         if (!shape_of(record, (*shapes)[i])) return false;
         break;
       case 2:
@@ -259,6 +279,13 @@ bool read_geometry(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
         record.shared = 1;
         record.fingerprint = in.word();
         data.missing[i] = record;
+        break;
+      case 3:
+        record.type = std::uint32_t(in.number());
+        if (!read_terrain(in, record.type,
+                          base != nullptr && i < base->geometry->size() ? &(*base->geometry)[i] : nullptr,
+                          (*shapes)[i]))
+          return false;
         break;
       default:
         return false;
@@ -273,7 +300,7 @@ bool read_geometry(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
 template <class D>
 bool read_effectors(ByteReader& in, SnapshotData<D>& data) {
   const std::uint64_t count = in.number();
-  if (count > in.left()) return false;
+  if (count > in.left() + 8) return false;
   data.effectors.resize(std::size_t(count));
   for (EffectorData<D>& e : data.effectors) {
     const std::uint64_t index = in.number();
@@ -345,13 +372,13 @@ core::Result<Snapshot<D>> Snapshot<D>::decode(std::span<const std::byte> bytes, 
   const auto fault = [](std::string_view what) { return core::Error{core::text("Snapshot::decode: ", what)}; };
   if (bytes.size() < 48)
     return fault(core::text("the data is ", bytes.size(), " bytes, expected a snapshot, which has at least 48"));
-  ByteReader in(bytes.first(bytes.size() - 8)), end(bytes.last(8));
-  if (in.word() != magic) return fault("the data does not begin as a snapshot of this version does");
-  if (in.word() != layout<D>())
+  if (word_at(bytes, 0) != magic) return fault("the data does not begin as a snapshot of this version does");
+  if (word_at(bytes, 8) != layout<D>())
     return fault("the snapshot was made by another version, for another dimension or on a machine with another layout");
-  if (end.word() != checksum(bytes.first(bytes.size() - 8)))
+  if (word_at(bytes, bytes.size() - 8) != checksum(bytes.first(bytes.size() - 8)))
     return fault("the checksum does not match, expected whole data: it is truncated or corrupt");
-  const std::uint64_t base_digest = in.word(), digest = in.word();
+  const std::uint64_t base_digest = word_at(bytes, 16), digest = word_at(bytes, 24);
+  ByteReader in(bytes.subspan(32, bytes.size() - 40));
   if (base_digest != digest_of<D>(base.self_.get()))
     return fault(base_digest == 0 ? "the data is a whole snapshot, expected a difference to the given base"
                                   : "the data is a difference to another base than the one given");

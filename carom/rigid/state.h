@@ -35,14 +35,16 @@ struct JointState {
 };
 
 template <class D>
-using AnyJointDef = std::variant<DistanceJointDef<D>, BallJointDef<D>, HingeJointDef<D>, SliderJointDef<D>,
-                                 WeldJointDef<D>, MotorJointDef<D>, MouseJointDef<D>, GenericJointDef<D>,
-                                 GearJointDef<D>, RackJointDef<D>, ScrewJointDef<D>, PulleyJointDef<D>>;
+using AnyJointDef =
+    std::variant<DistanceJointDef<D>, BallJointDef<D>, HingeJointDef<D>, SliderJointDef<D>, WeldJointDef<D>,
+                 MotorJointDef<D>, MouseJointDef<D>, GenericJointDef<D>, GearJointDef<D>, RackJointDef<D>,
+                 ScrewJointDef<D>, PulleyJointDef<D>, PathJointDef<D>>;
 
 template <class D>
 struct ContactView {
   ShapeId shape_a{}, shape_b{};
-  typename D::Vector normal{};  ///< from A to B, world
+  std::uint32_t material_a = 0, material_b = 0;  ///< Material::user_id of the parts that touch
+  typename D::Vector normal{};                   ///< from A to B, world
   int count = 0;
   struct Point {
     typename D::Position point{};

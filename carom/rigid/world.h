@@ -8,6 +8,8 @@
 
 #include "carom/core/result.h"
 #include "carom/export.h"
+#include "carom/geometry/height_field.h"
+#include "carom/geometry/voxels.h"
 #include "carom/rigid/effector.h"
 #include "carom/rigid/events.h"
 #include "carom/rigid/snapshot.h"
@@ -21,6 +23,27 @@ using core::Status;
 struct QueryFilter {
   std::uint64_t category = ~std::uint64_t{0};
   std::uint64_t mask = ~std::uint64_t{0};
+  BodyId ignore{};  ///< whose shapes are not seen; null: none
+};
+/// One of many rays.
+template <class D>
+struct RayQuery {
+  typename D::Position origin{};
+  typename D::Vector translation{};
+  QueryFilter filter{};
+};
+/// One of many casts of a shape.
+template <class D>
+struct ShapeCastQuery {
+  typename D::Pose pose{};
+  typename D::Vector translation{};
+  QueryFilter filter{};
+};
+/// One of many places of a shape.
+template <class D>
+struct OverlapQuery {
+  typename D::Pose pose{};
+  QueryFilter filter{};
 };
 template <class D>
 struct RayHit {
@@ -28,7 +51,8 @@ struct RayHit {
   typename D::Position point{};
   typename D::Vector normal{};
   float fraction = 1;
-  std::uint32_t child = 0;  ///< triangle, cell or compound child
+  std::uint32_t child = 0;     ///< triangle, cell, segment or compound child
+  std::uint32_t material = 0;  ///< Material::user_id of that part
 };
 
 /// Bodies, shapes, joints and effectors, and their motion in time. Not copyable; two worlds in two threads are
@@ -72,6 +96,7 @@ class CAROM_API World {
   Status set_locks(BodyId body, MotionLocks locks);
   Status set_damping(BodyId body, float linear, float angular);
   Status set_gravity_scale(BodyId body, float scale);
+  Status set_substeps(BodyId body, int substeps);  ///< BodyDef::substeps
   Status set_user_data(BodyId body, std::uint64_t data);
 
   // Forces last for one step; impulses act at once. Points and vectors in world axes.
@@ -92,6 +117,20 @@ class CAROM_API World {
   Result<Shape> shape_geometry(ShapeId shape) const;
   Result<ShapeDef<D>> shape_definition(ShapeId shape) const;
   Status set_material(ShapeId shape, const Material& material);
+  Status set_surface(ShapeId shape, int index, const SurfaceMaterial<D>& surface);  ///< one of ShapeDef::surfaces
+  /// Terrain that changes (space): part of a height field or voxel grid. What lies on it wakes, contacts follow,
+  /// snapshots carry the change. The world changes a copy of its own: the first change after a snapshot copies the
+  /// field, others take time in proportion to what they change and to the contacts that are awake. Errors: another kind
+  /// of shape, and what geometry's functions of these names refuse; a material that `surfaces` does not have.
+  Status set_heights(ShapeId shape, const geometry::GridRectangle& vertices, std::span<const float> heights)
+    requires(D::dimension == 3);
+  Status set_holes(ShapeId shape, const geometry::GridRectangle& cells, std::span<const std::uint8_t> holes)
+    requires(D::dimension == 3);
+  Status set_cell_materials(ShapeId shape, const geometry::GridRectangle& cells,
+                            std::span<const std::uint8_t> materials)
+    requires(D::dimension == 3);
+  Status set_cells(ShapeId shape, const geometry::VoxelBlock& block, std::span<const std::uint8_t> cells)
+    requires(D::dimension == 3);
   Status set_filter(ShapeId shape, const Filter& filter);
   Status set_density(ShapeId shape, float density);  ///< kg/m³ (2D: kg/m²); the body's mass follows
   Status set_surface_velocity(ShapeId shape, Vector velocity);
@@ -124,12 +163,13 @@ class CAROM_API World {
   Result<JointId> create_joint(const RackJointDef<D>& definition);
   Result<JointId> create_joint(const ScrewJointDef<D>& definition);  ///< space only
   Result<JointId> create_joint(const PulleyJointDef<D>& definition);
+  Result<JointId> create_joint(const PathJointDef<D>& definition);
   Status destroy_joint(JointId joint);
   bool contains(JointId joint) const;
   Result<JointState<D>> joint_state(JointId joint) const;
   Result<AnyJointDef<D>> joint_definition(JointId joint) const;  ///< as it is now
-  Status set_motor(JointId joint, const JointMotor& motor);      ///< distance, hinge, slider
-  Status set_limit(JointId joint, const JointLimit& limit);      ///< distance, ball (its twist), hinge, slider
+  Status set_motor(JointId joint, const JointMotor& motor);      ///< distance, hinge, slider, path
+  Status set_limit(JointId joint, const JointLimit& limit);      ///< distance, ball (its twist), hinge, slider, path
   Status set_spring(JointId joint, const JointSpring& spring);   ///< both springs of a weld or motor joint
   /// Of a generic joint: the linear axes come first, then the angular ones. Whether it is free stays as it was made.
   Status set_axis(JointId joint, int axis, const JointAxis& settings);
@@ -169,12 +209,21 @@ class CAROM_API World {
   Status overlap(const Shape& shape, const Pose& pose, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
   Status overlap_bounds(const typename D::Bounds& bounds, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
 
+  // Many queries at once, on the world's threads: the same answers as one by one, to the bit. Errors: a bad query,
+  // which the message names by its number, and then none is answered; results that are not as many as queries.
+  Status cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const;
+  Status cast_shapes(const Shape& shape, std::span<const ShapeCastQuery<D>> casts, std::span<RayHit<D>> hits) const;
+  /// What query i found stands in `found` from ends[i − 1] (0 for the first) to ends[i].
+  Status overlap_shapes(const Shape& shape, std::span<const OverlapQuery<D>> queries, std::vector<ShapeId>& found,
+                        std::span<std::uint32_t> ends) const;
+
   // The whole world, in creation order of what still exists.
   void bodies(std::vector<BodyId>& out) const;
   void shapes(BodyId body, std::vector<ShapeId>& out) const;
   void joints(std::vector<JointId>& out) const;
   void effectors(std::vector<EffectorId>& out) const;
-  void contacts(std::vector<ContactView<D>>& out) const;  ///< touching contacts with points and impulses
+  void contacts(std::vector<ContactView<D>>& out) const;               ///< touching contacts with points and impulses
+  void contacts(BodyId body, std::vector<ContactView<D>>& out) const;  ///< of one body; none if it does not exist
 
   Totals<D> totals() const;         ///< mass, momentum, angular momentum, energies
   Counters counters() const;        ///< bodies, awake, shapes, contacts, joints, islands, colours, bytes

@@ -3,6 +3,7 @@
 #include "carom/geometry/compound.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
+#include "carom/geometry/mesh_builders.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/scene/detail/bytes.h"
 #include "carom/scene/detail/document.h"
@@ -95,6 +96,10 @@ class ShapeWriter {
         body = "\"kind\":\"cone\",\"half_height\":" + shortest(s.cone.half_height) +
                ",\"radius\":" + shortest(s.cone.radius);
         break;
+      case geometry::ShapeType3::ellipsoid:
+        body = "\"kind\":\"ellipsoid\",\"radii\":" +
+               list({double(s.ellipsoid.radii.x), double(s.ellipsoid.radii.y), double(s.ellipsoid.radii.z)});
+        break;
       case geometry::ShapeType3::plane:
         body = "\"kind\":\"plane\",\"normal\":" +
                list({double(s.plane.normal.x), double(s.plane.normal.y), double(s.plane.normal.z)});
@@ -125,8 +130,12 @@ class ShapeWriter {
       hull_triangles(*s.hull, t);
     else if (s.type == geometry::ShapeType3::mesh)
       t = {s.mesh->vertices, s.mesh->indices};
-    else
+    else if (s.type == geometry::ShapeType3::height_field)
       field_triangles(*s.height_field, t);
+    else {
+      geometry::Triangles faces = geometry::to_triangles(s);
+      t = {std::move(faces.positions), std::move(faces.indices)};
+    }
     const std::uint32_t id = std::uint32_t(known_.size());
     known_.push_back(s.data.get());
     detail::ByteWriter out;

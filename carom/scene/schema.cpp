@@ -27,7 +27,8 @@ std::string measure_name(Measure measure) {
 std::string item_schema(const Field& field) {
   if (field.of == tables().body || field.of == tables().joint || field.of == tables().effector)
     return "{\"anyOf\": [" + reference_to(field.of->name) + ", " + reference_to("group") + "]}";
-  if (field.of == tables().shape) return "{\"anyOf\": [{\"type\": \"string\"}, " + reference_to("shape") + "]}";
+  if (field.of == tables().shape || field.of == tables().surface)
+    return "{\"anyOf\": [{\"type\": \"string\"}, " + reference_to(field.of->name) + "]}";
   return field.of != nullptr ? reference_to(field.of->name) : std::string("{\"type\": \"string\"}");
 }
 

@@ -118,6 +118,7 @@ class SceneWriter {
     f.put("angular_velocity", angular_text(d.angular_velocity));
     f.unless("linear_damping", d.linear_damping, 0.0f).unless("angular_damping", d.angular_damping, 0.0f);
     f.unless("gravity_scale", d.gravity_scale, 1.0f).unless("sleep_speed", d.sleep_speed, fallback.sleep_speed);
+    if (d.substeps != 0) f.put("substeps", double(d.substeps));
     put_locks(d.locks, f);
     f.flag("awake", d.awake, true)
         .flag("allow_sleep", d.allow_sleep, true)
@@ -285,6 +286,22 @@ class SceneWriter {
         .put("length", j.length)
         .put("ratio", j.ratio)
         .object();
+  }
+
+  static std::string points_text(std::span<const typename D::Vector> points) {
+    std::string text;
+    for (const auto& p : points) text += (text.empty() ? "" : ", ") + vector_text(p);
+    return "[" + text + "]";
+  }
+  std::string joint_text(const PathJointDef<D>& j) const {
+    Fields f = joint_fields("path", j);
+    f.put("points", points_text(j.points));
+    if (!j.tangents.empty()) f.put("tangents", points_text(j.tangents));
+    f.flag("straight", j.straight, false).flag("closed", j.closed, false).flag("follow", j.follow, false);
+    f.unless("target_distance", j.target_distance, 0.0f).unless("max_spring_force", j.max_spring_force, 0.0f);
+    f.unless("friction", j.friction, 0.0f);
+    put_drive(f, j.spring, j.limit, j.motor, false);
+    return f.object();
   }
 
   Fields effector_fields(const char* type, BodyId body = {}) const {

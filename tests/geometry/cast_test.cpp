@@ -203,6 +203,69 @@ TEST(ShapeCast, EndsTouchingWhateverTheShapes) {
   EXPECT_GT(hits, 300);
 }
 
+TEST(ShapeCast, OnATriangleFromTheFrontEndsTouchingIt) {
+  Draw draw;
+  int hits = 0, misses = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const Vec3f a = draw.direction(), b = draw.direction(), c = draw.direction();
+    const Vec3f normal = cross(b - a, c - a);
+    if (length(normal) < 0.1f) continue;
+    const Shape3 mesh(make_triangle_mesh({a, b, c}, {0, 1, 2}).value());
+    const Shape3 moving = k % 4 == 0   ? Shape3(Sphere{draw.in(0.1, 0.6)})
+                          : k % 4 == 1 ? Shape3(Capsule3{draw.in(0.1, 0.8), draw.in(0.1, 0.5)})
+                          : k % 4 == 2 ? Shape3(Box{{draw.in(0.1, 0.6), draw.in(0.1, 0.6), draw.in(0.1, 0.6)}})
+                                       : Shape3(Cylinder{draw.in(0.1, 0.6), draw.in(0.1, 0.6)});
+    Transform3f x{draw.vector(1.5, 6), draw.rotation()};
+    const Vec3f way = (draw.vector(0, 1.3) - x.p) * draw.in(0.4, 2);
+    if (dot(normal, x.p - a) <= 0 || dot(normal, way) >= 0) {
+      EXPECT_FALSE(shape_cast(mesh, moving, x, way).hit);
+      continue;
+    }
+    const bool begins_in_touch = overlap(mesh, moving, x);
+    const CastHit3 h = shape_cast(mesh, moving, x, way);
+    const Vec3f from = x.p;
+    x.p = from + way * h.fraction;
+    const float d = distance(mesh, moving, x).distance;
+    if (begins_in_touch) {
+      EXPECT_TRUE(h.hit);
+      EXPECT_EQ(h.fraction, 0);
+    } else if (h.hit) {
+      ++hits;
+      EXPECT_LT(d, 1e-3f) << k;
+      EXPECT_NEAR(length(h.normal), 1, 1e-5f);
+      // Drawn back along the normal it is that far away: the normal is that of the touch.
+      x.p = x.p + h.normal * 0.01f;
+      EXPECT_NEAR(distance(mesh, moving, x).distance, 0.01f, 1e-3f) << k;
+      EXPECT_LT(distance(mesh, Sphere{1e-5f}, {h.point, {}}).distance, 2e-3f) << k;
+    } else {
+      ++misses;
+      EXPECT_GT(d, 0) << k;
+    }
+    for (int s = 0; s < 20 && h.fraction > 0; ++s) {
+      x.p = from + way * (h.fraction * float(s) / 20);
+      ASSERT_FALSE(overlap(mesh, moving, x)) << k << " " << s;
+    }
+  }
+  EXPECT_GT(hits, 500);
+  EXPECT_GT(misses, 200);
+}
+
+TEST(Overlap3, AgreesWithTheDistance) {
+  Draw draw;
+  int touching = 0;
+  for (int ka = 0; ka < convex_kinds; ++ka)
+    for (int kb = 0; kb < convex_kinds; ++kb)
+      for (int k = 0; k < 60; ++k) {
+        const Shape3 a = random_convex(draw, ka), b = random_convex(draw, kb);
+        const Transform3f x{draw.vector(0, 2.5), draw.rotation()};
+        const float d = distance(a, b, x).distance;
+        if (d > 0 && d < 1e-5f) continue;  // too near to tell
+        touching += d <= 0;
+        EXPECT_EQ(overlap(a, b, x), d <= 0) << kind_name(ka) << " " << kind_name(kb) << " " << d;
+      }
+  EXPECT_GT(touching, 200);
+}
+
 TEST(ShapeCast, OnMeshFieldAndCompound) {
   const auto mesh = make_triangle_mesh({{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}}, {0, 2, 1, 0, 3, 2}).value();
   const auto field = make_height_field(11, 11, {1, 1}, std::vector<float>(121)).value();

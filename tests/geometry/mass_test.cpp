@@ -54,8 +54,9 @@ Vec3f rock[] = {{1, 0, 0}, {-1, 0.2f, 0}, {0, 1, 0.3f}, {0, -1, 0}, {0, 0, 1}, {
 // Every shape against the divergence theorem over the triangles that are drawn for it. The mesh of a curved shape of n
 // segments lies inside it, with an error of order n⁻²; extrapolating from n and n/2 leaves n⁻⁴.
 TEST(MassTest, ShapesAgreeWithTheirTriangles) {
-  const Shape3 shapes[] = {Sphere{0.7f},         Capsule3{0.4f, 0.3f}, Box{{0.3f, 0.5f, 0.9f}, 0},
-                           Cylinder{0.6f, 0.4f}, Cone{0.6f, 0.5f},     make_hull(rock).value()};
+  const Shape3 shapes[] = {Sphere{0.7f},           Capsule3{0.4f, 0.3f}, Box{{0.3f, 0.5f, 0.9f}, 0},
+                           Cylinder{0.6f, 0.4f},   Cone{0.6f, 0.5f},     Ellipsoid{{0.3f, 0.5f, 0.9f}},
+                           make_hull(rock).value()};
   for (const Shape3& shape : shapes) {
     const MassProperties3 exact = mass_properties(shape, 700);
     const MassProperties3 fine = mesh_mass(to_triangles(shape, 256), 700).properties;

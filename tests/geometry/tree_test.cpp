@@ -6,7 +6,7 @@
 
 #include "carom/geometry/detail/chain_tree.h"
 #include "carom/geometry/dynamic_tree.h"
-#include "carom/geometry/static_tree.h"
+#include "carom/geometry/tree_walk.h"
 
 namespace {
 using namespace carom;

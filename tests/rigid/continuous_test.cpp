@@ -124,5 +124,81 @@ TYPED_TEST(Continuous, OffMeansOff) {
   EXPECT_GT(world.state(ball).value().pose.position.x, 10);
 }
 
+// A door that a script shuts is as much a wall as one that stands, for bodies that are no bullets too.
+TYPED_TEST(Continuous, FastBallStopsAtAKinematicDoor) {
+  using D = TypeParam;
+  World<D> world(world_with<D>(0));
+  BodyDef<D> def;
+  def.type = BodyType::kinematic;
+  def.linear_velocity = along<D>(0, 1);
+  const BodyId door = world.create_body(def).value();
+  world.add_shape(door, box_shape<D>(0.02f, 5, 5)).value();
+  const BodyId ball = add_ball<D>(world, at<D>(-3.3, 0), 0.05f, {}, along<D>(300, 0));
+  run(world, 30);
+  EXPECT_LT(world.state(ball).value().pose.position.x, 0);
+}
+
+// Three bullets in a row, and one that comes at them: they meet in the order of their ways, and keep their momentum.
+TYPED_TEST(Continuous, BulletsMeetInTheOrderOfTime) {
+  using D = TypeParam;
+  World<D> world(world_with<D>(0));
+  std::vector<BodyId> all;
+  for (const double x : {-0.6, -0.9, -1.2, 2.0}) {
+    BodyDef<D> def;
+    def.position = at<D>(x, 0);
+    def.linear_velocity = along<D>(x < 0 ? 300.0f : -300.0f, 0);
+    def.bullet = true;
+    all.push_back(world.create_body(def).value());
+    world.add_shape(all.back(), ball_shape<D>(0.05f)).value();
+  }
+  run(world, 60);
+  double momentum = 0;
+  for (std::size_t i = 0; i < 4; ++i) momentum += double(world.state(all[i]).value().linear_velocity.x);
+  EXPECT_NEAR(momentum, 600, 0.1);
+  for (std::size_t i = 0; i + 1 < 3; ++i)
+    EXPECT_GT(world.state(all[i]).value().pose.position.x, world.state(all[i + 1]).value().pose.position.x) << i;
+  EXPECT_GT(world.state(all[3]).value().pose.position.x, world.state(all[0]).value().pose.position.x);
+}
+
+// It turns by more than a revolution a step: the ends of the rod must not pass on the short way round.
+TYPED_TEST(Continuous, RodThatWhirlsDoesNotPassAWall) {
+  using D = TypeParam;
+  for (const float spin : {150.0f, 300.0f, 500.0f}) {
+    World<D> world(world_with<D>(0));
+    add_body<D>(world, BodyType::fixed, box_shape<D>(0.05f, 50, 50), at<D>(0, 0));
+    BodyDef<D> def;
+    def.position = at<D>(-2, 0);
+    def.linear_velocity = along<D>(40, 0);
+    if constexpr (D::dimension == 2)
+      def.angular_velocity = spin;
+    else
+      def.angular_velocity = {0, 0, spin};
+    const BodyId rod = world.create_body(def).value();
+    world.add_shape(rod, box_shape<D>(0.3f, 0.02f, 0.02f)).value();
+    for (int i = 0; i < 120; ++i) {
+      world.step(frame).value();
+      const auto pose = world.state(rod).value().pose;
+      for (const float end : {-0.3f, 0.0f, 0.3f}) ASSERT_LT(world_point(pose, along<D>(end, 0)).x, 0.05) << spin;
+    }
+  }
+}
+
+// A ball that falls freely and is stopped just above the ground has the energy of its place, no more.
+TYPED_TEST(Continuous, AStopAddsNoEnergy) {
+  using D = TypeParam;
+  const Surface bouncy{.friction = 0, .restitution = 1};
+  for (const double h : {13.0, 40.0}) {
+    World<D> world(world_with<D>());
+    add_ground(world, bouncy);
+    const BodyId ball = add_ball<D>(world, at<D>(0, 0.5 + h), 0.5f, bouncy);
+    for (int i = 0; i < 1200; ++i) {
+      world.step(frame).value();
+      const BodyState<D> s = world.state(ball).value();
+      const double v = double(s.linear_velocity.y);
+      ASSERT_LT((s.pose.position.y - 0.5) * 9.81 + 0.5 * v * v, 1.0002 * 9.81 * h) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace carom::rigid::test

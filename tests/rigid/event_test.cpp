@@ -11,6 +11,34 @@ class WorldEvents : public testing::Test {};
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(WorldEvents, Dimensions);
 
+// A box that leaves another by more than counts as touching, yet not so far that its contact ends, and comes back: the
+// touch ends and begins anew, although the pair was passed over before.
+TYPED_TEST(WorldEvents, TouchEndsAndBeginsAgainWithinTheMargin) {
+  using D = TypeParam;
+  WorldDef<D> definition = world_with<D>();
+  definition.gravity = {};
+  definition.allow_sleep = false;
+  World<D> world(definition);
+  const BodyId still = add_box<D>(world, {}), moved = add_box<D>(world, at<D>(1.002, 0));
+  (void)still;
+  int begins = 0, ends = 0;
+  const auto go = [&](float speed, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      world.set_velocity(moved, along<D>(speed, 0), {}).value();
+      world.step(frame).value();
+      begins += int(world.events().contact_begin.size());
+      ends += int(world.events().contact_end.size());
+    }
+  };
+  go(0, 5);
+  EXPECT_EQ(begins, 1);
+  go(0.06f, 11);  // to 13 mm apart
+  EXPECT_EQ(ends, 1);
+  go(-0.06f, 11);
+  EXPECT_EQ(begins, 2);
+  EXPECT_EQ(ends, 1);
+}
+
 TYPED_TEST(WorldEvents, ContactBeginsOnceAndEndsOnce) {
   using D = TypeParam;
   World<D> world(world_with<D>());

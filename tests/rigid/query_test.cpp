@@ -79,6 +79,11 @@ class Queries : public testing::Test {
     }
   }
 };
+template <class D>
+bool same(const RayHit<D>& a, const RayHit<D>& b) {
+  return a.shape == b.shape && a.fraction == b.fraction && a.point == b.point && a.normal == b.normal &&
+         a.child == b.child;
+}
 using Dimensions = testing::Types<Dim2, Dim3>;
 TYPED_TEST_SUITE(Queries, Dimensions);
 
@@ -178,6 +183,95 @@ TYPED_TEST(Queries, CastsAgreeWithBruteForce) {
     }
     EXPECT_EQ(this->world.shape_cast(probe, pose, way).value().fraction, first);
   }
+}
+
+/// Two places in the way at the same fraction, and starts inside several shapes, must not make answers depend on the
+/// tree that is walked: the first queries walk the world's own trees, later ones the wide copies.
+TYPED_TEST(Queries, AnswersStayTheSameHoweverOftenOneAsks) {
+  using D = TypeParam;
+  this->fill();
+  for (int i = 0; i < 4; ++i) {  // twins: the same shape at the same place
+    BodyDef<D> body;
+    body.type = BodyType::fixed;
+    body.position = pos<D>(i / 2, 0);
+    const BodyId id = this->world.create_body(body).value();
+    this->world.add_shape(id, any_shape(D{}, 2, this->draw), {.filter = {.category = 1, .mask = 4}}).value();
+  }
+  std::vector<RayQuery<D>> rays;
+  for (int k = 0; k < 40; ++k) {
+    const auto from = k % 2 == 0 ? pos<D>(0, 0) : any_position(D{}, this->draw);
+    rays.push_back({from, typename D::Vector(any_position(D{}, this->draw)), {.category = 4}});
+  }
+  std::vector<RayHit<D>> first;
+  for (int round = 0; round < 20; ++round)
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      const auto hit = this->world.ray_cast(rays[k].origin, rays[k].translation, rays[k].filter).value();
+      if (round == 0)
+        first.push_back(hit);
+      else
+        ASSERT_TRUE(same(hit, first[k])) << round << " " << k;
+    }
+  // A plane among many: its box has no end.
+  if constexpr (D::dimension == 3) {
+    const BodyId ground = this->world.create_body({.type = BodyType::fixed, .position = {0, -40, 0}}).value();
+    const ShapeId plane = this->world.add_shape(ground, geometry::Plane{}).value();
+    std::vector<ShapeId> found;
+    for (int k = 0; k < 400; ++k) {
+      ASSERT_EQ(this->world.ray_cast({3, -30, 2}, {1, -20, 0}).value().shape, plane) << k;
+      this->world.overlap_bounds({{-1, -42, -1}, {1, -39, 1}}, found).value();
+      ASSERT_EQ(found, std::vector<ShapeId>{plane}) << k;
+    }
+  }
+  // Whatever moves is found where it is, by the next query.
+  const BodyId mover = this->world.create_body({.type = BodyType::fixed, .position = pos<D>(500, 0)}).value();
+  this->world.add_shape(mover, any_shape(D{}, 0, this->draw)).value();
+  EXPECT_TRUE(this->world.ray_cast(pos<D>(500, 5), vec<D>(0, -10)).value().shape);
+}
+
+TYPED_TEST(Queries, ManyAtOnceAnswerAsOneByOne) {
+  using D = TypeParam;
+  this->definition.threads = 3;
+  this->world = World<D>(this->definition);
+  this->fill();
+  std::vector<RayQuery<D>> rays;
+  std::vector<ShapeCastQuery<D>> casts;
+  std::vector<OverlapQuery<D>> places;
+  for (int k = 0; k < 333; ++k) {
+    const QueryFilter filter{.category = 4, .mask = k % 2 == 0 ? ~std::uint64_t{0} : 1};
+    typename D::Pose pose;
+    pose.position = any_position(D{}, this->draw);
+    pose.rotation = any_rotation(D{}, this->draw);
+    const auto way = typename D::Vector(any_position(D{}, this->draw));
+    rays.push_back({pose.position, way, filter});
+    casts.push_back({pose, way, filter});
+    places.push_back({pose, filter});
+  }
+  const typename D::Shape probe = any_shape(D{}, 2, this->draw);
+  std::vector<RayHit<D>> hits(rays.size()), met(casts.size());
+  std::vector<ShapeId> found, one;
+  std::vector<std::uint32_t> ends(places.size());
+  this->world.cast_rays(rays, hits).value();
+  this->world.cast_shapes(probe, casts, met).value();
+  this->world.overlap_shapes(probe, places, found, ends).value();
+  std::size_t begin = 0, touched = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    EXPECT_TRUE(same(hits[k], this->world.ray_cast(rays[k].origin, rays[k].translation, rays[k].filter).value()));
+    EXPECT_TRUE(
+        same(met[k], this->world.shape_cast(probe, casts[k].pose, casts[k].translation, casts[k].filter).value()));
+    this->world.overlap(probe, places[k].pose, one, places[k].filter).value();
+    EXPECT_EQ(std::vector<ShapeId>(found.begin() + std::ptrdiff_t(begin), found.begin() + std::ptrdiff_t(ends[k])),
+              one);
+    begin = ends[k];
+    touched += one.size();
+  }
+  EXPECT_EQ(begin, found.size());
+  EXPECT_GT(touched, 50u);
+  // What is wrong is named by its number.
+  rays[7].translation = vec<D>(__builtin_nanf(""), 0);
+  const Status bad = this->world.cast_rays(rays, hits);
+  ASSERT_FALSE(bad.ok());
+  EXPECT_NE(bad.error().message.find("ray 7: translation.x"), std::string::npos) << bad.error().message;
+  EXPECT_FALSE(this->world.cast_shapes(probe, casts, std::span(met).first(3)).ok());
 }
 
 TYPED_TEST(Queries, MovedBodiesAreFoundWhereTheyAre) {

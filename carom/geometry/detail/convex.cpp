@@ -28,6 +28,10 @@ Convex convex_of(const Shape3& s) {
       c.kind = CoreKind::cone;
       c.half = {s.cone.radius, s.cone.half_height, s.cone.radius};
       break;
+    case ShapeType3::ellipsoid:
+      c.kind = CoreKind::ellipsoid;
+      c.half = s.ellipsoid.radii;
+      break;
     case ShapeType3::hull:
       c.kind = CoreKind::hull;
       c.hull = s.hull;
@@ -53,6 +57,7 @@ float inner_size(const Convex& c) {
     case CoreKind::segment:
       return c.radius;
     case CoreKind::box:
+    case CoreKind::ellipsoid:
       return min(c.half.x, min(c.half.y, c.half.z)) + c.radius;
     case CoreKind::cylinder:
     case CoreKind::cone:
@@ -78,6 +83,8 @@ float outer_size(const Convex& c) {
     case CoreKind::cylinder:
     case CoreKind::cone:
       return math::sqrt(c.half.x * c.half.x + c.half.y * c.half.y);
+    case CoreKind::ellipsoid:
+      return max(c.half.x, max(c.half.y, c.half.z));
     default:
       return length(c.half);
   }
@@ -137,6 +144,11 @@ Vec3d support(const Convex& c, Vec3d d) {
     case CoreKind::cone: {
       const Vec3d base = rim_point(c, -double(c.half.y), d), apex{0, double(c.half.y), 0};
       return dot(apex, d) >= dot(base, d) ? apex : base;
+    }
+    case CoreKind::ellipsoid: {
+      const Vec3d radii(c.half), scaled = scale(radii, d);
+      const double l = math::length(scaled);
+      return l > 1e-150 ? scale(radii, scaled * (1 / l)) : Vec3d{radii.x, 0, 0};
     }
     case CoreKind::hull:
       return Vec3d(c.hull->vertices[std::size_t(farthest(c.hull->vertex_lanes, Vec3f(d)))]);
@@ -266,6 +278,9 @@ void feature(const Convex& c, Vec3f d, Feature& out) {
   switch (c.kind) {
     case CoreKind::point:
       out.add({}, 0);
+      return;
+    case CoreKind::ellipsoid:
+      out.add(Vec3f(support(c, Vec3d(d))), 0);
       return;
     case CoreKind::segment:
       out.add({0, -c.half.y, 0}, 0);

@@ -6,13 +6,13 @@
 
 namespace carom::geometry::detail {
 
-enum class CoreKind : std::uint8_t { point, segment, box, cylinder, cone, hull, triangle };
+enum class CoreKind : std::uint8_t { point, segment, box, cylinder, cone, ellipsoid, hull, triangle };
 
 /// A convex core, in its own frame, swept by a sphere of `radius`.
 struct Convex {
   CoreKind kind = CoreKind::point;
   float radius = 0;
-  Vec3f half{};  ///< box: half extents; segment: y; cylinder and cone: x = z = radius, y = half height
+  Vec3f half{};  ///< box, ellipsoid: half extents; segment: y; cylinder and cone: x = z = radius, y = half height
   const Hull* hull = nullptr;
   Vec3f corner[3]{};  ///< triangle, counterclockwise seen from free space
   Vec3f normal{};     ///< triangle

@@ -82,10 +82,80 @@ SimplexVertex support_of(const Placed& a, const Placed& b, Vec3d toward_b) {
   return v;
 }
 
+/// Closest points of the segments from a by u and from b by v (Ericson 2005, §5.1.9).
+void of_segments(Vec3d a, Vec3d u, Vec3d b, Vec3d v, Vec3d& on_a, Vec3d& on_b) {
+  const Vec3d w = a - b;
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+  const double across = uu * vv - uv * uv;
+  double s = across > 1e-14 * uu * vv ? clamp((uv * vw - uw * vv) / across, 0.0, 1.0) : 0;
+  const double t = vv > 0 ? clamp((uv * s + vw) / vv, 0.0, 1.0) : 0;
+  s = clamp((uv * t - uw) / uu, 0.0, 1.0);
+  on_a = a + u * s;
+  on_b = b + v * t;
+}
+
+/// A triangle and a point or segment that do not touch: false where they may.
+bool triangle_and_segment(const Placed& a, const Placed& b, double cutoff, CoreDistance& out) {
+  Vec3d p[3];
+  for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
+  const Vec3d n = cross(p[1] - p[0], p[2] - p[0]);
+  const double nn = dot(n, n);
+  if (!(nn > 0)) return false;
+  const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
+  Vec3d near = b.position + half, far = b.position - half;
+  double low = dot(n, near - p[0]), high = dot(n, far - p[0]);
+  const bool crosses = low * high < 0;
+  if (math::abs(high) < math::abs(low)) {
+    const Vec3d end = near;
+    near = far, far = end;
+    const double level = low;
+    low = high, high = level;
+  }
+  out.count = 0;
+  const double size = math::sqrt(nn);
+  if (!crosses && math::abs(low) > cutoff * size) {
+    out.distance = math::abs(low) / size;
+    out.normal = n * ((low < 0 ? -1 : 1) / size);
+    return true;
+  }
+  const auto above = [&](Vec3d q) {
+    return triple(n, p[1] - p[0], q - p[0]) >= 0 && triple(n, p[2] - p[1], q - p[1]) >= 0 &&
+           triple(n, p[0] - p[2], q - p[2]) >= 0;
+  };
+  if (!crosses && above(near)) {  // nothing of the segment is nearer to the plane
+    out.point_a = near - n * (low / nn);
+    out.point_b = near;
+  } else {
+    if (crosses && above(near + (far - near) * (low / (low - high)))) return false;
+    double least = 1e300;
+    const auto offer = [&](Vec3d on_a, Vec3d on_b) {
+      const double d = length_squared(on_b - on_a);
+      if (d < least) least = d, out.point_a = on_a, out.point_b = on_b;
+    };
+    if (crosses)
+      for (const Vec3d& end : {near, far})
+        if (above(end)) offer(end - n * (dot(n, end - p[0]) / nn), end);
+    if (!crosses && above(far)) offer(far - n * (high / nn), far);
+    for (int i = 0; i < 3; ++i) {
+      Vec3d on_a, on_b;
+      of_segments(p[i], p[(i + 1) % 3] - p[i], near, far - near, on_a, on_b);
+      offer(on_a, on_b);
+    }
+  }
+  const Vec3d d = out.point_b - out.point_a;
+  out.distance = math::length(d);
+  if (!(out.distance > 1e-9 * (1 + size))) return false;
+  out.normal = d * (1 / out.distance);
+  return true;
+}
+
 }  // namespace gjk
 
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out) {
   out.overlap = false;
+  if (a.core->kind == CoreKind::triangle && b.core->kind <= CoreKind::segment &&
+      gjk::triangle_and_segment(a, b, cutoff, out))
+    return;
   if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
   if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
   SimplexVertex* s = out.simplex.items;

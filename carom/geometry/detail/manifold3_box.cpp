@@ -79,12 +79,16 @@ void collide_box_box(const Box& box_a, const Box& box_b, const Transform3f& x, f
   const float apart_a = max(sa.x, max(sa.y, sa.z));
   if (apart_a > margin) {
     out.points[0].separation = apart_a;
+    const int i = sa.x == apart_a ? 0 : (sa.y == apart_a ? 1 : 2);
+    out.normal[i] = t[i] < 0 ? -1.0f : 1.0f;
     return;
   }
   const Vec3f sb = abs(tb) - eb - Vec3f{dot(Q[0], ea), dot(Q[1], ea), dot(Q[2], ea)};
   const float apart_b = max(sb.x, max(sb.y, sb.z));
   if (apart_b > margin) {
     out.points[0].separation = apart_b;
+    const int i = sb.x == apart_b ? 0 : (sb.y == apart_b ? 1 : 2);
+    out.normal = tb[i] < 0 ? -B[i] : B[i];
     return;
   }
 

@@ -85,6 +85,7 @@ bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold
   if (s - pair.radius() > pair.margin) {
     apart = true;
     out.points[0].separation = s - pair.radius();
+    out.normal = of_a ? plane.normal : -rotate(pair.x.q, plane.normal);
     return true;
   }
   if (s < -shallow) return false;
@@ -177,7 +178,9 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
   cache.kind = direction;
   cache.d = pack(n);
   // Over the border of a face: see border_tolerance.
-  const auto roundness = [](const Convex& c) { return is_round(c) ? c.half.x : c.radius; };
+  const auto roundness = [](const Convex& c) {
+    return c.kind == CoreKind::ellipsoid ? inner_size(c) : is_round(c) ? c.half.x : c.radius;
+  };
   const float border = border_tolerance(roundness(pair.a) + roundness(pair.b));
   Vec3f pushed = n;
   bool beyond = false;  // above the face's level and well beside it: nothing to meet yet
@@ -250,6 +253,7 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
     const float s = pair.along(guess) - pair.radius();
     if (s > margin) {
       out.points[0].separation = s;
+      out.normal = guess;
       return;
     }
   }
@@ -260,6 +264,7 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
     cache.kind = direction;
     cache.d = pack(Vec3f(found.normal));
     out.points[0].separation = float(found.distance) - pair.radius();
+    out.normal = normalize(Vec3f(found.normal));
     return;
   }
   if (found.overlap && !core_depth(pa, pb, found)) {
@@ -289,7 +294,8 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
     place(incident, x);
     // Between two faces that meet in a flat edge a ball's centre may be over neither: sin 1° of its radius.
     const int before = out.count;
-    clip_to_face(face, 0, incident, b.radius, margin, 0, out, flat_edges != 0 ? 0.0175f * b.radius : 0.0f);
+    clip_to_face(face, 0, incident, b.radius, margin, 0, out,
+                 flat_edges != 0 ? 0.0175f * (b.kind == CoreKind::ellipsoid ? inner_size(b) : b.radius) : 0.0f);
     normal = t.normal;
     return out.count > before;
   };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "carom/geometry/detail/raw_array.h"
-#include "carom/geometry/shape2.h"
+#include "carom/geometry/manifold.h"
 
 namespace carom::geometry::detail {
 
@@ -40,5 +40,25 @@ struct CoreDistance2 {
   Vec2f point_a{}, point_b{}, normal{};
 };
 CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b);
+
+/// An edge with its normal; it runs from `start` against the clock, `length` m.
+struct ReferenceEdge {
+  Vec2f normal, start;
+  float length;
+  int number;
+  float radius;
+};
+/// The edge of the other shape that faces it, ends in the order along the reference edge.
+struct IncidentEdge {
+  Vec2f first, last;
+  int number;
+  float radius;
+};
+/// The part of the incident edge beside the reference edge, as contacts. `of_b`: the reference edge is of B.
+void clip_edge(const ReferenceEdge& r, const IncidentEdge& s, bool of_b, float margin, Manifold2& out);
+
+/// manifold2_polygon.cpp. False, and nothing done, where the nearest features may be two corners.
+bool collide_polygons(const Polygon& a, const Polygon& b, const Transform2f& b_in_a, float margin, PairCache& cache,
+                      Manifold2& out);
 
 }  // namespace carom::geometry::detail

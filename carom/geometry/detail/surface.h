@@ -1,15 +1,18 @@
-// The triangles of a mesh or height field near a box, each with what its edges are.
+// The triangles of a mesh, height field or voxel grid near a box, each with what its edges are.
 #pragma once
 
 #include "carom/geometry/detail/tree_build.h"
+#include "carom/geometry/detail/voxel_faces.h"
 #include "carom/geometry/height_field.h"
+#include "carom/geometry/tree_walk.h"
 #include "carom/geometry/triangle_mesh.h"
 
 namespace carom::geometry::detail {
 
 struct SurfaceTriangle {
   Vec3f corner[3];
-  std::uint8_t edges = 0;  ///< EdgeFlags
+  std::uint8_t edges = 0;     ///< EdgeFlags
+  std::uint8_t material = 0;  ///< as its maker numbered it
   std::uint32_t index = 0;
 };
 
@@ -17,6 +20,7 @@ inline SurfaceTriangle triangle_of(const TriangleMesh& mesh, std::uint32_t i) {
   SurfaceTriangle t;
   for (std::uint32_t k = 0; k < 3; ++k) t.corner[k] = mesh.vertices[mesh.indices[3 * i + k]];
   t.edges = mesh.edge_flags[i];
+  if (!mesh.materials.empty()) t.material = mesh.materials[i];
   t.index = i;
   return t;
 }
@@ -42,6 +46,7 @@ struct HeightFieldCells {
     t.corner[1] = k == 0 ? vertex(i + 1, j + 1) : vertex(i, j + 1);
     t.corner[2] = k == 0 ? vertex(i + 1, j) : vertex(i + 1, j + 1);
     if (!with_edges) return t;
+    if (!field.materials.empty()) t.material = field.materials[t.index / 2];
     const Vec3f n = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
     // The far corners of the three neighbours, and the cells in which they lie.
     const int far[2][3][2] = {{{i, j + 1}, {i + 2, j + 1}, {i, j - 1}}, {{i - 1, j}, {i + 1, j + 2}, {i + 1, j}}};
@@ -59,6 +64,18 @@ struct HeightFieldCells {
   }
 };
 
+/// One half of a face of a cell: its diagonal stands out nowhere.
+inline SurfaceTriangle triangle_of(const VoxelFace& face, int k) {
+  SurfaceTriangle t;
+  t.corner[0] = face.corner[0], t.corner[1] = face.corner[k == 0 ? 1 : 2], t.corner[2] = face.corner[k == 0 ? 2 : 3];
+  const bool flat[3] = {k == 0 ? face.flat[0] : true, face.flat[k == 0 ? 1 : 2], k == 0 ? true : face.flat[3]};
+  for (int e = 0; e < 3; ++e)
+    if (flat[e]) t.edges = std::uint8_t(t.edges | edge0_flat << e);
+  t.material = face.material;
+  t.index = face.name + std::uint32_t(k);
+  return t;
+}
+
 /// Calls visit(triangle) → bool (false: stop) for the triangles whose boxes meet `box`.
 template <class Visit>
 void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges, Visit&& visit) {
@@ -69,6 +86,14 @@ void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges
       const Bounds3f b{min(t.corner[0], min(t.corner[1], t.corner[2])),
                        max(t.corner[0], max(t.corner[1], t.corner[2]))};
       return boxes_meet(b, box) ? bool(visit(t)) : true;
+    });
+    return;
+  }
+  if (surface.type == ShapeType3::voxels) {
+    visit_voxel_faces(*surface.voxels, box, [&](const VoxelFace& face) {
+      for (int k = 0; k < 2; ++k)
+        if (!visit(triangle_of(face, k))) return false;
+      return true;
     });
     return;
   }

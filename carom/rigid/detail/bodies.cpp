@@ -260,11 +260,22 @@ typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const Shape
   return placed(shape.geometry, shape_pose(world, shape));
 }
 
+/// So far in a step that its shapes may be anywhere about the centre of mass.
+static bool turns_far(float spin, float dt) { return math::abs(spin) * dt > 0.5f; }
+static bool turns_far(const Vec3f& spin, float dt) { return math::length_squared(spin) * dt * dt > 0.25f; }
+
 template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
-  typename D::Bounds box = geometry::grow(shape_bounds(world, shape), double(shape.margin));
   using P = typename D::Position;
-  const P ahead = P(world.bodies.solver[std::size_t(shape.body)].linear_velocity) * double(world.last_dt);
+  const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
+  typename D::Bounds box = shape_bounds(world, shape);
+  if (turns_far(s.angular_velocity, world.last_dt) && world.bodies.is_dynamic(shape.body)) {
+    const BodyMotion<D>& m = world.bodies.motion[std::size_t(shape.body)];
+    const double reach = double(math::length(shape.local.p - m.local_center) + shape.outer_extent);
+    box = merge(box, geometry::grow(typename D::Bounds{m.center, m.center}, reach));
+  }
+  box = geometry::grow(box, double(shape.margin));
+  const P ahead = P(s.linear_velocity) * double(world.last_dt);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 
@@ -320,6 +331,7 @@ void attach_joint(WorldImplementation<D>& world, std::int32_t joint) {
       world.joints.headers[std::size_t(body.first_joint >> 1)].previous[body.first_joint & 1] = key;
     body.first_joint = key;
     ++body.joint_count;
+    world.bodies.motion[std::size_t(j.body[side])].load_level = 0;
   }
   j.place = {};
   for (int side = 0; side < 2; ++side)

@@ -13,6 +13,15 @@ inline MotionLocks locks_of(std::uint8_t b) {
   return {(b & 1) != 0, (b & 2) != 0, (b & 4) != 0, (b & 8) != 0, (b & 16) != 0, (b & 32) != 0};
 }
 
+inline bool is_surface(const geometry::Shape2&) { return false; }  // chains do not move
+using geometry::is_surface;
+/// A mesh on a body that is not fixed.
+template <class D>
+inline bool is_moving_surface(const WorldImplementation<D>& world, std::int32_t shape) {
+  const ShapeRecord<D>& s = world.shapes.at(shape);
+  return is_surface(s.geometry) && !world.bodies.is_fixed(s.body);
+}
+
 /// Puts the body among those that move (or does nothing, for fixed and disabled ones), with its contacts and joints.
 template <class D>
 void activate_body(WorldImplementation<D>& world, std::int32_t body);

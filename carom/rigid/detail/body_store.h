@@ -26,6 +26,10 @@ void grow_by_a_quarter(std::vector<T>& v) {
   if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
 }
 
+inline void prefetch_lines(const void* p, std::size_t bytes) {
+  for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(p) + k);
+}
+
 /// Which worker finds how much is chance: each list of a parallel stage gets room for all that was found, so that a
 /// warm step does not allocate however the work falls.
 template <class T>
@@ -45,15 +49,16 @@ struct BodyMotion {
   typename D::Vector force{};         ///< N, gathered for the next step
   typename D::Angular torque{};       ///< N·m, about the centre of mass
   float mass = 0, inverse_mass = 0;   ///< 0 where forces do not move the body (inverse_mass), or it has none
+  bool gyroscopic = false;            ///< 3D: inertia is not isotropic
+  std::uint16_t load_level = 0;       ///< the contact solver sees more mass (load.h)
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
   typename D::Inertia world_inverse_inertia =
       no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
-  float inner_extent = 0;   ///< m: half the smallest extent of its shapes; how far is "fast"
-  float outer_extent = 0;   ///< m: farthest point of its shapes from the centre of mass
-  float slack = 0;          ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
-  bool gyroscopic = false;  ///< 3D: inertia is not isotropic
+  float inner_extent = 0;  ///< m: half the smallest extent of its shapes; how far is "fast"
+  float outer_extent = 0;  ///< m: farthest point of its shapes from the centre of mass
+  float slack = 0;         ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
 };
 
 enum BodyFlag : std::uint16_t {
@@ -80,6 +85,7 @@ struct BodyRecord {
   std::int32_t awake_index = none;    ///< place in BodyStore::awake
   std::int32_t sleeping_island = none;
   std::int32_t next_asleep = none;  ///< of the same sleeping island
+  std::uint8_t substeps = 0;        ///< that its island has at least
   std::uint32_t color_mask = 0;     ///< colours of the constraint graph in which this body already is
   float sleep_speed = 0.05f;        ///< m/s
   float sleep_timer = 0;            ///< s below the sleep speed
@@ -100,6 +106,8 @@ struct BodyStore {
   std::vector<std::string> names;    ///< empty until the first body with a name
   std::vector<std::uint64_t> birth;  ///< counts up with every creation: the order in which bodies are listed
   std::vector<std::int32_t> awake;   ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
+
+  int substep_wishes = 0;  ///< bodies whose record asks for substeps
 
   explicit BodyStore(std::uint16_t world) : slots(world) {}
   /// Does the solver move this body (dynamic or kinematic) or is it like the ground?

@@ -48,6 +48,7 @@ struct ConstraintGraph {
     if (a != none) ++bodies.record[std::size_t(a)].constraint_count;
     if (b != none) ++bodies.record[std::size_t(b)].constraint_count;
     std::vector<std::int32_t>& list = kind == ConstraintKind::manifold ? colors[color].manifolds : colors[color].joints;
+    if (list.capacity() == 0) list.reserve(16);  // no colour grows for its first few
     list.push_back(item);
     return {std::int16_t(color), std::int32_t(list.size()) - 1};
   }

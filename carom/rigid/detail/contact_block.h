@@ -96,7 +96,9 @@ struct ContactKernels {
   /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back.
   void (*prepare)(void* block, void* raw, float anchor_rate) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
-  void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed) = nullptr;
+  /// order: 0 … 3, in which the points of a manifold come (see list_stages).
+  void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
+                int order) = nullptr;
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h) = nullptr;
   void (*restitute)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
 };

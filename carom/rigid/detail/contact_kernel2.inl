@@ -76,8 +76,9 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
 template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
                                       Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
-                                      WideFloat<W> push_speed) {
+                                      WideFloat<W> push_speed, int order) {
   using F = WideFloat<W>;
+  order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
   const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
@@ -88,7 +89,8 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
   gather<W>(bodies, c.read_b, 4, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
   const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-  for (int i = 0; i < 2; ++i) {
+  for (int k = 0; k < 2; ++k) {
+    const int i = k ^ order;
     auto& point = c.point[i];
     const WideVec2<W> ra = load2<W>(point.r_a), rb = add(ra, offset);
     const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
@@ -116,12 +118,12 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
 }
 
 template <int W>
-void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed) {
+void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed, int order) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed));
+    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed), order);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -160,7 +162,7 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
       push_back(a, ma, ia, p, delta * turn_a);
       push(b, mb, ib, p, delta * turn_b);
     }
-    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0));
+    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), 0);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -221,18 +223,16 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     const WideVec2<W> t = {zero - n.y, n.x}, middle = load2<W>(c.patch_r_a), to_surface = {n.x * gap, n.y * gap};
     const WideVec2<W> ra = subtract(middle, to_surface), rb = add(add(middle, offset), to_surface);
     const F turn_a = cross(ra, t), turn_b = cross(rb, t), limit = F::load(c.friction) * load;
-    // The mass is that of the foreseen place: a second round takes what the first one left.
-    for (int round = 0; round < 2; ++round) {
-      const F slip = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a - F::load(c.tangent_target);
-      const F old = F::load(c.tangent_total);
-      const F lambda = clamp(old - F::load(c.tangent_mass) * slip, zero - limit, limit);
-      const F delta = keep(bounced > zero, lambda - old);
-      (old + delta).store(c.tangent_total);
-      (F::load(c.tangent_impulse) + delta).store(c.tangent_impulse);
-      const WideVec2<W> p = {delta * t.x, delta * t.y};
-      push_back(a, ma, ia, p, delta * turn_a);
-      push(b, mb, ib, p, delta * turn_b);
-    }
+    const F mass = inverse_or_zero(F::splat(1), ma + mb + ia * turn_a * turn_a + ib * turn_b * turn_b);
+    const F slip = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a - F::load(c.tangent_target);
+    const F old = F::load(c.tangent_total);
+    const F lambda = clamp(old - mass * slip, zero - limit, limit);
+    const F delta = keep(bounced > zero, lambda - old);
+    (old + delta).store(c.tangent_total);
+    (F::load(c.tangent_impulse) + delta).store(c.tangent_impulse);
+    const WideVec2<W> p = {delta * t.x, delta * t.y};
+    push_back(a, ma, ia, p, delta * turn_a);
+    push(b, mb, ib, p, delta * turn_b);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }

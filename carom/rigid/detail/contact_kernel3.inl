@@ -76,7 +76,8 @@ CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], con
 template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
                                       Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
-                                      const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed) {
+                                      const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed,
+                                      int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -86,7 +87,8 @@ CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlo
   gather<W>(bodies, c.read_b, 8, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
   const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-  for (int i = 0; i < 4; ++i) {
+  for (int k = 0; k < 4; ++k) {
+    const int i = k ^ order;
     auto& point = c.point[i];
     const WideVec3<W> ra = load3<W>(point.r_a), rb = add(ra, offset);
     const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
@@ -114,13 +116,13 @@ CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlo
 }
 
 template <int W>
-void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed) {
+void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed, int order) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
-                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed));
+                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed), order);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -185,7 +187,7 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       push_back(a, ma, ia, p, cross(ra, p));
       push(b, mb, ib, p, cross(rb, p));
     }
-    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0));
+    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), 0);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -245,24 +247,25 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
                       to_surface = multiply(n, gap);
     const WideVec3<W> ra = subtract(middle, to_surface), rb = add(add(middle, offset), to_surface);
     const F cone = F::load(c.friction) * load;
-    const F m11 = F::load(c.tangent_mass[0]), m22 = F::load(c.tangent_mass[1]), m12 = F::load(c.tangent_mass[2]);
-    // The masses are those of the foreseen place: a second round takes what the first one left.
-    for (int round = 0; round < 2; ++round) {
-      const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
-      const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
-      const F old1 = F::load(c.tangent_total[0]), old2 = F::load(c.tangent_total[1]);
-      const F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
-      const F size = sqrt(l1 * l1 + l2 * l2);
-      const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
-      const F delta1 = keep(bounced > zero, scale * l1 - old1), delta2 = keep(bounced > zero, scale * l2 - old2);
-      (old1 + delta1).store(c.tangent_total[0]);
-      (old2 + delta2).store(c.tangent_total[1]);
-      (F::load(c.tangent_impulse[0]) + delta1).store(c.tangent_impulse[0]);
-      (F::load(c.tangent_impulse[1]) + delta2).store(c.tangent_impulse[1]);
-      const WideVec3<W> p = add(multiply(t, delta1), multiply(u, delta2));
-      push_back(a, ma, ia, p, cross(ra, p));
-      push(b, mb, ib, p, cross(rb, p));
-    }
+    const WideVec3<W> ta = cross(ra, t), tb = cross(rb, t), ua = cross(ra, u), ub = cross(rb, u);
+    const WideVec3<W> ita = multiply(ia, ta), itb = multiply(ib, tb);
+    const F k11 = ma + mb + dot(ta, ita) + dot(tb, itb), k12 = dot(ua, ita) + dot(ub, itb);
+    const F k22 = ma + mb + dot(ua, multiply(ia, ua)) + dot(ub, multiply(ib, ub));
+    const F s = inverse_or_zero(F::splat(1), k11 * k22 - k12 * k12);
+    const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
+    const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
+    const F old1 = F::load(c.tangent_total[0]), old2 = F::load(c.tangent_total[1]);
+    const F l1 = old1 - s * (k22 * e1 - k12 * e2), l2 = old2 - s * (k11 * e2 - k12 * e1);
+    const F size = sqrt(l1 * l1 + l2 * l2);
+    const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
+    const F delta1 = keep(bounced > zero, scale * l1 - old1), delta2 = keep(bounced > zero, scale * l2 - old2);
+    (old1 + delta1).store(c.tangent_total[0]);
+    (old2 + delta2).store(c.tangent_total[1]);
+    (F::load(c.tangent_impulse[0]) + delta1).store(c.tangent_impulse[0]);
+    (F::load(c.tangent_impulse[1]) + delta2).store(c.tangent_impulse[1]);
+    const WideVec3<W> p = add(multiply(t, delta1), multiply(u, delta2));
+    push_back(a, ma, ia, p, cross(ra, p));
+    push(b, mb, ib, p, cross(rb, p));
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }

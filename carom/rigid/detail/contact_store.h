@@ -22,6 +22,7 @@ enum ContactFlag : std::uint16_t {
   contact_special = 2048,    ///< one of the shapes has a ShapeExtra
   contact_decided = 4096,    ///< a one-way surface has decided on which side the other came
   contact_passing = 8192,    ///< and lets it through
+  contact_on_disc = 16384,   ///< a cylinder or cone takes part: its patches may be discs
 };
 
 /// A pair of shapes. `shape[0]` is A: normals point from it to B.
@@ -35,12 +36,14 @@ struct ContactRecord {
   std::int32_t first_manifold = none;
   std::uint16_t flags = 0;
   std::uint16_t manifold_count = 0;
-  float extent = 0;  ///< m: how far a turn of B by one radian moves its surface
-  float inner = 0;   ///< m: half the thickness of the thinner shape
-  float margin = 0;  ///< m: contacts up to this separation are of interest
-  float gap = 0;     ///< m: without manifolds, the shapes were at least this far apart at `base`
+  float extent = 0;           ///< m: how far a turn of B by one radian moves its surface
+  float inner = 0;            ///< m: half the thickness of the thinner shape
+  float gap = 0;              ///< m: without manifolds, the shapes were at least this far apart at `base`
+  typename D::Vector axis{};  ///< and, unless zero, that far along it (unit, in A's shape frame)
   geometry::PairCache cache{};
   typename D::Transform base{};  ///< B in A when the manifolds were last computed in full
+  /// m: contacts up to this separation are of interest.
+  float margin() const { return math::clamp(0.25f * inner, 0.001f, 0.02f); }
 };
 
 /// What the solver did for a manifold, kept for warm starting, events and pictures.
@@ -60,9 +63,7 @@ struct ManifoldRecord {
   std::int32_t contact = none;
   std::int32_t next = none;  ///< of the same contact
   GraphPlace place{};
-  std::uint32_t child = 0;
   float friction = 0, restitution = 0, rolling_lever = 0, tangent_speed = 0;
-  float patch_factor = 0;           ///< radius of the patch for the twist over the mean distance of its points
   typename D::Manifold manifold{};  ///< in A's shape frame, at the contact's `base`
   ManifoldImpulses<D> impulses{};
   typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass

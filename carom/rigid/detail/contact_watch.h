@@ -1,47 +1,64 @@
-// Pairs that were apart are not looked at again before their bodies can have come near: per contact a few numbers, read
-// in a row, instead of poses and shapes.
+// Pairs that have nothing new to tell are passed over: per contact one packed record, read in a row, instead of the
+// contact, its shapes and its manifolds.
 #pragma once
 
 #include "carom/rigid/detail/contact_store.h"
 
 namespace carom::rigid::detail {
 
-/// How far a body has come; asked twice for every contact, so there is nothing more in it.
-struct BodyPath {
-  double way = 0;     ///< m, summed: of the body's origin, and path_lever · outer extent for every radian of turn
-  float reach = 0;    ///< m: how far the surface can come in this step by the velocity it has; 0 for who sleeps
-  float turning = 0;  ///< m/s: speed of the farthest surface by the spin
-};
-inline constexpr float path_lever = 3;
-
-/// Where a body was when its path was last followed.
+/// How far a body may come in this step by the velocity it has.
 template <class D>
-struct PathEnd {
-  typename D::Pose pose{};
-  float outer_extent = 0;  ///< m
-  bool known = false;
+struct BodySweep {
+  typename D::Vector way{};  ///< m, of its centre; 0 for who sleeps
+  float turning = 0;         ///< m, of its farthest surface by the spin
 };
+inline constexpr float most_turning = 100.0f;  ///< m/s of a surface that are looked ahead
 
-/// While the ways of both bodies and their reach stay below the limit, the test by which update_contact leaves a
-/// contact without manifolds as it is (its `motion` against its gap) cannot fail. So this changes no result and may be
-/// forgotten at any time.
-struct ContactWatch {
-  std::int32_t body[2] = {none, none};
-  float cap = 0;      ///< m: more than that is not looked ahead
-  double limit = -1;  ///< m; −1: look at it
-};
-inline constexpr float most_slack = 1e3f;  ///< m
-
-inline bool still_apart(const std::vector<BodyPath>& paths, const ContactWatch& w) {
-  if (w.limit < 0) return false;
-  const BodyPath &a = paths[std::size_t(w.body[0])], &b = paths[std::size_t(w.body[1])];
-  return a.way + b.way + double(min(a.reach + b.reach, w.cap)) < w.limit;
+/// How far the surfaces of two bodies may come nearer in this step.
+template <class D>
+inline float way_between(const BodySweep<D>& a, const BodySweep<D>& b, float dt) {
+  return math::length(b.way - a.way) + min(a.turning + b.turning, most_turning * dt);
+}
+/// The same along n, from A to B.
+template <class D>
+inline float way_between(const BodySweep<D>& a, const BodySweep<D>& b, float dt, const typename D::Vector& n) {
+  return max(dot(n, a.way - b.way) + min(a.turning + b.turning, most_turning * dt), 0.0f);
 }
 
+/// How far a turn moves a point one metre from the axis, at most.
 inline float chord(const Rot2f& a, const Rot2f& b) {
   const Vec2f d{b.c - a.c, b.s - a.s};
   return math::length(d);
 }
 inline float chord(const Quatf& a, const Quatf& b) { return 2 * math::length((conjugate(a) * b).vector()); }
+
+/// While it holds, update_contact would leave the contact as it is: without manifolds, because the shapes are still
+/// apart, or with those of an earlier step, because they hardly slid. So it changes no result and may be forgotten at
+/// any time.
+template <class D>
+struct ContactWatch {
+  std::int32_t body[2] = {none, none};  ///< none: look at it
+  typename D::Transform base{};         ///< the body of B seen from that of A, when it was looked at
+  typename D::Vector normal{};  ///< in A's body; apart: along which they are, or zero; recycled: of the first manifold
+  float extent = 0;             ///< m: how far a turn of B by one radian moves its surface
+  float gap = 0;       ///< m, apart: what is left until the shapes are of interest; recycled: less than 0 is close
+  float most_way = 0;  ///< m, with the turn, where there is a normal; recycled: across it
+  float cap = 0;       ///< m, apart: more than that is not looked ahead; recycled: −1
+};
+
+template <class D>
+inline bool nothing_new(const ContactWatch<D>& w, const std::vector<typename D::Pose>& poses,
+                        const std::vector<BodySweep<D>>& sweeps, float dt) {
+  if (w.body[0] == none) return false;
+  const typename D::Pose& pose = poses[std::size_t(w.body[0])];
+  const typename D::Transform now = relative(pose, poses[std::size_t(w.body[1])]);
+  const typename D::Vector way = now.p - w.base.p;
+  const float turn = chord(w.base.q, now.q) * w.extent, along = dot(w.normal, way);
+  if (w.cap < 0) return w.gap + along < 0 && math::length(way - along * w.normal) + turn < w.most_way;
+  const BodySweep<D>&a = sweeps[std::size_t(w.body[0])], &b = sweeps[std::size_t(w.body[1])];
+  if (w.most_way == 0) return math::length(way) + turn + min(way_between(a, b, dt), w.cap) < w.gap;
+  const float ahead = min(way_between(a, b, dt, rotate(pose.rotation, w.normal)), w.cap);
+  return ahead + turn - along < w.gap && math::length(way) + turn < w.most_way;
+}
 
 }  // namespace carom::rigid::detail

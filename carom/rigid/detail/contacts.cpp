@@ -83,9 +83,16 @@ float round_radius(const geometry::Shape3& s) {
       return s.cone.radius;
     case geometry::ShapeType3::box:
       return s.box.radius;
+    case geometry::ShapeType3::ellipsoid:
+      return (s.ellipsoid.radii.x + s.ellipsoid.radii.y + s.ellipsoid.radii.z) * (1.0f / 3);
     default:
       return 0;
   }
+}
+template <class D>
+int surface_count(const WorldImplementation<D>& world, std::int32_t shape) {
+  const ShapeExtra<D>* extra = world.shapes.extra(shape);
+  return extra != nullptr ? extra->surface_count : 0;
 }
 bool has_round_base(const geometry::Shape2&) { return false; }
 bool has_round_base(const geometry::Shape3& s) {
@@ -145,12 +152,12 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   if (flags & shape_contact_events) c.flags |= contact_events;
   if (flags & shape_hit_events) c.flags |= contact_hit_events;
   if (flags & shape_round) c.flags |= contact_round;
+  if (has_round_base(a->geometry) || has_round_base(b->geometry)) c.flags |= contact_on_disc;
   if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
   update_contact_flags(world, index);
   c.extent = b->outer_extent;
   const float inner = min(a->inner_extent, b->inner_extent);
   c.inner = inner;
-  c.margin = clamp(0.25f * inner, 0.001f, 0.02f);
   world.pairs.insert(PairSet::key(shape_a, shape_b));
   ++store.count;
   link_contact(world, index, 0);
@@ -225,12 +232,18 @@ void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact) {
   ContactRecord<D>& c = world.contacts.at(contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   c.flags &= std::uint16_t(~(contact_bouncy | contact_special));
-  std::vector<ContactWatch>& watches = world.scratch.watches;
-  if (c.awake_index != none && !watches.empty()) watches[std::size_t(c.awake_index)].limit = -1;
+  std::vector<ContactWatch<D>>& watches = world.scratch.watches;
+  if (c.awake_index != none && !watches.empty()) watches[std::size_t(c.awake_index)] = {};
   if (((a.flags | b.flags) & shape_special) != 0) c.flags |= contact_special;
-  float restitution = max(a.material.restitution, b.material.restitution);
-  if (const PairRule* rule = find_pair_rule(world, a.material.user_id, b.material.user_id))
-    restitution = rule->restitution;
+  float restitution = 0;
+  // Whatever parts may meet: one of the shapes at most has several.
+  const int parts = max(1, max(surface_count(world, c.shape[0]), surface_count(world, c.shape[1])));
+  for (int part = 0; part < parts; ++part) {
+    const Material &ma = material_at(world, c.shape[0], std::uint32_t(part)),
+                   &mb = material_at(world, c.shape[1], std::uint32_t(part));
+    const PairRule* rule = find_pair_rule(world, ma.user_id, mb.user_id);
+    restitution = max(restitution, rule != nullptr ? rule->restitution : max(ma.restitution, mb.restitution));
+  }
   for (const std::int32_t shape : c.shape)
     if (const ShapeExtra<D>* extra = world.shapes.extra(shape); extra != nullptr && extra->modify)
       restitution = 1;  // a contact modifier may ask for it
@@ -254,16 +267,14 @@ void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   const float radius = max(round_radius(a.geometry), round_radius(b.geometry));
-  if (const PairRule* rule = find_pair_rule(world, a.material.user_id, b.material.user_id))
+  const Material &ma = material_at(world, c.shape[0], m.manifold.material),
+                 &mb = material_at(world, c.shape[1], m.manifold.material);
+  if (const PairRule* rule = find_pair_rule(world, ma.user_id, mb.user_id))
     set_manifold_material(world, manifold, rule->friction, rule->restitution, rule->rolling_resistance * radius);
   else
-    set_manifold_material(world, manifold, math::sqrt(a.material.friction * b.material.friction),
-                          max(a.material.restitution, b.material.restitution),
-                          max(a.material.rolling_resistance, b.material.rolling_resistance) * radius);
-  m.tangent_speed = a.material.tangent_speed + b.material.tangent_speed;
-  // Uniform pressure: a disc turns on 2/3 of its radius, rectangles from square to thin line on .54 … .5 of the
-  // distance of their corners.
-  m.patch_factor = has_round_base(a.geometry) || has_round_base(b.geometry) ? 2.0f / 3.0f : 0.53f;
+    set_manifold_material(world, manifold, math::sqrt(ma.friction * mb.friction), max(ma.restitution, mb.restitution),
+                          max(ma.rolling_resistance, mb.rolling_resistance) * radius);
+  m.tangent_speed = ma.tangent_speed + mb.tangent_speed;
 }
 
 template <class D>
@@ -284,12 +295,16 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
   ManifoldRecord<D>& m = store.manifold(index);
   ContactRecord<D>& c = store.at(contact);
   m.contact = contact;
-  m.child = child;
   m.manifold = manifold;
+  m.manifold.child = child;
   m.next = c.first_manifold;
   c.first_manifold = index;
   ++c.manifold_count;
   mix_materials(world, index);
+  const typename D::Vector meeting = world.bodies.solver[std::size_t(c.body[1])].linear_velocity -
+                                     world.bodies.solver[std::size_t(c.body[0])].linear_velocity;
+  for (const std::int32_t body : c.body)
+    forget_load<D>(world.bodies.motion[std::size_t(body)], meeting, rest_speed(world.definition, world.last_dt));
   if (c.awake_index != none) enter_graph(world, index);
 }
 
@@ -326,7 +341,7 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   awake[std::size_t(c.awake_index)] = last;
   world.contacts.at(last).awake_index = c.awake_index;
   awake.pop_back();
-  std::vector<ContactWatch>& watches = world.scratch.watches;
+  std::vector<ContactWatch<D>>& watches = world.scratch.watches;
   if (!watches.empty()) {
     watches[std::size_t(c.awake_index)] = watches.back();
     watches.pop_back();

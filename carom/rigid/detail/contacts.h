@@ -41,14 +41,22 @@ inline const PairRule* find_pair_rule(const WorldImplementation<D>& world, std::
                                   [](const PairRuleEntry& e, std::uint64_t k) { return e.key < k; });
   return i != world.pair_rules.end() && i->key == key ? &i->rule : nullptr;
 }
+/// What a shape is made of where a manifold names this material number.
+template <class D>
+inline const Material& material_at(const WorldImplementation<D>& world, std::int32_t shape, std::uint32_t number) {
+  const SurfaceMaterial<D>* surface = world.shapes.surface(shape, number);
+  return surface != nullptr ? surface->material : world.shapes.at(shape).material;
+}
 /// How fast A's surface runs against B's, world axes, where they are belts.
 template <class D>
-inline typename D::Vector surface_slip(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+inline typename D::Vector surface_slip(const WorldImplementation<D>& world, const ContactRecord<D>& c,
+                                       std::uint32_t number) {
   typename D::Vector slip{};
   for (int side = 0; side < 2; ++side)
     if (const ShapeExtra<D>* extra = world.shapes.extra(c.shape[side])) {
-      const typename D::Vector v =
-          rotate(shape_pose(world, world.shapes.at(c.shape[side])).rotation, extra->surface_velocity);
+      const SurfaceMaterial<D>* surface = world.shapes.surface(c.shape[side], number);
+      const typename D::Vector v = rotate(shape_pose(world, world.shapes.at(c.shape[side])).rotation,
+                                          surface != nullptr ? surface->surface_velocity : extra->surface_velocity);
       slip = side == 0 ? slip + v : slip - v;
     }
   return slip;

@@ -3,6 +3,7 @@
 #include "carom/forces/buoyancy.h"
 #include "carom/geometry/compound.h"
 #include "carom/geometry/hull.h"
+#include "carom/geometry/triangle_mesh.h"
 #include "carom/rigid/detail/effector_act.h"
 
 namespace carom::rigid::detail {
@@ -83,6 +84,14 @@ forces::Submerged3 wet_hull(EffectorStore<Dim3>& store, const geometry::Hull& hu
   return forces::submerged_mesh(store.vertices, store.indices, water);
 }
 
+forces::Submerged3 wet_mesh(EffectorStore<Dim3>& store, const geometry::TriangleMesh& mesh,
+                            const forces::WaterPlane& water) {
+  store.vertices.clear();
+  for (const Vec3f v : mesh.vertices) store.vertices.push_back(Vec3d(v));
+  store.indices.assign(mesh.indices.begin(), mesh.indices.end());
+  return forces::submerged_mesh(store.vertices, store.indices, water);
+}
+
 forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& shape,
                             const forces::WaterPlane& water) {
   using geometry::ShapeType3;
@@ -106,6 +115,15 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
       const double h = double(shape.cone.half_height);
       return forces::submerged_revolution({{0, -h, 0}, {0, h, 0}, double(shape.cone.radius), 0, false}, water);
     }
+    case ShapeType3::ellipsoid: {
+      // A sphere in the frame where the half axes are one; the plane n·p = d there has the normal r n.
+      const Vec3d r(shape.ellipsoid.radii), n = scale(r, water.normal);
+      const double l = math::length(n);
+      forces::Submerged3 part = forces::submerged_sphere({}, 1, {n * (1 / l), water.offset / l});
+      part.volume *= r.x * r.y * r.z;
+      part.centroid = scale(part.centroid, r);
+      return part;
+    }
     case ShapeType3::hull:
       return wet_hull(store, *shape.hull, water);
     case ShapeType3::compound: {
@@ -122,8 +140,10 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
       if (sum.volume > 0) sum.centroid = moment / sum.volume;
       return sum;
     }
+    case ShapeType3::mesh:
+      return wet_mesh(store, *shape.mesh, water);
     default:
-      return {};  // planes, meshes and height fields do not move
+      return {};  // planes and height fields do not move
   }
 }
 double volume_of(const forces::Submerged2& part) { return part.area; }

@@ -51,7 +51,8 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
   if (count == 0) found.apart = margin + geometry::detail::clearance(chain, box, 100.0f);
   for (int i = 0; i < count; ++i) {
     found.manifold[i] = manifolds[i];
-    found.child[i] = std::uint32_t(best[i].segment);
+    found.child[i] = found.manifold[i].child = std::uint32_t(best[i].segment);
+    if (!chain.materials.empty()) found.manifold[i].material = chain.materials[std::size_t(best[i].segment)];
   }
   found.count = count;
 }

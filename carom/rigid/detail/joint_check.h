@@ -92,6 +92,32 @@ class Complaint {
   std::string message_;
 };
 
+template <class D>
+void check_path(Complaint& c, const PathJointDef<D>& d) {
+  const std::size_t n = d.points.size(), least = d.closed ? 3 : 2;
+  if (n < least) return c.say(core::text("points holds ", n, ", expected at least ", least));
+  if (!d.tangents.empty() && d.tangents.size() != n)
+    return c.say(core::text("tangents holds ", d.tangents.size(), ", expected one for each of the ", n, " points"));
+  if (d.straight && !d.tangents.empty()) return c.say("tangents are given, expected none where straight is set");
+  for (std::size_t i = 0; i < n; ++i) {
+    c.vector(core::text("points[", i, "]"), d.points[i]);
+    if (!d.tangents.empty()) c.vector(core::text("tangents[", i, "]"), d.tangents[i]);
+  }
+  if (!c.none_yet()) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    if ((next != 0 || d.closed) && !(math::distance(d.points[i], d.points[next]) > 1e-5f))
+      return c.say(core::text("points[", i, "] and points[", next, "] are the same, expected them apart"));
+    if (!d.tangents.empty() && !(math::length(d.tangents[i]) > 1e-5f))
+      return c.say(core::text("tangents[", i, "] is zero, expected a direction"));
+  }
+  c.finite("target_distance", d.target_distance);
+  c.not_negative("max_spring_force", d.max_spring_force);
+  c.not_negative("friction", d.friction);
+  c.limit("limit", d.limit);
+  if (d.closed && d.limit.enabled) c.say("limit is enabled, expected none on a closed path");
+}
+
 /// What all definitions have under the same name is checked once; the rest by type.
 template <class D, class Def>
 void check_joint(Complaint& c, const Def& d) {
@@ -129,6 +155,8 @@ void check_joint(Complaint& c, const Def& d) {
   } else if constexpr (std::is_same_v<Def, ScrewJointDef<D>>) {
     c.not_zero("pitch", d.pitch);
     if (D::dimension == 2) c.say("a screw joint is for space, expected another type in the plane");
+  } else if constexpr (std::is_same_v<Def, PathJointDef<D>>) {
+    check_path<D>(c, d);
   } else if constexpr (std::is_same_v<Def, PulleyJointDef<D>>) {
     c.vector("ground_a", d.ground_a);
     c.vector("ground_b", d.ground_b);

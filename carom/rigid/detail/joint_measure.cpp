@@ -195,6 +195,26 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
     case JointType::screw:
       out.linear_error = math::abs(data.memory.drift);
       break;
+    case JointType::path: {
+      const auto& def = std::get<PathJointDef<D>>(data.definition);
+      const PathCurve<D> curve = curve_of(world.joints, data);
+      const Vector local = inverse_rotate(frame_a, d);
+      const PathPlace place =
+          data.memory.fresh_path() ? curve.nearest(local) : curve.foot(local, data.memory.path_place);
+      const auto g = curve.at(place);
+      const Vector t = rotate(frame_a, g.d1 * (1 / math::length(g.d1)));
+      out.coordinate = curve.arc(place);
+      out.speed = dot(t, v - cross(spin_a, d));
+      out.linear_error = math::distance(local, g.p);
+      if (def.limit.enabled) out.linear_error = max(out.linear_error, outside(out.coordinate, def.limit));
+      if (def.follow) {
+        Vector x{};
+        x[0] = 1;
+        x = rotate(frame_b, x);
+        out.angular_error = math::atan2(magnitude(cross(t, x)), dot(t, x));
+      }
+      break;
+    }
     case JointType::pulley: {
       const auto& def = std::get<PulleyJointDef<D>>(data.definition);
       const Vector to_a = Vector(anchor_a - def.ground_a),

@@ -4,7 +4,7 @@
 namespace carom::rigid::detail {
 
 template <class D>
-std::uint16_t parts_of(const JointData<D>& data) {
+std::uint32_t parts_of(const JointData<D>& data) {
   const auto parts = [](const auto& d) -> int {
     using Def = std::remove_cvref_t<decltype(d)>;
     if constexpr (std::is_same_v<Def, DistanceJointDef<D>>) {
@@ -30,11 +30,13 @@ std::uint16_t parts_of(const JointData<D>& data) {
       return all;
     } else if constexpr (std::is_same_v<Def, MotorJointDef<D>>) {
       return part_point | part_angular;
+    } else if constexpr (std::is_same_v<Def, PathJointDef<D>>) {
+      return part_path | (!d.closed || d.friction > 0 || axis_is_used(d.spring, d.motor, d.limit) ? part_along : 0);
     } else {
       return part_coupling;
     }
   };
-  return std::uint16_t(std::visit(parts, data.definition));
+  return std::uint32_t(std::visit(parts, data.definition));
 }
 
 template <class D>
@@ -59,7 +61,7 @@ bool holds_axes(const JointData<D>& data) {
 }
 
 template <class D>
-void break_joints(WorldImplementation<D>& world) {
+void test_joints(WorldImplementation<D>& world) {
   JointStore<D>& joints = world.joints;
   if (joints.breakable_count == 0) return;
   const auto test = [&](std::int32_t joint) {
@@ -73,18 +75,26 @@ void break_joints(WorldImplementation<D>& world) {
   for (const std::int32_t joint : joints.order) test(joint);
   for (const std::int32_t joint : joints.pins)
     if (joint != none) test(joint);
+  for (const auto& limb : joints.limbs)
+    if (limb.joint != none) test(limb.joint);
+}
+template <class D>
+void break_joints(WorldImplementation<D>& world) {
   for (const JointBreakEvent<D>& event : world.scratch.joint_break)
-    release_joint(world, std::int32_t(joints.slots.slot(event.joint)));
+    if (world.joints.slots.contains(event.joint))
+      release_joint(world, std::int32_t(world.joints.slots.slot(event.joint)));
 }
 
-template std::uint16_t parts_of(const JointData<Dim2>&);
-template std::uint16_t parts_of(const JointData<Dim3>&);
+template std::uint32_t parts_of(const JointData<Dim2>&);
+template std::uint32_t parts_of(const JointData<Dim3>&);
 template bool is_rod(const JointData<Dim2>&);
 template bool is_rod(const JointData<Dim3>&);
 template bool turns_rigidly(const JointData<Dim2>&);
 template bool turns_rigidly(const JointData<Dim3>&);
 template bool holds_axes(const JointData<Dim2>&);
 template bool holds_axes(const JointData<Dim3>&);
+template void test_joints(WorldImplementation<Dim2>&);
+template void test_joints(WorldImplementation<Dim3>&);
 template void break_joints(WorldImplementation<Dim2>&);
 template void break_joints(WorldImplementation<Dim3>&);
 

@@ -1,4 +1,6 @@
 // From definitions to the records of a step, and back.
+#include <algorithm>
+
 #include "carom/rigid/detail/joint_place.h"
 
 namespace carom::rigid::detail {
@@ -225,6 +227,38 @@ void fill_coupling(CouplingBlock<D>& block, const JointData<D>& data, const Join
 }
 
 template <class D>
+void fill_path(PathPose<D>& pose, const JointStore<D>& joints, const JointData<D>& data, const JointPlacement<D>& at) {
+  pose.arm_a = at.arm_a;
+  pose.arm_b = at.arm_b;
+  pose.offset = at.offset;
+  pose.frame_a = at.frame_a;
+  pose.curve = curve_of(joints, data);
+  pose.place = data.memory.path_place;
+  pose.normal = data.memory.path_normal;
+  // Who was set down somewhere else is looked for on the whole path.
+  const auto d = inverse_rotate(at.frame_a, at.offset + at.arm_b - at.arm_a);
+  const auto away = [&](PathPlace place) { return math::distance(pose.curve.at(place).p, d); };
+  pose.place = pose.curve.foot(d, pose.place);
+  if (data.memory.fresh_path() || away(pose.place) > 0.05f * pose.curve.length()) {
+    const PathPlace nearest = pose.curve.nearest(d);
+    if (away(nearest) < away(pose.place)) pose.place = nearest;
+  }
+}
+template <class D>
+void fill_along(AxisLaw& law, const PathJointDef<D>& path, const PathCurve<D>& curve, float h) {
+  fill_spring(law, path.spring, path.target_distance, h);
+  law.max_spring_impulse = path.max_spring_force * h;
+  if (path.motor.enabled)
+    fill_motor(law, path.motor, h);
+  else if (path.friction > 0)
+    fill_motor(law, {true, 0, path.friction}, h);
+  if (path.closed) return;
+  const float end = curve.length();
+  fill_limit(law, path.limit.enabled ? JointLimit{true, max(path.limit.lower, 0.0f), min(path.limit.upper, end)}
+                                     : JointLimit{true, 0, end});
+}
+
+template <class D>
 void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
@@ -267,6 +301,8 @@ void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlace
   block.rigid = !(spring.hertz > 0);
   if (!block.rigid) block.response = spring_response(spring.hertz, spring.damping_ratio, h);
 }
+
+}  // namespace
 
 template <class D>
 void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, float h) {
@@ -313,6 +349,16 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
         fill_turn(block, data, at, h, axis_of_part(part)), note(block);
     } else if constexpr (std::is_same_v<Block, CouplingBlock<D>>) {
       fill_coupling(block, data, at);
+    } else if constexpr (std::is_same_v<Block, PathAxis<D>>) {
+      fill_path(block.pose, world.joints, data, at);
+      fill_along(block.law, std::get<PathJointDef<D>>(data.definition), block.pose.curve, h);
+      remember(block.law, memory.linear[0]);
+      note(block);
+    } else if constexpr (std::is_same_v<Block, PathBlock<D>>) {
+      fill_path(block.pose, world.joints, data, at);
+      block.follow = std::get<PathJointDef<D>>(data.definition).follow;
+      block.along_b = axis_of<D>(at.frame_b, 0);
+      for (int i = 0; i < Block::most; ++i) block.impulse[i] = memory.path[i];
     } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
       if (part == part_friction) {
         block.friction = true;
@@ -348,7 +394,31 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   });
 }
 
-}  // namespace
+/// Those with the same parts together, in whole blocks.
+template <class D>
+void fill_up_limbs(JointStore<D>& joints, std::size_t first, std::size_t width) {
+  std::sort(joints.limbs.begin() + std::ptrdiff_t(first), joints.limbs.end());
+  // From behind, so that each is moved once.
+  std::size_t room = 0, count = joints.limbs.size() - first;
+  for (std::size_t i = first, same = 0; i < first + count; ++i) {
+    ++same;
+    if (i + 1 < first + count && joints.limbs[i + 1].parts == joints.limbs[i].parts) continue;
+    room += (same + width - 1) / width * width;
+    same = 0;
+  }
+  std::size_t from = first + count, to = first + room;
+  joints.limbs.resize(to);
+  while (from > first) {
+    const std::uint32_t parts = joints.limbs[from - 1].parts;
+    std::size_t begin = from;
+    while (begin > first && joints.limbs[begin - 1].parts == parts) --begin;
+    const std::size_t same = from - begin, padded = (same + width - 1) / width * width;
+    for (std::size_t i = padded; i-- > 0;)
+      joints.limbs[to - padded + i] = i < same ? joints.limbs[begin + i] : typename JointStore<D>::Limb{parts, none};
+    to -= padded;
+    from = begin;
+  }
+}
 
 template <class D>
 void prepare_joints(StepContext<D>& context) {
@@ -360,16 +430,25 @@ void prepare_joints(StepContext<D>& context) {
   joints.color_begin.clear();
   joints.pins.clear();
   joints.pin_begin.clear();
+  joints.limbs.clear();
+  joints.limb_begin.clear();
   joints.pin_kernels = pin_kernels_of<D>(world.kernels.width);
+  joints.limb_kernels = limb_kernels_of<D>(world.kernels.width);
   const std::size_t width = std::size_t(joints.pin_kernels.width);
   std::uint32_t units = 0;
   for (const GraphColor& color : world.graph.colors) {
     const bool overflows = &color == &world.graph.colors[overflow_color];
     joints.color_begin.push_back(std::int32_t(joints.order.size()));
     joints.pin_begin.push_back(std::int32_t(joints.pins.size() / width));
+    joints.limb_begin.push_back(std::int32_t(joints.limbs.size() / width));
+    const std::size_t first_limb = joints.limbs.size();
     for (const std::int32_t joint : color.joints) {
       if (!overflows && goes_wide(world, joint)) {
         joints.pins.push_back(joint);
+        continue;
+      }
+      if (const std::uint32_t parts = overflows ? 0 : limb_parts(world, joint); parts != 0) {
+        joints.limbs.push_back({parts, joint});
         continue;
       }
       joints.order.push_back(joint);
@@ -379,7 +458,9 @@ void prepare_joints(StepContext<D>& context) {
       units += record_units<D>(parts_of(joints.data[std::size_t(joint)]), is_isotropic(world, joint));
     }
     while (joints.pins.size() % width != 0) joints.pins.push_back(none);
+    fill_up_limbs(joints, first_limb, width);
   }
+  joints.limb_begin.push_back(std::int32_t(joints.limbs.size() / width));
   joints.pin_begin.push_back(std::int32_t(joints.pins.size() / width));
   joints.color_begin.push_back(std::int32_t(joints.order.size()));
   joints.offset.push_back(units);
@@ -396,6 +477,7 @@ void prepare_joints(StepContext<D>& context) {
   });
   prepare_trees(context);
   prepare_pins(context);
+  prepare_limbs(context);
 }
 
 /// Keeps the impulses for the next step, and what the joint exerted.
@@ -404,6 +486,7 @@ void store_joints(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
   store_trees(context);
   store_pins(context);
+  store_limbs(context);
   context.scheduler.parallel_for(int(joints.order.size()), 64, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
@@ -434,6 +517,20 @@ void store_joints(StepContext<D>& context) {
           if (block.kind != CouplingKind::pulley) memory.drift = row.error;
           force += block.impulse * row.along_b;
           torque += block.impulse * row.about_b;
+        } else if constexpr (std::is_same_v<Block, PathAxis<D>>) {
+          memorise(block.law, memory.linear[0]);
+          force += block.law.total() * block.row(pair).n;
+        } else if constexpr (std::is_same_v<Block, PathBlock<D>>) {
+          typename Block::Row row[Block::most];
+          const int count = block.rows(pair, row);
+          const auto b = rotate(pair.turn_b, block.pose.arm_b);
+          for (int k = 0; k < count; ++k) {
+            memory.path[k] = block.impulse[k];
+            force += block.impulse[k] * row[k].n;
+            torque += block.impulse[k] * (row[k].lever_b - cross(b, row[k].n));
+          }
+          memory.path_place = block.pose.place;
+          memory.path_normal = block.pose.normal;
         } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
           typename Block::Row row[Block::rows];
           block.directions(pair, row);
@@ -455,6 +552,8 @@ void store_joints(StepContext<D>& context) {
   });
 }
 
+template void fill_record(JointRecord<Dim2>&, const WorldImplementation<Dim2>&, float);
+template void fill_record(JointRecord<Dim3>&, const WorldImplementation<Dim3>&, float);
 template void prepare_joints(StepContext<Dim2>&);
 template void prepare_joints(StepContext<Dim3>&);
 template void store_joints(StepContext<Dim2>&);

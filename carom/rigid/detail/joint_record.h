@@ -6,6 +6,8 @@
 
 #include "carom/rigid/detail/joint_axis.h"
 #include "carom/rigid/detail/joint_coupling.h"
+#include "carom/rigid/detail/joint_part.h"
+#include "carom/rigid/detail/joint_path.h"
 #include "carom/rigid/detail/joint_store.h"
 
 namespace carom::rigid::detail {
@@ -15,34 +17,12 @@ struct WorldImplementation;
 template <class D>
 struct StepContext;
 
-/// The blocks of a joint in the order in which they are solved: what matters most is last.
-enum JointPart : std::uint16_t {
-  part_friction = 1,  ///< AngularBlock
-  part_linear = 2,    ///< LinearAxis
-  part_cone = 4,      ///< AngularAxis
-  part_twist = 8,     ///< AngularAxis
-  part_angular = 16,  ///< AngularBlock
-  part_hinge = 32,    ///< HingeBlock
-  part_slide = 64,    ///< SlideBlock
-  part_point = 128,   ///< PointBlock
-  part_pin = 256,     ///< PinBlock
-  // Of generic joints: part_linear along x, and
-  part_linear_y = 512,
-  part_linear_z = 1024,
-  part_turn_x = 2048,  ///< AngularAxis
-  part_turn_y = 4096,
-  part_turn_z = 8192,
-  part_coupling = 16384,  ///< CouplingBlock
-};
-constexpr JointPart linear_part(int axis) { return axis == 0 ? part_linear : JointPart(part_linear_y << (axis - 1)); }
-constexpr JointPart turn_part(int axis) { return JointPart(part_turn_x << axis); }
-
 /// In space two tensors follow where the bodies do not turn alike about every axis (not `isotropic`).
 template <class D>
 struct JointRecord {
   std::int32_t body_a = none, body_b = none;  ///< slots; A may be `none`: the world
   std::int32_t joint = none;                  ///< slot
-  std::uint16_t parts = 0;
+  std::uint32_t parts = 0;
   bool dynamic_a = false, dynamic_b = false;  ///< only dynamic bodies are written to
   bool isotropic = true;
   bool direct = false;  ///< its rigid rows are solved by the tree it is in
@@ -72,17 +52,19 @@ void load_masses(BodyPair<D, I>& pair, JointRecord<D>& record) {
 
 /// Calls f(part, type) for what blocks a record may have, in their order.
 template <class D, class F>
-void visit_parts(F&& f) {
+constexpr void visit_parts(F&& f) {
   constexpr std::type_identity<AngularAxis<D>> turn{};
   constexpr std::type_identity<LinearAxis<D>> line{};
   f(part_friction, std::type_identity<AngularBlock<D>>{});
   f(part_coupling, std::type_identity<CouplingBlock<D>>{});
+  f(part_along, std::type_identity<PathAxis<D>>{});
   for (int i = 0; i < (D::dimension == 2 ? 1 : 3); ++i) f(turn_part(i), turn);
   for (int i = 0; i < D::dimension; ++i) f(linear_part(i), line);
   f(part_cone, turn);
   f(part_twist, turn);
   f(part_angular, std::type_identity<AngularBlock<D>>{});
   if constexpr (D::dimension == 3) f(part_hinge, std::type_identity<HingeBlock>{});
+  f(part_path, std::type_identity<PathBlock<D>>{});
   f(part_slide, std::type_identity<SlideBlock<D>>{});
   f(part_point, std::type_identity<PointBlock<D>>{});
   f(part_pin, std::type_identity<PinBlock<D>>{});
@@ -93,7 +75,7 @@ template <class D, class Visit>
 void for_each_block(JointRecord<D>& record, Visit&& visit) {
   unsigned char* at = reinterpret_cast<unsigned char*>(&record) + sizeof(JointRecord<D>);
   if (!record.isotropic) at += 2 * sizeof(Mat3f);
-  const std::uint16_t parts = record.parts;
+  const std::uint32_t parts = record.parts;
   const auto next = [&]<class Block>(std::type_identity<Block>) -> Block& {
     static_assert(std::is_trivially_copyable_v<Block> && alignof(Block) == 4);
     Block& block = *std::launder(reinterpret_cast<Block*>(at));
@@ -108,7 +90,7 @@ void for_each_block(JointRecord<D>& record, Visit&& visit) {
 
 /// Units of 16 bytes that a record with these parts takes.
 template <class D>
-constexpr std::uint32_t record_units(std::uint16_t parts, bool isotropic) {
+constexpr std::uint32_t record_units(std::uint32_t parts, bool isotropic) {
   std::size_t bytes = sizeof(JointRecord<D>) + (isotropic ? 0 : 2 * sizeof(Mat3f));
   visit_parts<D>([&]<class Block>(JointPart part, std::type_identity<Block>) {
     if (parts & part) bytes += sizeof(Block);
@@ -132,7 +114,7 @@ void load_turns(BodyPair<D, I>& pair, const JointRecord<D>& record, const Solver
 
 /// The blocks that this joint needs now.
 template <class D>
-std::uint16_t parts_of(const JointData<D>& data);
+std::uint32_t parts_of(const JointData<D>& data);
 /// Does it hold the distance itself?
 template <class D>
 bool is_rod(const JointData<D>& data);
@@ -153,6 +135,19 @@ template <class D>
 void prepare_pins(StepContext<D>& context);
 template <class D>
 void store_pins(StepContext<D>& context);
+
+/// What the record holds, once it says which joint and parts it is for.
+template <class D>
+void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, float h);
+// joint_limbs.cpp: likewise for joints of figures.
+template <class D>
+std::uint32_t limb_parts(const WorldImplementation<D>& world, std::int32_t joint);  ///< 0: it is none
+template <class D>
+LimbKernels<D> limb_kernels_of(int width);
+template <class D>
+void prepare_limbs(StepContext<D>& context);
+template <class D>
+void store_limbs(StepContext<D>& context);
 
 template <class D>
 const JointFrames<D>& frames_of(const AnyJointDef<D>& definition) {

@@ -46,6 +46,10 @@ void visit_rows(Block& block, const Pair& pair, Visit&& visit) {
     block.directions(pair, row);
     for (int i = 0; i < Block::rows; ++i)
       visit(row[i].n, row[i].lever_a, row[i].lever_b, row[i].error, block.impulse[i]);
+  } else if constexpr (std::is_same_v<Block, PathBlock<D>>) {
+    typename Block::Row row[Block::most];
+    const int count = block.rows(pair, row);
+    for (int i = 0; i < count; ++i) visit(row[i].n, row[i].lever_a, row[i].lever_b, row[i].error, block.impulse[i]);
   } else if constexpr (std::is_same_v<Block, LinearAxis<D>>) {
     const auto row = block.row(pair);
     visit(row.n, row.lever_a, row.lever_b, row.coordinate - block.law.rest, block.law.spring_impulse);

@@ -52,11 +52,10 @@ void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
   save_pair(pair, record, bodies);
 }
 
-/// Runs f on the blocks of pins of a colour.
+/// Runs f on the blocks that lie at `begin` of each colour.
 template <class D, class F>
-void for_pins(StepContext<D>& context, int color, F&& f) {
-  const JointStore<D>& joints = context.world.joints;
-  const int first = joints.pin_begin[std::size_t(color)], count = joints.pin_begin[std::size_t(color) + 1] - first;
+void for_blocks(StepContext<D>& context, const std::vector<std::int32_t>& begins, int color, F&& f) {
+  const int first = begins[std::size_t(color)], count = begins[std::size_t(color) + 1] - first;
   if (count == 0) return;
   const int threads = context.scheduler.thread_count();
   if (threads == 1 || count <= 16) return f(first, first + count);
@@ -95,8 +94,11 @@ template <class D>
 void warm_start_joints(StepContext<D>& context, int color) {
   for_each_record<true>(context, color, [](auto& pair, auto& block) { block.warm_start(pair); });
   const JointStore<D>& joints = context.world.joints;
-  for_pins(context, color,
-           [&](int begin, int end) { joints.pin_kernels.warm_start(context.bodies, joints.pin_blocks, begin, end); });
+  for_blocks(context, joints.limb_begin, color, [&](int begin, int end) {
+    joints.limb_kernels.warm_start(context.bodies, joints.limb_blocks, begin, end);
+  });
+  for_blocks(context, joints.pin_begin, color,
+             [&](int begin, int end) { joints.pin_kernels.warm_start(context.bodies, joints.pin_blocks, begin, end); });
 }
 
 template <class D>
@@ -106,7 +108,12 @@ void solve_joints(StepContext<D>& context, int color, bool use_bias) {
   const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
   for_each_record<false>(context, color, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
   const JointStore<D>& joints = context.world.joints;
-  for_pins(context, color, [&](int begin, int end) {
+  const LimbPass limb_pass{biased.velocity, biased.position, biased.memory, context.inverse_h};
+  for_blocks(context, joints.limb_begin, color, [&](int begin, int end) {
+    (use_bias ? joints.limb_kernels.solve : joints.limb_kernels.relax)(context.bodies, joints.limb_blocks, begin, end,
+                                                                       limb_pass);
+  });
+  for_blocks(context, joints.pin_begin, color, [&](int begin, int end) {
     if (use_bias)
       joints.pin_kernels.solve(context.bodies, joints.pin_blocks, begin, end,
                                {biased.velocity, biased.position, biased.memory});
@@ -129,6 +136,7 @@ void release_joint(WorldImplementation<D>& world, std::int32_t joint) {
   detach_joint(world, joint);
   if (joints.data[std::size_t(joint)].internal) --joints.internal_count;
   if (may_break(joints.data[std::size_t(joint)].definition)) --joints.breakable_count;
+  drop_knots(joints, joint);
   joints.data[std::size_t(joint)] = {};
   joints.headers[std::size_t(joint)] = {};
   joints.slots.release(joints.slots.handle_at(joint));

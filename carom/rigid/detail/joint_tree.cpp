@@ -320,7 +320,7 @@ class Tree {
     const BodyMotion<D>& m = store.motion[std::size_t(slot)];
     s.delta_position += context_.h * s.linear_velocity;
     if (may_turn_freely(m, record) && spins(s.angular_velocity))
-      turn_freely(s, m, store.pose[std::size_t(slot)].rotation, context_.h);
+      turn_pushed(s, m, store.pose[std::size_t(slot)].rotation, context_.h);
     else
       turn_body(s, context_.h);
     return s;

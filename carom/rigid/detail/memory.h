@@ -50,7 +50,7 @@ std::size_t bytes_of_world(const WorldImplementation<D>& world) {
   ByteCounter counter{sizeof(world)};
   visit_world(world, counter);
   for (const auto& tree : world.shapes.trees) counter.bytes += tree.scratch_bytes();
-  return counter.bytes + world.arena.capacity();
+  return counter.bytes + world.query_trees.bytes() + world.arena.capacity();
 }
 
 }  // namespace carom::rigid::detail

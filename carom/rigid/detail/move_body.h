@@ -32,4 +32,12 @@ inline void turn_freely(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Qu
   s.delta_rotation = normalize(q * r * conjugate(start));
 }
 
+/// The same for a body that constraints push about: in float.
+inline void turn_pushed(SolverBody<Dim2>& s, const BodyMotion<Dim2>&, const Rot2f&, float h) { turn_body(s, h); }
+inline void turn_pushed(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Quatf& start, float h) {
+  const Quatf q = normalize(s.delta_rotation * start);
+  const Quatf r = torque_free_turn(m.inertia, q, h, s.angular_velocity);
+  s.delta_rotation = normalize(q * r * conjugate(start));
+}
+
 }  // namespace carom::rigid::detail

@@ -17,7 +17,7 @@ enum ShapeFlag : std::uint8_t {
   shape_hit_events = 4,
   shape_many = 8,       ///< collides with several manifolds
   shape_moved = 16,     ///< its fat bounds changed: look for new pairs
-  shape_round = 32,     ///< a sphere or circle
+  shape_round = 32,     ///< a sphere, ellipsoid or circle
   shape_outgrown = 64,  ///< left its fat bounds in this step
   shape_special = 128,  ///< has a ShapeExtra
 };
@@ -56,10 +56,19 @@ struct ShapeExtra {
   bool modify = false;                    ///< the contact modifier is asked
   typename D::Vector surface_velocity{};  ///< m/s, shape frame
   typename D::Vector one_way{};           ///< unit or zero, shape frame
+  std::int32_t surface_count = 0;         ///< entries in ShapeStore::surfaces
 
   bool any() const {
-    return modify || !(surface_velocity == typename D::Vector{}) || !(one_way == typename D::Vector{});
+    return modify || !(surface_velocity == typename D::Vector{}) || !(one_way == typename D::Vector{}) ||
+           surface_count > 0;
   }
+};
+
+/// What a material number of a shape's parts stands for.
+template <class D>
+struct PartSurface {
+  std::int32_t shape = none, number = 0;
+  SurfaceMaterial<D> surface{};
 };
 
 template <class D>
@@ -67,7 +76,10 @@ struct ShapeStore {
   core::SlotPool<ShapeTag> slots;
   std::vector<ShapeRecord<D>> record;                    ///< by slot
   std::vector<ShapeExtra<D>> extras;                     ///< in the order of their slots
+  std::vector<PartSurface<D>> surfaces;                  ///< in the order of their slots and numbers
+  std::int32_t moving_surfaces = 0;                      ///< meshes on bodies that are not fixed
   geometry::DynamicTree<typename D::Position> trees[3];  ///< items are slots of shapes
+  std::vector<typename D::Shape> originals;              ///< geometries of which the world changed a copy
   /// Of all records, shared with the snapshots that were taken since a shape last came or went; else null.
   std::shared_ptr<const std::vector<typename D::Shape>> geometry_copy;
 
@@ -80,6 +92,28 @@ struct ShapeStore {
     const auto i = std::lower_bound(extras.begin(), extras.end(), slot,
                                     [](const ShapeExtra<D>& e, std::int32_t s) { return e.shape < s; });
     return i != extras.end() && i->shape == slot ? &*i : nullptr;
+  }
+  /// The entries of a shape.
+  std::span<PartSurface<D>> surfaces_of(std::int32_t slot) {
+    const auto first = std::lower_bound(surfaces.begin(), surfaces.end(), slot,
+                                        [](const PartSurface<D>& p, std::int32_t s) { return p.shape < s; });
+    auto last = first;
+    while (last != surfaces.end() && last->shape == slot) ++last;
+    return {first, last};
+  }
+  /// Null where all parts are of the shape's own material.
+  const SurfaceMaterial<D>* surface(std::int32_t slot, std::uint32_t number) const {
+    const ShapeExtra<D>* e = extra(slot);
+    if (e == nullptr || number >= std::uint32_t(e->surface_count)) return nullptr;
+    const auto first = std::lower_bound(surfaces.begin(), surfaces.end(), slot,
+                                        [](const PartSurface<D>& p, std::int32_t s) { return p.shape < s; });
+    return &(first + std::ptrdiff_t(number))->surface;
+  }
+  /// Before the slot is given to another.
+  void forget_extra(std::int32_t slot) {
+    if (const ShapeExtra<D>* e = extra(slot); e != nullptr && e->surface_count > 0)
+      std::erase_if(surfaces, [&](const PartSurface<D>& p) { return p.shape == slot; });
+    set_extra({slot});
   }
   void set_extra(const ShapeExtra<D>& extra) {
     const auto i = std::lower_bound(extras.begin(), extras.end(), extra.shape,

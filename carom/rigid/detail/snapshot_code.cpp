@@ -1,44 +1,131 @@
 #include "carom/rigid/detail/snapshot_code.h"
 
 namespace carom::rigid::detail {
+namespace {
 
-void ByteWriter::difference(const std::uint32_t* now, const std::uint32_t* base, std::size_t count) {
-  const auto changed = [&](std::size_t i) { return base == nullptr ? now[i] : now[i] ^ base[i]; };
-  // What came last is equal to the base and needs no word.
-  while (count > 0 && changed(count - 1) == 0) --count;
-  number(count);
-  for (std::size_t i = 0; i < count;) {
-    std::size_t equal = 0;
-    while (changed(i + equal) == 0) ++equal;
-    i += equal;
-    // A single equal word between others is cheaper as one of them.
-    std::size_t different = 0;
-    while (i + different < count &&
-           (changed(i + different) != 0 || (i + different + 1 < count && changed(i + different + 1) != 0)))
-      ++different;
-    number(equal);
-    number(different);
-    for (std::size_t k = 0; k < different; k += 4) {
-      const std::size_t group = different - k < 4 ? different - k : 4;
-      std::uint8_t lengths = 0;
-      for (std::size_t j = 0; j < group; ++j) {
-        const std::uint32_t x = changed(i + k + j);
-        lengths = std::uint8_t(lengths | (x > 0xFFFFFF ? 3 : (x > 0xFFFF ? 2 : (x > 0xFF ? 1 : 0))) << (2 * j));
-      }
-      byte(lengths);
-      for (std::size_t j = 0; j < group; ++j) {
-        const std::uint32_t x = changed(i + k + j);
-        for (int b = 0; b <= (lengths >> (2 * j) & 3); ++b) byte(std::uint8_t(x >> (8 * b)));
-      }
+constexpr std::uint32_t least_range = 1u << 24;
+
+/// How many bits x has, at least 1.
+int length_of(std::uint32_t x) { return x == 0 ? 1 : 32 - __builtin_clz(x); }
+
+}  // namespace
+
+void ByteWriter::shift_out() {
+  if (low_ < 0xFF000000u || low_ > 0xFFFFFFFFu) {  // no carry can come any more, or it has
+    const std::uint8_t carry = std::uint8_t(low_ >> 32);
+    for (; waiting_ > 0; --waiting_) {
+      out_.push_back(std::byte(std::uint8_t(cache_ + carry)));
+      cache_ = 0xFF;
     }
-    i += different;
+    cache_ = std::uint8_t(low_ >> 24);
+  }
+  ++waiting_;
+  low_ = (low_ & 0x00FFFFFFu) << 8;
+}
+
+void ByteWriter::grow() {
+  while (range_ < least_range) {
+    range_ <<= 8;
+    shift_out();
   }
 }
 
-std::uint64_t ByteReader::word() {
-  std::uint64_t x = 0;
-  for (int i = 0; i < 8; ++i) x |= std::uint64_t{byte()} << (8 * i);
+void ByteWriter::bit(BitModel& model, bool x) {
+  const std::uint32_t bound = (range_ >> 12) * model.zero;
+  if (x)
+    low_ += bound, range_ -= bound;
+  else
+    range_ = bound;
+  model.learn(x);
+  grow();
+}
+
+void ByteWriter::bits(std::uint32_t x, int count) {
+  while (count-- > 0) {
+    range_ >>= 1;
+    if ((x >> count & 1u) != 0) low_ += range_;
+    grow();
+  }
+}
+
+void ByteWriter::finish() {
+  for (int i = 0; i < 5; ++i) shift_out();
+}
+
+void ByteWriter::changed_word(WordModel& model, std::uint32_t x) {
+  bit(model.changed, x != 0);
+  if (x == 0) return;
+  const int length = length_of(x), symbol = length - 1;
+  for (int node = 1, k = 4; k >= 0; --k) {
+    const bool b = (symbol >> k & 1) != 0;
+    bit(model.length[node], b);
+    node = 2 * node + (b ? 1 : 0);
+  }
+  bits(x, length - 1);  // the highest is 1
+}
+
+void ByteWriter::difference(const std::uint32_t* now, const std::uint32_t* base, std::size_t count,
+                            SectionModel& model) {
+  const std::size_t size = model.words.size(), elements = (count + size - 1) / size;
+  const auto changed = [&](std::size_t i) { return base == nullptr ? now[i] : now[i] ^ base[i]; };
+  const auto differs = [&](std::size_t e) {
+    for (std::size_t i = e * size; i < (e + 1) * size && i < count; ++i)
+      if (changed(i) != 0) return true;
+    return false;
+  };
+  for (std::size_t e = 0; e < elements;) {
+    std::size_t equal = 0, different = 0;
+    while (e + equal < elements && !differs(e + equal)) ++equal;
+    e += equal;
+    while (e + different < elements && differs(e + different)) ++different;
+    changed_word(model.equal, std::uint32_t(equal));
+    changed_word(model.different, std::uint32_t(different));
+    for (std::size_t k = 0; k < different; ++k, ++e)
+      for (std::size_t w = 0; w < size && e * size + w < count; ++w)
+        changed_word(model.words[w], changed(e * size + w));
+  }
+}
+
+ByteReader::ByteReader(std::span<const std::byte> in) : in_(in) {
+  take();
+  for (int i = 0; i < 4; ++i) code_ = code_ << 8 | take();
+}
+
+std::uint8_t ByteReader::take() {
+  if (next_ >= in_.size()) return sound_ = false, std::uint8_t(0);
+  return std::uint8_t(in_[next_++]);
+}
+
+void ByteReader::grow() {
+  while (range_ < least_range) {
+    range_ <<= 8;
+    code_ = code_ << 8 | take();
+  }
+}
+
+bool ByteReader::bit(BitModel& model) {
+  if (!sound_) return false;
+  const std::uint32_t bound = (range_ >> 12) * model.zero;
+  const bool x = code_ >= bound;
+  if (x)
+    code_ -= bound, range_ -= bound;
+  else
+    range_ = bound;
+  model.learn(x);
+  grow();
   return x;
+}
+
+std::uint32_t ByteReader::bits(int count) {
+  std::uint32_t x = 0;
+  for (; count > 0 && sound_; --count) {
+    range_ >>= 1;
+    const bool b = code_ >= range_;
+    if (b) code_ -= range_;
+    x = x << 1 | (b ? 1u : 0u);
+    grow();
+  }
+  return sound_ ? x : 0;
 }
 
 std::uint64_t ByteReader::number() {
@@ -52,22 +139,26 @@ std::uint64_t ByteReader::number() {
   return 0;
 }
 
-void ByteReader::difference(std::uint32_t* words, std::size_t count) {
-  const std::uint64_t written = number();
-  if (written > count) return fail();
-  for (std::uint64_t i = 0; sound_ && i < written;) {
-    const std::uint64_t equal = number(), different = number();
-    if (equal > written - i || different > written - i - equal || different == 0) return fail();
-    i += equal;
-    for (std::uint64_t k = 0; sound_ && k < different; k += 4) {
-      const std::uint8_t lengths = byte();
-      for (std::uint64_t j = 0; j < 4 && k + j < different; ++j) {
-        std::uint32_t x = 0;
-        for (int b = 0; b <= (lengths >> (2 * j) & 3); ++b) x |= std::uint32_t{byte()} << (8 * b);
-        words[i + k + j] ^= x;
-      }
-    }
-    i += different;
+std::uint32_t ByteReader::changed_word(WordModel& model) {
+  if (!bit(model.changed)) return 0;
+  int symbol = 0;
+  for (int node = 1, k = 4; k >= 0; --k) {
+    const bool b = bit(model.length[node]);
+    symbol = 2 * symbol + (b ? 1 : 0);
+    node = 2 * node + (b ? 1 : 0);
+  }
+  return 1u << symbol | bits(symbol);
+}
+
+void ByteReader::difference(std::uint32_t* words, std::size_t count, SectionModel& model) {
+  const std::size_t size = model.words.size(), elements = (count + size - 1) / size;
+  for (std::size_t e = 0; sound_ && e < elements;) {
+    const std::size_t equal = changed_word(model.equal), different = changed_word(model.different);
+    if (equal > elements - e || different > elements - e - equal || equal + different == 0) return fail();
+    e += equal;
+    for (std::size_t k = 0; sound_ && k < different; ++k, ++e)
+      for (std::size_t w = 0; w < size && e * size + w < count; ++w)
+        words[e * size + w] ^= changed_word(model.words[w]);
   }
 }
 

@@ -1,4 +1,5 @@
-// Snapshots as bytes: words as what changed against those of a base, written short.
+// Snapshots as bytes: words as what changed against those of a base, through a range coder whose models learn how many
+// bits each word of a kind of record is wont to change (Martin 1979; carry propagation after Schindler 1998).
 #pragma once
 
 #include <cstddef>
@@ -8,46 +9,84 @@
 
 namespace carom::rigid::detail {
 
-/// Appends numbers to bytes, lowest byte first.
+/// The chance that a bit is 0, in 1/4096.
+struct BitModel {
+  std::uint16_t zero = 2048;
+  void learn(bool bit) { zero = std::uint16_t(bit ? zero - (zero >> learning) : zero + ((4096 - zero) >> learning)); }
+  static constexpr int learning = 4;
+};
+
+/// For one word of a record: whether it changed, and if, its length in bits.
+struct WordModel {
+  BitModel changed, length[32];
+};
+
+/// What is known of a section while it is coded.
+struct SectionModel {
+  std::vector<WordModel> words;  ///< of an element
+  WordModel equal, different;    ///< lengths of runs of elements
+  explicit SectionModel(std::size_t element_words) : words(element_words < 1 ? 1 : element_words) {}
+};
+
+/// Appends numbers to bytes. Call finish() last.
 class ByteWriter {
  public:
   explicit ByteWriter(std::vector<std::byte>& out) : out_(out) {}
-  void byte(std::uint8_t x) { out_.push_back(std::byte(x)); }
+  void byte(std::uint8_t x) { bits(x, 8); }
   void word(std::uint64_t x) {
-    for (int i = 0; i < 8; ++i) byte(std::uint8_t(x >> (8 * i)));
+    bits(std::uint32_t(x), 32);
+    bits(std::uint32_t(x >> 32), 32);
   }
   /// Seven bits a byte, the lowest first.
   void number(std::uint64_t x) {
     for (; x >= 0x80; x >>= 7) byte(std::uint8_t(x | 0x80));
     byte(std::uint8_t(x));
   }
-  /// now ⊕ base: runs of equal words are counted, others written in as few bytes as they need. A null base is zero.
-  void difference(const std::uint32_t* now, const std::uint32_t* base, std::size_t count);
+  /// now ⊕ base, element by element of the model. A null base is zero.
+  void difference(const std::uint32_t* now, const std::uint32_t* base, std::size_t count, SectionModel& model);
+  void finish();
 
  private:
+  void bit(BitModel& model, bool x);
+  void bits(std::uint32_t x, int count);
+  void changed_word(WordModel& model, std::uint32_t x);
+  void grow();
+  void shift_out();
+
   std::vector<std::byte>& out_;
+  std::uint64_t low_ = 0;
+  std::uint32_t range_ = 0xFFFFFFFFu;
+  std::uint8_t cache_ = 0;
+  std::uint64_t waiting_ = 1;
 };
 
 /// Reads them back. Past the end, or at a number that cannot be, all that follows is zero and `sound` is false.
 class ByteReader {
  public:
-  explicit ByteReader(std::span<const std::byte> in) : in_(in) {}
+  explicit ByteReader(std::span<const std::byte> in);
   bool sound() const { return sound_; }
   bool at_end() const { return next_ == in_.size(); }
   std::size_t left() const { return in_.size() - next_; }
   void fail() { sound_ = false; }
-  std::uint8_t byte() {
-    if (!sound_ || next_ >= in_.size()) return sound_ = false, std::uint8_t(0);
-    return std::uint8_t(in_[next_++]);
+  std::uint8_t byte() { return std::uint8_t(bits(8)); }
+  std::uint64_t word() {
+    const std::uint64_t low = bits(32);
+    return low | std::uint64_t{bits(32)} << 32;
   }
-  std::uint64_t word();
   std::uint64_t number();
   /// Turns `words`, which hold the base, into what was written.
-  void difference(std::uint32_t* words, std::size_t count);
+  void difference(std::uint32_t* words, std::size_t count, SectionModel& model);
 
  private:
+  bool bit(BitModel& model);
+  std::uint32_t bits(int count);
+  std::uint32_t changed_word(WordModel& model);
+  void grow();
+  std::uint8_t take();
+
   std::span<const std::byte> in_;
   std::size_t next_ = 0;
+  std::uint32_t code_ = 0, range_ = 0xFFFFFFFFu;
   bool sound_ = true;
 };
 

@@ -20,7 +20,7 @@ struct SnapshotSection {
 /// A shape's geometry in a form that can be compared and sent: small ones by value, shared ones by fingerprint.
 struct GeometryRecord {
   std::uint32_t type = 0;
-  std::uint32_t shared = 0;       ///< 1: `fingerprint` stands for the value
+  std::uint32_t shared = 0;       ///< 1: `fingerprint` stands for the value; 2: likewise, and the value is sent along
   std::uint64_t fingerprint = 0;  ///< of what all the world's users of a hull or mesh share
   std::uint32_t value[40] = {};   ///< bytes of the small shape
   friend bool operator==(const GeometryRecord&, const GeometryRecord&) = default;
@@ -57,6 +57,15 @@ bool shape_of(const GeometryRecord& record, geometry::Shape2& shape);
 bool shape_of(const GeometryRecord& record, geometry::Shape3& shape);
 inline bool is_shared(const geometry::Shape2& s) { return s.chain != nullptr; }
 inline bool is_shared(const geometry::Shape3& s) { return s.data != nullptr; }
+
+class ByteWriter;  // snapshot_code.h
+class ByteReader;
+/// A height field or voxel grid that the world changed, itself: against that of a base where it is of the same kind.
+void write_terrain(ByteWriter& out, const geometry::Shape2& shape, const geometry::Shape2* base);
+void write_terrain(ByteWriter& out, const geometry::Shape3& shape, const geometry::Shape3* base);
+/// False where that cannot be one.
+bool read_terrain(ByteReader& in, std::uint32_t type, const geometry::Shape2* base, geometry::Shape2& shape);
+bool read_terrain(ByteReader& in, std::uint32_t type, const geometry::Shape3* base, geometry::Shape3& shape);
 
 /// 64 bits over many words: four interleaved core::StateHash, because one waits for each of its own words.
 std::uint64_t hash_words(std::span<const std::uint64_t> words);

@@ -6,6 +6,8 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/geometry/voxels.h"
+#include "carom/rigid/detail/snapshot_code.h"
 #include "carom/rigid/detail/snapshot_data.h"
 
 namespace carom::rigid::detail {
@@ -50,11 +52,49 @@ bool with_small_value(S& shape, F&& f) {
       return f(shape.cylinder), true;
     case geometry::ShapeType3::cone:
       return f(shape.cone), true;
+    case geometry::ShapeType3::ellipsoid:
+      return f(shape.ellipsoid), true;
     case geometry::ShapeType3::plane:
       return f(shape.plane), true;
     default:
       return false;
   }
+}
+
+bool is_edited(const geometry::Shape2&) { return false; }
+bool is_edited(const geometry::Shape3& s) {
+  if (s.type == geometry::ShapeType3::height_field) return s.height_field->edited;
+  return s.type == geometry::ShapeType3::voxels && s.voxels->edited;
+}
+
+/// A list as what changed against that of a base, of the same length where there is one.
+template <class T>
+void write_list(ByteWriter& out, const std::vector<T>& now, const std::vector<T>* base) {
+  const auto words = [](const std::vector<T>& v) {
+    std::vector<std::uint32_t> w((v.size() * sizeof(T) + 3) / 4);
+    if (!v.empty()) std::memcpy(w.data(), v.data(), v.size() * sizeof(T));
+    return w;
+  };
+  const bool against = base != nullptr && base->size() == now.size();
+  const std::vector<std::uint32_t> a = words(now), b = against ? words(*base) : std::vector<std::uint32_t>{};
+  out.number(now.size());
+  out.byte(against ? 1 : 0);
+  SectionModel model(1);
+  out.difference(a.data(), against ? b.data() : nullptr, a.size(), model);
+}
+template <class T>
+bool read_list(ByteReader& in, std::vector<T>& v, const std::vector<T>* base) {
+  const std::uint64_t size = in.number();
+  const bool against = in.byte() != 0;
+  if (!in.sound() || size > (std::uint64_t{1} << 31) || (against && (base == nullptr || base->size() != size)))
+    return false;
+  std::vector<std::uint32_t> w(std::size_t((size * sizeof(T) + 3) / 4));
+  if (against && !base->empty()) std::memcpy(w.data(), base->data(), base->size() * sizeof(T));
+  SectionModel model(1);
+  in.difference(w.data(), w.size(), model);
+  v.resize(std::size_t(size));
+  if (size > 0) std::memcpy(v.data(), w.data(), v.size() * sizeof(T));
+  return in.sound();
 }
 
 template <class S>
@@ -66,7 +106,7 @@ GeometryRecord record_of(const S& shape) {
     std::memcpy(record.value, &value, sizeof(value));
   });
   if (!small) {
-    record.shared = 1;
+    record.shared = is_edited(shape) ? 2 : 1;
     record.fingerprint = fingerprint(shape);
   }
   return record;
@@ -89,6 +129,7 @@ std::uint64_t fingerprint(const geometry::Shape2& shape) {
   if (shape.chain != nullptr) {
     hash.add(shape.chain->loop);
     add_plain(hash, shape.chain->points);
+    add_plain(hash, shape.chain->materials);
   }
   return hash.digest();
 }
@@ -104,12 +145,19 @@ std::uint64_t fingerprint(const geometry::Shape3& shape) {
     case geometry::ShapeType3::mesh:
       add_plain(hash, shape.mesh->vertices);
       add_plain(hash, shape.mesh->indices);
+      add_plain(hash, shape.mesh->materials);
       break;
     case geometry::ShapeType3::height_field:
       hash.add(std::int32_t(shape.height_field->columns)).add(std::int32_t(shape.height_field->rows));
       hash.add(shape.height_field->cell.x).add(shape.height_field->cell.y);
       add_plain(hash, shape.height_field->heights);
       add_plain(hash, shape.height_field->holes);
+      add_plain(hash, shape.height_field->materials);
+      break;
+    case geometry::ShapeType3::voxels:
+      hash.add(std::int32_t(shape.voxels->columns)).add(std::int32_t(shape.voxels->layers));
+      hash.add(std::int32_t(shape.voxels->rows)).add(shape.voxels->cell);
+      add_plain(hash, shape.voxels->cells);
       break;
     case geometry::ShapeType3::compound:
       for (const geometry::CompoundChild& child : shape.compound->children) {
@@ -130,6 +178,69 @@ GeometryRecord geometry_record(const geometry::Shape2& shape) { return record_of
 GeometryRecord geometry_record(const geometry::Shape3& shape) { return record_of(shape); }
 bool shape_of(const GeometryRecord& record, geometry::Shape2& shape) { return small_shape_of(record, shape); }
 bool shape_of(const GeometryRecord& record, geometry::Shape3& shape) { return small_shape_of(record, shape); }
+
+void write_terrain(ByteWriter& out, const geometry::Shape3& shape, const geometry::Shape3* base) {
+  SectionModel head(4);
+  if (shape.type == geometry::ShapeType3::height_field) {
+    const geometry::HeightField& f = *shape.height_field;
+    const geometry::HeightField* b =
+        base != nullptr && base->type == geometry::ShapeType3::height_field ? base->height_field : nullptr;
+    std::uint32_t words[4] = {std::uint32_t(f.columns), std::uint32_t(f.rows), 0, 0};
+    std::memcpy(words + 2, &f.cell, 8);
+    out.difference(words, nullptr, 4, head);
+    write_list(out, f.heights, b != nullptr ? &b->heights : nullptr);
+    write_list(out, f.holes, b != nullptr ? &b->holes : nullptr);
+    write_list(out, f.materials, b != nullptr ? &b->materials : nullptr);
+  } else {
+    const geometry::VoxelGrid& g = *shape.voxels;
+    const geometry::VoxelGrid* b =
+        base != nullptr && base->type == geometry::ShapeType3::voxels ? base->voxels : nullptr;
+    std::uint32_t words[4] = {std::uint32_t(g.columns), std::uint32_t(g.layers), std::uint32_t(g.rows), 0};
+    std::memcpy(words + 3, &g.cell, 4);
+    out.difference(words, nullptr, 4, head);
+    write_list(out, g.cells, b != nullptr ? &b->cells : nullptr);
+  }
+}
+bool read_terrain(ByteReader& in, std::uint32_t type, const geometry::Shape3* base, geometry::Shape3& shape) {
+  std::uint32_t words[4] = {};
+  SectionModel head(4);
+  in.difference(words, 4, head);
+  const auto small = [](std::uint32_t x) { return int(x & 0x7fffffff); };
+  if (geometry::ShapeType3(type) == geometry::ShapeType3::height_field) {
+    const geometry::HeightField* b =
+        base != nullptr && base->type == geometry::ShapeType3::height_field ? base->height_field : nullptr;
+    Vec2f cell;
+    std::memcpy(static_cast<void*>(&cell), words + 2, 8);
+    std::vector<float> heights;
+    std::vector<std::uint8_t> holes, materials;
+    if (!read_list(in, heights, b != nullptr ? &b->heights : nullptr) ||
+        !read_list(in, holes, b != nullptr ? &b->holes : nullptr) ||
+        !read_list(in, materials, b != nullptr ? &b->materials : nullptr))
+      return false;
+    const auto made = geometry::make_height_field(small(words[0]), small(words[1]), cell, std::move(heights),
+                                                  std::move(holes), std::move(materials));
+    if (!made.ok()) return false;
+    auto field = std::make_shared<geometry::HeightField>(**made);
+    field->edited = true;
+    shape = std::shared_ptr<const geometry::HeightField>(std::move(field));
+    return true;
+  }
+  if (geometry::ShapeType3(type) != geometry::ShapeType3::voxels) return false;
+  const geometry::VoxelGrid* b = base != nullptr && base->type == geometry::ShapeType3::voxels ? base->voxels : nullptr;
+  float cell;
+  std::memcpy(&cell, words + 3, 4);
+  std::vector<std::uint8_t> cells;
+  if (!read_list(in, cells, b != nullptr ? &b->cells : nullptr)) return false;
+  const auto made =
+      geometry::make_voxel_grid(small(words[0]), small(words[1]), small(words[2]), cell, std::move(cells));
+  if (!made.ok()) return false;
+  auto grid = std::make_shared<geometry::VoxelGrid>(**made);
+  grid->edited = true;
+  shape = std::shared_ptr<const geometry::VoxelGrid>(std::move(grid));
+  return true;
+}
+void write_terrain(ByteWriter&, const geometry::Shape2&, const geometry::Shape2*) {}
+bool read_terrain(ByteReader&, std::uint32_t, const geometry::Shape2*, geometry::Shape2&) { return false; }
 
 std::uint64_t hash_words(std::span<const std::uint64_t> words) {
   core::StateHash lane[4];

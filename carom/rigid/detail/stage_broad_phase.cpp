@@ -1,39 +1,160 @@
 #include <algorithm>
 
+#include "carom/math/simd.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
 namespace {
 
 constexpr int pair_grain = 64;
+constexpr int group_grain = 8;
+constexpr int most_in_group = 16;
+
+/// Remembers two shapes whose bounds overlap, if they are a pair without a contact.
+template <class D>
+void consider_pair(WorldImplementation<D>& world, std::int32_t s, std::int32_t o, std::vector<FoundPair>& found) {
+  if (o == s) return;
+  const ShapeRecord<D>&shape = world.shapes.at(s), &other = world.shapes.at(o);
+  if (!may_collide(world, shape, other)) return;
+  if (world.pairs.contains(PairSet::key(s, o))) return;
+  if (joints_forbid_collision(world, shape.body, other.body)) return;
+  found.push_back(s < o ? FoundPair{s, o} : FoundPair{o, s});
+}
+
+/// Trees in which a shape of `tree` can find partners.
+inline int first_tree_for(int tree) { return tree == tree_fixed ? tree_kinematic : tree_fixed; }
 
 template <class D>
 void find_pairs_of(WorldImplementation<D>& world, std::int32_t place, std::vector<FoundPair>& found) {
   using Bounds = typename D::Bounds;
-  const StepScratch<D>& scratch = world.scratch;
-  const std::int32_t s = scratch.moved[std::size_t(place)];
+  const std::int32_t s = world.scratch.moved[std::size_t(place)];
   const ShapeRecord<D>& shape = world.shapes.at(s);
   if (shape.leaf == none) return;
   const Bounds box = world.shapes.trees[shape.tree].bounds(shape.leaf);
-  const Bounds old = scratch.old_bounds[std::size_t(place)];
-  const auto visit = [&](std::uint32_t item, const Bounds& other_box) {
-    const std::int32_t o = std::int32_t(item);
-    const std::int32_t other_place = scratch.moved_place[std::size_t(o)];
-    // Where both moved, the pair is found twice: only the lower slot reports it.
-    if (o == s || (other_place >= 0 && o < s)) return true;
-    // What overlapped when pairs were last looked for was considered then; but a caller's filter may change its mind.
-    if (!world.contact_filter &&
-        overlaps(old, other_place >= 0 ? scratch.old_bounds[std::size_t(other_place)] : other_box))
+  const Bounds old = world.scratch.old_bounds[std::size_t(place)];
+  for (int tree = first_tree_for(shape.tree); tree <= tree_dynamic; ++tree)
+    world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const Bounds& other) {
+      // What overlapped when pairs were last looked for was considered then; but a caller's filter may change its mind.
+      if (!world.contact_filter) {
+        const std::int32_t other_place = world.scratch.moved_place[item];
+        if (overlaps(old, other_place >= 0 ? world.scratch.old_bounds[std::size_t(other_place)] : other)) return true;
+      }
+      consider_pair(world, s, std::int32_t(item), found);
       return true;
-    const ShapeRecord<D>& other = world.shapes.at(o);
-    if (!may_collide(world, shape, other)) return true;
-    if (world.pairs.contains(PairSet::key(s, o))) return true;
-    if (joints_forbid_collision(world, shape.body, other.body)) return true;
-    found.push_back(s < o ? FoundPair{s, o} : FoundPair{o, s});
-    return true;
+    });
+}
+
+/// Boxes side by side, in float: exact, because fat bounds lie on a grid (2⁻¹⁰ m) and all is near one origin.
+template <class D, int Room>
+struct BoxLanes {
+  static constexpr int dimension = D::dimension;
+  float low[dimension][Room], high[dimension][Room];
+
+  void put(int lane, const typename D::Bounds& box, const typename D::Position& origin) {
+    const typename D::Position l = box.low - origin, h = box.high - origin;
+    for (int k = 0; k < dimension; ++k) {
+      low[k][lane] = float(clamp(l[k], -far_away, far_away));
+      high[k][lane] = float(clamp(h[k], -far_away, far_away));
+    }
+  }
+  /// Which of the four from `first` on meet box `lane` of the other?
+  template <int OtherRoom>
+  WideMask<4> meets(int first, const BoxLanes<D, OtherRoom>& other, int lane) const {
+    using F = WideFloat<4>;
+    WideMask<4> all = WideMask<4>::all();
+    for (int k = 0; k < dimension; ++k)
+      all = all & (F::load(low[k] + first) <= F::splat(other.high[k][lane])) &
+            (F::splat(other.low[k][lane]) <= F::load(high[k] + first));
+    return all;
+  }
+  static constexpr double far_away = 8e3;  ///< m: multiples of 2⁻¹⁰ m are exact up to 16 km
+};
+
+/// The same for neighbours in the tree of dynamic shapes: one descent for all, then each against all that was found.
+template <class D>
+void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int32_t> places,
+                         std::vector<FoundPair>& found) {
+  using Bounds = typename D::Bounds;
+  const StepScratch<D>& scratch = world.scratch;
+  const int count = int(places.size());
+  std::int32_t members[most_in_group];
+  Bounds all{};
+  for (int i = 0; i < count; ++i) {
+    members[i] = scratch.moved[std::size_t(places[std::size_t(i)])];
+    const Bounds& box = world.shapes.trees[tree_dynamic].bounds(world.shapes.at(members[i]).leaf);
+    all = i == 0 ? box : merge(all, box);
+  }
+  const typename D::Position size = all.high - all.low, origin = all.low;
+  for (int k = 0; k < D::dimension; ++k)
+    if (count == 1 || size[k] > 1e3) {
+      for (const std::int32_t place : places) find_pairs_of(world, place, found);
+      return;
+    }
+  BoxLanes<D, most_in_group> boxes, old_boxes;
+  for (int i = 0; i < count; ++i) {
+    boxes.put(i, world.shapes.trees[tree_dynamic].bounds(world.shapes.at(members[i]).leaf), origin);
+    old_boxes.put(i, scratch.old_bounds[std::size_t(places[std::size_t(i)])], origin);
+    // Far from here it met none of these, or a box that is cut off there as well.
+    for (int k = 0; k < D::dimension; ++k)
+      if (!(math::abs(old_boxes.low[k][i]) < 4e3f && math::abs(old_boxes.high[k][i]) < 4e3f))
+        old_boxes.low[k][i] = 1e6f, old_boxes.high[k][i] = -1e6f;
+  }
+
+  constexpr int room = 64;
+  BoxLanes<D, room> others, old_others;
+  std::int32_t shapes[room];
+  int number = 0;
+  const auto look = [&] {
+    const int full = (number + 3) / 4 * 4;
+    for (int k = number; k < full; ++k)
+      for (int axis = 0; axis < D::dimension; ++axis) others.low[axis][k] = 1e6f, others.high[axis][k] = -1e6f;
+    for (int i = 0; i < count; ++i) {
+      std::uint64_t news = 0;
+      for (int k = 0; k < full; k += 4) {
+        auto meets = others.meets(k, boxes, i);
+        if (!world.contact_filter) meets = meets & !old_others.meets(k, old_boxes, i);
+        news |= std::uint64_t(bitmask(meets)) << k;
+      }
+      for (; news != 0; news &= news - 1) consider_pair(world, members[i], shapes[__builtin_ctzll(news)], found);
+    }
+    number = 0;
   };
-  for (int tree = shape.tree == tree_fixed ? tree_kinematic : tree_fixed; tree <= tree_dynamic; ++tree)
-    world.shapes.trees[tree].query_boxes(box, visit);
+  for (int tree = tree_fixed; tree <= tree_dynamic; ++tree)
+    world.shapes.trees[tree].query_boxes(all, [&](std::uint32_t item, const Bounds& box) {
+      const std::int32_t place = scratch.moved_place[item];
+      others.put(number, box, origin);
+      old_others.put(number, place >= 0 ? scratch.old_bounds[std::size_t(place)] : box, origin);
+      shapes[number++] = std::int32_t(item);
+      if (number == room) look();
+      return true;
+    });
+  look();
+}
+
+/// Orders the places of moved shapes of the dynamic tree as they lie in it, and cuts the order into groups that lie
+/// close together: group k ends before group_ends[k].
+template <class D>
+void group_moved(WorldImplementation<D>& world) {
+  using Bounds = typename D::Bounds;
+  StepScratch<D>& scratch = world.scratch;
+  scratch.group_places.clear();
+  scratch.group_ends.clear();
+  Bounds all{};
+  int count = 0;
+  const auto surface = [](const Bounds& b) { return geometry::detail::surface(b); };
+  world.shapes.trees[tree_dynamic].visit_leaves([&](std::uint32_t item, const Bounds& box) {
+    const std::int32_t place = scratch.moved_place[item];
+    if (place < 0) return;
+    const Bounds more = count > 0 ? merge(all, box) : box;
+    if (count == most_in_group || (count > 0 && surface(more) > surface(all) + surface(box))) {
+      scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
+      count = 0;
+    }
+    all = count > 0 ? more : box;
+    ++count;
+    scratch.group_places.push_back(place);
+  });
+  if (count > 0) scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
 }
 
 /// A box that overlaps none: pairs with it have not been looked for.
@@ -55,14 +176,29 @@ void find_pairs(WorldImplementation<D>& world) {
   scratch.moved_place.resize(world.shapes.record.size(), none);
   for (std::size_t k = 0; k < scratch.moved.size(); ++k)
     scratch.moved_place[std::size_t(scratch.moved[k])] = std::int32_t(k);
+  // Where much of the tree moved, neighbours look together.
+  const bool grouped = 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
+  if (grouped) group_moved(world);
   world.scheduler->parallel_for(int(scratch.moved.size()), pair_grain, [&](int begin, int end, int worker) {
-    for (int i = begin; i < end; ++i) find_pairs_of(world, i, scratch.found_pairs[std::size_t(worker)]);
+    for (int i = begin; i < end; ++i)
+      if (!grouped || world.shapes.at(scratch.moved[std::size_t(i)]).tree != tree_dynamic)
+        find_pairs_of(world, i, scratch.found_pairs[std::size_t(worker)]);
   });
+  if (grouped)
+    world.scheduler->parallel_for(int(scratch.group_ends.size()), group_grain, [&](int begin, int end, int worker) {
+      for (int k = begin; k < end; ++k) {
+        const std::size_t first = k == 0 ? 0 : std::size_t(scratch.group_ends[std::size_t(k) - 1]);
+        find_pairs_of_group(
+            world,
+            std::span(scratch.group_places).subspan(first, std::size_t(scratch.group_ends[std::size_t(k)]) - first),
+            scratch.found_pairs[std::size_t(worker)]);
+      }
+    });
   level_room(scratch.found_pairs);
   scratch.pairs.clear();
   for (const std::vector<FoundPair>& list : scratch.found_pairs)
     scratch.pairs.insert(scratch.pairs.end(), list.begin(), list.end());
-  // Which worker found a pair is chance; the order of creation must not be.
+  // Which worker found a pair is chance; the order of creation must not be. Where both moved it may be found twice.
   std::sort(scratch.pairs.begin(), scratch.pairs.end());
   scratch.pairs.erase(std::unique(scratch.pairs.begin(), scratch.pairs.end()), scratch.pairs.end());
   for (const FoundPair& pair : scratch.pairs)

@@ -68,6 +68,8 @@ void ask_modifier(WorldImplementation<D>& world, const ContactRecord<D>& c, std:
   ContactModification<D> ask;
   ask.shape_a = world.shapes.slots.handle_at(c.shape[0]);
   ask.shape_b = world.shapes.slots.handle_at(c.shape[1]);
+  ask.material_a = material_at(world, c.shape[0], m.manifold.material).user_id;
+  ask.material_b = material_at(world, c.shape[1], m.manifold.material).user_id;
   ask.normal = patch.normal;
   ask.relative_velocity = velocity_between(world, c, patch.middle);
   ask.count = m.manifold.count;

@@ -1,4 +1,5 @@
 // From manifolds to the blocks of the wide solver, and from the solved blocks back.
+#include "carom/math/cpu.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -48,17 +49,19 @@ void gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock
   raw.anchor_state[lane] = slides ? 0 : (m.anchored ? 2 : 1);
   put(raw.friction_impulse, lane, m.impulses.friction);
   raw.tangent_speed[lane] = m.tangent_speed;
-  raw.patch_factor[lane] = m.patch_factor;
+  // Radius of the patch for the twist over the mean distance of its points, under uniform pressure: a disc turns on 2/3
+  // of its radius, rectangles from square to thin line on .54 … .5 of the distance of their corners.
+  raw.patch_factor[lane] = (c.flags & contact_on_disc) != 0 ? 2.0f / 3.0f : 0.53f;
 
   block.read_a[lane] = a;
   block.read_b[lane] = b;
   block.write_a[lane] = dynamic_a ? a : none;
   block.write_b[lane] = dynamic_b ? b : none;
   put(block.normal, lane, m.manifold.normal);
-  block.inverse_mass_a[lane] = ma.inverse_mass;
-  block.inverse_mass_b[lane] = mb.inverse_mass;
-  put(block.inverse_inertia_a, lane, ma.world_inverse_inertia);
-  put(block.inverse_inertia_b, lane, mb.world_inverse_inertia);
+  block.inverse_mass_a[lane] = ma.inverse_mass * load_share(ma);
+  block.inverse_mass_b[lane] = mb.inverse_mass * load_share(mb);
+  put(block.inverse_inertia_a, lane, ma.world_inverse_inertia * load_share(ma));
+  put(block.inverse_inertia_b, lane, mb.world_inverse_inertia * load_share(mb));
   const Softness& soft = dynamic_a && dynamic_b ? context.contact_softness : context.fixed_contact_softness;
   block.bias_rate[lane] = soft.bias_rate;
   block.mass_scale[lane] = soft.mass_scale;
@@ -132,9 +135,8 @@ void prepare_rolling(const StepContext<D>& context, std::int32_t index, ContactE
   const WorldImplementation<D>& world = context.world;
   const ManifoldRecord<D>& m = world.contacts.manifold(index);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
-  const auto& motion = world.bodies.motion;
-  const auto k =
-      motion[std::size_t(c.body[0])].world_inverse_inertia + motion[std::size_t(c.body[1])].world_inverse_inertia;
+  const BodyMotion<D>&a = world.bodies.motion[std::size_t(c.body[0])], &b = world.bodies.motion[std::size_t(c.body[1])];
+  const auto k = a.world_inverse_inertia * load_share(a) + b.world_inverse_inertia * load_share(b);
   extra.rolling_lever[lane] = m.rolling_lever;
   if constexpr (D::dimension == 2) {
     extra.rolling_mass[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
@@ -155,7 +157,7 @@ void prepare_special(const StepContext<D>& context, std::int32_t index, ContactB
   if ((c.flags & (contact_special | contact_hit_events)) == 0) return;
   const V n = get(block.normal, lane), middle = get(block.patch_r_a, lane), offset = get(block.center_offset, lane);
   if (c.flags & contact_special) {
-    const V belt = surface_slip(context.world, c);
+    const V belt = surface_slip(context.world, c, m.manifold.material);
     if (!(belt == V{})) {
       m.anchored = false;  // nothing sticks to one place of a belt
       if constexpr (D::dimension == 2) {
@@ -218,6 +220,27 @@ void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D
   block.write_a[lane] = block.write_b[lane] = none;
 }
 
+/// The bodies feel the load of the contact between them. Bodies of a colour's contacts differ, so this needs no lock.
+template <class D, int W>
+void add_load(StepContext<D>& context, const ContactBlock<D, W>& block, int lane, float load) {
+  if (load <= 0) return;
+  const std::int32_t a = block.read_a[lane], b = block.read_b[lane];
+  const typename D::Vector n = get(block.normal, lane), p = n * load;
+  // What is being squashed closes; what is at rest neither slides nor parts.
+  typename D::Vector slip = context.bodies[b].linear_velocity - context.bodies[a].linear_velocity;
+  slip -= n * min(dot(n, slip), 0.0f);
+  const float size = math::length_squared(slip) > context.rest_speed * context.rest_speed ? restless_load : load;
+  std::vector<BodyLoad<D>>& loads = context.world.scratch.loads;
+  if (block.write_a[lane] != none) {
+    loads[std::size_t(a)].sum -= p;
+    loads[std::size_t(a)].size += size;
+  }
+  if (block.write_b[lane] != none) {
+    loads[std::size_t(b)].sum += p;
+    loads[std::size_t(b)].size += size;
+  }
+}
+
 template <class D, int W>
 void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
                 const ContactExtra<D, W>* extra, int lane) {
@@ -244,6 +267,7 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
       m.impulses.rolling = {extra->rolling_impulse[0][lane], extra->rolling_impulse[1][lane],
                             extra->rolling_impulse[2][lane]};
   }
+  add_load(context, block, lane, load);
   // What slides, or lies loosely, lets go of its anchor.
   if (math::length_squared(m.impulses.friction) >= limit * limit) m.anchored = false;
 }
@@ -252,16 +276,13 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
 /// its bodies, some lanes ahead of their use; preparing is bound by latency.
 template <class D>
 void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i) {
-  const auto lines = [](const void* p, std::size_t bytes) {
-    for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(p) + k);
-  };
-  if (i + 12 < list.size()) lines(&world.contacts.manifold(list[i + 12]), sizeof(ManifoldRecord<D>));
+  if (i + 12 < list.size()) prefetch_lines(&world.contacts.manifold(list[i + 12]), sizeof(ManifoldRecord<D>));
   if (i + 8 < list.size())
-    lines(&world.contacts.at(world.contacts.manifold(list[i + 8]).contact), sizeof(ContactRecord<D>));
+    prefetch_lines(&world.contacts.at(world.contacts.manifold(list[i + 8]).contact), sizeof(ContactRecord<D>));
   if (i + 4 < list.size()) {
     const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[i + 4]).contact);
     for (const std::int32_t body : c.body) {
-      lines(&world.bodies.motion[std::size_t(body)], sizeof(BodyMotion<D>));
+      prefetch_lines(&world.bodies.motion[std::size_t(body)], sizeof(BodyMotion<D>));
       __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
       __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
       __builtin_prefetch(&world.bodies.record[std::size_t(body)]);
@@ -333,6 +354,11 @@ template <class D, int W>
 void store_blocks(StepContext<D>& context) {
   for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
                                 ContactBlock<D, W>& block, ContactExtra<D, W>* extra, std::uint8_t*) {
+    for (int lane = 0; lane < lanes; ++lane)
+      for (const std::int32_t body : {block.read_a[lane], block.read_b[lane]}) {
+        __builtin_prefetch(&context.world.scratch.loads[std::size_t(body)], 1);
+        __builtin_prefetch(&context.bodies[body]);
+      }
     for (int lane = 0; lane < lanes; ++lane) {
       const std::size_t i = first + std::size_t(lane);
       if (i + 12 < manifolds.size()) {
@@ -348,25 +374,19 @@ void store_blocks(StepContext<D>& context) {
 
 template <class D>
 void prepare_contacts(StepContext<D>& context) {
-  switch (context.world.kernels.width) {
-    case 16:
-      return prepare_blocks<D, 16>(context);
-    case 8:
-      return prepare_blocks<D, 8>(context);
-    default:
-      return prepare_blocks<D, 4>(context);
+  if constexpr (math::widest_lanes > 4) {
+    if (context.world.kernels.width == 16) return prepare_blocks<D, 16>(context);
+    if (context.world.kernels.width == 8) return prepare_blocks<D, 8>(context);
   }
+  prepare_blocks<D, 4>(context);
 }
 template <class D>
 void store_contacts(StepContext<D>& context) {
-  switch (context.world.kernels.width) {
-    case 16:
-      return store_blocks<D, 16>(context);
-    case 8:
-      return store_blocks<D, 8>(context);
-    default:
-      return store_blocks<D, 4>(context);
+  if constexpr (math::widest_lanes > 4) {
+    if (context.world.kernels.width == 16) return store_blocks<D, 16>(context);
+    if (context.world.kernels.width == 8) return store_blocks<D, 8>(context);
   }
+  store_blocks<D, 4>(context);
 }
 
 template <class D>

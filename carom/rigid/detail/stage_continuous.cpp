@@ -1,317 +1,302 @@
 // Continuous collision: what moved far in a step stops where it first met something it would otherwise pass.
+//
+// Fixed and kinematic bodies first, each fast body by itself. Then bullets and all else that moves: every pair whose
+// ways come near each other is asked when it meets, and the meetings happen in the order of their times; whose way was
+// cut by one is asked again about its others. So two bullets meet at one moment, wherever a third has sent one of them.
 #include <algorithm>
 
 #include "carom/geometry/compound.h"
-#include "carom/geometry/detail/chain_tree.h"
-#include "carom/geometry/hull.h"
-#include "carom/rigid/detail/stages.h"
+#include "carom/rigid/detail/body_way.h"
 
 namespace carom::rigid::detail {
 namespace {
 
-constexpr float stop_distance = 0.0025f;  ///< m before the surface
+/// A body with more contacts than so finds whom it may meet in the trees.
+constexpr int most_listed = 48;
 
-using Sweep2 = geometry::Sweep2;
-using Sweep3 = geometry::Sweep3;
+enum Kinds : unsigned { with_fixed = 1, with_kinematic = 2, with_dynamic = 4 };  ///< bits by TreeIndex
+
+/// May these two meet, as the broad phase would say?
 template <class D>
-using Sweep = std::conditional_t<D::dimension == 2, Sweep2, Sweep3>;
-
-Rot2f between(const Rot2f& a, const Rot2f& b, float t) {
-  return normalize(Rot2f{a.c + t * (b.c - a.c), a.s + t * (b.s - a.s)});
-}
-Quatf between(const Quatf& a, const Quatf& b, float t) {
-  const Quatf c = dot(a, b) < 0 ? -b : b;
-  return normalize(a + (c - a) * t);
-}
-
-/// The same motion, of a shape that stands at `local` in what moves.
-template <class S, class T>
-S sweep_of_part(const S& s, const T& local) {
-  return {inverse_rotate(local.q, s.local_center - local.p), s.c0, s.c1, s.q0 * local.q, s.q1 * local.q};
-}
-template <class S>
-using TransformOf = std::conditional_t<std::is_same_v<S, Sweep2>, Transform2f, Transform3f>;
-template <class S>
-TransformOf<S> transform_at_start(const S& s) {
-  return {s.c0 - rotate(s.q0, s.local_center), s.q0};
-}
-template <class S>
-TransformOf<S> transform_at_end(const S& s) {
-  return {s.c1 - rotate(s.q1, s.local_center), s.q1};
+bool may_meet(const WorldImplementation<D>& world, std::int32_t s, std::int32_t o) {
+  const ShapeRecord<D>&shape = world.shapes.at(s), &other = world.shapes.at(o);
+  if (other.body == shape.body || !may_collide(world, shape, other)) return false;
+  if (joints_forbid_collision(world, shape.body, other.body)) return false;
+  // Who has no contact may be one that the caller's filter refused.
+  return !world.contact_filter || world.pairs.contains(PairSet::key(s, o)) ||
+         world.contact_filter(world.shapes.slots.handle_at(s), world.shapes.slots.handle_at(o));
 }
 
-// Time of impact between any two shapes: a moves, b stands in the frame in which both sweeps are given.
-geometry::TimeOfImpact impact(const geometry::Shape2& a, const Sweep2& sa, const geometry::Shape2& b, const Sweep2& sb,
-                              float target) {
-  return geometry::time_of_impact(a, sa, b, sb, target);
-}
-geometry::TimeOfImpact impact(const geometry::Shape3& a, const Sweep3& sa, const geometry::Shape3& b, const Sweep3& sb,
-                              float target) {
-  const bool split_a = a.type == geometry::ShapeType3::compound;
-  if (!split_a && b.type != geometry::ShapeType3::compound) return geometry::time_of_impact(a, sa, b, sb, target);
-  geometry::TimeOfImpact first;
-  for (const geometry::CompoundChild& child : (split_a ? a : b).compound->children) {
-    const geometry::TimeOfImpact t = split_a ? impact(child.shape, sweep_of_part(sa, child.local), b, sb, target)
-                                             : impact(a, sa, child.shape, sweep_of_part(sb, child.local), target);
-    if (t.state != geometry::ImpactState::separated && t.time < first.time) first = t;
+/// Calls visit(other shape) for what a shape may meet whose places of this step all lie in `box`. Where its fat bounds
+/// foresaw them, the pairs that the broad phase made of these are all there are.
+template <class D, class Visit>
+void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const typename D::Bounds& box, unsigned kinds,
+                    Visit&& visit) {
+  const ShapeRecord<D>& shape = world.shapes.at(s);
+  const BodyRecord& record = world.bodies.record[std::size_t(shape.body)];
+  if (record.contact_count <= most_listed &&
+      geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box)) {
+    for (std::int32_t key = record.first_contact; key != none;) {
+      const ContactRecord<D>& c = world.contacts.at(key >> 1);
+      const int side = key & 1;
+      key = c.next[side];
+      if (c.shape[side] != s || (c.flags & contact_passing) != 0) continue;
+      const ShapeRecord<D>& other = world.shapes.at(c.shape[1 - side]);
+      if ((kinds >> other.tree & 1u) != 0 && overlaps(world.shapes.trees[other.tree].bounds(other.leaf), box))
+        visit(c.shape[1 - side]);
+    }
+    return;
   }
-  return first;
-}
-
-/// The contacts at the end of the motion, in the frame of b.
-template <class Use>
-void end_contacts(const geometry::Shape2& a, const geometry::Shape2& b, const Transform2f& a_in_b, float depth,
-                  Use&& use) {
-  const auto look = [&](const geometry::Shape2& part) {
-    geometry::PairCache cache;
-    geometry::Manifold2 m;
-    geometry::collide(part, a, a_in_b, depth, cache, m);
-    use(m);
-  };
-  if (b.type != geometry::ShapeType2::chain)
-    look(b);
-  else
-    geometry::detail::visit_segments(*b.chain, geometry::grow(geometry::bounds(a, a_in_b), depth), [&](int i) {
-      look(geometry::Shape2(b.chain->segment(i)));
+  for (int tree = 0; tree < 3; ++tree) {
+    if ((kinds >> tree & 1u) == 0) continue;
+    world.shapes.trees[tree].query(box, [&](std::uint32_t item) {
+      if (may_meet(world, s, std::int32_t(item))) visit(std::int32_t(item));
       return true;
     });
-}
-template <class Use>
-void end_contacts(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& a_in_b, float depth,
-                  Use&& use) {
-  geometry::Manifold3 m[8];
-  int count;
-  const auto simple = [](const geometry::Shape3& s) { return is_convex(s) || s.type == geometry::ShapeType3::plane; };
-  if (simple(a) && simple(b)) {
-    geometry::PairCache cache;
-    geometry::collide(b, a, a_in_b, depth, cache, m[0]);
-    count = 1;
-  } else {
-    count = geometry::collide_many(b, a, a_in_b, depth, m);
   }
-  for (int i = 0; i < count; ++i) use(m[i]);
 }
 
-/// Does the end of the motion leave a shallow contact that the solver can put right by itself? Then nothing is to be
-/// stopped, and a body that slides fast along a floor loses none of its way. What moved farther than `way` along the
-/// contact's normal came out on the other side.
-template <class Shape, class S>
-bool shallow_end(const Shape& a, const S& sa, const Shape& b, const S& sb, float depth, float way) {
-  const auto end = inverse(transform_at_end(sb)) * transform_at_end(sa);
-  const auto start = inverse(transform_at_start(sb)) * transform_at_start(sa);
-  float deepest = 1;
-  bool through = false;
-  end_contacts(a, b, end, depth, [&](const auto& m) {
-    for (int k = 0; k < m.count; ++k) {
-      const auto before = transform_point(start, inverse_transform_point(end, m.points[k].point));
-      through = through || dot(m.normal, m.points[k].point - before) > way;
-      deepest = min(deepest, m.points[k].separation);
+template <class D>
+typename D::Bounds way_bounds(const ShapeRecord<D>& shape, const Sweep<D>& own, const typename D::Position& base) {
+  using P = typename D::Position;
+  if constexpr (D::dimension == 3) {
+    if (!is_convex(shape.geometry)) {  // a compound
+      geometry::Bounds3f all{Vec3f{1e30f, 1e30f, 1e30f}, Vec3f{-1e30f, -1e30f, -1e30f}};
+      for_parts(shape, own, [&](const geometry::Shape3& part, const geometry::Sweep3& way, float) {
+        all = merge(all, geometry::detail::swept_bounds(part, way));
+      });
+      return {base + P(all.low), base + P(all.high)};
     }
-  });
-  return !through && deepest < 1 && deepest > -depth;
-}
-
-/// What must not pass of a shape that touches already: the shape less 3/4 of its half thickness, or what stands for
-/// that.
-template <class D>
-struct Core {
-  typename D::Shape shape;
-  typename D::Transform local{};  ///< in the frame of what it is the core of
-};
-/// The line between the farthest corner from the centre and the one opposite, drawn in by `by`.
-template <class V>
-bool longest_line(std::span<const V> corners, V center, float by, V& from, V& to) {
-  from = to = center;
-  float most = 0;
-  for (const V& v : corners)
-    if (const float d = math::distance_squared(v, center); d > most) most = d, from = v;
-  most = 0;
-  for (const V& v : corners)
-    if (const float d = dot(v - center, center - from); d > most) most = d, to = v;
-  const V way = to - from;
-  const float length = math::length(way);
-  if (!(length > 2.5f * by)) return false;
-  from += way * (by / length), to -= way * (by / length);
-  return true;
-}
-Core<Dim2> skeleton(const geometry::Shape2& s, float inner, Vec2f center) {
-  const float by = 0.75f * inner, radius = 0.25f * inner;
-  if (s.type == geometry::ShapeType2::capsule) return {geometry::Capsule2{s.capsule.half_length, radius}, {}};
-  Vec2f a, b;
-  if (s.type == geometry::ShapeType2::polygon &&
-      longest_line<Vec2f>({s.polygon.vertices, std::size_t(s.polygon.count)}, s.polygon.centroid, by, a, b)) {
-    const Vec2f way = b - a;
-    const float length = math::length(way);
-    return {geometry::Capsule2{0.5f * length, 0.5f * radius},
-            {(a + b) * 0.5f, normalize(Rot2f{way.y / length, -way.x / length})}};
   }
-  return {geometry::Circle{radius}, {center, {}}};
-}
-Core<Dim3> skeleton(const geometry::Shape3& s, float inner, Vec3f center) {
-  const float by = 0.75f * inner, radius = 0.25f * inner;
-  switch (s.type) {
-    case geometry::ShapeType3::capsule:
-      return {geometry::Capsule3{s.capsule.half_length, radius}, {}};
-    case geometry::ShapeType3::box: {
-      const float least = s.box.radius - by;
-      return {geometry::Box{s.box.half_extents + Vec3f{least, least, least}}, {}};
-    }
-    case geometry::ShapeType3::cylinder:
-      return {geometry::Cylinder{s.cylinder.half_height - by, s.cylinder.radius - by}, {}};
-    case geometry::ShapeType3::hull: {
-      Vec3f a, b;
-      if (!longest_line<Vec3f>(s.hull->vertices, s.hull->centroid, by, a, b)) break;
-      const Vec3f way = b - a;
-      const float length = math::length(way);
-      // From local y to the line.
-      const Quatf turn = way.y > -0.999f * length
-                             ? normalize(Quatf{1 + way.y / length, cross(Vec3f{0, 1, 0}, way / length)})
-                             : Quatf{0, {1, 0, 0}};
-      return {geometry::Capsule3{0.5f * length, 0.5f * radius}, {(a + b) * 0.5f, turn}};
-    }
-    default:
-      break;
-  }
-  return {geometry::Sphere{radius}, {center, {}}};
+  const auto box = geometry::detail::swept_bounds(shape.geometry, own);
+  return {base + P(box.low), base + P(box.high)};
 }
 
-geometry::Shape2 core_shape(const Dim2*, float radius) { return geometry::Circle{radius}; }
-geometry::Shape3 core_shape(const Dim3*, float radius) { return geometry::Sphere{radius}; }
+/// Did no point of the shape come as far as a part of its thickness? Then it passed nothing.
+float turn_of(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a.c) + square(b.s - a.s)); }
+float turn_of(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
+template <class D>
+bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, float part) {
+  const auto middle = own.c1 - own.c0 - (rotate(own.q1, own.local_center) - rotate(own.q0, own.local_center));
+  return math::length(middle) + turn_of(own.q0, own.q1) * shape.outer_extent <= part * shape.inner_extent;
+}
 
 template <class D>
-Sweep<D> sweep_of_body(const WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start,
-                       const typename D::Position& base) {
-  const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
-  return {m.local_center, typename D::Vector(start.center - base), typename D::Vector(m.center - base), start.rotation,
-          world.bodies.pose[std::size_t(body)].rotation};
+bool is_fast_bullet(const WorldImplementation<D>& world, std::int32_t body) {
+  constexpr unsigned both = body_bullet | body_fast;
+  return (world.bodies.record[std::size_t(body)].flags & both) == both;
+}
+/// The same, whoever of the two lists it: the bullet first, of two the one in the lower place.
+template <class D>
+BulletPair pair_of(const WorldImplementation<D>& world, std::int32_t s, std::int32_t o) {
+  const std::int32_t body[2] = {world.shapes.at(s).body, world.shapes.at(o).body};
+  const std::int32_t place[2] = {world.bodies.record[std::size_t(body[0])].awake_index,
+                                 world.bodies.record[std::size_t(body[1])].awake_index};
+  const bool first = is_fast_bullet(world, body[0]) && (!is_fast_bullet(world, body[1]) || place[0] < place[1]);
+  if (first) return {s, o, {place[0], place[1]}, {none, none}};
+  return {o, s, {place[1], place[0]}, {none, none}};
 }
 
-/// The fraction of its way after which a body that touches `other` already would pass it: with its core, with a ball
-/// about the centre of mass, or with that centre itself. 1 where none does.
+/// Is the body let through by a one-way surface, or not held by it where both touch already?
 template <class D>
-float core_fraction(const ShapeRecord<D>& shape, const Sweep<D>& own, const ShapeRecord<D>& other,
-                    const Sweep<D>& theirs, float core_radius) {
-  float fraction = 1;
-  for (int level = 0; level < 2; ++level) {
-    const Core<D> core = level == 0
-                             ? skeleton(shape.geometry, shape.inner_extent, own.local_center)
-                             : Core<D>{core_shape(static_cast<const D*>(nullptr), core_radius), {own.local_center, {}}};
-    const geometry::TimeOfImpact t =
-        impact(core.shape, sweep_of_part(own, core.local), other.geometry, theirs, stop_distance);
-    if (t.state == geometry::ImpactState::hit && t.time > 0) fraction = min(fraction, t.time);
-  }
-  const auto from = inverse_transform_point(transform_at_start(theirs), own.c0);
-  const auto way = inverse_transform_point(transform_at_end(theirs), own.c1) - from;
-  const auto hit = geometry::ray_cast(other.geometry, from, way);
-  if (!hit.hit || hit.normal == decltype(hit.normal){}) return fraction;
-  constexpr float before = 0.001f;  // m
-  const float length = math::length(way);
-  return min(fraction, max(0.0f, hit.fraction - before / max(length, before)));
+bool one_way(const WorldImplementation<D>& world, std::int32_t shape) {
+  const ShapeExtra<D>* extra = world.shapes.extra(shape);
+  return extra != nullptr && extra->one_way != typename D::Vector{};
 }
 
-/// The fraction of its way that the body may go.
+/// A mesh that moves goes on after a body was stopped at it: it takes the body along for the rest of the step, or its
+/// thin side would be past it.
 template <class D>
-float free_fraction(const WorldImplementation<D>& world, std::int32_t body, std::size_t place, bool moving_too,
-                    std::vector<SensorMeeting>& met) {
+void carry_on(WorldImplementation<D>& world, std::int32_t body, std::int32_t mesh_body, float fraction) {
+  using V = typename D::Vector;
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  const typename D::Position base = m.center;
+  const Sweep<D> way = way_of_body(world, mesh_body, base, fraction, 1);
+  m.center = base + typename D::Position(way.c1 + rotate(way.q1, inverse_rotate(way.q0, V{} - way.c0)));
+  pose_from_center(world, body);
+}
+
+/// Stops a body at what is not moved by forces; lists what it may meet of the rest.
+template <class D>
+void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t place, bool any_bullets,
+                   std::vector<BulletPair>& pairs, std::vector<StrayShape<D>>& strays,
+                   std::vector<SensorMeeting>& sensors) {
   const BodyRecord& record = world.bodies.record[std::size_t(body)];
-  const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  const bool bullet = (record.flags & body_bullet) != 0;
   const SweepStart<D>& start = world.scratch.swept[place];
-  const Sweep<D> sweep = sweep_of_body(world, body, start, start.center);
+  const Sweep<D> sweep = way_of_body(world, body, start.center);
+  const typename D::Vector travel = sweep.c1 - sweep.c0;
   float fraction = 1;
-  const float core_radius = 0.25f * m.inner_extent;
-  const float shallow = min(core_radius, 0.005f + 0.01f * m.inner_extent);
+  std::int32_t at = none;  // the body of a mesh that moves, where that stops it
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
-    const bool sensor = (shape.flags & shape_sensor) != 0;
-    const Sweep<D> own = shape.at_origin ? sweep : sweep_of_part(sweep, shape.local);
-    const double reach = double(m.outer_extent) + 0.01;
-    const typename D::Position low = math::min(start.center, m.center), high = math::max(start.center, m.center);
-    const typename D::Bounds box = geometry::grow(typename D::Bounds{low, high}, reach);
-    const auto visit = [&](std::uint32_t item) {
-      const ShapeRecord<D>& other = world.shapes.at(std::int32_t(item));
-      if (other.body == body || !may_collide(world, shape, other)) return true;
-      if (joints_forbid_collision(world, body, other.body)) return true;
-      if (passes_one_way(world, std::int32_t(item), typename D::Vector(m.center - start.center))) return true;
-      // Who has no contact may be one that the caller's filter refused.
-      if (world.contact_filter && !world.pairs.contains(PairSet::key(s, std::int32_t(item))) &&
-          !world.contact_filter(world.shapes.slots.handle_at(s), world.shapes.slots.handle_at(int(item))))
-        return true;
-      const bool crosses_sensor = sensor || (other.flags & shape_sensor) != 0;
-      const typename D::Pose& pose = world.bodies.pose[std::size_t(other.body)];
-      // One that was stopped stands where it stopped: its way no longer takes the whole step.
-      SweepStart<D> other_start{pose.rotation, world.bodies.motion[std::size_t(other.body)].center};
-      const std::int32_t other_place = world.bodies.record[std::size_t(other.body)].awake_index;
-      if (other_place != none && !world.scratch.swept[std::size_t(other_place)].stopped)
-        other_start = world.scratch.swept[std::size_t(other_place)];
-      Sweep<D> theirs = sweep_of_body(world, other.body, other_start, start.center);
-      if (!other.at_origin) theirs = sweep_of_part(theirs, other.local);
-      geometry::TimeOfImpact t =
-          impact(shape.geometry, own, other.geometry, theirs, crosses_sensor ? 1e-4f : stop_distance);
-      if (crosses_sensor) {
-        if (t.state == geometry::ImpactState::hit && t.time > 0) met.push_back({s, std::int32_t(item), t.time});
-        return true;
+    const Sweep<D> own = way_of_shape(shape, sweep);
+    const bool turns_far = start.turn != typename D::Angular{};
+    if (!turns_far && is_slow(shape, own, bullet ? 0.25f : 0.5f)) continue;
+    typename D::Bounds box = way_bounds(shape, own, start.center);
+    if (turns_far) {
+      const double reach = double(math::length(own.local_center) + shape.outer_extent);
+      box = geometry::grow(typename D::Bounds{math::min(start.center, start.center + typename D::Position(travel)),
+                                              math::max(start.center, start.center + typename D::Position(travel))},
+                           reach);
+    }
+    // Bullets look for all that moves where its bounds foresaw its way; what left them looks for bullets, and what of
+    // both left them is looked through once more.
+    const bool stray = any_bullets && !geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box);
+    const bool looks = bullet || stray || world.shapes.moving_surfaces > 0;
+    if (stray && (shape.flags & shape_sensor) == 0) strays.push_back({box, s});
+    const unsigned kinds = with_fixed | with_kinematic | (looks ? unsigned(with_dynamic) : 0u);
+    for_candidates(world, s, box, kinds, [&](std::int32_t o) {
+      const ShapeRecord<D>& other = world.shapes.at(o);
+      if (((shape.flags | other.flags) & shape_sensor) != 0) {
+        sensors.push_back({s, o});
+        return;
       }
-      if (t.state == geometry::ImpactState::separated || t.state == geometry::ImpactState::failed) return true;
-      if (t.state == geometry::ImpactState::overlapped || t.time <= 0) {
-        // It touched from the start, as on the ground: only its core must not pass.
-        // Whom a one-way surface lets through from aside it does not hold by the core either.
-        const ShapeExtra<D>* extra = world.shapes.extra(std::int32_t(item));
-        if (extra != nullptr && extra->one_way != typename D::Vector{}) return true;
-        t.time = core_fraction(shape, own, other, theirs, core_radius);
-        if (t.time >= 1) return true;
-      } else if (shallow_end(shape.geometry, own, other.geometry, theirs, shallow, core_radius)) {
-        return true;
+      if (passes_one_way(world, o, travel)) return;
+      if (other.tree == tree_dynamic) {
+        // Meshes have thin sides: they stop what is no bullet too.
+        if (bullet || is_fast_bullet(world, other.body))
+          pairs.push_back(pair_of(world, s, o));
+        else if (is_surface(other.geometry))
+          pairs.push_back(
+              {s, o, {std::int32_t(place), world.bodies.record[std::size_t(other.body)].awake_index}, {none, none}});
+        return;
       }
-      fraction = min(fraction, t.time);
-      return true;
-    };
-    world.shapes.trees[tree_fixed].query(box, visit);
-    if (moving_too) {
-      world.shapes.trees[tree_kinematic].query(box, visit);
-      world.shapes.trees[tree_dynamic].query(box, visit);
+      const float t = meeting_time(world, shape, other, start.center, 0, 1, !one_way(world, o));
+      if (t < fraction) fraction = t, at = is_moving_surface(world, o) ? other.body : none;
+    });
+  }
+  stop_at(world, body, fraction);
+  if (at != none) carry_on(world, body, at, fraction);
+}
+
+/// Lists pairs of shapes that both left their bounds and whose ways come near each other: along x, in order.
+template <class D>
+void pair_strays(WorldImplementation<D>& world) {
+  StepScratch<D>& scratch = world.scratch;
+  std::vector<StrayShape<D>>& strays = scratch.strays;
+  strays.clear();
+  for (const std::vector<StrayShape<D>>& list : scratch.found_strays)
+    strays.insert(strays.end(), list.begin(), list.end());
+  std::sort(strays.begin(), strays.end(), [](const StrayShape<D>& l, const StrayShape<D>& r) {
+    return l.box.low.x != r.box.low.x ? l.box.low.x < r.box.low.x : l.shape < r.shape;
+  });
+  for (std::size_t i = 0; i < strays.size(); ++i)
+    for (std::size_t k = i + 1; k < strays.size() && strays[k].box.low.x <= strays[i].box.high.x; ++k) {
+      const std::int32_t s = strays[i].shape, o = strays[k].shape;
+      if (!overlaps(strays[i].box, strays[k].box)) continue;
+      if (!is_fast_bullet(world, world.shapes.at(s).body) && !is_fast_bullet(world, world.shapes.at(o).body)) continue;
+      if (may_meet(world, s, o)) scratch.bullet_pairs.push_back(pair_of(world, s, o));
+    }
+}
+
+/// The fraction of the step at which a pair meets, as far as both ways are known; above 1: it does not.
+template <class D>
+float meeting_time(const WorldImplementation<D>& world, const BulletPair& pair) {
+  const ShapeRecord<D>&own = world.shapes.at(pair.own), &other = world.shapes.at(pair.other);
+  const auto fraction = [&](int side) {
+    return pair.place[side] == none ? 0.0f : world.scratch.swept[std::size_t(pair.place[side])].fraction;
+  };
+  const float a = fraction(0), b = fraction(1), ends[2] = {min(a, b), max(a, b)};
+  const typename D::Position base = world.scratch.swept[std::size_t(pair.place[0])].center;
+  const bool guarded = !one_way(world, pair.other);
+  float from = 0;
+  for (const float to : ends) {  // first both move, then the one that was not stopped
+    if (to <= from) continue;
+    if (const float t = meeting_time(world, own, other, base, from, to, guarded); t < 1) return t;
+    from = to;
+  }
+  return 2;
+}
+
+/// Lets bullets meet what moves, in the order of time.
+template <class D>
+void meet_in_order(WorldImplementation<D>& world) {
+  StepScratch<D>& scratch = world.scratch;
+  std::vector<BulletPair>& pairs = scratch.bullet_pairs;
+  std::vector<BulletMeeting>& heap = scratch.bullet_meetings;
+  const auto later = [](const BulletMeeting& l, const BulletMeeting& r) { return r < l; };
+  std::sort(pairs.begin(), pairs.end(), [](const BulletPair& l, const BulletPair& r) {
+    return l.own != r.own ? l.own < r.own : l.other < r.other;
+  });
+  pairs.erase(
+      std::unique(pairs.begin(), pairs.end(),
+                  [](const BulletPair& l, const BulletPair& r) { return l.own == r.own && l.other == r.other; }),
+      pairs.end());
+  scratch.first_bullet_pair.assign(world.bodies.awake.size(), none);
+  heap.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (int side = 0; side < 2; ++side) {
+      if (pairs[i].place[side] == none) continue;
+      std::int32_t& first = scratch.first_bullet_pair[std::size_t(pairs[i].place[side])];
+      pairs[i].next[side] = first;
+      first = 2 * std::int32_t(i) + side;
+    }
+    if (const float t = meeting_time(world, pairs[i]); t < 1) heap.push_back({t, std::int32_t(i)});
+  }
+  std::make_heap(heap.begin(), heap.end(), later);
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end(), later);
+    const BulletMeeting meeting = heap.back();
+    heap.pop_back();
+    const BulletPair& pair = pairs[std::size_t(meeting.pair)];
+    if (meeting_time(world, pair) != meeting.time) continue;  // another one came first
+    for (int side = 0; side < 2; ++side) {
+      if (pair.place[side] == none) continue;
+      const std::int32_t body = world.bodies.awake[std::size_t(pair.place[side])];
+      const std::uint16_t flags = world.bodies.record[std::size_t(body)].flags;
+      const std::int32_t facing = side == 0 ? pair.other : pair.own;
+      const bool held = (flags & body_bullet) != 0 || is_surface(world.shapes.at(facing).geometry);
+      if (!held || scratch.swept[std::size_t(pair.place[side])].fraction <= meeting.time) continue;
+      stop_at(world, body, meeting.time);
+      if (is_surface(world.shapes.at(facing).geometry))
+        carry_on(world, body, world.shapes.at(facing).body, meeting.time);
+      for (std::int32_t key = scratch.first_bullet_pair[std::size_t(pair.place[side])]; key != none;) {
+        const BulletPair& changed = pairs[std::size_t(key >> 1)];
+        if (const float t = meeting_time(world, changed); t < 1) {
+          heap.push_back({t, key >> 1});
+          std::push_heap(heap.begin(), heap.end(), later);
+        }
+        key = changed.next[key & 1];
+      }
     }
   }
-  return fraction;
 }
 
-/// Of what a body met on its way since `first`, keeps the sensors that it flew through from one side to the other: it
-/// met them before its way was cut, and at its end is in none. What it still is in, the next step sees anyway.
+/// What turns so fast that it strikes again at once, step after step, would never come free: it grinds, and loses half
+/// of its spin in a step that let it go nowhere.
 template <class D>
-void keep_crossed(const WorldImplementation<D>& world, float fraction, std::size_t first,
-                  std::vector<SensorMeeting>& met) {
-  std::size_t kept = first;
-  for (std::size_t i = first; i < met.size(); ++i) {
-    const ShapeRecord<D>&a = world.shapes.at(met[i].own), &b = world.shapes.at(met[i].other);
-    if (met[i].time > fraction) continue;
-    if (geometry::overlap(a.geometry, b.geometry, relative(shape_pose(world, a), shape_pose(world, b)))) continue;
-    met[kept++] = met[i];
-  }
-  met.resize(kept);
+void slow_what_jams(WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start, float dt) {
+  SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+  if (start.fraction < 0.005f && size_of_turn(s.angular_velocity) * dt > 0.25f) s.angular_velocity *= 0.5f;
 }
 
+/// What fell freely until it was stopped has not gained what the rest of its way would have given.
 template <class D>
-void move_to_fraction(WorldImplementation<D>& world, std::int32_t body, std::size_t place, float fraction) {
-  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
-  if (fraction < 1) {
-    SweepStart<D>& start = world.scratch.swept[place];
-    start.stopped = true;
-    m.center = start.center + (m.center - start.center) * double(fraction);
-    typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
-    pose.rotation = between(start.rotation, pose.rotation, fraction);
-    pose_from_center(world, body);
-  }
-  update_world_inertia(world, body);
-  if (leave_bounds(world, body)) world.scratch.body_changes[place] = body_outgrew;
+void take_back_gravity(WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start, float dt) {
+  if (start.fraction >= 1 || world.bodies.record[std::size_t(body)].constraint_count != 0) return;
+  const float gained = world.bodies.motion[std::size_t(body)].gravity_scale * (1 - start.fraction) * dt;
+  world.bodies.solver[std::size_t(body)].linear_velocity -= world.definition.gravity * gained;
 }
 
-/// A begin and an end for every sensor that was flown through, in the order of the shapes.
+/// A begin and an end for every sensor that was flown through from one side to the other, in the order of the shapes.
+/// What a body still is in at the end of its way, the next step sees anyway.
 template <class D>
 void report_crossed(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   std::vector<SensorMeeting>& all = scratch.met_sensors[0];
   for (std::size_t w = 1; w < scratch.met_sensors.size(); ++w)
     all.insert(all.end(), scratch.met_sensors[w].begin(), scratch.met_sensors[w].end());
+  std::erase_if(all, [&](const SensorMeeting& m) {
+    const ShapeRecord<D>&a = world.shapes.at(m.own), &b = world.shapes.at(m.other);
+    const typename D::Position base = world.bodies.motion[std::size_t(a.body)].center;
+    const Sweep<D> own = way_of_shape(a, way_of_body(world, a.body, base)),
+                   theirs = way_of_shape(b, way_of_body(world, b.body, base));
+    const geometry::TimeOfImpact t = geometry::time_of_impact(a.geometry, own, b.geometry, theirs, 1e-4f);
+    return t.state != geometry::ImpactState::hit || t.time <= 0 ||
+           geometry::overlap(a.geometry, b.geometry, relative(shape_pose(world, a), shape_pose(world, b)));
+  });
   for (SensorMeeting& m : all)
     if ((world.shapes.at(m.own).flags & shape_sensor) != 0) std::swap(m.own, m.other);
   std::sort(all.begin(), all.end(), [](const SensorMeeting& l, const SensorMeeting& r) {
@@ -326,6 +311,22 @@ void report_crossed(WorldImplementation<D>& world) {
   }
 }
 
+/// For some of all kinds, so that the first bullet of a warm world allocates nothing.
+template <class D>
+void make_room(StepScratch<D>& scratch, std::size_t bodies) {
+  constexpr std::size_t some = 64;
+  const auto room = [](auto& list) {
+    if (list.capacity() < some) list.reserve(some);
+  };
+  for (auto& list : scratch.met_sensors) room(list);
+  for (auto& list : scratch.found_bullet_pairs) room(list);
+  for (auto& list : scratch.found_strays) room(list);
+  room(scratch.strays);
+  room(scratch.bullet_pairs);
+  room(scratch.bullet_meetings);
+  if (scratch.first_bullet_pair.capacity() < bodies) scratch.first_bullet_pair.reserve(bodies);
+}
+
 }  // namespace
 
 template <class D>
@@ -333,38 +334,48 @@ void stop_fast_bodies(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   StepScratch<D>& scratch = world.scratch;
   scratch.fast.clear();
-  for (std::size_t i = 0; i < world.bodies.awake.size(); ++i)
-    if (world.bodies.record[std::size_t(world.bodies.awake[i])].flags & body_fast)
-      scratch.fast.push_back(std::int32_t(i));
+  bool any_bullets = false;
+  for (std::size_t i = 0; i < world.bodies.awake.size(); ++i) {
+    const std::uint16_t flags = world.bodies.record[std::size_t(world.bodies.awake[i])].flags;
+    if ((flags & body_fast) == 0) continue;
+    scratch.fast.push_back(std::int32_t(i));
+    any_bullets = any_bullets || (flags & body_bullet) != 0;
+  }
   if (scratch.fast.empty()) return;
-  const auto is_bullet = [&](std::int32_t body) {
-    return (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;
-  };
+  make_room(scratch, world.bodies.awake.capacity());
   for (std::vector<SensorMeeting>& list : scratch.met_sensors) list.clear();
-  const auto go = [&](std::int32_t body, std::size_t place, bool moving_too, int worker) {
-    std::vector<SensorMeeting>& met = scratch.met_sensors[std::size_t(worker)];
-    const std::size_t first = met.size();
-    const float fraction = free_fraction(world, body, place, moving_too, met);
-    move_to_fraction(world, body, place, fraction);
-    keep_crossed(world, fraction, first, met);
-  };
-  // Fixed geometry first, each body by itself.
-  const auto stop = [&](int begin, int end, int worker) {
+  for (std::vector<BulletPair>& list : scratch.found_bullet_pairs) list.clear();
+  for (std::vector<StrayShape<D>>& list : scratch.found_strays) list.clear();
+  const auto go = [&](int begin, int end, int worker) {
     for (int k = begin; k < end; ++k) {
       const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);
-      const std::int32_t body = world.bodies.awake[place];
-      if (!is_bullet(body)) go(body, place, false, worker);
+      go_past_fixed(world, world.bodies.awake[place], place, any_bullets,
+                    scratch.found_bullet_pairs[std::size_t(worker)], scratch.found_strays[std::size_t(worker)],
+                    scratch.met_sensors[std::size_t(worker)]);
     }
   };
   if (world.contact_filter)
-    stop(0, int(scratch.fast.size()), 0);  // the caller's function is only ever called on the caller's thread
+    go(0, int(scratch.fast.size()), 0);  // the caller's function is only ever called on the caller's thread
   else
-    context.scheduler.parallel_for(int(scratch.fast.size()), 4, stop);
-  // Then bullets, one after another, against everything where it now is.
-  for (const std::int32_t place : scratch.fast) {
-    const std::int32_t body = world.bodies.awake[std::size_t(place)];
-    if (is_bullet(body)) go(body, std::size_t(place), true, 0);
-  }
+    context.scheduler.parallel_for(int(scratch.fast.size()), 16, go);
+  level_room(scratch.met_sensors);
+  level_room(scratch.found_bullet_pairs);
+  level_room(scratch.found_strays);
+  scratch.bullet_pairs.clear();
+  for (const std::vector<BulletPair>& list : scratch.found_bullet_pairs)
+    scratch.bullet_pairs.insert(scratch.bullet_pairs.end(), list.begin(), list.end());
+  pair_strays(world);
+  if (!scratch.bullet_pairs.empty()) meet_in_order(world);
+  context.scheduler.parallel_for(int(scratch.fast.size()), 64, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) {
+      const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);
+      const std::int32_t body = world.bodies.awake[place];
+      slow_what_jams(world, body, scratch.swept[place], context.dt);
+      take_back_gravity(world, body, scratch.swept[place], context.dt);
+      update_world_inertia(world, body);
+      if (leave_bounds(world, body)) scratch.body_changes[place] = body_outgrew;
+    }
+  });
   report_crossed(world);
 }
 

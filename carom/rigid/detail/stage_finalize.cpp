@@ -1,14 +1,22 @@
+#include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
 namespace {
 
 constexpr int finalize_grain = 128;
+constexpr float quick_share = 0.25f;  ///< of a body's half thickness in a step
 
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
 float turn_of(const Rot2f& q) { return math::abs(q.s) + max(0.0f, -2 * q.c); }
 float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
+
+/// m/s², of what acts on the body from afar.
+template <class D>
+float gravity_of(const WorldDef<D>& definition, const BodyMotion<D>& m) {
+  return math::length(m.gravity_scale * definition.gravity + m.inverse_mass * m.force);
+}
 
 template <class D>
 void reset_delta(SolverBody<D>& s) {
@@ -33,6 +41,12 @@ template <class D>
 bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   bool any = false;
   double slack = 1e6;
+  using P = typename D::Position;
+  // What moves far in a step must have its next way within its bounds, so that its contacts are foreseen.
+  const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
+  P ahead = P(world.bodies.solver[std::size_t(body)].linear_velocity) * double(world.last_dt);
+  const double quick = quick_share * double(motion.inner_extent);
+  if (!(math::length_squared(ahead) > quick * quick)) ahead = {};
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
@@ -40,7 +54,8 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
                              tight = shape_bounds(world, shape);
     const typename D::Position below = tight.low - fat.low, above = fat.high - tight.high;
     for (int k = 0; k < D::dimension; ++k) slack = min(slack, min(below[k], above[k]));
-    if (geometry::contains(fat, tight)) continue;
+    const typename D::Bounds next{tight.low + math::min(ahead, P{}), tight.high + math::max(ahead, P{})};
+    if (geometry::contains(fat, next)) continue;
     shape.flags |= shape_outgrown;
     any = true;
   }
@@ -55,6 +70,7 @@ void finalize_bodies(StepContext<D>& context) {
   const std::size_t count = world.bodies.awake.size();
   scratch.body_changes.resize(count);
   scratch.swept.resize(count);
+  const float gravity = math::length(world.definition.gravity);
   context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const std::int32_t body = world.bodies.awake[std::size_t(i)];
@@ -63,6 +79,8 @@ void finalize_bodies(StepContext<D>& context) {
       SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
       typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
       scratch.body_changes[std::size_t(i)] = 0;
+      const BodyLoad<D> load = scratch.loads[std::size_t(body)];
+      scratch.loads[std::size_t(body)] = {};
       record.flags &= std::uint16_t(~body_fast);
       if (record.locks != 0) apply_locks(s, record.locks);  // the last relaxation may have moved them
       if (!(is_finite(s.linear_velocity) && is_finite(s.angular_velocity) && is_finite(s.delta_position) &&
@@ -71,21 +89,30 @@ void finalize_bodies(StepContext<D>& context) {
         scratch.body_changes[std::size_t(i)] = body_broke;
         continue;
       }
-      const float travel = math::length(s.delta_position), turned = turn_of(s.delta_rotation);
+      const float travel = math::length(s.delta_position), spin = spin_of(s.angular_velocity);
+      float turned = turn_of(s.delta_rotation);
+      typename D::Angular whole{};
+      if (spin * context.dt > 2) {
+        const float slowed = min(1.0f, max_turn / (context.h * spin));
+        whole = whole_turn(s.delta_rotation, s.angular_velocity, slowed * context.dt);
+        turned = max(turned, spin_of(whole));
+      }
       const bool bullet = (record.flags & body_bullet) != 0;
       if (context.world.definition.continuous && record.type == BodyType::dynamic &&
           (record.flags & body_has_collider) != 0 &&
           travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
         record.flags |= body_fast;
       }
-      scratch.swept[std::size_t(i)] = {pose.rotation, m.center, false};
+      scratch.swept[std::size_t(i)] = {pose.rotation, m.center, whole, 1};
       pose.rotation = normalize(s.delta_rotation * pose.rotation);
       m.center = m.center + typename D::Position(s.delta_position);
+      m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
+                         ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m)))
+                         : 0;
       m.force = {};
       m.torque = {};
       pose_from_center(world, body);
-      const float speed =
-          max(math::length(s.linear_velocity), spin_of(s.angular_velocity) * max(m.outer_extent, 0.01f));
+      const float speed = max(math::length(s.linear_velocity), spin * max(m.outer_extent, 0.01f));
       if (record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0 && speed < record.sleep_speed &&
           travel * context.inverse_dt < 2 * record.sleep_speed)
         record.sleep_timer += context.dt;
@@ -96,7 +123,8 @@ void finalize_bodies(StepContext<D>& context) {
       update_world_inertia(world, body);
       // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
       m.slack = turned < 0.2f ? m.slack - (travel + turned * m.outer_extent) : 0;
-      if (m.slack <= 0 && leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
+      const bool quick = travel > quick_share * m.inner_extent;
+      if ((m.slack <= 0 || quick) && leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
     }
   });
   for (std::size_t i = 0; i < count; ++i)
@@ -147,6 +175,8 @@ void gather_hit_events(StepContext<D>& context) {
         event.point = points[strongest];
         event.approach_speed = record.approach_speed;
         event.slip_speed = record.slip_speed;
+        event.material_a = material_at(world, c.shape[0], record.manifold.material).user_id;
+        event.material_b = material_at(world, c.shape[1], record.manifold.material).user_id;
       }
       event.impulse += impulse;
     }

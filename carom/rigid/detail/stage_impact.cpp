@@ -6,8 +6,10 @@
 // Newton's law of restitution, until none closes faster than the threshold. Every such impact keeps momentum and takes
 // energy away (or none where e is 1). Bodies are set back by what the impact's moment within the substep makes them
 // move less or more, so that positions are those of free flight before and after; hence single bodies that strike each
-// other or the ground bounce here too. The other bounces, of bodies that rest on something, are left to the pass at the
+// other or the ground bounce here too. The other bounces, of bodies that rest on something or are part of a figure of
+// joints, are left to the pass at the
 // step's end (`restitute_contacts`), which weighs them against everything that they rest on.
+#include "carom/math/cpu.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -16,31 +18,59 @@ namespace {
 
 enum ImpactState : std::int32_t { impact_listed = 1, impact_queued = 2 };  ///< ContactExtra::struck
 
-/// Calls f(manifold) for the bouncing manifolds of a body that are in the graph.
+/// A blow runs through bodies that bounce at least so well. Duller ones, as in a heap that is stirred, do not part in
+/// their order: the solver's passes share the blow among them as well, and for far less.
+constexpr float least_running_restitution = 0.5f;
+
+/// A body that so many touch passes a blow on in the next substep only: to look at all of them after each would take
+/// time as their square.
+constexpr int most_neighbours = 64;
+
+/// Calls f(manifold, other body) → bool (false: stop) for the bouncing manifolds of a body that are in the graph.
 template <class D, class F>
 void for_bouncing_manifolds(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
     const ContactRecord<D>& c = world.contacts.at(key >> 1);
     for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
       const ManifoldRecord<D>& record = world.contacts.manifold(m);
-      if (record.restitution > 0 && record.place.color >= 0 && !record.disabled) f(m, c.body[1 - (key & 1)]);
+      if (record.restitution > 0 && record.place.color >= 0 && !record.disabled && !f(m, c.body[1 - (key & 1)])) return;
     }
     key = c.next[key & 1];
   }
 }
 
-/// Does one of the pair bounce at a third body that moves, or does neither touch anything else?
+/// Does a joint tie the body to another one that moves? Then a blow is not the body's alone: the whole figure takes it.
 template <class D>
-bool strikes_here(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+bool is_linked(const WorldImplementation<D>& world, std::int32_t body) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none;) {
+    const JointHeader& joint = world.joints.headers[std::size_t(key >> 1)];
+    const std::int32_t other = joint.body[1 - (key & 1)];
+    if (other != none && world.bodies.is_dynamic(other)) return true;
+    key = joint.next[key & 1];
+  }
+  return false;
+}
+
+/// Does one of the pair bounce well at a third body that moves, or does neither touch anything else?
+template <class D>
+bool strikes_here(const WorldImplementation<D>& world, const ManifoldRecord<D>& manifold) {
+  const ContactRecord<D>& c = world.contacts.at(manifold.contact);
+  if (is_linked(world, c.body[0]) || is_linked(world, c.body[1])) return false;
   bool found = false, alone = true;
+  for (int side = 0; side < 2; ++side)
+    alone = alone && (!world.bodies.is_dynamic(c.body[side]) ||
+                      world.bodies.record[std::size_t(c.body[side])].constraint_count == 1);
+  if (alone) return true;
+  if (manifold.restitution < least_running_restitution) return false;
   for (int side = 0; side < 2 && !found; ++side) {
     if (!world.bodies.is_dynamic(c.body[side])) continue;
-    alone = alone && world.bodies.record[std::size_t(c.body[side])].constraint_count == 1;
-    for_bouncing_manifolds(world, c.body[side], [&](std::int32_t, std::int32_t other) {
-      found = found || (other != c.body[1 - side] && world.bodies.is_dynamic(other));
+    for_bouncing_manifolds(world, c.body[side], [&](std::int32_t m, std::int32_t other) {
+      found = other != c.body[1 - side] && world.bodies.is_dynamic(other) &&
+              world.contacts.manifold(m).restitution >= least_running_restitution;
+      return !found;
     });
   }
-  return found || alone;
+  return found;
 }
 
 float turn_dot(float a, float b) { return a * b; }
@@ -119,6 +149,8 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
   SolverBody<D> a = context.bodies[ia], b = context.bodies[ib];
   const BodyMotion<D>&ma = context.world.bodies.motion[std::size_t(ia)],
         &mb = context.world.bodies.motion[std::size_t(ib)];
+  const typename D::Inertia inertia_a = ma.world_inverse_inertia * load_share(ma),
+                            inertia_b = mb.world_inverse_inertia * load_share(mb);
   const V n = get(block.normal, lane), offset = get(block.center_offset, lane);
   const float shift = dot(n, b.delta_position - a.delta_position);
   const V na = turned_back_change(a.delta_rotation, n), nb = turned_back_change(b.delta_rotation, n);
@@ -159,9 +191,9 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
   const V va = a.linear_velocity, vb = b.linear_velocity;
   const auto push = [&](const V& p, const V& at_a, const V& at_b) {
     a.linear_velocity -= p * block.inverse_mass_a[lane];
-    a.angular_velocity -= ma.world_inverse_inertia * cross(at_a, p);
+    a.angular_velocity -= inertia_a * cross(at_a, p);
     b.linear_velocity += p * block.inverse_mass_b[lane];
-    b.angular_velocity += mb.world_inverse_inertia * cross(at_b, p);
+    b.angular_velocity += inertia_b * cross(at_b, p);
   };
   if (count > 1) {  // first what the points have in common: a face that lands flat leaves flat
     V middle_a{}, middle_b{};
@@ -174,14 +206,13 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
       }
     const auto turn_a = cross(middle_a, n), turn_b = cross(middle_b, n);
     const float response = float(count * count) * (block.inverse_mass_a[lane] + block.inverse_mass_b[lane]) +
-                           turn_dot(turn_a, ma.world_inverse_inertia * turn_a) +
-                           turn_dot(turn_b, mb.world_inverse_inertia * turn_b);
+                           turn_dot(turn_a, inertia_a * turn_a) + turn_dot(turn_b, inertia_b * turn_b);
     const float each = max(wanted / response, 0.0f);
     for (int i = 0; i < m.manifold.count; ++i) impulse[i] = closes[i] ? each : 0;
     a.linear_velocity -= n * (each * float(count) * block.inverse_mass_a[lane]);
-    a.angular_velocity -= ma.world_inverse_inertia * (turn_a * each);
+    a.angular_velocity -= inertia_a * (turn_a * each);
     b.linear_velocity += n * (each * float(count) * block.inverse_mass_b[lane]);
-    b.angular_velocity += mb.world_inverse_inertia * (turn_b * each);
+    b.angular_velocity += inertia_b * (turn_b * each);
   }
   for (int pass = 0; pass < (count == 1 ? 1 : 8); ++pass)
     for (int i = 0; i < m.manifold.count; ++i) {
@@ -190,7 +221,7 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
       impulse[i] = max(old + block.point[i].normal_mass[lane] * (closing_speed(i) + target[i]), 0.0f);
       push(n * (impulse[i] - old), r_a[i], r_b[i]);
     }
-  rub(block, lane, impulse, r_a, offset, a, b, ma.world_inverse_inertia, mb.world_inverse_inertia, push);
+  rub(block, lane, impulse, r_a, offset, a, b, inertia_a, inertia_b, push);
   a.delta_position -= (a.linear_velocity - va) * time;
   b.delta_position -= (b.linear_velocity - vb) * time;
   if (block.write_a[lane] != none) context.bodies[ia] = a;
@@ -254,7 +285,7 @@ void solve_queue(StepContext<D>& context, bool accelerated) {
     enqueue(impacts[i]);
   }
   // e < 1 may take infinitely many impacts: what is left after so many rests on the soft contacts.
-  const std::size_t most = 1024 + 32 * known;
+  const std::size_t most = 1024 + 8 * known;
   while (taken < given) {
     ManifoldRecord<D>& m = world.contacts.manifold(queue[taken++ % queue.size()]);
     const Lane<D, W> lane = lane_of<D, W>(world, m);
@@ -262,8 +293,11 @@ void solve_queue(StepContext<D>& context, bool accelerated) {
     if (taken > most || !strike<D, W>(context, m, accelerated)) continue;
     const ContactRecord<D>& c = world.contacts.at(m.contact);
     for (const std::int32_t body : c.body)
-      if (world.bodies.is_dynamic(body))
-        for_bouncing_manifolds(world, body, [&](std::int32_t other, std::int32_t) { enqueue(other); });
+      if (world.bodies.is_dynamic(body) && world.bodies.record[std::size_t(body)].constraint_count <= most_neighbours)
+        for_bouncing_manifolds(world, body, [&](std::int32_t other, std::int32_t neighbour) {
+          if (!is_linked(world, neighbour)) enqueue(other);
+          return true;
+        });
   }
 }
 
@@ -294,8 +328,7 @@ void find_impacts(StepContext<D>& context) {
     if (blocks.extra == nullptr) continue;
     for_marked(world, color, mark_bounces, [&](std::int32_t manifold) {
       blocks.bounces = true;
-      if (strikes_here(world, world.contacts.at(world.contacts.manifold(manifold).contact)))
-        impacts.push_back(manifold);
+      if (strikes_here(world, world.contacts.manifold(manifold))) impacts.push_back(manifold);
     });
   }
 }
@@ -303,14 +336,11 @@ void find_impacts(StepContext<D>& context) {
 template <class D>
 void solve_impacts(StepContext<D>& context, ImpactMoment moment) {
   if (context.world.scratch.impacts.empty()) return;
-  switch (context.world.kernels.width) {
-    case 16:
-      return solve_impacts_wide<D, 16>(context, moment);
-    case 8:
-      return solve_impacts_wide<D, 8>(context, moment);
-    default:
-      return solve_impacts_wide<D, 4>(context, moment);
+  if constexpr (math::widest_lanes > 4) {
+    if (context.world.kernels.width == 16) return solve_impacts_wide<D, 16>(context, moment);
+    if (context.world.kernels.width == 8) return solve_impacts_wide<D, 8>(context, moment);
   }
+  solve_impacts_wide<D, 4>(context, moment);
 }
 
 template void find_impacts<Dim2>(StepContext<Dim2>&);

@@ -1,8 +1,69 @@
 #include "carom/rigid/detail/move_body.h"
 #include "carom/rigid/detail/stages.h"
+#include "carom/rigid/detail/turn_lanes.h"
 
 namespace carom::rigid::detail {
 namespace {
+
+TurnKernel turn_kernel_of(int width) {
+#if defined(__x86_64__)
+  if (width == 16) return pin_kernels_avx512::turn_kernel();
+  if (width == 8) return pin_kernels_avx2::turn_kernel();
+#else
+  (void)width;
+#endif
+  return pin_kernels_baseline::turn_kernel();
+}
+
+/// Gathers bodies of space that constraints push about, and turns as many as there are lanes at once.
+template <int W>
+class PushedBodies {
+ public:
+  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(turn_kernel_of(W)) { clear(); }
+  PushedBodies(const PushedBodies&) = delete;
+  ~PushedBodies() {
+    if (count_ > 0) turn_(context_.bodies, &lanes_, context_.h);
+  }
+  void add(std::int32_t body) {
+    const Mat3f& inertia = context_.world.bodies.motion[std::size_t(body)].inertia;
+    const Quatf& start = context_.world.bodies.pose[std::size_t(body)].rotation;
+    const float tensor[6] = {inertia.cx.x, inertia.cx.y, inertia.cx.z, inertia.cy.y, inertia.cy.z, inertia.cz.z};
+    for (int i = 0; i < 6; ++i) lanes_.inertia[i][count_] = tensor[i];
+    lanes_.start[0][count_] = start.w;
+    for (int i = 0; i < 3; ++i) lanes_.start[i + 1][count_] = start.vector()[i];
+    lanes_.body[count_] = body;
+    if (++count_ < W) return;
+    turn_(context_.bodies, &lanes_, context_.h);
+    clear();
+  }
+
+ private:
+  void clear() {
+    count_ = 0;
+    lanes_ = {};
+    for (std::int32_t& body : lanes_.body) body = none;
+  }
+  StepContext<Dim3>& context_;
+  TurnKernel turn_;
+  TurnLanes<W> lanes_;
+  int count_ = 0;
+};
+
+/// Moves the centre of the body at a place of the awake list. Returns whether nothing but forces moved it.
+template <class D>
+bool move_center(StepContext<D>& context, int place) {
+  const BodyDrive<D>& drive = context.drives[place];
+  SolverBody<D>& s = context.bodies[drive.body];
+  if (drive.locks != 0) apply_locks(s, drive.locks);
+  if ((drive.flags & BodyDrive<D>::in_flight) != 0) return true;
+  // What others are near but do not touch flies too: nothing has changed its velocity.
+  const bool flies = (drive.flags & BodyDrive<D>::dynamic) != 0 && s.linear_velocity == context.flights[place].after;
+  if (flies)
+    s.delta_position += (0.5f * context.h) * (context.flights[place].before + s.linear_velocity);
+  else
+    s.delta_position += context.h * s.linear_velocity;
+  return flies;
+}
 
 float speed_of(float w) { return math::abs(w); }
 float speed_of(const Vec3f& w) { return math::length(w); }
@@ -26,8 +87,9 @@ void prepare_drives(StepContext<D>& context) {
       drive.flags = BodyDrive<D>::dynamic;
       if (record.constraint_count == 0) drive.flags |= BodyDrive<D>::in_flight;
       if (may_turn_freely(m, record)) drive.flags |= BodyDrive<D>::gyroscopic;
-      drive.linear_gain = h * (m.gravity_scale * gravity + m.inverse_mass * m.force);
-      drive.angular_gain = h * (m.world_inverse_inertia * m.torque);
+      const float share = h * load_share(m);
+      drive.linear_gain = share * (m.gravity_scale * gravity + m.inverse_mass * m.force);
+      drive.angular_gain = share * (m.world_inverse_inertia * m.torque);
       drive.linear_keep = 1 / (1 + h * m.linear_damping);
       drive.angular_keep = 1 / (1 + h * m.angular_damping);
     }
@@ -59,26 +121,40 @@ void integrate_velocities(StepContext<D>& context, int begin, int end) {
   }
 }
 
+namespace {
+
+template <int W>
+void move_bodies(StepContext<Dim2>& context, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    move_center(context, i);
+    turn_body(context.bodies[context.drives[i].body], context.h);
+  }
+}
+template <int W>
+void move_bodies(StepContext<Dim3>& context, int begin, int end) {
+  const auto& bodies = context.world.bodies;
+  PushedBodies<W> pushed(context);
+  for (int i = begin; i < end; ++i) {
+    const BodyDrive<Dim3>& drive = context.drives[i];
+    SolverBody<Dim3>& s = context.bodies[drive.body];
+    const bool flies = move_center(context, i);
+    if ((drive.flags & BodyDrive<Dim3>::gyroscopic) == 0 || !spins(s.angular_velocity))
+      turn_body(s, context.h);
+    else if (flies)
+      turn_freely(s, bodies.motion[std::size_t(drive.body)], bodies.pose[std::size_t(drive.body)].rotation, context.h);
+    else
+      pushed.add(drive.body);
+  }
+}
+
+}  // namespace
+
 template <class D>
 void integrate_positions(StepContext<D>& context, int begin, int end) {
-  const auto& bodies = context.world.bodies;
-  const float h = context.h;
-  for (int i = begin; i < end; ++i) {
-    const BodyDrive<D>& drive = context.drives[i];
-    SolverBody<D>& s = context.bodies[drive.body];
-    if (drive.locks != 0) apply_locks(s, drive.locks);
-    if ((drive.flags & BodyDrive<D>::in_flight) == 0) {
-      // What others are near but do not touch flies too: nothing has changed its velocity.
-      if ((drive.flags & BodyDrive<D>::dynamic) != 0 && s.linear_velocity == context.flights[i].after)
-        s.delta_position += (0.5f * h) * (context.flights[i].before + s.linear_velocity);
-      else
-        s.delta_position += h * s.linear_velocity;
-    }
-    if ((drive.flags & BodyDrive<D>::gyroscopic) != 0 && spins(s.angular_velocity))
-      turn_freely(s, bodies.motion[std::size_t(drive.body)], bodies.pose[std::size_t(drive.body)].rotation, h);
-    else
-      turn_body(s, h);
-  }
+  const int width = context.world.kernels.width;
+  if (width == 16) return move_bodies<16>(context, begin, end);
+  if (width == 8) return move_bodies<8>(context, begin, end);
+  move_bodies<4>(context, begin, end);
 }
 
 template void prepare_drives<Dim2>(StepContext<Dim2>&);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int contact_grain = 128;
 constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
-constexpr float recycle_share = 0.02f;    ///< of the smaller half thickness: manifolds stay while the pair slid less
+constexpr float recycle_share = 0.1f;     ///< of the smaller half thickness: manifolds stay while the pair slid less
 
 enum ContactChange : std::uint8_t {
   change_apart = 1,      ///< fat bounds no longer overlap
@@ -26,15 +26,9 @@ float smallest_separation(const typename D::Manifold& m) {
 }
 
 /// An upper bound of how far any point of B moved, seen from A, from `base` to `now`.
-float motion(const Transform2f& base, const Transform2f& now, float extent) {
-  // |sin| and |1 − cos| of the turn between them bound its chord.
-  const float s = base.q.c * now.q.s - base.q.s * now.q.c, c = base.q.c * now.q.c + base.q.s * now.q.s;
-  const Vec2f chord{1 - c, s};
-  return math::length(now.p - base.p) + math::length(chord) * extent;
-}
-float motion(const Transform3f& base, const Transform3f& now, float extent) {
-  const Quatf turn = conjugate(base.q) * now.q;
-  return math::length(now.p - base.p) + 2 * math::length(turn.vector()) * extent;
+template <class T>
+float motion(const T& base, const T& now, float extent) {
+  return math::length(now.p - base.p) + chord(base.q, now.q) * extent;
 }
 
 /// The same without what is along the normal: approach and parting change separations only.
@@ -53,21 +47,28 @@ float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity);
 /// thickness.
 template <class D>
 float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
-  const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
-  const float turning =
-      world.scratch.paths[std::size_t(c.body[0])].turning + world.scratch.paths[std::size_t(c.body[1])].turning;
-  const float way = world.last_dt * (math::length(b.linear_velocity - a.linear_velocity) + min(turning, 100.0f));
+  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
+  const float way = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt);
   return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
 }
-/// How far a contact with this normal (in the frame of A's shape) closes in the step by the motion of the centres.
+/// The same for a contact with this normal (in the frame of A's shape): what counts is what closes along it.
 template <class D>
-float closing_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Vector& normal) {
-  const SolverBody<D>&a = world.bodies.solver[std::size_t(c.body[0])], &b = world.bodies.solver[std::size_t(c.body[1])];
-  typename D::Vector n = rotate(world.shapes.at(c.shape[0]).local.q, normal);
-  n = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, n);
-  const float turning =
-      world.scratch.paths[std::size_t(c.body[0])].turning + world.scratch.paths[std::size_t(c.body[1])].turning;
-  return world.last_dt * max(0.0f, dot(n, a.linear_velocity - b.linear_velocity) + min(turning, 100.0f));
+float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c, typename D::Vector normal) {
+  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
+  if ((c.flags & contact_at_origin) == 0) normal = rotate(world.shapes.at(c.shape[0]).local.q, normal);
+  normal = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, normal);
+  const float way = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt, normal);
+  return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
+}
+/// How much nearer B, now at `now`, may still come to A until the pair is of interest; what it may do in this step not
+/// counted. Apart from each other along an axis, they may slide past each other, but are looked at now and then, so
+/// that pairs end whose bounds have parted.
+template <class D>
+float slack_of(const ContactRecord<D>& c, const typename D::Transform& now) {
+  const float slack = c.gap - c.margin(), moved = motion(c.base, now, c.extent);
+  if (c.axis == typename D::Vector{}) return slack - moved;
+  if (moved >= 0.5f * c.inner) return -1e30f;
+  return slack + dot(c.axis, now.p - c.base.p) - chord(c.base.q, now.q) * c.extent;
 }
 
 /// The touch flag, with hysteresis: begins within the touch distance, ends when the manifolds are gone or beyond twice
@@ -95,6 +96,12 @@ bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
   return false;
 }
 
+/// Parts are named by their triangle, cell or child; what they are made of may change (edits).
+template <class D>
+bool same_patch(const ManifoldRecord<D>& m, std::uint32_t child, const typename D::Manifold& found) {
+  return m.manifold.child == child && m.manifold.material == found.material;
+}
+
 template <class D>
 std::uint8_t update_sensor(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
                            const ShapeRecord<D>& b, const typename D::Transform& b_in_a) {
@@ -106,119 +113,157 @@ std::uint8_t update_sensor(WorldImplementation<D>& world, ContactRecord<D>& c, c
   return is ? change_begin : change_end;
 }
 
-/// B in A is now at `x`, `moved` m by `motion` from the place where the gap was measured.
+/// The watch on a pair that has just been looked at; the caller says what it watches for.
 template <class D>
-void watch_contact(WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Transform& x,
-                   float moved) {
-  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  const float apart = math::length(x.p), slack = c.gap - c.margin - moved;
-  // Seen from A, the origin of B moves by what both origins do, and by A's turn at its distance.
-  const float lever[2] = {apart + c.extent + math::length(a.local.p), c.extent + math::length(b.local.p)};
-  ContactWatch& w = world.scratch.watches[std::size_t(c.awake_index)];
-  w.limit = -1;
-  for (int side = 0; side < 2; ++side)
-    if (lever[side] > path_lever * world.bodies.motion[std::size_t(c.body[side])].outer_extent &&
-        !world.bodies.is_fixed(c.body[side]))
-      return;
-  w.body[0] = c.body[0], w.body[1] = c.body[1];
+ContactWatch<D>& watch_contact(WorldImplementation<D>& world, const ContactRecord<D>& c,
+                               const typename D::Vector& normal) {
+  const std::int32_t a = c.body[0], b = c.body[1];
+  ContactWatch<D>& w = world.scratch.watches[std::size_t(c.awake_index)];
+  w.body[0] = a, w.body[1] = b;
+  w.base = relative(world.bodies.pose[std::size_t(a)], world.bodies.pose[std::size_t(b)]);
+  const bool at_origin = (c.flags & contact_at_origin) != 0;
+  w.normal = at_origin ? normal : rotate(world.shapes.at(c.shape[0]).local.q, normal);
+  w.extent = c.extent + (at_origin ? 0 : math::length(world.shapes.at(c.shape[1]).local.p));
+  return w;
+}
+/// Rounding must not let a watch hold a moment longer than the exact test.
+template <class D>
+float rounding_of(const ContactWatch<D>& w) {
+  return 1e-5f + 1e-6f * math::length(w.base.p);
+}
+template <class D>
+void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Transform& now) {
+  ContactWatch<D>& w = watch_contact(world, c, c.axis);
+  w.gap = slack_of(c, now) - rounding_of(w);
   w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
-  w.limit = world.scratch.paths[std::size_t(c.body[0])].way + world.scratch.paths[std::size_t(c.body[1])].way +
-            double(min(slack, most_slack)) - double(1e-4f + 1e-6f * apart);
+  w.most_way = 0;
+  if (c.axis == typename D::Vector{}) return;
+  w.most_way = 0.5f * c.inner - motion(c.base, now, c.extent) - rounding_of(w);
+  if (!(w.most_way > 0)) w.body[0] = none;
+}
+template <class D>
+void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, float slack, float separation,
+                    const typename D::Vector& normal) {
+  ContactWatch<D>& w = watch_contact(world, c, normal);
+  w.most_way = slack - rounding_of(w);
+  // The middle of a shape that is not in its body's may come as near as it slides.
+  w.gap = separation - min(c.margin(), 2 * touch_distance) + rounding_of(w) +
+          ((c.flags & contact_at_origin) != 0 ? 0 : slack);
+  w.cap = -1;
+  if (!(w.most_way > 0)) w.body[0] = none;
 }
 
-/// Follows the bodies' ways. Fixed ones have none: set_pose forgets all watches.
+/// Finds how far bodies may come in the step.
 template <class D>
-void follow_paths(WorldImplementation<D>& world) {
+void measure_sweeps(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   if (scratch.watches.size() != world.contacts.awake.size()) scratch.watches.assign(world.contacts.awake.size(), {});
   if (world.contacts.awake.empty()) return;
-  scratch.paths.resize(world.bodies.pose.size());
-  scratch.path_ends.resize(world.bodies.pose.size());
-  for (const std::int32_t body : scratch.followed)
-    scratch.paths[std::size_t(body)].reach = scratch.paths[std::size_t(body)].turning = 0;
-  scratch.followed.assign(world.bodies.awake.begin(), world.bodies.awake.end());
+  scratch.sweeps.resize(world.bodies.pose.size());
+  for (const std::int32_t body : scratch.sweeping) scratch.sweeps[std::size_t(body)] = {};
+  scratch.sweeping.assign(world.bodies.awake.begin(), world.bodies.awake.end());
   world.scheduler->parallel_for(int(world.bodies.awake.size()), 512, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const std::size_t body = std::size_t(world.bodies.awake[std::size_t(i)]);
-      BodyPath& path = scratch.paths[body];
-      PathEnd<D>& last = scratch.path_ends[body];
-      const typename D::Pose& pose = world.bodies.pose[body];
       const SolverBody<D>& s = world.bodies.solver[body];
-      const float outer = world.bodies.motion[body].outer_extent;
-      if (last.known)
-        path.way += double(math::length(typename D::Vector(pose.position - last.pose.position)) +
-                           path_lever * outer * chord(last.pose.rotation, pose.rotation));
-      if (outer < last.outer_extent) path.way += 2 * double(most_slack);  // turns counted for more until now
-      last = {pose, outer, true};
-      path.turning = spin(s) * outer;
-      path.reach = 1.0001f * world.last_dt * (math::length(s.linear_velocity) + min(path.turning, 100.0f));
+      scratch.sweeps[body] = {s.linear_velocity * world.last_dt,
+                              spin(s) * world.bodies.motion[body].outer_extent * world.last_dt};
     }
   });
 }
 
-/// Recomputes one contact. Writes only to the contact, its manifolds and the worker's list.
+/// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow.
 template <class D>
-std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_index,
-                            std::vector<FoundManifold<D>>& list) {
-  ContactStore<D>& store = world.contacts;
-  ContactRecord<D>& c = store.at(store.awake[std::size_t(awake_index)]);
-  typename D::Transform b_in_a;
-  if (c.flags & contact_at_origin)
-    b_in_a = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
+bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
+           std::uint8_t& change) {
+  if ((c.flags & contact_known) == 0) return false;
+  if (c.first_manifold == none) {
+    const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, c.axis);
+    if (!(near < slack_of(c, now))) return false;
+    watch_apart(world, c, now);
+    return true;
+  }
+  // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
+  // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and
+  // far below the size of features, so that nothing sticks to a stale edge.
+  if ((c.flags & contact_round) != 0) return false;
+  const typename D::Vector normal = world.contacts.manifold(c.first_manifold).manifold.normal;
+  const float separation = c.gap + dot(normal, now.p - c.base.p);
+  const float far = slid(c.base, now, c.extent, normal), most = recycle_share * c.inner;
+  if (!(separation < c.margin() && far < most)) return false;
+  c.flags |= contact_recycled;
+  change = touch_change(c, separation, pressed_any(world.contacts, c));
+  if (c.flags & contact_touching) watch_recycled(world, c, most - far, separation, normal);
+  return true;
+}
+
+/// A contact whose shapes were found to be `c.gap` apart.
+template <class D>
+std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
+                  const ShapeRecord<D>& b) {
+  std::uint8_t change = 0;
+  if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
+    change = change_apart;
+  else if (c.first_manifold != none)
+    change = change_empty;
   else
-    b_in_a = relative(shape_pose(world, world.shapes.at(c.shape[0])), shape_pose(world, world.shapes.at(c.shape[1])));
+    watch_apart(world, c, c.base);
+  return std::uint8_t(change | touch_change(c, c.gap, false));
+}
 
-  const bool many = (c.flags & contact_many) != 0;
-  float reach = 0, ahead = 0;
-  if ((c.flags & contact_sensor) == 0) {
-    ahead = look_ahead(world, c);
-    const float margin = c.margin + ahead;
-    // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
-    // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and
-    // far below the size of features, so that nothing sticks to a stale edge.
-    if (c.flags & contact_known) {
-      if (c.first_manifold == none) {
-        const float moved = motion(c.base, b_in_a, c.extent);
-        if (moved + margin < c.gap) {
-          watch_contact(world, c, b_in_a, moved);
-          return 0;
-        }
-      } else if ((c.flags & contact_round) == 0) {
-        const typename D::Vector normal = store.manifold(c.first_manifold).manifold.normal;
-        const float separation = c.gap + dot(normal, b_in_a.p - c.base.p);
-        if (separation < c.margin && slid(c.base, b_in_a, c.extent, normal) < recycle_share * c.inner) {
-          c.flags |= contact_recycled;
-          return touch_change(c, separation, pressed_any(store, c));
-        }
-      }
-    }
-    reach = 2 * c.margin + ahead;
+/// Nearer than the margin, or so near that they may meet in this step?
+template <class D>
+bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Vector& normal,
+                 float separation) {
+  return separation <= c.margin() || separation <= c.margin() + look_ahead(world, c, normal);
+}
+
+/// Two convex shapes, or a plane: one manifold at most.
+template <class D>
+std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
+                           const ShapeRecord<D>& b, float reach, std::vector<FoundManifold<D>>& list) {
+  typename D::Manifold m;
+  geometry::collide(a.geometry, b.geometry, c.base, reach, c.cache, m);
+  c.gap = reach;
+  c.axis = {};
+  if (m.count == 0) {
+    // Pairs are to be looked at before they leave each other's bounds for good.
+    c.gap = max(reach, min(m.points[0].separation, reach + 0.25f * c.inner));
+    c.axis = m.normal;
+    return part(world, c, a, b);
   }
-  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  if (c.flags & contact_sensor) return update_sensor(world, c, a, b, b_in_a);
+  const float separation = smallest_separation<D>(m);
+  c.gap = min(reach, separation);
+  if (!of_interest(world, c, m.normal, separation)) return part(world, c, a, b);
+  const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
+  if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
+    c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
+    watch_recycled(world, c, recycle_share * c.inner, c.gap, m.normal);
+  }
+  if (c.first_manifold == none) {
+    list.push_back({c.awake_index, 0, 0, m});
+    return std::uint8_t(change | change_manifolds);
+  }
+  ManifoldRecord<D>& record = world.contacts.manifold(c.first_manifold);
+  carry_impulses<D>(record.manifold, m, 0.2f * c.inner, record.impulses);
+  record.manifold = m;
+  return change;
+}
 
-  world.scratch.watches[std::size_t(awake_index)].limit = -1;
-  c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
-  c.base = b_in_a;
+/// One of the shapes has many parts.
+template <class D>
+std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
+                         const ShapeRecord<D>& b, float reach, std::vector<FoundManifold<D>>& list) {
+  ContactStore<D>& store = world.contacts;
   Found<D> found;
-  if (many) {
-    collide_all(a.geometry, b.geometry, b_in_a, reach, found);
-  } else {
-    geometry::collide(a.geometry, b.geometry, b_in_a, reach, c.cache, found.manifold[0]);
-    found.child[0] = 0;
-    found.count = found.manifold[0].count > 0 ? 1 : 0;
-  }
-  float separation = reach;
-  if (found.count == 0) {
-    // Pairs are to be looked at before they leave each other's bounds for good; of a large surface nobody does.
-    if (!many) found.apart = min(found.manifold[0].points[0].separation, reach + 0.25f * c.inner);
-    separation = max(reach, found.apart);
-  }
+  collide_all(a.geometry, b.geometry, c.base, reach, found);
+  c.gap = found.count == 0 ? max(reach, found.apart) : reach;
+  c.axis = {};
   int kept = 0;
   for (int i = 0; i < found.count; ++i) {
     const float s = smallest_separation<D>(found.manifold[i]);
-    separation = min(separation, s);
-    if (s > c.margin && s > c.margin + min(ahead, closing_way(world, c, found.manifold[i].normal))) continue;
+    c.gap = min(c.gap, s);
+    if (!of_interest(world, c, found.manifold[i].normal, s)) continue;
     if (kept != i) {
       found.manifold[kept] = found.manifold[i];
       found.child[kept] = found.child[i];
@@ -226,32 +271,21 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     ++kept;
   }
   found.count = kept;
-  c.gap = separation;
-
-  std::uint8_t change = 0;
-  if (found.count == 0) {
-    if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
-      change = change_apart;
-    else if (c.first_manifold != none)
-      change = change_empty;
-    else
-      watch_contact(world, c, b_in_a, 0.0f);
-    return std::uint8_t(change | touch_change(c, separation, false));
-  }
+  if (found.count == 0) return part(world, c, a, b);
   int matched = 0;
   for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next) {
     for (int i = 0; i < found.count; ++i)
-      if (found.child[i] == store.manifold(m).child) {
+      if (same_patch(store.manifold(m), found.child[i], found.manifold[i])) {
         ++matched;
         break;
       }
   }
-  change = touch_change(c, separation, pressed_any(store, c));
+  const std::uint8_t change = touch_change(c, c.gap, pressed_any(store, c));
   if (matched == found.count && matched == c.manifold_count) {
     for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next) {
       ManifoldRecord<D>& record = store.manifold(m);
       for (int i = 0; i < found.count; ++i)
-        if (found.child[i] == record.child) {
+        if (same_patch(record, found.child[i], found.manifold[i])) {
           carry_impulses<D>(record.manifold, found.manifold[i], 0.2f * c.inner, record.impulses);
           record.manifold = found.manifold[i];
           break;
@@ -259,8 +293,31 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     }
     return change;
   }
-  for (int i = 0; i < found.count; ++i) list.push_back({awake_index, i, found.child[i], found.manifold[i]});
+  for (int i = 0; i < found.count; ++i) list.push_back({c.awake_index, i, found.child[i], found.manifold[i]});
   return std::uint8_t(change | change_manifolds);
+}
+
+/// Recomputes one contact. Writes only to the contact, its manifolds and the worker's list.
+template <class D>
+std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_index,
+                            std::vector<FoundManifold<D>>& list) {
+  ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(awake_index)]);
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  typename D::Transform b_in_a;
+  if (c.flags & contact_at_origin)
+    b_in_a = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
+  else
+    b_in_a = relative(shape_pose(world, a), shape_pose(world, b));
+  if (c.flags & contact_sensor) return update_sensor(world, c, a, b, b_in_a);
+
+  const float ahead = look_ahead(world, c), reach = 2 * c.margin() + ahead;
+  std::uint8_t change = 0;
+  world.scratch.watches[std::size_t(awake_index)].body[0] = none;  // an old one knows nothing of what changes now
+  if (stays(world, c, b_in_a, ahead, change)) return change;
+  c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
+  c.base = b_in_a;
+  return (c.flags & contact_many) != 0 ? update_many(world, c, a, b, reach, list)
+                                       : update_convex(world, c, a, b, reach, list);
 }
 
 /// Replaces the manifolds of a contact by those found; children that stay keep their impulses and place.
@@ -270,13 +327,13 @@ void replace_manifolds(WorldImplementation<D>& world, std::int32_t contact, std:
   for (std::int32_t m = store.at(contact).first_manifold; m != none;) {
     const std::int32_t next = store.manifold(m).next;
     bool stays = false;
-    for (const FoundManifold<D>& f : found) stays = stays || f.child == store.manifold(m).child;
+    for (const FoundManifold<D>& f : found) stays = stays || same_patch(store.manifold(m), f.child, f.manifold);
     if (!stays) remove_manifold(world, m);
     m = next;
   }
   for (const FoundManifold<D>& f : found) {
     std::int32_t m = store.at(contact).first_manifold;
-    while (m != none && store.manifold(m).child != f.child) m = store.manifold(m).next;
+    while (m != none && !same_patch(store.manifold(m), f.child, f.manifold)) m = store.manifold(m).next;
     if (m == none) {
       add_manifold(world, contact, f.manifold, f.child);
     } else {
@@ -295,10 +352,19 @@ void send_touch_event(WorldImplementation<D>& world, const ContactRecord<D>& c, 
     const bool first = (world.shapes.at(c.shape[0]).flags & shape_sensor) != 0;
     (begin ? scratch.sensor_begin : scratch.sensor_end).push_back(first ? SensorEvent{a, b} : SensorEvent{b, a});
   } else if (c.flags & contact_events) {
-    if (begin)
-      scratch.contact_begin.push_back({a, b});
-    else
+    if (begin) {
+      std::uint32_t part = 0;
+      float deepest = 1e30f;
+      for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+        const typename D::Manifold& manifold = world.contacts.manifold(m).manifold;
+        const float depth = smallest_separation<D>(manifold);
+        if (depth < deepest) deepest = depth, part = manifold.material;
+      }
+      scratch.contact_begin.push_back(
+          {a, b, material_at(world, c.shape[0], part).user_id, material_at(world, c.shape[1], part).user_id});
+    } else {
       scratch.contact_end.push_back({a, b});
+    }
   }
 }
 
@@ -308,7 +374,6 @@ void apply_change(WorldImplementation<D>& world, std::size_t i, std::size_t& nex
   const std::uint8_t change = scratch.contact_changes[i];
   const std::int32_t contact = world.contacts.awake[i];
   if (change & change_begin) {
-    send_touch_event(world, world.contacts.at(contact), true);
     scratch.new_touches.push_back(contact);  // who fell asleep close by, but apart, has a manifold already
   }
   if (change & change_end) send_touch_event(world, world.contacts.at(contact), false);
@@ -324,6 +389,7 @@ void apply_change(WorldImplementation<D>& world, std::size_t i, std::size_t& nex
     replace_manifolds<D>(world, contact, std::span(scratch.manifolds).subspan(first, next_found - first));
     if (was_empty) scratch.new_touches.push_back(contact);
   }
+  if (change & change_begin) send_touch_event(world, world.contacts.at(contact), true);
 }
 
 }  // namespace
@@ -335,22 +401,23 @@ void update_contacts(WorldImplementation<D>& world) {
   scratch.contact_changes.resize((count + 7) / 8 * 8);
   std::fill(scratch.contact_changes.begin(), scratch.contact_changes.end(), std::uint8_t(0));
   for (std::vector<FoundManifold<D>>& list : scratch.found_manifolds) list.clear();
-  follow_paths(world);
+  measure_sweeps(world);
   world.scheduler->parallel_for(int(count), contact_grain, [&](int begin, int end, int worker) {
     std::int32_t due[contact_grain];
     while (begin < end) {
       const int stop = min(begin + contact_grain, end);
       int number = 0;
       for (; begin < stop; ++begin)
-        if (!still_apart(scratch.paths, scratch.watches[std::size_t(begin)])) due[number++] = begin;
+        if (!nothing_new(scratch.watches[std::size_t(begin)], world.bodies.pose, scratch.sweeps, world.last_dt))
+          due[number++] = begin;
       for (int k = 0; k < number; ++k) {
         if (k + 6 < number) __builtin_prefetch(&world.contacts.at(world.contacts.awake[std::size_t(due[k + 6])]));
         if (k + 3 < number) {
           const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k + 3])]);
-          for (const std::int32_t body : soon.body) {
-            __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
-            __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
-          }
+          for (const std::int32_t body : soon.body) __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
+          for (const std::int32_t shape : soon.shape) prefetch_lines(&world.shapes.at(shape), 192);
+          if (soon.first_manifold != none)
+            prefetch_lines(&world.contacts.manifold(soon.first_manifold), sizeof(ManifoldRecord<D>));
         }
         scratch.contact_changes[std::size_t(due[k])] =
             update_contact(world, due[k], scratch.found_manifolds[std::size_t(worker)]);

@@ -19,7 +19,7 @@ bool has_joints(const StepContext<D>& context, int color) {
 
 template <class D>
 void add_body_stage(StepContext<D>& context, SolverPass pass) {
-  context.world.scratch.solver_stages.push_back({pass, 0, 0});
+  context.world.scratch.solver_stages.push_back({pass});
   context.world.scratch.solver_loops.push_back({int(context.world.bodies.awake.size()), body_grain});
 }
 
@@ -27,14 +27,14 @@ template <class D>
 void add_tree_stage(StepContext<D>& context, SolverPass pass) {
   const int count = int(context.world.joints.trees.trees.size());
   if (count == 0) return;
-  context.world.scratch.solver_stages.push_back({pass, 0, 0});
+  context.world.scratch.solver_stages.push_back({pass});
   context.world.scratch.solver_loops.push_back({count, tree_grain(context.world.joints.trees)});
 }
 
 /// One stage for every colour, but one for neighbours that are small or serial: no result depends on how the colours
 /// are cut, because one chunk runs them in their order.
 template <class D>
-void add_color_stages(StepContext<D>& context, SolverPass pass) {
+void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t order = 0) {
   std::vector<SolverStage>& stages = context.world.scratch.solver_stages;
   std::vector<core::TaskScheduler::Stage>& loops = context.world.scratch.solver_loops;
   const int threads = context.scheduler.thread_count();
@@ -48,7 +48,7 @@ void add_color_stages(StepContext<D>& context, SolverPass pass) {
       stages.back().last_rank = std::uint8_t(rank);
       continue;
     }
-    stages.push_back({pass, std::uint8_t(rank), std::uint8_t(rank)});
+    stages.push_back({pass, std::uint8_t(rank), std::uint8_t(rank), order});
     if (serial)
       loops.push_back({1, 1});
     else
@@ -65,10 +65,14 @@ void list_stages(StepContext<D>& context) {
   scratch.solver_stages.reserve(most_solver_stages(context.substeps));
   scratch.solver_loops.reserve(most_solver_stages(context.substeps));
   for (int substep = 0; substep < context.substeps; ++substep) {
+    // Whichever point of a face is solved first takes more than its share: from step to step each has its turn at every
+    // place of the sequence, so that a tower's faces do not tilt. Within a step, in which a blow is shared out, there
+    // is one order, and so it is in the relaxing pass, which says what each one carries.
+    const auto order = std::uint8_t(context.world.step_count % 4);
     add_body_stage(context, SolverPass::velocities);
     add_tree_stage(context, SolverPass::begin_trees);
     add_color_stages(context, SolverPass::warm_start);
-    add_color_stages(context, SolverPass::solve);
+    add_color_stages(context, SolverPass::solve, order);
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
     add_tree_stage(context, SolverPass::factorise_trees);
@@ -83,12 +87,12 @@ bool is_of_trees(SolverPass pass) {
 }
 
 template <class D>
-void run_blocks(StepContext<D>& context, SolverPass pass, const ColorBlocks& b, int begin, int end) {
+void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b, int begin, int end) {
   const ContactKernels<D>& kernels = context.world.kernels;
-  if (pass == SolverPass::warm_start)
+  if (stage.pass == SolverPass::warm_start)
     kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end);
-  else if (pass == SolverPass::solve)
-    kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed);
+  else if (stage.pass == SolverPass::solve)
+    kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, stage.order);
   else
     kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h);
 }
@@ -102,7 +106,7 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const bool whole = context.world.scratch.solver_loops[std::size_t(index)].count == 1;
   for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank) {
     const ColorBlocks& blocks = context.world.scratch.blocks[color_of_rank(rank)];
-    if (blocks.count > 0) run_blocks(context, stage.pass, blocks, whole ? 0 : begin, whole ? blocks.count : end);
+    if (blocks.count > 0) run_blocks(context, stage, blocks, whole ? 0 : begin, whole ? blocks.count : end);
   }
 }
 
@@ -125,7 +129,8 @@ void solve_constraints(StepContext<D>& context) {
   list_stages(context);
   prepare_drives(context);
   const StepScratch<D>& scratch = context.world.scratch;
-  if (context.world.joints.order.empty() && context.world.joints.pins.empty() && scratch.impacts.empty())
+  const JointStore<D>& joints = context.world.joints;
+  if (joints.order.empty() && joints.pins.empty() && joints.limbs.empty() && scratch.impacts.empty())
     return context.scheduler.run_stages(
         scratch.solver_loops, [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
   int left = context.substeps;

@@ -35,6 +35,10 @@ template <class D>
 void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecord<D>& manifold,
                         typename D::Position (&points)[D::max_points], float (&separations)[D::max_points],
                         typename D::Vector& normal);
+/// Calls solve for each number of substeps that islands have: the world's alone where no body asks for more. While it
+/// runs, the graph and the list of awake bodies hold only those islands.
+template <class D>
+void for_each_substep_group(WorldImplementation<D>& world, core::FunctionRef<void(int substeps)> solve);
 /// Everything with a substep in it.
 template <class D>
 void solve_constraints(StepContext<D>& context);

@@ -21,35 +21,42 @@ void visit_slots(Slots& slots, Visit& visit) {
 
 template <class Bodies, class Visit>
 void visit_bodies(Bodies& store, Visit& visit) {
-  auto& [slots, solver, pose, motion, record, names, birth, awake] = store;
+  auto& [slots, solver, pose, motion, record, names, birth, awake, substep_wishes] = store;
   visit_slots(slots, visit);
   visit.bodies(solver, pose, motion, record);
   visit.names(names);
   visit.state(birth);
   visit.state(awake);
+  visit.state(substep_wishes);
 }
 
 template <class Shapes, class Visit>
 void visit_shapes(Shapes& store, Visit& visit) {
-  auto& [slots, record, extras, trees, geometry_copy] = store;
-  (void)geometry_copy;
+  auto& [slots, record, extras, surfaces, moving_surfaces, trees, originals, geometry_copy] = store;
+  (void)geometry_copy, (void)originals;
   visit_slots(slots, visit);
   visit.shapes(record);
   visit.state(extras);
+  visit.state(surfaces);
+  visit.state(moving_surfaces);
   for (auto& tree : trees) visit_slots(tree, visit);
 }
 
 template <class Joints, class Visit>
 void visit_joints(Joints& store, Visit& visit) {
-  auto& [slots, headers, data, births, internal_count, breakable_count, order, offset, color_begin, records, trees,
-         pins, pin_begin, pin_blocks, pin_kernels] = store;
-  (void)pin_blocks, (void)pin_kernels;
+  auto& [slots, headers, data, births, internal_count, breakable_count, knot_points, knot_tangents, knot_arcs, order,
+         offset, color_begin, records, trees, pins, pin_begin, pin_blocks, pin_kernels, limbs, limb_begin, limb_blocks,
+         limb_kernels] = store;
+  (void)pin_blocks, (void)pin_kernels, (void)limb_blocks, (void)limb_kernels;
   visit_slots(slots, visit);
   visit.state(headers);
   visit.state(data);
   visit.state(births);
   visit.state(internal_count);
   visit.state(breakable_count);
+  visit.state(knot_points);
+  visit.state(knot_tangents);
+  visit.state(knot_arcs);
   visit.scratch(order);
   visit.scratch(offset);
   visit.scratch(color_begin);
@@ -59,6 +66,8 @@ void visit_joints(Joints& store, Visit& visit) {
   visit.scratch(trees.joints);
   visit.scratch(trees.of_joint);
   visit.scratch(pins);
+  visit.scratch(limbs);
+  visit.scratch(limb_begin);
 }
 
 template <class Effectors, class Visit>
@@ -95,27 +104,37 @@ void visit_graph(Graph& graph, Visit& visit) {
 
 template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
-  auto& [blocks, flights, impacts, impact_queue, solver_stages, solver_loops, paths, path_ends, followed, watches,
-         old_bounds, moved_place, moved, found_pairs, met_sensors, pairs, swept, fast, broken, body_changes,
+  auto& [blocks, loads, flights, impacts, impact_queue, solver_stages, solver_loops, sweeps, sweeping, watches,
+         old_bounds, moved_place, moved, group_places, group_ends, found_pairs, met_sensors, pairs, found_bullet_pairs,
+         found_strays, strays, bullet_pairs, bullet_meetings, first_bullet_pair, swept, fast, broken, body_changes,
          contact_changes, found_manifolds, manifolds, island_parent, island_list, island_bodies, island_ends,
-         doomed_contacts, new_touches, island_restless, contact_begin, contact_end, pending_contact_end, contact_hit,
-         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
+         doomed_contacts, new_touches, island_restless, island_substeps, whole_awake, whole_trees, whole_colors,
+         contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin, sensor_end, pending_sensor_end,
+         fell_asleep, quarantined, body_moves, joint_break] = scratch;
   (void)blocks;
+  visit.scratch(loads);
   visit.scratch(flights);
   visit.scratch(impacts);
   visit.scratch(impact_queue);
   visit.scratch(solver_stages);
   visit.scratch(solver_loops);
-  visit.scratch(paths);
-  visit.scratch(path_ends);
-  visit.scratch(followed);
+  visit.scratch(sweeps);
+  visit.scratch(sweeping);
   visit.scratch(watches);
   visit.scratch(old_bounds);
   visit.scratch(moved_place);
   visit.state(moved);
+  visit.scratch(group_places);
+  visit.scratch(group_ends);
   for (auto& list : found_pairs) visit.scratch(list);
   for (auto& list : met_sensors) visit.scratch(list);
   visit.scratch(pairs);
+  for (auto& list : found_bullet_pairs) visit.scratch(list);
+  for (auto& list : found_strays) visit.scratch(list);
+  visit.scratch(strays);
+  visit.scratch(bullet_pairs);
+  visit.scratch(bullet_meetings);
+  visit.scratch(first_bullet_pair);
   visit.scratch(swept);
   visit.scratch(fast);
   visit.scratch(broken);
@@ -130,6 +149,13 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(doomed_contacts);
   visit.scratch(new_touches);
   visit.scratch(island_restless);
+  visit.scratch(island_substeps);
+  visit.scratch(whole_awake);
+  visit.scratch(whole_trees);
+  for (auto& color : whole_colors) {
+    visit.scratch(color.manifolds);
+    visit.scratch(color.joints);
+  }
   visit.events(contact_begin);
   visit.events(contact_end);
   visit.state(pending_contact_end);
@@ -148,10 +174,10 @@ template <class World, class Visit>
 void visit_world(World& world, Visit&& visit) {
   auto& [definition, world_number, bodies, shapes, joints, effectors, contacts, pairs, graph, sleeping, own_scheduler,
          scheduler, arena, scratch, kernels, hit_event_shapes, step_count, births, time, last_dt, peak_bytes, reserved,
-         pair_rules, contact_filter, contact_modifier, profile] = world;
-  // Of this object, this machine or the last step's clock.
+         pair_rules, contact_filter, contact_modifier, profile, moves, query_trees] = world;
+  // Of this object, this machine or the last step's clock; or made anew when the trees change.
   (void)world_number, (void)own_scheduler, (void)scheduler, (void)arena, (void)kernels, (void)peak_bytes,
-      (void)reserved, (void)contact_filter, (void)contact_modifier, (void)profile;
+      (void)reserved, (void)contact_filter, (void)contact_modifier, (void)profile, (void)moves, (void)query_trees;
   visit.definition(definition);
   visit_bodies(bodies, visit);
   visit_shapes(shapes, visit);

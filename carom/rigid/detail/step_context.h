@@ -12,6 +12,9 @@ struct WorldImplementation;
 template <class D>
 struct Flight;  // step_scratch.h
 
+/// Soft contacts swing by at most so many turns in a substep.
+inline constexpr float most_contact_turns = 0.15f;
+
 /// A soft constraint's constants for a substep h (implicit spring and damper, Catto, "Soft constraints", GDC 2011;
 /// "Solver2D" 2024): Δλ = −mass_scale·m_eff·(v + bias_rate·C) − impulse_scale·λ.
 struct Softness {
@@ -44,7 +47,9 @@ struct StepContext {
   float dt = 0, inverse_dt = 0;
   float h = 0, inverse_h = 0;  ///< of a substep
   int substeps = 1;
+  float contact_stiffness = 0;  ///< 1/s²: ω² of contacts between moving bodies
   Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
+  float rest_speed = 0;             ///< m/s between bodies at rest with each other (load.h)
   float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
   Flight<D>* flights = nullptr;     ///< by place in BodyStore::awake, of this substep
   SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones

@@ -3,7 +3,10 @@
 
 #include <vector>
 
+#include "carom/rigid/detail/constraint_graph.h"
 #include "carom/rigid/detail/contact_watch.h"
+#include "carom/rigid/detail/joint_tree.h"
+#include "carom/rigid/detail/load.h"
 #include "carom/rigid/events.h"
 
 namespace carom::rigid::detail {
@@ -49,6 +52,7 @@ enum class SolverPass : std::uint8_t {
 struct SolverStage {
   SolverPass pass = SolverPass::velocities;
   std::uint8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
+  std::uint8_t order = 0;                      ///< in which the points of manifolds are solved
 };
 
 /// So many stages a step has at most.
@@ -58,18 +62,39 @@ inline constexpr std::size_t most_solver_stages(int substeps) {
 
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
 
-/// Where a fast body was when the step began.
+/// Where a body was when the step began, and how it went on.
 template <class D>
 struct SweepStart {
   typename D::Rotation rotation{};
   typename D::Position center{};
-  bool stopped = false;  ///< continuous collision cut its way
+  typename D::Angular turn{};  ///< rad, where it may be more than half a revolution; zero: the short way
+  float fraction = 1;          ///< of the step after which continuous collision stopped it
 };
 
-/// A sensor and a shape that met in a fast body's way.
+/// A sensor and a shape of a fast body that may have met on its way.
 struct SensorMeeting {
   std::int32_t own, other;  ///< slots of shapes
-  float time;               ///< fraction of the step
+};
+
+/// A bullet's shape and one of a body that moves, which may meet within the step.
+struct BulletPair {
+  std::int32_t own, other;  ///< slots of shapes
+  std::int32_t place[2];    ///< of the bullet and whom it may meet in BodyStore::awake; none: sleeps
+  std::int32_t next[2];     ///< edge keys (2·pair + side) in the lists by place
+};
+/// A shape whose way left its fat bounds, which bullets may have missed.
+template <class D>
+struct StrayShape {
+  typename D::Bounds box;  ///< of its way
+  std::int32_t shape;
+};
+/// When a pair meets, as far as is known of the ways of both.
+struct BulletMeeting {
+  float time;  ///< fraction of the step
+  std::int32_t pair;
+  friend bool operator<(const BulletMeeting& l, const BulletMeeting& r) {
+    return l.time != r.time ? l.time < r.time : l.pair < r.pair;
+  }
 };
 
 /// A body's velocities before and after a substep's forces.
@@ -81,20 +106,27 @@ struct Flight {
 template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
+  std::vector<BodyLoad<D>> loads;                   ///< by slot of the body; nothing between steps
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
   std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now
   std::vector<SolverStage> solver_stages;
   std::vector<core::TaskScheduler::Stage> solver_loops;  ///< of the same places
-  std::vector<BodyPath> paths;                           ///< by slot of the body
-  std::vector<PathEnd<D>> path_ends;                     ///< by slot of the body
-  std::vector<std::int32_t> followed;                    ///< bodies whose paths have a reach
-  std::vector<ContactWatch> watches;                     ///< by place in ContactStore::awake, or empty: look at all
-  std::vector<typename D::Bounds> old_bounds;       ///< by place in `moved`: fat bounds when pairs were last looked for
-  std::vector<std::int32_t> moved_place;            ///< by slot of the shape: place in old_bounds, or −1
-  std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
-  std::vector<std::vector<FoundPair>> found_pairs;  ///< by worker
+  std::vector<BodySweep<D>> sweeps;                      ///< by slot of the body
+  std::vector<std::int32_t> sweeping;                    ///< bodies whose sweep is not zero
+  std::vector<ContactWatch<D>> watches;                  ///< by place in ContactStore::awake, or empty: look at all
+  std::vector<typename D::Bounds> old_bounds;  ///< by place in `moved`: fat bounds when pairs were last looked for
+  std::vector<std::int32_t> moved_place;       ///< by slot of the shape: place in old_bounds, or −1
+  std::vector<std::int32_t> moved;             ///< shapes whose fat bounds changed
+  std::vector<std::int32_t> group_places, group_ends;   ///< places in `moved` by groups of neighbours
+  std::vector<std::vector<FoundPair>> found_pairs;      ///< by worker
   std::vector<std::vector<SensorMeeting>> met_sensors;  ///< by worker
   std::vector<FoundPair> pairs;
+  std::vector<std::vector<BulletPair>> found_bullet_pairs;  ///< by worker
+  std::vector<std::vector<StrayShape<D>>> found_strays;     ///< by worker
+  std::vector<StrayShape<D>> strays;
+  std::vector<BulletPair> bullet_pairs;
+  std::vector<BulletMeeting> bullet_meetings;                  ///< a heap, earliest first
+  std::vector<std::int32_t> first_bullet_pair;                 ///< by place in BodyStore::awake
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake
   std::vector<std::int32_t> broken;                            ///< bodies to be quarantined
@@ -104,6 +136,11 @@ struct StepScratch {
   std::vector<FoundManifold<D>> manifolds;
   std::vector<std::int32_t> island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches;
   std::vector<std::uint8_t> island_restless;
+  // Of islands with substeps of their own (stage_substeps.cpp):
+  std::vector<std::uint8_t> island_substeps;  ///< by place in BodyStore::awake; 0: kinematic
+  std::vector<std::int32_t> whole_awake;      ///< all, while a group is solved; so the others
+  std::vector<TreeRange> whole_trees;
+  GraphColor whole_colors[color_count + 1];
 
   std::vector<ContactBeginEvent> contact_begin;
   std::vector<ContactEndEvent> contact_end, pending_contact_end;  ///< pending: from calls between steps

@@ -154,21 +154,25 @@ void tell_moves(WorldImplementation<D>& world) {
 }
 
 template <class D>
-StepContext<D> make_context(WorldImplementation<D>& world, float dt) {
+StepContext<D> make_context(WorldImplementation<D>& world, float dt, int substeps) {
   StepContext<D> context{world, *world.scheduler, world.arena};
   const WorldDef<D>& definition = world.definition;
   context.dt = dt;
   context.inverse_dt = 1 / dt;
-  context.substeps = definition.substeps;
-  context.h = dt / float(definition.substeps);
-  context.inverse_h = float(definition.substeps) * context.inverse_dt;
-  const float contact_hertz = min(definition.contact_hertz, 0.125f * context.inverse_h);
+  context.substeps = substeps;
+  context.h = dt / float(substeps);
+  context.inverse_h = float(substeps) * context.inverse_dt;
+  const float stiffer = float(substeps) / float(definition.substeps);  // than the world's: BodyDef::substeps
+  const float contact_hertz = min(stiffer * definition.contact_hertz, most_contact_turns * context.inverse_h);
+  context.contact_stiffness = 4 * pi_f * pi_f * contact_hertz * contact_hertz;
   context.contact_softness = make_softness(contact_hertz, definition.contact_damping_ratio, context.h);
   context.fixed_contact_softness = make_softness(2 * contact_hertz, definition.contact_damping_ratio, context.h);
-  context.joint_softness =
-      make_softness(min(definition.joint_hertz, 0.25f * context.inverse_h), definition.joint_damping_ratio, context.h);
+  context.joint_softness = make_softness(min(stiffer * definition.joint_hertz, 0.25f * context.inverse_h),
+                                         definition.joint_damping_ratio, context.h);
   context.push_speed = definition.contact_push_speed;
+  context.rest_speed = rest_speed(definition, dt);
   context.bodies = world.bodies.solver.data();
+  if (world.scratch.loads.size() < world.bodies.record.size()) world.scratch.loads.resize(world.bodies.record.size());
   world.scratch.flights.resize(world.bodies.awake.size());
   context.flights = world.scratch.flights.data();
   return context;
@@ -194,6 +198,8 @@ WorldImplementation<D>::WorldImplementation(const WorldDef<D>& d)
   }
   scratch.found_pairs.resize(std::size_t(scheduler->thread_count()));
   scratch.met_sensors.resize(std::size_t(scheduler->thread_count()));
+  scratch.found_bullet_pairs.resize(std::size_t(scheduler->thread_count()));
+  scratch.found_strays.resize(std::size_t(scheduler->thread_count()));
   scratch.found_manifolds.resize(std::size_t(scheduler->thread_count()));
 }
 
@@ -246,17 +252,21 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   modify_contacts(world);
   profile.narrow_phase = watch.lap("narrow phase");
 
-  StepContext<D> context = make_context(world, dt);
-  prepare_joints(context);
-  prepare_contacts(context);
-  find_impacts(context);
-  profile.prepare = watch.lap("prepare");
-  solve_constraints(context);
-  profile.solve = watch.lap("solve");
-  restitute_contacts(context);
-  profile.restitution = watch.lap("restitution");
-  store_joints(context);
-  store_contacts(context);
+  for_each_substep_group<D>(world, [&](int substeps) {
+    StepContext<D> group = make_context(world, dt, substeps);
+    prepare_joints(group);
+    prepare_contacts(group);
+    find_impacts(group);
+    profile.prepare += watch.lap("prepare");
+    solve_constraints(group);
+    profile.solve += watch.lap("solve");
+    restitute_contacts(group);
+    profile.restitution += watch.lap("restitution");
+    store_joints(group);
+    store_contacts(group);
+    test_joints(world);
+  });
+  StepContext<D> context = make_context(world, dt, world.definition.substeps);
   finalize_bodies(context);
   gather_hit_events(context);
   profile.finalize = watch.lap("finalize");
@@ -270,6 +280,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   ++world.step_count;
   world.time += double(dt);
   const bool moved = !world.bodies.awake.empty();
+  if (moved) ++world.moves;
   sleep_islands(context);
   end_events(world);
   world.peak_bytes = max(world.peak_bytes, bytes_of_world(world));

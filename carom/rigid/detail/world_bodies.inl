@@ -24,6 +24,7 @@ void check_body(Complaint& c, const BodyDef<D>& d) {
   check_range(c, "angular_damping", d.angular_damping, 0, 1e6);
   check_range(c, "gravity_scale", d.gravity_scale, -1e6, 1e6);
   check_range(c, "sleep_speed", d.sleep_speed, 0, 1e6);
+  check_range(c, "substeps", d.substeps, 0, 64);
   if (d.type != BodyType::fixed && d.type != BodyType::kinematic && d.type != BodyType::dynamic)
     c.say(core::text("type is ", int(d.type), ", expected fixed, kinematic or dynamic"));
 }
@@ -126,6 +127,8 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   r.type = d.type;
   r.locks = lock_bits(d.locks);
   r.sleep_speed = d.sleep_speed;
+  r.substeps = std::uint8_t(d.substeps);
+  if (d.substeps > 0) ++bodies.substep_wishes;
   r.user_data = d.user_data;
   set_flag<D>(r, body_enabled, d.enabled);
   set_flag<D>(r, body_bullet, d.bullet);
@@ -157,7 +160,8 @@ Status World<D>::destroy_body(BodyId body) {
     self_->shapes.slots.release(self_->shapes.slots.handle_at(s));
     // A slot in `moved` stays there until the next step; without a leaf it is passed over.
     const std::uint8_t moved = shape.flags & shape_moved;
-    self_->shapes.set_extra({s});
+    self_->shapes.forget_extra(s);
+    if (is_moving_surface(*self_, s)) --self_->shapes.moving_surfaces;
     shape = {};
     self_->shapes.geometry_copy.reset();
     shape.flags = moved;
@@ -165,6 +169,7 @@ Status World<D>::destroy_body(BodyId body) {
   }
   if (!self_->bodies.names.empty() && std::size_t(*slot) < self_->bodies.names.size())
     self_->bodies.names[std::size_t(*slot)].clear();
+  if (self_->bodies.record[std::size_t(*slot)].substeps > 0) --self_->bodies.substep_wishes;
   self_->bodies.solver[std::size_t(*slot)] = {};
   self_->bodies.record[std::size_t(*slot)] = {};
   self_->bodies.slots.release(body);
@@ -214,6 +219,7 @@ Result<BodyDef<D>> World<D>::body_definition(BodyId body) const {
   d.angular_damping = m.angular_damping;
   d.gravity_scale = m.gravity_scale;
   d.sleep_speed = r.sleep_speed;
+  d.substeps = r.substeps;
   d.locks = locks_of(r.locks);
   d.awake = r.awake_index != none;
   d.allow_sleep = (r.flags & body_allow_sleep) != 0;

@@ -21,7 +21,6 @@ Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
   center_from_pose(*self_, *slot);
   update_world_inertia(*self_, *slot);
   refresh_bounds(*self_, *slot);
-  if (self_->bodies.is_fixed(*slot)) self_->scratch.watches.clear();  // no path is kept of it
   return {};
 }
 
@@ -36,7 +35,15 @@ Status World<D>::set_velocity(BodyId body, Vector linear, Angular angular) {
   if (!complaint.none_yet()) return complaint.error();
   if (self_->bodies.is_fixed(*slot))
     return core::Error{"World::set_velocity: the body is fixed, expected one that moves"};
-  if (!(linear == Vector{} && angular == Angular{})) wake_body(*self_, *slot);
+  const SolverBody<D>& now = self_->bodies.solver[std::size_t(*slot)];
+  const bool stood = now.linear_velocity == Vector{} && now.angular_velocity == Angular{};
+  if (!(linear == Vector{} && angular == Angular{})) {
+    wake_body(*self_, *slot);
+    // What fell asleep on a platform is to go with it when it starts.
+    if (stood && !self_->bodies.is_dynamic(*slot)) wake_touching(*self_, *slot);
+  }
+  forget_load<D>(self_->bodies.motion[std::size_t(*slot)], linear - now.linear_velocity,
+                 rest_speed(self_->definition, self_->last_dt));
   self_->bodies.solver[std::size_t(*slot)].linear_velocity = linear;
   self_->bodies.solver[std::size_t(*slot)].angular_velocity = angular;
   return {};
@@ -87,13 +94,24 @@ Status World<D>::set_type(BodyId body, BodyType type) {
     return core::Error{core::text("World::set_type: type is ", int(type), ", expected fixed, kinematic or dynamic")};
   BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
   if (r.type == type) return {};
-  if (type != BodyType::fixed || r.first_shape != none)
-    for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next)
-      if (type == BodyType::dynamic && surface_only(self_->shapes.at(s).geometry))
-        return core::Error{
-            "World::set_type: the body has a plane, mesh or height field, expected only shapes that can be dynamic"};
+  for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next) {
+    const ShapeRecord<D>& shape = self_->shapes.at(s);
+    if (type == BodyType::dynamic)
+      if (const Status status = check_dynamic(shape.geometry, shape.density); !status.ok())
+        return core::Error{core::text("World::set_type: ", status.error().message)};
+    if (const std::int32_t other = clashing_surface(*self_, *slot, type, shape.geometry, shape.filter);
+        (shape.flags & shape_sensor) == 0 && other != none)
+      return core::Error{core::text("World::set_type: ", clash_message(other))};
+  }
   with_joints_detached(*self_, *slot, [&] {
     take_out(*self_, *slot);
+    for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next) {
+      ShapeRecord<D>& shape = self_->shapes.at(s);
+      if (!is_surface(shape.geometry)) continue;
+      self_->shapes.moving_surfaces += (type != BodyType::fixed) - (r.type != BodyType::fixed);
+      const bool thin = type != BodyType::fixed && is_mesh(shape.geometry);
+      shape.inner_extent = thin ? mesh_thickness(shape.geometry) : shape.outer_extent;
+    }
     self_->bodies.record[std::size_t(*slot)].type = type;
     if (type == BodyType::fixed) self_->bodies.solver[std::size_t(*slot)] = {};
     update_mass(*self_, *slot);
@@ -151,6 +169,20 @@ Status World<D>::set_damping(BodyId body, float linear, float angular) {
   if (!complaint.none_yet()) return complaint.error();
   self_->bodies.motion[std::size_t(*slot)].linear_damping = linear;
   self_->bodies.motion[std::size_t(*slot)].angular_damping = angular;
+  return {};
+}
+
+template <class D>
+Status World<D>::set_substeps(BodyId body, int substeps) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_substeps", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_substeps");
+  check_range(complaint, "substeps", substeps, 0, 64);
+  if (!complaint.none_yet()) return complaint.error();
+  BodyRecord& record = self_->bodies.record[std::size_t(*slot)];
+  self_->bodies.substep_wishes += (substeps > 0 ? 1 : 0) - (record.substeps > 0 ? 1 : 0);
+  record.substeps = std::uint8_t(substeps);
   return {};
 }
 

@@ -58,7 +58,7 @@ Status add_kick(WorldImplementation<D>& world, std::string_view call, BodyId bod
   if (!complaint.none_yet()) return complaint.error();
   // A body at rest may hold the tensor of where it last moved.
   update_world_inertia(world, *slot);
-  const BodyMotion<D>& m = world.bodies.motion[std::size_t(*slot)];
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(*slot)];
   SolverBody<D>& s = world.bodies.solver[std::size_t(*slot)];
   const typename D::Vector p = linear != nullptr ? *linear : typename D::Vector{};
   typename D::Angular t = angular != nullptr ? *angular : typename D::Angular{};
@@ -69,6 +69,7 @@ Status add_kick(WorldImplementation<D>& world, std::string_view call, BodyId bod
   check_size(complaint, "angular velocity after the impulse", w, max_velocity);
   if (!complaint.none_yet()) return complaint.error();
   wake_body(world, *slot);
+  forget_load<D>(m, v - s.linear_velocity, rest_speed(world.definition, world.last_dt));
   s.linear_velocity = v;
   s.angular_velocity = w;
   return {};

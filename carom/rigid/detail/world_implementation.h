@@ -9,6 +9,7 @@
 #include "carom/rigid/detail/effector_store.h"
 #include "carom/rigid/detail/joint_store.h"
 #include "carom/rigid/detail/pair_set.h"
+#include "carom/rigid/detail/query_trees.h"
 #include "carom/rigid/detail/shape_store.h"
 #include "carom/rigid/detail/sleeping_islands.h"
 #include "carom/rigid/detail/step_context.h"
@@ -57,6 +58,8 @@ struct WorldImplementation {
   typename World<D>::ContactFilter contact_filter;
   typename World<D>::ContactModifier contact_modifier;
   StepProfile profile{};
+  std::uint64_t moves = 0;  ///< steps in which anything was awake
+  mutable QueryTrees<typename D::Position> query_trees;
 };
 
 // bodies.cpp ------------------------------------------------------------------------------------------------------
@@ -97,6 +100,8 @@ void solve_joints(StepContext<D>& context, int color, bool use_bias);
 template <class D>
 void store_joints(StepContext<D>& context);
 /// Destroys joints that were loaded above what they bear, and tells of it.
+template <class D>
+void test_joints(WorldImplementation<D>& world);
 template <class D>
 void break_joints(WorldImplementation<D>& world);
 /// Destroys every joint of a body (detaching each), before the body goes.

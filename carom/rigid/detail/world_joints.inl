@@ -51,6 +51,7 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   else
     data.world_anchor = typename D::Position(def.frame_a.p);
   data.definition = def;
+  if constexpr (std::is_same_v<Def, PathJointDef<D>>) add_knots(joints, data);
   joints.data[slot] = data;
   joints.headers[slot] = {};
   joints.headers[slot].body[0] = a;
@@ -79,8 +80,8 @@ void wake_joint(WorldImplementation<D>& world, std::int32_t joint) {
     if (body != none && world.bodies.is_dynamic(body)) wake_body(world, body);
 }
 inline std::string_view joint_type_name(std::size_t index) {
-  constexpr std::string_view names[] = {"distance", "ball",    "hinge", "slider", "weld",  "motor",
-                                        "mouse",    "generic", "gear",  "rack",   "screw", "pulley"};
+  constexpr std::string_view names[] = {"distance", "ball", "hinge", "slider", "weld",   "motor", "mouse",
+                                        "generic",  "gear", "rack",  "screw",  "pulley", "path"};
   return names[index];
 }
 inline core::Error wrong_joint(std::string_view call, std::size_t index, std::string_view expected) {
@@ -139,6 +140,11 @@ Result<JointId> World<D>::create_joint(const PulleyJointDef<D>& d) {
 }
 
 template <class D>
+Result<JointId> World<D>::create_joint(const PathJointDef<D>& d) {
+  return detail::make_joint<D>(*self_, d);
+}
+
+template <class D>
 Status World<D>::destroy_joint(JointId joint) {
   const auto slot = detail::find_joint<D>(*self_, joint, "World::destroy_joint");
   if (!slot.ok()) return slot.error();
@@ -162,7 +168,7 @@ template <class D>
 Result<AnyJointDef<D>> World<D>::joint_definition(JointId joint) const {
   const auto slot = detail::find_joint<D>(*self_, joint, "World::joint_definition");
   if (!slot.ok()) return slot.error();
-  return self_->joints.data[std::size_t(*slot)].definition;
+  return detail::whole_definition(self_->joints, self_->joints.data[std::size_t(*slot)]);
 }
 
 template <class D>
@@ -180,8 +186,10 @@ Status World<D>::set_motor(JointId joint, const JointMotor& motor) {
     hinge->motor = motor;
   else if (auto* slider = std::get_if<SliderJointDef<D>>(&any))
     slider->motor = motor;
+  else if (auto* path = std::get_if<PathJointDef<D>>(&any))
+    path->motor = motor;
   else
-    return detail::wrong_joint(call, any.index(), "a distance, hinge or slider joint");
+    return detail::wrong_joint(call, any.index(), "a distance, hinge, slider or path joint");
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }
@@ -196,13 +204,16 @@ Status World<D>::set_limit(JointId joint, const JointLimit& limit) {
   auto* ball = std::get_if<BallJointDef<D>>(&any);
   auto* hinge = std::get_if<HingeJointDef<D>>(&any);
   auto* slider = std::get_if<SliderJointDef<D>>(&any);
+  auto* path = std::get_if<PathJointDef<D>>(&any);
   detail::Complaint complaint(call);
   if (distance != nullptr)
     complaint.distance_limit("limit", limit);
-  else if (slider != nullptr)
+  else if (slider != nullptr || path != nullptr)
     complaint.limit("limit", limit);
   else
     complaint.angle_limit("limit", limit);
+  if (path != nullptr && path->closed && limit.enabled)
+    complaint.say("limit is enabled, expected none on a closed path");
   if (!complaint.none_yet()) return complaint.error();
   if (distance != nullptr)
     distance->limit = limit;
@@ -212,8 +223,10 @@ Status World<D>::set_limit(JointId joint, const JointLimit& limit) {
     hinge->limit = limit;
   else if (slider != nullptr)
     slider->limit = limit;
+  else if (path != nullptr)
+    path->limit = limit;
   else
-    return detail::wrong_joint(call, any.index(), "a distance, ball (its twist), hinge or slider joint");
+    return detail::wrong_joint(call, any.index(), "a distance, ball (its twist), hinge, slider or path joint");
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }
@@ -227,7 +240,7 @@ Status World<D>::set_spring(JointId joint, const JointSpring& spring) {
   complaint.spring("spring", spring);
   if (!complaint.none_yet()) return complaint.error();
   if (const std::size_t type = self_->joints.data[std::size_t(*slot)].definition.index();
-      type >= std::size_t(JointType::generic))
+      type >= std::size_t(JointType::generic) && type != std::size_t(JointType::path))
     return detail::wrong_joint(call, type, "one with a spring of its own (of a generic joint: set_axis)");
   std::visit(
       [&](auto& d) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "carom/geometry/detail/queries.h"
 #include "carom/geometry/query.h"
+#include "carom/geometry/tree_walk.h"
 #include "carom/rigid/detail/contacts.h"
 #include "carom/rigid/detail/joint_check.h"
 #include "carom/rigid/detail/world_implementation.h"
@@ -12,10 +14,20 @@
 namespace carom::rigid {
 namespace detail {
 
+/// A filter with the slot of the body that it ignores.
+struct SeenFilter {
+  std::uint64_t category, mask;
+  std::int32_t ignored;
+  template <class D>
+  SeenFilter(const WorldImplementation<D>& world, const QueryFilter& f)
+      : category(f.category),
+        mask(f.mask),
+        ignored(world.bodies.slots.contains(f.ignore) ? world.bodies.slots.slot(f.ignore) : none) {}
+};
 template <class D>
-bool query_sees(const ShapeRecord<D>& shape, const QueryFilter& filter) {
+bool query_sees(const ShapeRecord<D>& shape, const SeenFilter& filter) {
   return (shape.flags & shape_sensor) == 0 && (shape.filter.category & filter.mask) != 0 &&
-         (filter.category & shape.filter.mask) != 0;
+         (filter.category & shape.filter.mask) != 0 && shape.body != filter.ignored;
 }
 template <class D>
 typename D::Bounds world_bounds(const typename D::Shape& shape, const typename D::Pose& pose) {
@@ -26,16 +38,29 @@ typename D::Bounds world_bounds(const typename D::Shape& shape, const typename D
 template <class D>
 RayHit<D> world_hit(const WorldImplementation<D>& world, std::int32_t slot, const typename D::Pose& pose,
                     const geometry::CastHit<typename D::Vector>& hit) {
-  return {world.shapes.slots.handle_at(slot), world_point(pose, hit.point), rotate(pose.rotation, hit.normal),
-          hit.fraction, hit.child};
+  return {world.shapes.slots.handle_at(slot),
+          world_point(pose, hit.point),
+          rotate(pose.rotation, hit.normal),
+          hit.fraction,
+          hit.child,
+          material_at(world, slot, geometry::material_of_part(world.shapes.at(slot).geometry, hit.child)).user_id};
 }
 /// Nearer, or equally near and older in its slot: one answer, whatever the tree looks like.
 inline bool is_nearer(float fraction, std::int32_t slot, float best, std::int32_t best_slot) {
   return fraction < best || (fraction == best && (best_slot == none || slot < best_slot));
 }
 
+template <class T>
+bool all_finite(Vec2<T> v) {
+  return (v.x - v.x) + (v.y - v.y) == 0;  // infinity less itself is no number
+}
+template <class T>
+bool all_finite(Vec3<T> v) {
+  return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0;
+}
 template <class D>
 Status check_query(std::string_view call, const typename D::Position& origin, const typename D::Vector& translation) {
+  if (all_finite(origin) && all_finite(translation)) return {};
   Complaint complaint(call);
   complaint.vector("origin", origin);
   complaint.vector("translation", translation);
@@ -48,14 +73,167 @@ inline bool can_be_cast(const geometry::Shape2& shape) {
 inline bool can_be_cast(const geometry::Shape3& shape) { return geometry::is_convex(shape); }
 
 template <class D>
-Status check_query_shape(std::string_view call, const typename D::Shape& shape, const typename D::Pose& pose) {
+Status check_query_shape(std::string_view call, const typename D::Shape& shape) {
   Complaint complaint(call);
   complaint.status(geometry::validate(shape));
   if (!can_be_cast(shape)) complaint.say("shape is not convex, expected a convex shape");
-  complaint.vector("pose.position", pose.position);
-  complaint.rotation("pose.rotation", pose.rotation);
   if (!complaint.none_yet()) return complaint.error();
   return {};
+}
+template <class D>
+Status check_cast(std::string_view call, const typename D::Pose& pose, const typename D::Vector& translation) {
+  Complaint complaint(call);
+  complaint.vector("pose.position", pose.position);
+  complaint.rotation("pose.rotation", pose.rotation);
+  complaint.vector("translation", translation);
+  if (!complaint.none_yet()) return complaint.error();
+  return {};
+}
+inline constexpr int queries_a_chunk = 32;
+inline Status check_batch(std::string_view call, std::size_t queries, std::string_view what, std::size_t room) {
+  constexpr std::size_t most = std::size_t(1) << 30;
+  if (queries == room && queries <= most) return {};
+  Complaint complaint(call);
+  complaint.say(core::text(what, " has room for ", room, " results of ", queries,
+                           " queries, expected the same number, at most 2^30"));
+  return complaint.error();
+}
+inline void sort_by_slot(std::vector<ShapeId>& found, std::size_t from) {
+  if (found.size() - from < 2) return;
+  std::sort(found.begin() + std::ptrdiff_t(from), found.end(), [](ShapeId a, ShapeId b) { return a.index < b.index; });
+}
+
+template <class D>
+const QueryTree<typename D::Position>* query_tree(const WorldImplementation<D>& world, int index) {
+  const auto tight = [&](std::uint32_t item) {
+    const auto& shape = world.shapes.at(std::int32_t(item));
+    const typename D::Bounds box = world_bounds<D>(shape.geometry, shape_pose<D>(world, shape));
+    const auto& fat = world.shapes.trees[shape.tree].bounds(shape.leaf);  // finite, where a plane's is not
+    return typename D::Bounds{max(box.low, fat.low), min(box.high, fat.high)};
+  };
+  return world.query_trees.of(index, world.shapes.trees[index], index == tree_fixed ? 0 : world.moves, tight);
+}
+/// Every shape that the moving box may meet before `limit`, of all trees: visit(slot, limit) → new limit.
+template <class D, class Visit>
+void cast_in_trees(const WorldImplementation<D>& world, const typename D::Position& origin,
+                   const typename D::Position& translation, typename D::Position extents, Visit&& visit) {
+  // What is touched within rounding is asked too, whichever tree is walked.
+  const double slack = 2e-5 + 4e-6 * math::length(translation);
+  for (int k = 0; k < D::dimension; ++k) extents[k] += slack;
+  float limit = 1;
+  for (int t = 0; t < 3; ++t) {
+    const auto& tree = world.shapes.trees[t];
+    if (tree.empty()) continue;
+    if (const auto* made = query_tree<D>(world, t)) {
+      if (made->wide.nodes.empty())
+        for (const auto& item : made->items) limit = visit(std::int32_t(item.index), limit);
+      else
+        cast(made->wide, origin, translation, extents, limit,
+             [&](std::uint32_t place, float) { return limit = visit(std::int32_t(made->items[place].index), limit); });
+    } else {
+      tree.cast(origin, translation, extents,
+                [&](std::uint32_t item, auto) { return limit = visit(std::int32_t(item), limit); });
+    }
+  }
+}
+/// Every shape whose tight box meets `box`: visit(slot).
+template <class D, class Visit>
+void query_trees(const WorldImplementation<D>& world, const typename D::Bounds& box, Visit&& visit) {
+  for (int t = 0; t < 3; ++t) {
+    const auto& tree = world.shapes.trees[t];
+    if (tree.empty()) continue;
+    if (const auto* made = query_tree<D>(world, t)) {
+      const auto look = [&](const auto& item) {
+        if (geometry::detail::boxes_meet(item.box, box)) visit(std::int32_t(item.index));
+      };
+      if (made->wide.nodes.empty())
+        for (const auto& item : made->items) look(item);
+      else
+        query(made->wide, box, [&](std::uint32_t place) {
+          look(made->items[place]);
+          return true;
+        });
+    } else {
+      tree.query(box, [&](std::uint32_t item) {
+        const auto& shape = world.shapes.at(std::int32_t(item));
+        if (overlaps(world_bounds<D>(shape.geometry, shape_pose<D>(world, shape)), box)) visit(std::int32_t(item));
+        return true;
+      });
+    }
+  }
+}
+
+template <class D>
+RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray) {
+  const SeenFilter filter(world, ray.filter);
+  RayHit<D> best;
+  std::int32_t best_slot = none;
+  geometry::CastHit<typename D::Vector> best_hit;
+  cast_in_trees(world, ray.origin, typename D::Position(ray.translation), {}, [&](std::int32_t slot, float limit) {
+    const auto& shape = world.shapes.at(slot);
+    if (!query_sees<D>(shape, filter)) return limit;
+    if (limit == 0 && best_slot != none && slot > best_slot) return limit;  // at best as near
+    const typename D::Pose pose = shape_pose<D>(world, shape);
+    const auto hit = geometry::ray_cast(shape.geometry, local_point(pose, ray.origin),
+                                        inverse_rotate(pose.rotation, ray.translation));
+    if (!hit.hit || !is_nearer(hit.fraction, slot, best_hit.fraction, best_slot)) return limit;
+    best_hit = hit;
+    best_slot = slot;
+    return hit.fraction;
+  });
+  if (best_slot != none)
+    best = world_hit<D>(world, best_slot, shape_pose<D>(world, world.shapes.at(best_slot)), best_hit);
+  return best;
+}
+
+template <class D>
+RayHit<D> first_on_way(const WorldImplementation<D>& world, const typename D::Shape& moving,
+                       const ShapeCastQuery<D>& query) {
+  const typename D::Bounds box = world_bounds<D>(moving, query.pose);
+  const SeenFilter filter(world, query.filter);
+  RayHit<D> best;
+  std::int32_t best_slot = none;
+  geometry::CastHit<typename D::Vector> best_hit;
+  cast_in_trees(
+      world, box.center(), typename D::Position(query.translation), box.extents(), [&](std::int32_t slot, float limit) {
+        const auto& shape = world.shapes.at(slot);
+        if (!query_sees<D>(shape, filter)) return limit;
+        if (limit == 0 && best_slot != none && slot > best_slot) return limit;  // at best as near
+        const typename D::Pose placed = shape_pose<D>(world, shape);
+        const auto hit = geometry::detail::shape_cast_within(shape.geometry, moving, relative(placed, query.pose),
+                                                             inverse_rotate(placed.rotation, query.translation),
+                                                             min(1.0f, 1.000001f * limit));
+        if (!hit.hit || !is_nearer(hit.fraction, slot, best_hit.fraction, best_slot)) return limit;
+        best_hit = hit;
+        best_slot = slot;
+        return hit.fraction;
+      });
+  if (best_slot != none)
+    best = world_hit<D>(world, best_slot, shape_pose<D>(world, world.shapes.at(best_slot)), best_hit);
+  return best;
+}
+
+/// Appends, in the order of their slots.
+template <class D>
+void touching(const WorldImplementation<D>& world, const typename D::Shape& probe, const OverlapQuery<D>& query,
+              std::vector<ShapeId>& found) {
+  const SeenFilter filter(world, query.filter);
+  const std::size_t before = found.size();
+  query_trees(world, world_bounds<D>(probe, query.pose), [&](std::int32_t slot) {
+    const auto& shape = world.shapes.at(slot);
+    if (query_sees<D>(shape, filter) &&
+        geometry::overlap(shape.geometry, probe, relative(shape_pose<D>(world, shape), query.pose)))
+      found.push_back(world.shapes.slots.handle_at(slot));
+  });
+  sort_by_slot(found, before);
+}
+
+/// Runs body(i) for every query on the world's threads, a few at a time.
+template <class D, class Body>
+void for_queries(const WorldImplementation<D>& world, std::size_t count, Body&& body) {
+  world.scheduler->parallel_for(int(count), queries_a_chunk, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) body(std::size_t(i));
+  });
 }
 
 }  // namespace detail
@@ -63,23 +241,19 @@ Status check_query_shape(std::string_view call, const typename D::Shape& shape, 
 template <class D>
 Result<RayHit<D>> World<D>::ray_cast(Position origin, Vector translation, QueryFilter filter) const {
   if (const Status s = detail::check_query<D>("World::ray_cast", origin, translation); !s.ok()) return s.error();
-  RayHit<D> best;
-  std::int32_t best_slot = detail::none;
-  for (const auto& tree : self_->shapes.trees) {
-    tree.cast(origin, Position(translation), Position{}, [&](std::uint32_t item, auto limit) {
-      const auto& shape = self_->shapes.at(std::int32_t(item));
-      if (!detail::query_sees<D>(shape, filter)) return limit;
-      const Pose pose = detail::shape_pose<D>(*self_, shape);
-      const auto hit =
-          geometry::ray_cast(shape.geometry, local_point(pose, origin), inverse_rotate(pose.rotation, translation));
-      if (hit.hit && detail::is_nearer(hit.fraction, std::int32_t(item), best.fraction, best_slot)) {
-        best = detail::world_hit<D>(*self_, std::int32_t(item), pose, hit);
-        best_slot = std::int32_t(item);
-      }
-      return decltype(limit)(min(double(best.fraction), double(limit)));
-    });
-  }
-  return best;
+  return detail::closest_on_ray<D>(*self_, {origin, translation, filter});
+}
+
+template <class D>
+Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const {
+  constexpr std::string_view call = "World::cast_rays";
+  if (const Status s = detail::check_batch(call, rays.size(), "hits", hits.size()); !s.ok()) return s;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
+      return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
+  detail::for_queries<D>(*self_, rays.size(),
+                         [&](std::size_t i) { hits[i] = detail::closest_on_ray<D>(*self_, rays[i]); });
+  return {};
 }
 
 template <class D>
@@ -87,17 +261,16 @@ Status World<D>::ray_cast_all(Position origin, Vector translation, std::vector<R
                               QueryFilter filter) const {
   if (const Status s = detail::check_query<D>("World::ray_cast_all", origin, translation); !s.ok()) return s;
   hits.clear();
-  for (const auto& tree : self_->shapes.trees) {
-    tree.cast(origin, Position(translation), Position{}, [&](std::uint32_t item, auto limit) {
-      const auto& shape = self_->shapes.at(std::int32_t(item));
-      if (!detail::query_sees<D>(shape, filter)) return limit;
-      const Pose pose = detail::shape_pose<D>(*self_, shape);
-      const auto hit =
-          geometry::ray_cast(shape.geometry, local_point(pose, origin), inverse_rotate(pose.rotation, translation));
-      if (hit.hit) hits.push_back(detail::world_hit<D>(*self_, std::int32_t(item), pose, hit));
-      return limit;
-    });
-  }
+  const detail::SeenFilter seen(*self_, filter);
+  detail::cast_in_trees<D>(*self_, origin, Position(translation), {}, [&](std::int32_t slot, float limit) {
+    const auto& shape = self_->shapes.at(slot);
+    if (!detail::query_sees<D>(shape, seen)) return limit;
+    const Pose pose = detail::shape_pose<D>(*self_, shape);
+    const auto hit =
+        geometry::ray_cast(shape.geometry, local_point(pose, origin), inverse_rotate(pose.rotation, translation));
+    if (hit.hit) hits.push_back(detail::world_hit<D>(*self_, slot, pose, hit));
+    return limit;
+  });
   std::sort(hits.begin(), hits.end(), [](const RayHit<D>& a, const RayHit<D>& b) {
     return a.fraction != b.fraction ? a.fraction < b.fraction : a.shape.index < b.shape.index;
   });
@@ -108,66 +281,79 @@ template <class D>
 Result<RayHit<D>> World<D>::shape_cast(const Shape& moving, const Pose& pose, Vector translation,
                                        QueryFilter filter) const {
   constexpr std::string_view call = "World::shape_cast";
-  if (const Status s = detail::check_query_shape<D>(call, moving, pose); !s.ok()) return s.error();
-  if (const Status s = detail::check_query<D>(call, pose.position, translation); !s.ok()) return s.error();
-  const typename D::Bounds box = detail::world_bounds<D>(moving, pose);
-  RayHit<D> best;
-  std::int32_t best_slot = detail::none;
-  for (const auto& tree : self_->shapes.trees) {
-    tree.cast(box.center(), Position(translation), box.extents(), [&](std::uint32_t item, auto limit) {
-      const auto& shape = self_->shapes.at(std::int32_t(item));
-      if (!detail::query_sees<D>(shape, filter)) return limit;
-      const Pose placed = detail::shape_pose<D>(*self_, shape);
-      const auto hit = geometry::shape_cast(shape.geometry, moving, relative(placed, pose),
-                                            inverse_rotate(placed.rotation, translation));
-      if (hit.hit && detail::is_nearer(hit.fraction, std::int32_t(item), best.fraction, best_slot)) {
-        best = detail::world_hit<D>(*self_, std::int32_t(item), placed, hit);
-        best_slot = std::int32_t(item);
-      }
-      return decltype(limit)(min(double(best.fraction), double(limit)));
-    });
-  }
-  return best;
+  if (const Status s = detail::check_query_shape<D>(call, moving); !s.ok()) return s.error();
+  if (const Status s = detail::check_cast<D>(call, pose, translation); !s.ok()) return s.error();
+  return detail::first_on_way<D>(*self_, moving, {pose, translation, filter});
+}
+
+template <class D>
+Status World<D>::cast_shapes(const Shape& moving, std::span<const ShapeCastQuery<D>> casts,
+                             std::span<RayHit<D>> hits) const {
+  constexpr std::string_view call = "World::cast_shapes";
+  if (const Status s = detail::check_batch(call, casts.size(), "hits", hits.size()); !s.ok()) return s;
+  if (const Status s = detail::check_query_shape<D>(call, moving); !s.ok()) return s;
+  for (std::size_t i = 0; i < casts.size(); ++i)
+    if (!detail::check_cast<D>(call, casts[i].pose, casts[i].translation).ok())
+      return detail::check_cast<D>(core::text(call, ": cast ", i), casts[i].pose, casts[i].translation);
+  detail::for_queries<D>(*self_, casts.size(),
+                         [&](std::size_t i) { hits[i] = detail::first_on_way<D>(*self_, moving, casts[i]); });
+  return {};
 }
 
 template <class D>
 Status World<D>::overlap(const Shape& probe, const Pose& pose, std::vector<ShapeId>& found, QueryFilter filter) const {
-  if (const Status s = detail::check_query_shape<D>("World::overlap", probe, pose); !s.ok()) return s;
+  constexpr std::string_view call = "World::overlap";
+  if (const Status s = detail::check_query_shape<D>(call, probe); !s.ok()) return s;
+  if (const Status s = detail::check_cast<D>(call, pose, {}); !s.ok()) return s;
   found.clear();
-  const typename D::Bounds box = detail::world_bounds<D>(probe, pose);
-  for (const auto& tree : self_->shapes.trees) {
-    tree.query(box, [&](std::uint32_t item) {
-      const auto& shape = self_->shapes.at(std::int32_t(item));
-      if (detail::query_sees<D>(shape, filter) &&
-          geometry::overlap(shape.geometry, probe, relative(detail::shape_pose<D>(*self_, shape), pose)))
-        found.push_back(self_->shapes.slots.handle_at(int(item)));
-      return true;
-    });
+  detail::touching<D>(*self_, probe, {pose, filter}, found);
+  return {};
+}
+
+template <class D>
+Status World<D>::overlap_shapes(const Shape& probe, std::span<const OverlapQuery<D>> queries,
+                                std::vector<ShapeId>& found, std::span<std::uint32_t> ends) const {
+  constexpr std::string_view call = "World::overlap_shapes";
+  if (const Status s = detail::check_batch(call, queries.size(), "ends", ends.size()); !s.ok()) return s;
+  if (const Status s = detail::check_query_shape<D>(call, probe); !s.ok()) return s;
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    if (!detail::check_cast<D>(call, queries[i].pose, {}).ok())
+      return detail::check_cast<D>(core::text(call, ": query ", i), queries[i].pose, {});
+  // Each chunk finds into a list of its own; they are joined in their order.
+  std::vector<std::vector<ShapeId>> lists(queries.size() / detail::queries_a_chunk + 1);
+  detail::for_queries<D>(*self_, queries.size(), [&](std::size_t i) {
+    std::vector<ShapeId>& list = lists[i / detail::queries_a_chunk];
+    detail::touching<D>(*self_, probe, queries[i], list);
+    ends[i] = std::uint32_t(list.size());
+  });
+  found.clear();
+  for (std::size_t i = 0, k = 0; k < lists.size(); ++k) {
+    const std::uint32_t before = std::uint32_t(found.size());
+    for (; i < queries.size() && i / detail::queries_a_chunk == k; ++i) ends[i] += before;
+    found.insert(found.end(), lists[k].begin(), lists[k].end());
   }
-  std::sort(found.begin(), found.end(), [](ShapeId a, ShapeId b) { return a.index < b.index; });
   return {};
 }
 
 template <class D>
 Status World<D>::overlap_bounds(const typename D::Bounds& bounds, std::vector<ShapeId>& found,
                                 QueryFilter filter) const {
-  detail::Complaint complaint("World::overlap_bounds");
-  complaint.vector("bounds.low", bounds.low);
-  complaint.vector("bounds.high", bounds.high);
-  if (complaint.none_yet() && !(min(bounds.low, bounds.high) == bounds.low))
+  if (!detail::all_finite(bounds.low) || !detail::all_finite(bounds.high) ||
+      !(min(bounds.low, bounds.high) == bounds.low)) {
+    detail::Complaint complaint("World::overlap_bounds");
+    complaint.vector("bounds.low", bounds.low);
+    complaint.vector("bounds.high", bounds.high);
     complaint.say("bounds.low is above bounds.high, expected low ≤ high in every component");
-  if (!complaint.none_yet()) return complaint.error();
-  found.clear();
-  for (const auto& tree : self_->shapes.trees) {
-    tree.query(bounds, [&](std::uint32_t item) {
-      const auto& shape = self_->shapes.at(std::int32_t(item));
-      if (detail::query_sees<D>(shape, filter) &&
-          overlaps(detail::world_bounds<D>(shape.geometry, detail::shape_pose<D>(*self_, shape)), bounds))
-        found.push_back(self_->shapes.slots.handle_at(int(item)));
-      return true;
-    });
+    return complaint.error();
   }
-  std::sort(found.begin(), found.end(), [](ShapeId a, ShapeId b) { return a.index < b.index; });
+  found.clear();
+  const detail::SeenFilter seen(*self_, filter);
+  detail::query_trees<D>(*self_, bounds, [&](std::int32_t slot) {
+    const auto& shape = self_->shapes.at(slot);
+    if (!detail::query_sees<D>(shape, seen)) return;
+    found.push_back(self_->shapes.slots.handle_at(slot));
+  });
+  detail::sort_by_slot(found, 0);
   return {};
 }
 

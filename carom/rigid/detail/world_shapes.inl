@@ -2,6 +2,8 @@
 #pragma once
 
 #include "carom/geometry/hull.h"
+#include "carom/geometry/mass_properties.h"
+#include "carom/geometry/triangle_mesh.h"
 #include "carom/rigid/detail/bodies.h"
 #include "carom/rigid/detail/check.h"
 
@@ -63,20 +65,74 @@ inline Extents extents_of(const geometry::Shape3& s) {
   e.outer = farthest(b);
   const Vec3f half = b.extents();
   e.inner = min(half.x, min(half.y, half.z));
+  if (s.type == geometry::ShapeType3::ellipsoid) e.outer = max(half.x, max(half.y, half.z));
   if (s.type == geometry::ShapeType3::hull) e.inner = s.hull->inner_radius + s.hull->radius;
   if (s.type == geometry::ShapeType3::cone) e.inner = 0.4f * min(s.cone.radius, s.cone.half_height);
-  if (s.type == geometry::ShapeType3::mesh || s.type == geometry::ShapeType3::height_field) e.inner = e.outer;
+  if (geometry::is_surface(s)) e.inner = e.outer;
   return e;
 }
 inline bool is_round(const geometry::Shape2& s) { return s.type == geometry::ShapeType2::circle; }
-inline bool is_round(const geometry::Shape3& s) { return s.type == geometry::ShapeType3::sphere; }
+inline bool is_round(const geometry::Shape3& s) {
+  return s.type == geometry::ShapeType3::sphere || s.type == geometry::ShapeType3::ellipsoid;
+}
 inline bool is_many(const geometry::Shape2& s) { return s.type == geometry::ShapeType2::chain; }
 inline bool is_many(const geometry::Shape3& s) { return s.type >= geometry::ShapeType3::mesh; }
-/// Planes, meshes, height fields and chains have no inside that could move.
-inline bool surface_only(const geometry::Shape2& s) { return s.type >= geometry::ShapeType2::chain_segment; }
-inline bool surface_only(const geometry::Shape3& s) {
-  return s.type == geometry::ShapeType3::plane || s.type == geometry::ShapeType3::mesh ||
-         s.type == geometry::ShapeType3::height_field;
+/// What is wrong with the shape on a body that forces move: planes, height fields and chains have no inside, and a mesh
+/// with a density must be closed, so that it has a mass.
+inline Status check_dynamic(const geometry::Shape2& s, float) {
+  if (s.type < geometry::ShapeType2::chain_segment) return {};
+  return core::Error{"the shape is a surface without inside, expected one that a dynamic body can have"};
+}
+inline Status check_dynamic(const geometry::Shape3& s, float density) {
+  if (s.type == geometry::ShapeType3::plane || (geometry::is_surface(s) && s.type != geometry::ShapeType3::mesh))
+    return core::Error{"the shape is a surface without inside, expected one that a dynamic body can have"};
+  if (s.type != geometry::ShapeType3::mesh || !(density > 0)) return {};
+  const std::vector<Vec3d> vertices(s.mesh->vertices.begin(), s.mesh->vertices.end());
+  const auto mass = geometry::mesh_mass_properties(vertices, s.mesh->indices, double(density));
+  if (mass.ok()) return {};
+  return core::Error{
+      core::text("a mesh on a dynamic body must be closed, or of density 0 on a body whose mass is "
+                 "given: ",
+                 mass.error().message)};
+}
+/// Half the mean thickness of a moving mesh: a plate of thickness t has V/A = t/2.
+inline bool is_mesh(const geometry::Shape2&) { return false; }
+inline bool is_mesh(const geometry::Shape3& s) { return s.type == geometry::ShapeType3::mesh; }
+inline float mesh_thickness(const geometry::Shape2&) { return 0; }
+inline float mesh_thickness(const geometry::Shape3& s) {
+  double volume = 0, area = 0;
+  for (std::size_t i = 0; i + 2 < s.mesh->indices.size(); i += 3) {
+    const Vec3d a(s.mesh->vertices[s.mesh->indices[i]]), b(s.mesh->vertices[s.mesh->indices[i + 1]]),
+        c(s.mesh->vertices[s.mesh->indices[i + 2]]);
+    volume += dot(a, cross(b, c)) / 6;
+    area += math::length(cross(b - a, c - a)) / 2;
+  }
+  const Vec3f half = s.mesh->bounds.extents();
+  const float least = min(half.x, min(half.y, half.z));
+  return volume > 0 && area > 0 ? min(least, float(volume / area)) : least;
+}
+/// Surfaces do not collide with each other, and it would go unnoticed: a shape of another body that this one, on a body
+/// of this type, would have to meet and cannot. `none` where there is no such shape.
+template <class D>
+std::int32_t clashing_surface(const WorldImplementation<D>& world, std::int32_t body, BodyType type,
+                              const typename D::Shape& geometry, const Filter& filter) {
+  if (!is_surface(geometry) || (type != BodyType::dynamic && world.shapes.moving_surfaces == 0)) return none;
+  for (std::size_t i = 0; i < world.shapes.record.size(); ++i) {
+    const ShapeRecord<D>& other = world.shapes.record[i];
+    if (other.body == none || other.body == body || !is_surface(other.geometry) || (other.flags & shape_sensor) != 0)
+      continue;
+    if (type != BodyType::dynamic && !world.bodies.is_dynamic(other.body)) continue;
+    const bool grouped = filter.group != 0 && filter.group == other.filter.group;
+    if (grouped ? filter.group > 0
+                : (filter.category & other.filter.mask) != 0 && (other.filter.category & filter.mask) != 0)
+      return std::int32_t(i);
+  }
+  return none;
+}
+inline std::string clash_message(std::int32_t other) {
+  return core::text("the shape and shape #", other + 1,
+                    " are meshes or terrain, which do not collide with each other, expected filters that keep "
+                    "them apart, or convex parts (geometry/decomposition.h) on the one that moves");
 }
 
 /// Contacts hold a copy of what they need of the shape: make them anew.
@@ -120,6 +176,12 @@ ShapeExtra<D> extra_of(const WorldImplementation<D>& world, std::int32_t shape) 
   return known != nullptr ? *known : ShapeExtra<D>{shape};
 }
 template <class D>
+void check_surface(Complaint& complaint, std::size_t index, const SurfaceMaterial<D>& surface) {
+  const std::string name = "surfaces[" + std::to_string(index) + "]";
+  check_material(complaint, name + ".material", surface.material);
+  check_size(complaint, name + ".surface_velocity", surface.surface_velocity, max_velocity);
+}
+template <class D>
 void update_collider_flag(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& r = world.bodies.record[std::size_t(body)];
   r.flags &= std::uint16_t(~body_has_collider);
@@ -142,11 +204,20 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   check_material(complaint, "material", d.material);
   check_size(complaint, "surface_velocity", d.surface_velocity, max_velocity);
   check_size(complaint, "one_way", d.one_way, max_size);
+  for (std::size_t i = 0; i < d.surfaces.size(); ++i) check_surface<D>(complaint, i, d.surfaces[i]);
   if (!complaint.none_yet()) return complaint.error();
+  if (const int parts = geometry::material_count(shape); !d.surfaces.empty() && parts == 0)
+    complaint.say(core::text("surfaces has ", d.surfaces.size(),
+                             " entries, expected none: the parts of this geometry are not numbered by material"));
+  else if (!d.surfaces.empty() && (std::size_t(parts) > d.surfaces.size() || d.surfaces.size() > 256))
+    complaint.say(core::text("surfaces has ", d.surfaces.size(), " entries, expected ", parts,
+                             " to 256: the parts of the geometry are numbered up to ", parts - 1));
   const BodyType type = self_->bodies.record[std::size_t(*slot)].type;
-  if (type == BodyType::dynamic && surface_only(shape))
-    complaint.say("the shape is a surface without inside, expected one that a dynamic body can have");
-  const Extents extents = extents_of(shape);
+  if (type == BodyType::dynamic) complaint.status(check_dynamic(shape, d.density));
+  if (const std::int32_t other = clashing_surface(*self_, *slot, type, shape, d.filter); !d.sensor && other != none)
+    complaint.say(clash_message(other));
+  Extents extents = extents_of(shape);
+  if (type != BodyType::fixed && is_mesh(shape)) extents.inner = mesh_thickness(shape);
   if (type == BodyType::dynamic && !(extents.outer <= max_size))
     complaint.say(
         core::refused("size of the shape", extents.outer, core::text("at most ", max_size, " m on a dynamic body")));
@@ -187,6 +258,7 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
     ++self_->hit_event_shapes;
   }
   if (is_many(shape)) s.flags |= shape_many;
+  if (is_moving_surface(*self_, index)) ++self_->shapes.moving_surfaces;
   if (is_round(shape)) s.flags |= shape_round;
   // At the end of the body's list: shapes are told in the order in which they were made.
   std::int32_t* link = &self_->bodies.record[std::size_t(*slot)].first_shape;
@@ -197,7 +269,14 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   update_mass(*self_, *slot);
   update_collider_flag(*self_, *slot);
   insert_into_tree(*self_, index);
-  self_->shapes.set_extra({index, d.modify_contacts, d.surface_velocity, one_way_direction<D>(d.one_way)});
+  std::vector<PartSurface<D>>& surfaces = self_->shapes.surfaces;
+  const auto place = std::lower_bound(surfaces.begin(), surfaces.end(), index,
+                                      [](const PartSurface<D>& p, std::int32_t i) { return p.shape < i; });
+  std::vector<PartSurface<D>> parts;
+  for (const SurfaceMaterial<D>& part : d.surfaces) parts.push_back({index, std::int32_t(parts.size()), part});
+  surfaces.insert(place, parts.begin(), parts.end());
+  self_->shapes.set_extra(
+      {index, d.modify_contacts, d.surface_velocity, one_way_direction<D>(d.one_way), std::int32_t(parts.size())});
   return id;
 }
 
@@ -216,7 +295,8 @@ Status World<D>::destroy_shape(ShapeId shape) {
   *link = s.next;
   if (s.flags & shape_hit_events) --self_->hit_event_shapes;
   const std::uint8_t moved = s.flags & shape_moved;
-  self_->shapes.set_extra({*slot});
+  self_->shapes.forget_extra(*slot);
+  if (is_moving_surface(*self_, *slot)) --self_->shapes.moving_surfaces;
   s = {};
   self_->shapes.geometry_copy.reset();
   s.flags = moved;
@@ -262,6 +342,8 @@ Result<ShapeDef<D>> World<D>::shape_definition(ShapeId shape) const {
     d.surface_velocity = extra->surface_velocity;
     d.one_way = extra->one_way;
     d.modify_contacts = extra->modify;
+    for (int i = 0; i < extra->surface_count; ++i)
+      d.surfaces.push_back(*self_->shapes.surface(*slot, std::uint32_t(i)));
   }
   return d;
 }
@@ -316,6 +398,22 @@ Status World<D>::set_surface_velocity(ShapeId shape, Vector velocity) {
   return {};
 }
 template <class D>
+Status World<D>::set_surface(ShapeId shape, int index, const SurfaceMaterial<D>& surface) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_surface", shape);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_surface");
+  const ShapeExtra<D> extra = extra_of(*self_, *slot);
+  if (index < 0 || index >= extra.surface_count)
+    complaint.say(
+        core::text("index is ", index, ", expected a surface of the shape, of which it has ", extra.surface_count));
+  check_surface<D>(complaint, std::size_t(index), surface);
+  if (!complaint.none_yet()) return complaint.error();
+  self_->shapes.surfaces_of(*slot)[std::size_t(index)].surface = surface;
+  change_extra(*self_, extra);
+  return {};
+}
+template <class D>
 Status World<D>::set_one_way(ShapeId shape, Vector direction) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "set_one_way", shape);
@@ -344,6 +442,11 @@ Status World<D>::set_filter(ShapeId shape, const Filter& filter) {
   using namespace detail;
   const Result<std::int32_t> slot = slot_of(*self_, "set_filter", shape);
   if (!slot.ok()) return slot.error();
+  const ShapeRecord<D>& s = self_->shapes.at(*slot);
+  const BodyType type = self_->bodies.record[std::size_t(s.body)].type;
+  if (const std::int32_t other = clashing_surface(*self_, s.body, type, s.geometry, filter);
+      (s.flags & shape_sensor) == 0 && other != none)
+    return core::Error{core::text("World::set_filter: ", clash_message(other))};
   self_->shapes.at(*slot).filter = filter;
   wake_body(*self_, self_->shapes.at(*slot).body);
   renew_contacts(*self_, *slot);

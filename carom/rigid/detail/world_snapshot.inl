@@ -228,18 +228,19 @@ Result<std::shared_ptr<const std::vector<typename D::Shape>>> find_geometry(cons
                                                                             const SnapshotData<D>& data) {
   if (data.missing.empty()) return data.geometry;
   auto all = std::make_shared<std::vector<typename D::Shape>>(*data.geometry);
-  std::vector<std::pair<std::uint64_t, std::size_t>> known;  // fingerprints, each data once
+  std::vector<std::pair<std::uint64_t, const typename D::Shape*>> known;  // fingerprints
   for (std::size_t slot = 0; slot < data.missing.size(); ++slot) {
     const GeometryRecord& record = data.missing[slot];
     if (record.shared == 0) continue;
-    if (known.empty())
-      for (std::size_t i = 0; i < world.shapes.record.size(); ++i)
-        if (is_shared(world.shapes.record[i].geometry))
-          known.push_back({fingerprint(world.shapes.record[i].geometry), i});
+    if (known.empty()) {
+      for (const ShapeRecord<D>& own : world.shapes.record)
+        if (is_shared(own.geometry)) known.push_back({fingerprint(own.geometry), &own.geometry});
+      for (const typename D::Shape& own : world.shapes.originals) known.push_back({fingerprint(own), &own});
+    }
     bool found = false;
-    for (const auto& [print, i] : known)
+    for (const auto& [print, own] : known)
       if (print == record.fingerprint) {
-        (*all)[slot] = world.shapes.record[i].geometry;
+        (*all)[slot] = *own;
         found = true;
         break;
       }

@@ -63,6 +63,12 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   world.joints.color_begin.reserve(color_count + 2);
   world.joints.pins.reserve(joints + 16 * (color_count + 1));
   world.joints.pin_begin.reserve(color_count + 2);
+  world.joints.limbs.reserve(joints + 16 * 16 * (color_count + 1));
+  world.joints.limb_begin.reserve(color_count + 2);
+  const std::size_t direct = std::size_t(capacity.direct_joints);
+  world.joints.trees.trees.reserve(direct);
+  world.joints.trees.bodies.reserve(direct + min(direct, bodies));  // a free tree has one body more
+  world.joints.trees.joints.reserve(direct);
   world.joints.trees.of_joint.reserve(joints);
   world.joints.trees.visited.reserve(joints);
   world.joints.trees.place.reserve(bodies);
@@ -80,18 +86,20 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   world.sleeping.first.reserve(bodies);
   world.sleeping.free.reserve(bodies);
   StepScratch<D>& s = world.scratch;
-  s.solver_stages.reserve(most_solver_stages(world.definition.substeps));
+  s.solver_stages.reserve(most_solver_stages(world.definition.substeps));  // more where islands have their own
   s.solver_loops.reserve(most_solver_stages(world.definition.substeps));
-  s.paths.reserve(bodies);
-  s.path_ends.reserve(bodies);
-  s.followed.reserve(bodies);
+  s.sweeps.reserve(bodies);
+  s.sweeping.reserve(bodies);
   s.watches.reserve(contacts);
   s.old_bounds.reserve(shapes);
   s.moved_place.reserve(shapes);
+  s.loads.reserve(bodies);
   s.flights.reserve(bodies);
   s.impacts.reserve(manifolds);
   s.impact_queue.resize(manifolds);
   s.moved.reserve(shapes);
+  s.group_places.reserve(shapes);
+  s.group_ends.reserve(shapes);
   for (auto& list : s.found_pairs) list.reserve(contacts);
   s.pairs.reserve(contacts);
   s.swept.reserve(bodies);
@@ -103,6 +111,13 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.manifolds.reserve(manifolds);
   for (auto* list : {&s.island_parent, &s.island_list, &s.island_bodies, &s.island_ends}) list->reserve(bodies + 1);
   s.island_restless.reserve(bodies);
+  s.island_substeps.reserve(bodies);
+  s.whole_awake.reserve(bodies);
+  s.whole_trees.reserve(direct);
+  for (GraphColor& color : s.whole_colors) {
+    color.manifolds.reserve(min(bodies, manifolds));
+    color.joints.reserve(min(bodies, joints));
+  }
   s.doomed_contacts.reserve(contacts);
   s.new_touches.reserve(contacts);
   s.contact_begin.reserve(contacts);
@@ -119,11 +134,14 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   // Blocks of the solver: a lane a manifold, and for every colour one that is not full.
   using Block = ContactBlock<D, 16>;
   using Extra = ContactExtra<D, 16>;
-  const std::size_t blocks = manifolds / 16 + color_count + 1;
+  // Twice the ones that are not full, for islands with substeps of their own; of limbs for four kinds in each colour.
+  constexpr std::size_t not_full = color_count + 1;
+  const std::size_t blocks = manifolds / 16 + 2 * not_full, pins = joints / 16 + 2 * not_full;
+  const std::size_t limbs = min(joints, joints / 16 + 4 * not_full);
   world.arena.reset();
-  const std::size_t pins = joints / 16 + color_count + 1;
   world.arena = core::Arena(blocks * (sizeof(Block) + sizeof(Extra)) + pins * sizeof(PinLanes<D, 16>) +
-                            bodies * sizeof(BodyDrive<D>) + 2 * (color_count + 2) * core::Arena::alignment);
+                            limbs * sizeof(LimbLanes<D, 16>) + bodies * (sizeof(BodyDrive<D>) + 32) +
+                            4 * (color_count + 4) * core::Arena::alignment);
 }
 
 }  // namespace detail
@@ -181,9 +199,10 @@ Status World<D>::set_pair_rule(std::uint32_t material_a, std::uint32_t material_
     rules.insert(i, {key, *rule});
   for (std::size_t k = 0; k < self_->contacts.contacts.size(); ++k) {
     const ContactRecord<D>& c = self_->contacts.contacts[k];
-    if ((c.flags & contact_in_use) == 0 || PairRuleEntry::key_of(self_->shapes.at(c.shape[0]).material.user_id,
-                                                                 self_->shapes.at(c.shape[1]).material.user_id) != key)
-      continue;
+    if ((c.flags & contact_in_use) == 0) continue;
+    const std::uint64_t own = PairRuleEntry::key_of(self_->shapes.at(c.shape[0]).material.user_id,
+                                                    self_->shapes.at(c.shape[1]).material.user_id);
+    if (own != key && (c.flags & contact_special) == 0) continue;  // special ones may have parts of other materials
     update_contact_flags(*self_, std::int32_t(k));
     for (std::int32_t m = c.first_manifold; m != none; m = self_->contacts.manifold(m).next) mix_materials(*self_, m);
     if (c.first_manifold != none)
@@ -217,6 +236,7 @@ Status World<D>::reserve(const Capacity& capacity) {
   check_range(complaint, "shapes", capacity.shapes, 0, 1 << 24);
   check_range(complaint, "contacts", capacity.contacts, 0, 1 << 24);
   check_range(complaint, "joints", capacity.joints, 0, 1 << 24);
+  check_range(complaint, "direct_joints", capacity.direct_joints, 0, 1 << 20);
   if (!complaint.none_yet()) return complaint.error();
   reserve_world(*self_, capacity);
   return {};
@@ -258,30 +278,47 @@ void World<D>::shapes(BodyId body, std::vector<ShapeId>& out) const {
     out.push_back(self_->shapes.slots.handle_at(s));
 }
 
+namespace detail {
+/// Appends the manifolds of a contact that touch.
+template <class D>
+void view_contact(const WorldImplementation<D>& world, const ContactRecord<D>& c, std::vector<ContactView<D>>& out) {
+  if ((c.flags & contact_in_use) == 0 || (c.flags & contact_sensor) != 0) return;
+  for (std::int32_t i = c.first_manifold; i != none; i = world.contacts.manifold(i).next) {
+    const ManifoldRecord<D>& m = world.contacts.manifold(i);
+    ContactView<D> view;
+    typename D::Position points[D::max_points];
+    float separations[D::max_points];
+    contact_points_now(world, m, points, separations, view.normal);
+    bool touches = false;
+    for (int k = 0; k < m.manifold.count; ++k) touches = touches || separations[k] <= 0 || m.impulses.total[k] > 0;
+    if (!touches) continue;
+    view.shape_a = world.shapes.slots.handle_at(c.shape[0]);
+    view.shape_b = world.shapes.slots.handle_at(c.shape[1]);
+    view.material_a = material_at(world, c.shape[0], m.manifold.material).user_id;
+    view.material_b = material_at(world, c.shape[1], m.manifold.material).user_id;
+    view.count = m.manifold.count;
+    for (int k = 0; k < m.manifold.count; ++k) view.points[k] = {points[k], separations[k], m.impulses.total[k]};
+    view.friction_impulse = m.impulses.friction_total;
+    view.color = m.place.color;
+    out.push_back(view);
+  }
+}
+}  // namespace detail
+
 template <class D>
 void World<D>::contacts(std::vector<ContactView<D>>& out) const {
-  using namespace detail;
   out.clear();
-  const ContactStore<D>& store = self_->contacts;
-  for (const ContactRecord<D>& c : store.contacts) {
-    if ((c.flags & contact_in_use) == 0 || (c.flags & contact_sensor) != 0) continue;
-    for (std::int32_t i = c.first_manifold; i != none; i = store.manifold(i).next) {
-      const ManifoldRecord<D>& m = store.manifold(i);
-      ContactView<D> view;
-      typename D::Position points[D::max_points];
-      float separations[D::max_points];
-      contact_points_now(*self_, m, points, separations, view.normal);
-      bool touches = false;
-      for (int k = 0; k < m.manifold.count; ++k) touches = touches || separations[k] <= 0 || m.impulses.total[k] > 0;
-      if (!touches) continue;
-      view.shape_a = self_->shapes.slots.handle_at(c.shape[0]);
-      view.shape_b = self_->shapes.slots.handle_at(c.shape[1]);
-      view.count = m.manifold.count;
-      for (int k = 0; k < m.manifold.count; ++k) view.points[k] = {points[k], separations[k], m.impulses.total[k]};
-      view.friction_impulse = m.impulses.friction_total;
-      view.color = m.place.color;
-      out.push_back(view);
-    }
+  for (const auto& c : self_->contacts.contacts) detail::view_contact<D>(*self_, c, out);
+}
+template <class D>
+void World<D>::contacts(BodyId body, std::vector<ContactView<D>>& out) const {
+  out.clear();
+  if (!contains(body)) return;
+  const auto& record = self_->bodies.record[std::size_t(self_->bodies.slots.slot(body))];
+  for (std::int32_t key = record.first_contact; key != detail::none;) {
+    const auto& c = self_->contacts.at(key >> 1);
+    detail::view_contact<D>(*self_, c, out);
+    key = c.next[key & 1];
   }
 }
 
@@ -347,7 +384,8 @@ float World<D>::worst_penetration() const {
   using namespace detail;
   float worst = 0;
   for (const ManifoldRecord<D>& m : self_->contacts.manifolds) {
-    if (m.contact == none) continue;
+    if (m.contact == none || m.disabled) continue;  // what a one-way surface lets through is in it by right
+    if ((self_->contacts.at(m.contact).flags & contact_passing) != 0) continue;
     Position points[D::max_points];
     float separations[D::max_points];
     Vector normal;

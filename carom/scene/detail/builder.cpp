@@ -300,6 +300,7 @@ class Builder final : public BodyNames {
     def.position = position_of(reader_.vector(o, "position"), tag);
     def.rotation = rotation_for(reader_, o, "rotation", tag);
     def.sleep_speed = float(reader_.number(o, "sleep_speed", def.sleep_speed));
+    def.substeps = reader_.integer(o, "substeps", def.substeps, 0, 64);
     def.locks = read_locks(reader_, o);
     def.awake = reader_.flag(o, "awake", true);
     def.allow_sleep = reader_.flag(o, "allow_sleep", true);
@@ -348,11 +349,17 @@ class Builder final : public BodyNames {
     world().shapes(id, ids);
     if (!reader_.accept(world().set_damping(id, def.linear_damping, def.angular_damping), *o.node, o.path)) return;
     if (!reader_.accept(world().set_gravity_scale(id, def.gravity_scale), *o.node, o.path)) return;
+    if (!reader_.accept(world().set_substeps(id, def.substeps), *o.node, o.path)) return;
     if (def.type == BodyType::kinematic &&
         !reader_.accept(world().set_velocity(id, def.linear_velocity, def.angular_velocity), *o.node, o.path))
       return;
     for (std::size_t i = 0; i < ids.size() && i < shapes.size(); ++i) {
       const auto now = world().shape_definition(ids[i]);
+      const std::vector<SurfaceMaterial<D>>& surfaces = shapes[i].definition.surfaces;
+      for (std::size_t k = 0; now.ok() && k < surfaces.size() && k < now->surfaces.size(); ++k)
+        if (!(surfaces[k] == now->surfaces[k]) &&
+            !reader_.accept(world().set_surface(ids[i], int(k), surfaces[k]), *o.node, o.path))
+          return;
       if (now.ok() && now->material == shapes[i].definition.material) continue;
       if (!reader_.accept(world().set_material(ids[i], shapes[i].definition.material), *o.node, o.path)) return;
     }

@@ -1,10 +1,11 @@
 #include "carom/scene/detail/document.h"
 
 #define JSON_NO_IO
-#include <charconv>
 #include <cstdio>
 #include <iterator>
 #include <nlohmann/json.hpp>
+
+#include "carom/math/decimal.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -150,13 +151,6 @@ class TreeBuilder {
   std::size_t count_ = 0;
 };
 
-template <class T>
-std::string shortest_digits(T value) {
-  char buffer[64];
-  const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return std::string(buffer, end.ptr);
-}
-
 }  // namespace
 
 core::Result<Node> parse_document(std::string_view text, std::string_view name, std::uint16_t file,
@@ -210,8 +204,8 @@ std::string quote(std::string_view s) {
   return out;
 }
 
-std::string shortest(double value) { return shortest_digits(value); }
-std::string shortest(float value) { return shortest_digits(value); }
+std::string shortest(double value) { return math::format_decimal(value); }
+std::string shortest(float value) { return math::format_decimal(value); }
 
 std::string show(const Node& node) {
   switch (node.kind) {

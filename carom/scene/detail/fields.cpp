@@ -7,12 +7,12 @@ using M = Measure;
 
 constexpr std::string_view kind_choices[] = {"rigid", "flight"};
 constexpr std::string_view body_types[] = {"fixed", "kinematic", "dynamic"};
-constexpr std::string_view shape_types[] = {"sphere", "capsule", "box",     "cylinder",     "cone",
-                                            "hull",   "plane",   "mesh",    "height_field", "compound",
+constexpr std::string_view shape_types[] = {"sphere", "capsule", "box",     "cylinder",     "cone",   "ellipsoid",
+                                            "hull",   "plane",   "mesh",    "height_field", "voxels", "compound",
                                             "circle", "polygon", "segment", "chain"};
 constexpr std::string_view joint_types[] = {"distance",    "ball",    "hinge",     "slider", "weld",  "motor",
                                             "mouse",       "generic", "gear",      "rack",   "screw", "pulley",
-                                            "cylindrical", "planar",  "universal", "wheel"};
+                                            "cylindrical", "planar",  "universal", "wheel",  "path"};
 constexpr std::string_view joint_solvers[] = {"automatic", "iterative", "direct"};
 constexpr std::string_view effector_types[] = {
     "spherical_gravity", "linear_drag", "quadratic_drag", "wind",        "spring",
@@ -66,6 +66,12 @@ constexpr Field filter_fields[] = {
 };
 const ObjectKind filter_kind{"filter", "Which shapes collide.", filter_fields};
 
+constexpr Field surface_fields[] = {
+    {"material", T::reference, M::plain, "name of a material, or one written here", &material_kind, {}, true},
+    {"surface_velocity", T::vector, M::speed, "the part runs like a belt; in the shape's frame"},
+};
+const ObjectKind surface_kind{"surface", "What parts of a mesh, height field or chain are made of.", surface_fields};
+
 extern const ObjectKind shape_kind;
 constexpr Field shape_fields[] = {
     {"preset", T::text, M::plain, "name of a preset file, without .json"},
@@ -82,6 +88,7 @@ constexpr Field shape_fields[] = {
     {"half_length", T::quantity, M::length, "instead of length"},
     {"height", T::quantity, M::length, "of a cylinder or cone"},
     {"half_height", T::quantity, M::length, "instead of height"},
+    {"radii", T::vector, M::length, "of an ellipsoid: its half axes", nullptr, {}, false, 3},
     {"normal", T::vector, M::plain, "of a plane", nullptr, {}, false, 3},
     {"points", T::point_list, M::length, "of a hull, polygon, segment or chain"},
     {"loop", T::flag, M::plain, "a chain that closes", nullptr, {}, false, 2},
@@ -104,17 +111,46 @@ constexpr Field shape_fields[] = {
      {},
      false,
      3},
-    {"columns", T::integer, M::plain, "of a height field, vertices along x", nullptr, {}, false, 3},
-    {"rows", T::integer, M::plain, "of a height field, vertices along z", nullptr, {}, false, 3},
+    {"columns",
+     T::integer,
+     M::plain,
+     "of a height field, vertices along x; of voxels, cells along x",
+     nullptr,
+     {},
+     false,
+     3},
+    {"layers", T::integer, M::plain, "of voxels, cells along y", nullptr, {}, false, 3},
+    {"cell_size", T::quantity, M::length, "of voxels, edge of a cube", nullptr, {}, false, 3},
+    {"runs",
+     T::number_list,
+     M::plain,
+     "of voxels, along x, then y, then z: how many cells, and 0 (empty) or 1 and the place in surfaces, one after "
+     "another",
+     nullptr,
+     {},
+     false,
+     3},
+    {"rows",
+     T::integer,
+     M::plain,
+     "of a height field, vertices along z; of voxels, cells along z",
+     nullptr,
+     {},
+     false,
+     3},
     {"cell", T::number_list, M::length, "of a height field, spacing along x and z", nullptr, {}, false, 3},
     {"heights", T::number_list, M::length, "of a height field, row by row", nullptr, {}, false, 3},
     {"holes", T::number_list, M::plain, "of a height field, 1 a cell without surface", nullptr, {}, false, 3},
+    {"materials", T::number_list, M::plain,
+     "of a mesh, height field or chain: for each triangle, cell or segment its place in surfaces, from 0"},
     {"children", T::list, M::plain, "of a compound: convex shapes in their places", &shape_kind, {}, false, 3},
     {"position", T::vector, M::length, "of the shape in its body"},
     {"rotation", T::rotation, M::angle, "of the shape in its body", &rotation_kind},
     {"density", T::quantity, M::density, "mass per volume (plane: per area)"},
     {"mass", T::quantity, M::mass, "instead of density"},
     {"material", T::reference, M::plain, "name of a material, or one written here", &material_kind},
+    {"surfaces", T::list, M::plain, "what the numbers in materials stand for: names of materials, or surfaces",
+     &surface_kind},
     {"filter", T::object, M::plain, "", &filter_kind},
     {"sensor", T::flag, M::plain, "reports overlaps, pushes nothing"},
     {"contact_events", T::flag},
@@ -155,6 +191,7 @@ constexpr Field body_fields[] = {
     {"angular_damping", T::quantity, M::rate},
     {"gravity_scale", T::quantity, M::plain},
     {"sleep_speed", T::quantity, M::speed, "0: never sleeps"},
+    {"substeps", T::integer, M::plain, "that all have at least which touches it or is jointed to it; 0: the world's"},
     {"locks", T::list, M::plain, "motions that are locked: x, y, z, rotation_x, rotation_y, rotation_z"},
     {"awake", T::flag},
     {"allow_sleep", T::flag},
@@ -246,6 +283,14 @@ constexpr Field joint_fields[] = {
     {"ground_b", T::vector, M::length, "pulley, in the world"},
     {"length", T::quantity, M::length, "distance joint and pulley; by default as the anchors are"},
     {"rope", T::flag, M::plain, "distance joint that only pulls"},
+    {"points", T::point_list, M::length, "path, in the world, or in frame_a"},
+    {"tangents", T::point_list, M::length, "path: from point to point, at each; none: Catmull and Rom's"},
+    {"straight", T::flag, M::plain, "path: lines from point to point"},
+    {"closed", T::flag, M::plain, "path: from the last point on to the first"},
+    {"follow", T::flag, M::plain, "path: turns x of frame_b (or \"axis\", or the body's x) along it"},
+    {"target_distance", T::quantity, M::length, "path, of the spring: from the first point"},
+    {"max_spring_force", T::quantity, M::force, "path, of the spring; 0: as much as it takes"},
+    {"friction", T::quantity, M::force, "path, where it has no motor"},
     {"spring", T::object, M::plain, "", &spring_kind},
     {"linear_spring", T::object, M::plain, "weld and motor joints", &spring_kind},
     {"angular_spring", T::object, M::plain, "weld and motor joints", &spring_kind},
@@ -487,13 +532,36 @@ constexpr Field preset_fields[] = {
 };
 const ObjectKind preset_kind{"preset", "Values under a name, for the key preset.", preset_fields};
 
-const ObjectKind* const all_kinds[] = {
-    &scene_kind,  &world_kind, &material_pair_kind, &parameter_kind,  &material_kind,
-    &filter_kind, &shape_kind, &rotation_kind,      &body_kind,       &mass_properties_kind,
-    &group_kind,  &joint_kind, &frame_kind,         &joint_axis_kind, &joint_axes_kind,
-    &spring_kind, &limit_kind, &motor_kind,         &effector_kind,   &wave_kind,
-    &camera_kind, &plot_kind,  &axis_kind,          &series_kind,     &expectation_kind,
-    &flight_kind, &earth_kind, &vehicle_kind,       &initial_kind};
+const ObjectKind* const all_kinds[] = {&scene_kind,
+                                       &world_kind,
+                                       &material_pair_kind,
+                                       &parameter_kind,
+                                       &material_kind,
+                                       &filter_kind,
+                                       &surface_kind,
+                                       &shape_kind,
+                                       &rotation_kind,
+                                       &body_kind,
+                                       &mass_properties_kind,
+                                       &group_kind,
+                                       &joint_kind,
+                                       &frame_kind,
+                                       &joint_axis_kind,
+                                       &joint_axes_kind,
+                                       &spring_kind,
+                                       &limit_kind,
+                                       &motor_kind,
+                                       &effector_kind,
+                                       &wave_kind,
+                                       &camera_kind,
+                                       &plot_kind,
+                                       &axis_kind,
+                                       &series_kind,
+                                       &expectation_kind,
+                                       &flight_kind,
+                                       &earth_kind,
+                                       &vehicle_kind,
+                                       &initial_kind};
 
 }  // namespace
 
@@ -505,6 +573,7 @@ const FieldTables& tables() {
                              .parameter = &parameter_kind,
                              .material = &material_kind,
                              .filter = &filter_kind,
+                             .surface = &surface_kind,
                              .shape = &shape_kind,
                              .body = &body_kind,
                              .mass_properties = &mass_properties_kind,

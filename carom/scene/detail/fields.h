@@ -54,7 +54,7 @@ struct ObjectKind {
 };
 
 struct FieldTables {
-  const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *shape, *body,
+  const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *surface, *shape, *body,
       *mass_properties, *group, *joint, *joint_axis, *joint_axes, *frame, *spring, *limit, *motor, *effector, *wave,
       *camera, *plot, *axis, *series, *expectation, *rotation, *preset, *flight, *earth, *vehicle, *initial;
   std::span<const ObjectKind* const> all;

@@ -20,14 +20,18 @@ enum JointChoice {
   cylindrical_joint,
   planar_joint,
   universal_joint,
-  wheel_joint
+  wheel_joint,
+  path_joint
 };
 /// Is the joint's axis x of its frames? Others have it along z.
 bool along_x(int type) {
-  return type == slider_joint || type == screw_joint || type == cylindrical_joint || type == universal_joint;
+  return type == slider_joint || type == screw_joint || type == cylindrical_joint || type == universal_joint ||
+         type == path_joint;
 }
 /// Do the frames sit at the bodies' origins unless something else is said?
-bool needs_no_anchor(int type) { return type == motor_joint || type == gear_joint || type == rack_joint; }
+bool needs_no_anchor(int type) {
+  return type == motor_joint || type == gear_joint || type == rack_joint || type == path_joint;
+}
 
 /// The rotation that turns `from` (x or z) onto the axis by the shortest way.
 math::Rot2d onto_axis(math::Vec3d axis, math::Vec3d, Dim2*) { return {axis.x, axis.y}; }
@@ -100,7 +104,10 @@ class FrameReader {
     const bool framed_a = o_.has("frame_a"), framed_b = o_.has("frame_b");
     if (framed_a) out.frame_a = frame("frame_a");
     if (framed_b) out.frame_b = frame("frame_b");
-    if (!framed_a && type_ != mouse_joint) out.frame_a = anchored(out.body_a, "anchor_a");
+    if (!framed_a && type_ == path_joint)
+      out.frame_a = of_world(out.body_a);
+    else if (!framed_a && type_ != mouse_joint)
+      out.frame_a = anchored(out.body_a, "anchor_a");
     if (!framed_b) out.frame_b = anchored(out.body_b, "anchor_b");
   }
 
@@ -111,6 +118,15 @@ class FrameReader {
     if (!reader_.open(*o_.find(key), o_.path_of(key), *tables().frame, f)) return t;
     t.p = vector_for(reader_.vector(f, "position"), static_cast<D*>(nullptr));
     t.q = rotation_for(reader_, f, "rotation", static_cast<D*>(nullptr));
+    return t;
+  }
+  /// The world's axes in a body.
+  typename D::Transform of_world(BodyId body) {
+    typename D::Transform t{};
+    const Result<BodyState<D>> state = world_.state(body);
+    if (!reader_.accept(state.ok() ? Status{} : Status{state.error()}, *o_.node, o_.path)) return t;
+    t.p = math::local_point(state->pose, typename D::Position{});
+    t.q = math::normalize(math::conjugate(state->pose.rotation) * typename D::Rotation{});
     return t;
   }
   typename D::Transform anchored(BodyId body, const char* key) {
@@ -125,10 +141,11 @@ class FrameReader {
     const math::Vec3d point = o_.has(key) ? reader_.vector(o_, key) : reader_.vector(o_, "anchor");
     if (anchored) t.p = math::local_point(state->pose, position_of(point, static_cast<D*>(nullptr)));
     if (!anchored && type_ == motor_joint) return t;
+    if (type_ == path_joint && !o_.has("axis")) return t;
     const bool rack = type_ == rack_joint && key[7] == 'b';
     const char* const name = rack ? "slide_axis" : "axis";
     const math::Vec3d unit = rack || along_x(type_) ? math::Vec3d{1, 0, 0} : math::Vec3d{0, 0, 1};
-    const bool turned = o_.has(name) && (D::dimension == 3 || rack || type_ == slider_joint);
+    const bool turned = o_.has(name) && (D::dimension == 3 || rack || type_ == slider_joint || type_ == path_joint);
     if (rack && !turned) reader_.fail(*o_.node, o_.path, "the rack needs the key \"slide_axis\" or \"frame_b\"");
     const math::Vec3d axis = turned ? math::normalize(reader_.vector(o_, name)) : unit;
     if (!reader_.failed() && axis == math::Vec3d{})
@@ -274,6 +291,26 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
     case screw_joint: {
       ScrewJointDef<D> d{frames};
       d.pitch = float(reader.number(o, "pitch", d.pitch));
+      out.definition = d;
+      break;
+    }
+    case path_joint: {
+      PathJointDef<D> d{frames};
+      for (const math::Vec3d& p : reader.points(o, "points"))
+        out.points.push_back(vector_for(p, static_cast<D*>(nullptr)));
+      for (const math::Vec3d& t : reader.points(o, "tangents"))
+        out.tangents.push_back(vector_for(t, static_cast<D*>(nullptr)));
+      d.points = out.points;
+      d.tangents = out.tangents;
+      d.straight = reader.flag(o, "straight", false);
+      d.closed = reader.flag(o, "closed", false);
+      d.follow = reader.flag(o, "follow", false);
+      d.spring = out.spring;
+      d.target_distance = float(reader.number(o, "target_distance", 0));
+      d.max_spring_force = float(reader.number(o, "max_spring_force", 0));
+      d.limit = out.limit;
+      d.motor = out.motor;
+      d.friction = float(reader.number(o, "friction", 0));
       out.definition = d;
       break;
     }

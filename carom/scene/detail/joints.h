@@ -17,6 +17,7 @@ class BodyNames {
 template <class D>
 struct ReadJoint {
   rigid::AnyJointDef<D> definition;
+  std::vector<typename D::Vector> points{}, tangents{};  ///< of a path: what the definition shows
   rigid::JointSpring spring{};
   rigid::JointLimit limit{};
   rigid::JointMotor motor{};

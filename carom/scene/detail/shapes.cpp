@@ -5,6 +5,7 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/geometry/voxels.h"
 #include "carom/scene/detail/joints.h"
 
 namespace carom::scene::detail {
@@ -22,10 +23,12 @@ enum ShapeChoice {
   box,
   cylinder,
   cone,
+  ellipsoid,
   hull,
   plane,
   mesh,
   height_field,
+  voxels,
   compound,
   circle,
   polygon,
@@ -63,6 +66,37 @@ void read_material(Reader& reader, const Library& library, const Node& node, std
   m.user_id = std::uint32_t(reader.integer(o, "user_id", 0, 0, 0x7FFFFFFF));
   out.material = m;
   out.density = reader.number(o, "density", out.density);
+}
+
+/// An entry of "surfaces": the name of a material, or an object with one.
+template <class D>
+bool read_part_surface(Reader& reader, const Library& library, const Node& node, const std::string& path,
+                       rigid::SurfaceMaterial<D>& out) {
+  SurfaceDefaults read;
+  if (node.is_text()) {
+    read_material(reader, library, node, path, read);
+  } else {
+    Object o;
+    if (!reader.open(node, path, *tables().surface, o)) return false;
+    read_material(reader, library, *o.find("material"), o.path_of("material"), read);
+    if (o.has("surface_velocity"))
+      out.surface_velocity = vector_for(reader.vector(o, "surface_velocity"), static_cast<D*>(nullptr));
+  }
+  out.material = read.material;
+  return !reader.failed();
+}
+/// One number a part, from 0 to 255.
+std::vector<std::uint8_t> read_part_materials(Reader& reader, const Object& o) {
+  std::vector<std::uint8_t> out;
+  for (const double i : reader.numbers(o, "materials")) {
+    if (!(i >= 0 && i <= 255) || i != __builtin_floor(i)) {
+      reader.fail(*o.find("materials"), o.path_of("materials"),
+                  "found " + shortest(i) + ", expected whole numbers from 0 to 255");
+      return {};
+    }
+    out.push_back(std::uint8_t(i));
+  }
+  return out;
 }
 
 /// One of two keys for the same length, the second one half of the first.
@@ -138,7 +172,9 @@ bool read_geometry(Reader& reader, const Library&, const Object& o, int type, ge
       std::vector<Vec2f> points;
       for (const Vec3d& p : reader.points(o, "points")) points.emplace_back(float(p.x), float(p.y));
       const bool loop = reader.flag(o, "loop", false);
-      return !reader.failed() && put(reader, o, geometry::make_chain(std::move(points), loop), out);
+      std::vector<std::uint8_t> materials = read_part_materials(reader, o);
+      return !reader.failed() &&
+             put(reader, o, geometry::make_chain(std::move(points), loop, std::move(materials)), out);
     }
     default:
       return wrong_dimension(reader, o), false;
@@ -172,7 +208,10 @@ bool read_mesh(Reader& reader, const Object& o, geometry::Shape3& out) {
              false;
     indices.push_back(std::uint32_t(i));
   }
-  return !reader.failed() && put(reader, o, geometry::make_triangle_mesh(std::move(vertices), std::move(indices)), out);
+  std::vector<std::uint8_t> materials = read_part_materials(reader, o);
+  return !reader.failed() &&
+         put(reader, o, geometry::make_triangle_mesh(std::move(vertices), std::move(indices), std::move(materials)),
+             out);
 }
 
 bool read_height_field(Reader& reader, const Object& o, geometry::Shape3& out) {
@@ -185,10 +224,40 @@ bool read_height_field(Reader& reader, const Object& o, geometry::Shape3& out) {
   for (const double h : reader.numbers(o, "heights")) heights.push_back(float(h));
   std::vector<std::uint8_t> holes;
   for (const double h : reader.numbers(o, "holes")) holes.push_back(h != 0);
-  return !reader.failed() && put(reader, o,
-                                 geometry::make_height_field(columns, rows, {float(cell[0]), float(cell[1])},
-                                                             std::move(heights), std::move(holes)),
-                                 out);
+  std::vector<std::uint8_t> materials = read_part_materials(reader, o);
+  return !reader.failed() &&
+         put(reader, o,
+             geometry::make_height_field(columns, rows, {float(cell[0]), float(cell[1])}, std::move(heights),
+                                         std::move(holes), std::move(materials)),
+             out);
+}
+
+/// "runs": how many cells, and of what, one after another.
+bool read_voxels(Reader& reader, const Object& o, geometry::Shape3& out) {
+  if (!needs(reader, o, "runs", "voxels") || !needs(reader, o, "cell_size", "voxels")) return false;
+  const int columns = reader.integer(o, "columns", 1, 1, 1024), layers = reader.integer(o, "layers", 1, 1, 1024),
+            rows = reader.integer(o, "rows", 1, 1, 1024);
+  const std::size_t total = std::size_t(columns) * std::size_t(layers) * std::size_t(rows);
+  const float cell = float(reader.number(o, "cell_size", 1));
+  const std::vector<double> runs = reader.numbers(o, "runs");
+  std::vector<std::uint8_t> cells;
+  for (std::size_t i = 0; i + 1 < runs.size() && !reader.failed(); i += 2) {
+    const bool whole = runs[i] == __builtin_floor(runs[i]) && runs[i + 1] == __builtin_floor(runs[i + 1]);
+    if (!whole || !(runs[i] >= 0 && runs[i] <= double(total - cells.size())) ||
+        !(runs[i + 1] >= 0 && runs[i + 1] <= 255))
+      return reader.fail(*o.find("runs"), o.path_of("runs"),
+                         "found a run of " + shortest(runs[i]) + " cells of " + shortest(runs[i + 1]) +
+                             ", expected whole numbers, no more cells than the grid has, and 0 (empty) to 255"),
+             false;
+    cells.insert(cells.end(), std::size_t(runs[i]), std::uint8_t(runs[i + 1]));
+  }
+  if (!reader.failed() && (runs.size() % 2 != 0 || cells.size() != total))
+    return reader.fail(*o.find("runs"), o.path_of("runs"),
+                       "found runs of " + std::to_string(cells.size()) +
+                           " cells, expected pairs of a count and a cell for " + std::to_string(total)),
+           false;
+  return !reader.failed() &&
+         put(reader, o, geometry::make_voxel_grid(columns, layers, rows, cell, std::move(cells)), out);
 }
 
 bool read_geometry(Reader& reader, const Library& library, const Object& o, int type, geometry::Shape3& out) {
@@ -210,6 +279,10 @@ bool read_geometry(Reader& reader, const Library& library, const Object& o, int 
     case cone:
       out = geometry::Cone{half_of(reader, o, "height", "half_height", 0.5), radius_of(reader, o, 0.5)};
       break;
+    case ellipsoid:
+      if (!needs(reader, o, "radii", "ellipsoid")) return false;
+      out = geometry::Ellipsoid{Vec3f(reader.vector(o, "radii"))};
+      break;
     case plane: {
       Vec3d normal = reader.vector(o, "normal", {0, 1, 0});
       // What is of unit length already keeps its bits.
@@ -223,6 +296,8 @@ bool read_geometry(Reader& reader, const Library& library, const Object& o, int 
       return read_mesh(reader, o, out);
     case height_field:
       return read_height_field(reader, o, out);
+    case voxels:
+      return read_voxels(reader, o, out);
     case compound: {
       if (!needs(reader, o, "children", "compound")) return false;
       const Node& list = *o.find("children");
@@ -338,6 +413,15 @@ bool read_shape(Reader& reader, const Library& library, const Node& node, const 
   d.modify_contacts = reader.flag(o, "modify_contacts", d.modify_contacts);
   if (o.has("surface_velocity"))
     d.surface_velocity = vector_for(reader.vector(o, "surface_velocity"), static_cast<D*>(nullptr));
+  if (const Node* list = o.find("surfaces")) {
+    const std::string list_path = o.path_of("surfaces");
+    if (!list->is_array()) return reader.expected(*list, list_path, "a list of surfaces"), false;
+    for (std::size_t i = 0; i < list->children.size(); ++i) {
+      rigid::SurfaceMaterial<D> part;
+      if (!read_part_surface(reader, library, list->children[i], index_path(list_path, i), part)) return false;
+      d.surfaces.push_back(part);
+    }
+  }
   if (o.has("one_way")) d.one_way = vector_for(reader.vector(o, "one_way"), static_cast<D*>(nullptr));
   d.user_data = reader.bits(o, "user_data", 0);
   return !reader.failed();

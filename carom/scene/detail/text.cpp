@@ -7,6 +7,7 @@
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/geometry/voxels.h"
 
 namespace carom::scene::detail {
 using namespace rigid;
@@ -47,6 +48,19 @@ math::Vec2f box_extents(const geometry::Polygon& p) {
   return half;
 }
 
+template <class T>
+std::string numbers_text(const std::vector<T>& values) {
+  std::string out = "[";
+  for (const T v : values) {
+    if (out.size() > 1) out += ", ";
+    if constexpr (std::is_floating_point_v<T>)
+      out += digits(v);
+    else
+      out += std::to_string(v);
+  }
+  return out + "]";
+}
+
 void put_geometry(const geometry::Shape2& s, Fields& f) {
   switch (s.type) {
     case geometry::ShapeType2::circle:
@@ -77,21 +91,9 @@ void put_geometry(const geometry::Shape2& s, Fields& f) {
     case geometry::ShapeType2::chain:
       f.put("type", quote("chain")).put("points", points_text(std::span<const math::Vec2f>(s.chain->points)));
       f.flag("loop", s.chain->loop, false);
+      if (!s.chain->materials.empty()) f.put("materials", numbers_text(s.chain->materials));
       return;
   }
-}
-
-template <class T>
-std::string numbers_text(const std::vector<T>& values) {
-  std::string out = "[";
-  for (const T v : values) {
-    if (out.size() > 1) out += ", ";
-    if constexpr (std::is_floating_point_v<T>)
-      out += digits(v);
-    else
-      out += std::to_string(v);
-  }
-  return out + "]";
 }
 
 void put_geometry(const geometry::Shape3& s, Fields& f) {
@@ -113,6 +115,9 @@ void put_geometry(const geometry::Shape3& s, Fields& f) {
     case geometry::ShapeType3::cone:
       f.put("type", quote("cone")).put("half_height", s.cone.half_height).put("radius", s.cone.radius);
       return;
+    case geometry::ShapeType3::ellipsoid:
+      f.put("type", quote("ellipsoid")).put("radii", vector_text(s.ellipsoid.radii));
+      return;
     case geometry::ShapeType3::plane:
       f.put("type", quote("plane")).put("normal", vector_text(s.plane.normal));
       return;
@@ -123,6 +128,7 @@ void put_geometry(const geometry::Shape3& s, Fields& f) {
     case geometry::ShapeType3::mesh:
       f.put("type", quote("mesh")).put("vertices", points_text(std::span<const math::Vec3f>(s.mesh->vertices)));
       f.put("indices", numbers_text(s.mesh->indices));
+      if (!s.mesh->materials.empty()) f.put("materials", numbers_text(s.mesh->materials));
       return;
     case geometry::ShapeType3::height_field: {
       const geometry::HeightField& h = *s.height_field;
@@ -131,6 +137,19 @@ void put_geometry(const geometry::Shape3& s, Fields& f) {
           .put("rows", std::to_string(h.rows));
       f.put("cell", vector_text(h.cell)).put("heights", numbers_text(h.heights));
       if (!h.holes.empty()) f.put("holes", numbers_text(h.holes));
+      if (!h.materials.empty()) f.put("materials", numbers_text(h.materials));
+      return;
+    }
+    case geometry::ShapeType3::voxels: {
+      const geometry::VoxelGrid& g = *s.voxels;
+      f.put("type", quote("voxels")).put("columns", std::to_string(g.columns)).put("layers", std::to_string(g.layers));
+      f.put("rows", std::to_string(g.rows)).put("cell_size", g.cell);
+      std::vector<std::uint32_t> runs;
+      for (const std::uint8_t cell : g.cells) {
+        if (runs.empty() || runs.back() != cell) runs.insert(runs.end(), {0u, std::uint32_t(cell)});
+        ++runs[runs.size() - 2];
+      }
+      f.put("runs", numbers_text(runs));
       return;
     }
     case geometry::ShapeType3::compound: {
@@ -178,6 +197,15 @@ std::string shape_text(const typename D::Shape& shape, const ShapeDef<D>& d) {
       .flag("hit_events", d.hit_events, false)
       .flag("modify_contacts", d.modify_contacts, false);
   if (!(d.surface_velocity == typename D::Vector{})) f.put("surface_velocity", vector_text(d.surface_velocity));
+  if (!d.surfaces.empty()) {
+    std::string surfaces;
+    for (const SurfaceMaterial<D>& s : d.surfaces)
+      surfaces += (surfaces.empty() ? "" : ", ") + Fields()
+                                                       .put("material", material_text(s.material))
+                                                       .put("surface_velocity", vector_text(s.surface_velocity))
+                                                       .object();
+    f.put("surfaces", "[" + surfaces + "]");
+  }
   if (!(d.one_way == typename D::Vector{})) f.put("one_way", vector_text(d.one_way));
   if (d.user_data != 0) f.put("user_data", bits_text(d.user_data));
   return f.object();

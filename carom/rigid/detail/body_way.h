@@ -1,0 +1,133 @@
+// The ways of bodies in a step, for continuous collision.
+#pragma once
+
+#include "carom/geometry/detail/passage.h"
+#include "carom/rigid/detail/rotation_step.h"
+#include "carom/rigid/detail/stages.h"
+
+namespace carom::rigid::detail {
+
+template <class D>
+using Sweep = std::conditional_t<D::dimension == 2, geometry::Sweep2, geometry::Sweep3>;
+
+inline Rot2f between(const Rot2f& a, const Rot2f& b, float t) {
+  return normalize(Rot2f{a.c + t * (b.c - a.c), a.s + t * (b.s - a.s)});
+}
+inline Quatf between(const Quatf& a, const Quatf& b, float t) {
+  const Quatf c = dot(a, b) < 0 ? -b : b;
+  return normalize(a + (c - a) * t);
+}
+
+/// The attitude of a body after a part of its way that ends in `end`.
+template <class D>
+typename D::Rotation rotation_after(const SweepStart<D>& start, const typename D::Rotation& end, float part) {
+  if (part == 1) return end;
+  if (start.turn == typename D::Angular{}) return between(start.rotation, end, part);
+  return rotation_by(start.turn * part) * start.rotation;
+}
+
+/// The way of a body from one fraction of the step to another, seen from `base`. What was stopped stands from then on.
+template <class D>
+Sweep<D> way_of_body(const WorldImplementation<D>& world, std::int32_t body, const typename D::Position& base,
+                     float from = 0, float to = 1) {
+  using V = typename D::Vector;
+  const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  const typename D::Rotation& rotation = world.bodies.pose[std::size_t(body)].rotation;
+  const std::int32_t place = world.bodies.record[std::size_t(body)].awake_index;
+  if (place == none) return {m.local_center, V(m.center - base), V(m.center - base), rotation, rotation};
+  const SweepStart<D>& start = world.scratch.swept[std::size_t(place)];
+  if (from == 0 && to >= start.fraction)
+    return {m.local_center, V(start.center - base), V(m.center - base), start.rotation, rotation};
+  Sweep<D> s{m.local_center, {}, {}, {}, {}};
+  const auto look = [&](float time, V& center, typename D::Rotation& q) {
+    const float f = start.fraction > 0 ? min(time / start.fraction, 1.0f) : 1.0f;
+    center = V(start.center + (m.center - start.center) * double(f) - base);
+    q = rotation_after(start, rotation, f);
+  };
+  look(from, s.c0, s.q0);
+  look(to, s.c1, s.q1);
+  return s;
+}
+template <class D>
+Sweep<D> way_of_shape(const ShapeRecord<D>& shape, const Sweep<D>& body) {
+  return shape.at_origin ? body : geometry::detail::sweep_of_part(body, shape.local);
+}
+
+/// Stops a body at a fraction of the step.
+template <class D>
+void stop_at(WorldImplementation<D>& world, std::int32_t body, float fraction) {
+  SweepStart<D>& start = world.scratch.swept[std::size_t(world.bodies.record[std::size_t(body)].awake_index)];
+  if (fraction >= start.fraction) return;
+  const float f = fraction / start.fraction;
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  m.center = start.center + (m.center - start.center) * double(f);
+  typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
+  pose.rotation = rotation_after(start, pose.rotation, f);
+  start.turn = start.turn * f;
+  pose_from_center(world, body);
+  start.fraction = fraction;
+}
+
+/// Calls use(part, sweep, inner extent) for the convex parts of a shape.
+template <class Use>
+void for_parts(const ShapeRecord<Dim2>& shape, const geometry::Sweep2& sweep, Use&& use) {
+  use(shape.geometry, sweep, shape.inner_extent);
+}
+template <class Use>
+void for_parts(const ShapeRecord<Dim3>& shape, const geometry::Sweep3& sweep, Use&& use) {
+  if (shape.geometry.type != geometry::ShapeType3::compound) return use(shape.geometry, sweep, shape.inner_extent);
+  for (const geometry::CompoundChild& child : shape.geometry.compound->children)
+    use(child.shape, geometry::detail::sweep_of_part(sweep, child.local), shape.inner_extent);
+}
+
+/// The fraction of its way that a shape may go past another, both in one frame.
+template <class D>
+float free_fraction(const ShapeRecord<D>& shape, const Sweep<D>& own, const ShapeRecord<D>& other,
+                    const Sweep<D>& theirs, bool guarded) {
+  float limit = 1;
+  for_parts(shape, own, [&](const typename D::Shape& part, const Sweep<D>& way, float inner) {
+    for_parts(other, theirs, [&](const typename D::Shape& other_part, const Sweep<D>& other_way, float) {
+      limit = geometry::detail::free_fraction({part, way, inner, guarded}, other_part, other_way, limit);
+    });
+  });
+  return limit;
+}
+
+inline float size_of_turn(float turn) { return math::abs(turn); }
+inline float size_of_turn(const Vec3f& turn) { return math::length(turn); }
+
+/// Do the balls about two bodies come near each other between two fractions of the step?
+template <class D>
+bool come_near(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b, float from, float to) {
+  using V = typename D::Vector;
+  const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
+  const Sweep<D> way_a = way_of_body(world, a, mb.center, from, to), way_b = way_of_body(world, b, mb.center, from, to);
+  const V start = way_b.c0 - way_a.c0, way = way_b.c1 - way_a.c1 - start;
+  const float length_squared = dot(way, way);
+  const float f = length_squared > 0 ? clamp(-dot(start, way) / length_squared, 0.0f, 1.0f) : 0.0f;
+  return math::length(start + way * f) <= ma.outer_extent + mb.outer_extent + 0.01f;
+}
+
+/// The first fraction of the step, between two, at which a shape must stop at another, seen from `base`; 2: none. A
+/// body that turns far goes in arcs of one radian and a half at most.
+template <class D>
+float meeting_time(const WorldImplementation<D>& world, const ShapeRecord<D>& shape, const ShapeRecord<D>& other,
+                   const typename D::Position& base, float from, float to, bool guarded) {
+  if (other.tree != tree_fixed && !come_near(world, shape.body, other.body, from, to)) return 2;
+  float turn = 0;
+  for (const std::int32_t body : {shape.body, other.body})
+    if (const std::int32_t place = world.bodies.record[std::size_t(body)].awake_index; place != none)
+      turn = max(turn, size_of_turn(world.scratch.swept[std::size_t(place)].turn));
+  const int arcs = turn == 0 ? 1 : int(turn / 1.5f) + 1;
+  for (int i = 0; i < arcs; ++i) {
+    const float begin = from + (to - from) * (float(i) / float(arcs));
+    const float end = i + 1 == arcs ? to : from + (to - from) * (float(i + 1) / float(arcs));
+    const Sweep<D> own = way_of_shape(shape, way_of_body(world, shape.body, base, begin, end)),
+                   theirs = way_of_shape(other, way_of_body(world, other.body, base, begin, end));
+    const float f = free_fraction(shape, own, other, theirs, guarded);
+    if (f < 1) return begin + (end - begin) * f;
+  }
+  return 2;
+}
+
+}  // namespace carom::rigid::detail

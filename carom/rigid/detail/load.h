@@ -1,0 +1,82 @@
+// Masses that follow the load: what is squeezed between others counts for more in the contact solver.
+//
+// A soft contact gives way by (load)/(m_eff ω²), and rows solved one after the other agree slowly where masses differ
+// much: both fail where a light body carries a heavy one. But what a squeezed body does depends little on its own
+// inertia: it can move only with those that squeeze it. So a body through which the load L passes is given, for the
+// solver, s times its mass and inertia while its weight and the forces on it stay (its acceleration is divided by s):
+// statics stay exact, its contacts become s times as stiff, and no contact sees a load of more than some bodies'
+// weights. L is what presses from all sides at once, (Σ|λ| − |Σ λ n|)/2 over the contacts of the body: nothing for what
+// lies on top, is struck or pushed from one side. See docs/computation.md, §3.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+
+#include "carom/rigid/detail/step_context.h"
+
+namespace carom::rigid::detail {
+
+/// What the contacts of a body did to it in the last substep.
+template <class D>
+struct BodyLoad {
+  typename D::Vector sum{};  ///< N·s
+  float size = 0;            ///< N·s; below zero: something slides along it or strikes it
+};
+inline constexpr float restless_load = -1e30f;
+
+inline constexpr float load_weights = 2;         ///< of its own, that a body carries as it is
+inline constexpr float load_yield = 0.0012f;     ///< m of its contacts over its size, that it yields as it is
+inline constexpr int load_rise = 1;              ///< levels a step, so that what settles does not swing,
+inline constexpr int load_lag = 105;             ///< but never more than so many (a factor of 8) behind the load
+inline constexpr int load_play = 10;             ///< levels above the load that are let be
+inline constexpr int load_fall = 5;              ///< levels a step: what is thrown up by a hair comes down prepared
+inline constexpr float most_load_factor = 1e4f;  ///< about what the last level means
+inline constexpr float rest_falls = 4;           ///< steps of free fall: what parts no faster is at rest
+
+/// 1/s by level: two percent each, to ten thousand.
+struct LoadShares {
+  static constexpr int count = 466;
+  float share[count];
+  constexpr LoadShares() : share() {
+    double s = 1;
+    for (float& x : share) x = float(1 / s), s *= 1.02;
+  }
+};
+inline constexpr LoadShares load_shares;
+
+/// 1/s.
+template <class D>
+float load_share(const BodyMotion<D>& m) {
+  return load_shares.share[m.load_level];
+}
+
+/// m/s between bodies that are at rest with each other.
+template <class D>
+float rest_speed(const WorldDef<D>& definition, float dt) {
+  return rest_falls * math::length(definition.gravity) * dt;
+}
+
+/// The next level. gravity: m/s², of what acts on the body from afar.
+template <class D>
+std::uint16_t follow_load(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load,
+                          float gravity) {
+  if (load.size < 0) return 0;
+  const float squeeze = 0.5f * (load.size - math::length(load.sum)) * m.inverse_mass * context.inverse_h;  // m/s²
+  const float borne = min(load_weights * gravity, load_yield * m.inner_extent * context.contact_stiffness);
+  int wanted = 0;
+  if (borne > 0 && squeeze > borne) {  // the least level at which the body bears the load
+    const float* const first = load_shares.share;
+    wanted = int(std::lower_bound(first, first + LoadShares::count - 1, borne / squeeze, std::greater<>()) - first);
+  }
+  const int level = m.load_level;
+  if (wanted <= level) return std::uint16_t(wanted > level - load_play ? level : max(wanted, level - load_fall));
+  return std::uint16_t(max(min(wanted, level + load_rise), wanted - load_lag));
+}
+
+/// A body that is struck or kicked, or starts to slide, is its own self before momentum is exchanged.
+template <class D>
+void forget_load(BodyMotion<D>& m, const typename D::Vector& change_of_velocity, float rest_speed) {
+  if (m.load_level > 0 && math::length_squared(change_of_velocity) > rest_speed * rest_speed) m.load_level = 0;
+}
+
+}  // namespace carom::rigid::detail
