@@ -72,6 +72,18 @@ struct RunOptions {
 };
 int run(const RunOptions& options);
 
+struct SweepOptions {
+  std::string scene, out;
+  std::vector<std::string> settings;
+  std::vector<std::string> vary;  ///< "name=from:to:count" or "name=a,b,c"
+  int threads = 1;
+  long long steps = 0;
+  double duration = 0;
+  int shard = 0, shards = 1;  ///< of the cases, this process takes those with index % shards == shard
+  bool quiet = false;
+};
+int sweep(const SweepOptions& options);
+
 struct ServeOptions {
   std::string address = "127.0.0.1";
   int port = 8080;

@@ -1,6 +1,7 @@
 // The program `carom`.
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <thread>
 
@@ -67,6 +68,44 @@ int main(int count, char** arguments) {
     run_options.pictures = !no_pictures;
     run_options.threads = threads_of(run_options.threads);
     result = run(run_options);
+  });
+
+  SweepOptions sweep_options;
+  std::string shard;
+  CLI::App* sweep_command = app.add_subcommand(
+      "sweep", "Simulate a scene over ranges of its parameters, on all processors; goes on where it was ended");
+  sweep_command->add_option("scene", sweep_options.scene, "a scene file, or a name that `carom list` shows")
+      ->required();
+  sweep_command
+      ->add_option("--vary,-v", sweep_options.vary,
+                   "name=from:to:count, evenly spaced, or name=a,b,c, with units; may be repeated: every combination")
+      ->required()
+      ->allow_extra_args(false);
+  sweep_command->add_option("--set,-s", sweep_options.settings, "a parameter for all cases: name=value with its unit")
+      ->allow_extra_args(false);
+  sweep_command->add_option("--out,-o", sweep_options.out, "folder for cases, table and report (out/sweep-SCENE)");
+  sweep_options.threads = 0;
+  sweep_command->add_option("--threads,-t", sweep_options.threads, "cases at once; 0: as many as processors (0)")
+      ->check(CLI::Range(0, 256));
+  auto* sweep_steps = sweep_command->add_option("--steps", sweep_options.steps, "steps of each case")
+                          ->check(CLI::Range(1LL, 1'000'000'000LL));
+  sweep_command->add_option("--duration", sweep_options.duration, "simulated seconds of each case (the scene's own)")
+      ->check(CLI::Range(1e-6, 1e7))
+      ->excludes(sweep_steps);
+  sweep_command->add_option("--shard", shard,
+                            "i/n: this process takes every n-th case from the i-th on; the last one to end merges");
+  sweep_command->add_flag("--quiet,-q", sweep_options.quiet, "say nothing");
+  sweep_command->footer(with_examples(
+      "  carom sweep wrecking-ball --vary \"angle=20 deg:80 deg:7\" --vary \"ball_mass=1 t,2 t,4 t\"\n"
+      "  carom sweep chain --vary ratio=1:1000:40 --duration 5 --out out/chain\n"
+      "  carom sweep chain --vary ratio=1:1000:40 --shard 0/2 --out shared   (and 1/2 on another machine)\n"));
+  sweep_command->callback([&] {
+    sweep_options.threads = threads_of(sweep_options.threads);
+    if (!shard.empty() && (std::sscanf(shard.c_str(), "%d/%d", &sweep_options.shard, &sweep_options.shards) != 2 ||
+                           sweep_options.shards < 1))
+      result = fail(exit_usage, "--shard " + shard + ": expected i/n, such as 0/4");
+    else
+      result = sweep(sweep_options);
   });
 
   ServeOptions serve_options;

@@ -10,6 +10,7 @@
 #include "apps/command/picture.h"
 #include "apps/command/report.h"
 #include "apps/host/messages.h"
+#include "apps/host/playback.h"
 #include "carom/core/profiler.h"
 #include "carom/scene/recording.h"
 
@@ -74,18 +75,8 @@ class Runner {
 
   core::Status open_recording() {
     const host::Declaration& d = simulation_->declaration();
-    scene::RecordingHeader header;
-    header.name = d.id;
-    header.dt = d.dt;
-    header.dimension = d.dimension;
-    std::vector<host::BodyView> bodies;
-    simulation_->describe(nullptr, bodies);
-    header.scene = host::scene_message(d, bodies);
-    header.declaration = host::opened_message(d);
-    const std::vector<host::Mesh>& meshes = simulation_->meshes().meshes();
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-      header.meshes.push_back(host::mesh_message(std::uint32_t(i), meshes[i]));
-    core::Result<scene::Recorder> opened = scene::Recorder::open(temporary_name(path("recording.carom-rec")), header);
+    core::Result<scene::Recorder> opened =
+        scene::Recorder::open(temporary_name(path("recording.carom-rec")), host::recording_header(*simulation_));
     if (!opened.ok()) return opened.error();
     recorder_.emplace(std::move(opened).value());
     // Sixty frames a second are enough to look at, however short the steps.
@@ -96,13 +87,7 @@ class Runner {
   core::Status record(bool always) {
     const std::uint64_t step = simulation_->step_count();
     if (!recorder_ || (!always && step % std::uint64_t(record_every_) != 0)) return {};
-    frame_.step = step;
-    frame_.time = simulation_->time();
-    frame_.has_hash = step % 60 == 0 || always;
-    frame_.state_hash = frame_.has_hash ? simulation_->state_hash() : 0;
-    simulation_->places(places_);
-    frame_.bodies.clear();
-    for (const host::BodyPlace& p : places_) frame_.bodies.push_back({p.id, !p.awake, p.position, p.rotation});
+    host::capture_frame(*simulation_, step % 60 == 0 || always, frame_);
     last_recorded_ = step;
     const core::Status status = recorder_->add(frame_);
     frame_.samples.clear();
@@ -231,7 +216,6 @@ class Runner {
   Report report_;
   std::optional<scene::Recorder> recorder_;
   scene::RecordedFrame frame_;
-  std::vector<host::BodyPlace> places_;
   std::vector<host::Sample> samples_;
   int record_every_ = 1;
   std::uint64_t last_recorded_ = ~std::uint64_t{0};

@@ -91,6 +91,23 @@ void tessellate(const host::ShapeView& shape, const host::MeshLibrary& meshes, c
       b.revolve(rings, detail);
       break;
     }
+    case ShapeKind::ellipsoid: {
+      const int stacks = detail / 2;
+      const auto unit = [&](int i, int k) {
+        const double a = 2 * pi * i / detail, b = -pi / 2 + pi * k / stacks, c = k % stacks == 0 ? 0 : std::cos(b);
+        return Vec3d{c * std::cos(a), std::sin(b), c * std::sin(a)};
+      };
+      const Vec3d size(shape.size);
+      const auto corner = [&](Vec3d u) { return scale(u, size); };
+      const auto normal = [&](Vec3d u) { return normalize(Vec3d{u.x / size.x, u.y / size.y, u.z / size.z}); };
+      for (int i = 0; i < detail; ++i)
+        for (int k = 0; k < stacks; ++k) {
+          const Vec3d p = unit(i, k), q = unit(i + 1, k), s = unit(i, k + 1), t = unit(i + 1, k + 1);
+          if (k > 0) b.triangle(corner(p), corner(s), corner(q), normal(p), normal(s), normal(q));
+          if (k + 1 < stacks) b.triangle(corner(q), corner(s), corner(t), normal(q), normal(s), normal(t));
+        }
+      break;
+    }
     case ShapeKind::box:
       box(b, Vec3d(shape.size) + Vec3d{r, r, r});
       break;

@@ -16,6 +16,9 @@ class Demo {
   virtual Declaration declaration() const = 0;
   /// Another of the same kind, for a restart.
   virtual std::unique_ptr<Demo> again() const = 0;
+  /// What the demo itself remembers, for going back in time: a copy, and back into this one. Null: it cannot be copied.
+  virtual std::unique_ptr<Demo> copy() const { return nullptr; }
+  virtual void assign(const Demo&) {}
   /// A fresh run with these values (in the order of the declaration's parameters; empty: its defaults).
   virtual core::Result<std::unique_ptr<Simulation>> open(std::unique_ptr<Demo> self, const std::vector<double>& values,
                                                          const SimulationOptions& options) = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "apps/host/debug_draw.h"
 #include "apps/host/registry.h"
 #include "apps/host/stress_demo.h"
 
@@ -148,6 +149,7 @@ struct SimulationHost::Handlers {
     if (!field.status.ok()) return field.status;
     const core::Result<bool> live = host.simulation_->set(name, value);
     if (!live.ok()) return live.error();
+    if (*live) host.act([name, value](Simulation& s) { (void)s.set(name, value); });
     // A slider that is dragged sends many: one restart at the next advance is enough.
     if (!*live) host.restart_wanted_ = true;
     host.send(values_message(host.simulation_->declaration(), host.simulation_->values()));
@@ -196,26 +198,126 @@ struct SimulationHost::Handlers {
     if (!field.status.ok()) return field.status;
     if (!(math::length_squared(direction) > 1e-12))
       return core::Error{"field \"direction\": expected a direction, found none"};
-    host.send(grabbed_message(pointer, host.simulation_->grab(pointer, origin, direction)));
+    const auto answer = std::make_shared<GrabAnswer>();
+    host.act([answer, pointer, origin, direction](Simulation& s) { *answer = s.grab(pointer, origin, direction); });
+    host.send(grabbed_message(pointer, *answer));
     return {};
   }
   core::Status drag() {
     const std::int64_t pointer = field.integer(m, "pointer", -2147483648.0, 2147483647.0);
     const math::Vec3d target = field.vector(m, "target");
     if (!field.status.ok()) return field.status;
-    return host.simulation_->drag(pointer, target);
+    const auto status = std::make_shared<core::Status>();
+    host.act([status, pointer, target](Simulation& s) { *status = s.drag(pointer, target); });
+    return *status;
   }
   core::Status release() {
     const std::int64_t pointer = field.integer(m, "pointer", -2147483648.0, 2147483647.0);
     if (!field.status.ok()) return field.status;
-    host.simulation_->release(pointer);
+    host.act([pointer](Simulation& s) { s.release(pointer); });
     return {};
   }
   core::Status input() {
     const std::string action = field.text(m, "action");
     const double value = field.number(m, "value");
     if (!field.status.ok()) return field.status;
-    return host.simulation_->input(action, value);
+    const auto status = std::make_shared<core::Status>();
+    host.act([status, action, value](Simulation& s) { *status = s.input(action, value); });
+    return *status;
+  }
+  core::Status seek() {
+    const std::int64_t step = field.integer(m, "step", 0, 9e15);
+    if (!field.status.ok()) return field.status;
+    host.running_ = false;
+    host.finish_recording();
+    if (host.restart_wanted_) host.restart();
+    if (host.simulation_->recorded()) {
+      if (const core::Status shown = host.simulation_->show(std::uint64_t(step)); !shown.ok()) return shown;
+      host.send_status();
+      host.key_wanted_ = true;
+      return {};
+    }
+    const core::Result<bool> another = host.history_.seek(host.simulation_, std::uint64_t(step));
+    if (!another.ok()) {
+      host.restart_wanted_ = true;  // half-way between two states is nowhere
+      return another.error();
+    }
+    host.simulation_->set_layers(host.layers_);
+    if (*another) host.send_scene();
+    host.send_changes();
+    host.send_status();
+    host.key_wanted_ = true;
+    return {};
+  }
+  core::Status record() {
+    const Json* on = member(m, "on");
+    if (!on || !on->is_boolean()) return core::Error{"field \"on\": expected true or false"};
+    if (host.simulation_->recorded()) return core::Error{"record: this is a recording already"};
+    if (!on->get<bool>()) {
+      host.finish_recording();
+      return {};
+    }
+    return host.recorder_ ? core::Status{} : host.start_recording();
+  }
+  core::Status spawn() {
+    SpawnRequest request;
+    const std::string form = field.text(m, "form");
+    request.size = field.number(m, "size");
+    request.density = field.number(m, "density");
+    request.position = field.vector(m, "position");
+    request.velocity = field.vector(m, "velocity");
+    if (!field.status.ok()) return field.status;
+    if (form != "ball" && form != "box" && form != "capsule")
+      return core::Error{"field \"form\": expected ball, box or capsule"};
+    request.form = form == "ball"  ? SpawnRequest::Form::ball
+                   : form == "box" ? SpawnRequest::Form::box
+                                   : SpawnRequest::Form::capsule;
+    const auto status = std::make_shared<core::Status>();
+    host.act([status, request](Simulation& s) { *status = s.spawn(request); });
+    host.send_changes();
+    host.frame_wanted_ = true;
+    return *status;
+  }
+  core::Status probe() {
+    const std::string kind = field.text(m, "kind");
+    const math::Vec3d origin = field.vector(m, "origin"), direction = field.vector(m, "direction");
+    const double radius = field.number(m, "radius");
+    if (!field.status.ok()) return field.status;
+    if (!(math::length_squared(direction) > 1e-12))
+      return core::Error{"field \"direction\": expected a direction, found none"};
+    if (kind != "ray" && kind != "sphere" && kind != "closest")
+      return core::Error{"field \"kind\": expected ray, sphere or closest"};
+    const ProbeKind asked = kind == "ray" ? ProbeKind::ray : kind == "sphere" ? ProbeKind::sphere : ProbeKind::closest;
+    const core::Result<ProbeAnswer> answer = host.simulation_->probe(asked, origin, direction, radius);
+    if (!answer.ok()) return answer.error();
+    host.send(probed_message(kind, *answer));
+    return {};
+  }
+  core::Status inspect() {
+    const std::int64_t body = field.integer(m, "body", -1, 4294967295.0);
+    if (!field.status.ok()) return field.status;
+    host.inspected_ = body;
+    host.send_inspection();
+    return {};
+  }
+  core::Status draw() {
+    const Json* layers = member(m, "layers");
+    if (!layers || !layers->is_array()) return core::Error{"field \"layers\": expected a list of names"};
+    std::uint32_t bits = 0;
+    for (const Json& layer : *layers) {
+      const auto known = std::find_if(std::begin(debug_layers), std::end(debug_layers),
+                                      [&](const DebugLayer& one) { return layer.is_string() && layer == one.name; });
+      if (known == std::end(debug_layers)) {
+        std::string names;
+        for (const DebugLayer& one : debug_layers) names += std::string(names.empty() ? "" : ", ") + one.name;
+        return core::Error{"field \"layers\": expected names of " + names};
+      }
+      bits |= known->bit;
+    }
+    host.layers_ = bits;
+    if (host.simulation_) host.simulation_->set_layers(bits);
+    host.frame_wanted_ = host.simulation_ != nullptr;
+    return {};
   }
   core::Status ack() {
     const std::int64_t sequence = field.integer(m, "sequence", 0, 4294967295.0);
@@ -227,7 +329,7 @@ struct SimulationHost::Handlers {
   }
 };
 
-SimulationHost::SimulationHost(HostOptions options) : options_(std::move(options)) {}
+SimulationHost::SimulationHost(HostOptions options) : options_(std::move(options)), history_(options_.history) {}
 SimulationHost::~SimulationHost() = default;
 
 void SimulationHost::receive(std::string_view text) {
@@ -250,6 +352,12 @@ void SimulationHost::receive(std::string_view text) {
       {"drag", &Handlers::drag, true},
       {"release", &Handlers::release, true},
       {"input", &Handlers::input, true},
+      {"record", &Handlers::record, true},
+      {"seek", &Handlers::seek, true},
+      {"spawn", &Handlers::spawn, true},
+      {"probe", &Handlers::probe, true},
+      {"inspect", &Handlers::inspect, true},
+      {"draw", &Handlers::draw, false},
       {"ack", &Handlers::ack, false},
   };
   if (outbox_bytes_ >= options_.max_outbox) return;  // a page that does not read gets no more answers
@@ -273,7 +381,56 @@ void SimulationHost::receive(std::string_view text) {
   complain("message: unknown type \"" + name.substr(0, 64) + "\"");
 }
 
-void SimulationHost::receive_binary() { complain("binary message: this host only takes JSON text"); }
+void SimulationHost::receive_binary(std::string_view bytes) {
+  if (outbox_bytes_ >= options_.max_outbox) return;
+  if (!greeted_) return complain("send hello first");
+  if (bytes.size() < 4 || bytes[0] != file_message_kind)
+    return complain("binary message: expected a part of a recording (docs/protocol.md)");
+  if (upload_.size() + bytes.size() > options_.max_recording) {
+    upload_ = {};
+    return complain("recording: expected at most " + std::to_string(options_.max_recording >> 20) + " MiB");
+  }
+  upload_.insert(upload_.end(), bytes.begin() + 4, bytes.end());
+  if (bytes[1] == 0) return;  // more follows
+  const core::Status status = open(open_recording(std::exchange(upload_, {})));
+  if (!status.ok()) complain(status.error().message);
+}
+
+core::Status SimulationHost::start_recording() {
+  recorded_.clear();
+  core::Result<scene::Recorder> made = scene::Recorder::open(
+      [this](std::span<const std::uint8_t> bytes) -> core::Status {
+        if (recorded_.size() + bytes.size() > options_.max_recording) return core::Error{"the recording is full"};
+        recorded_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        return {};
+      },
+      recording_header(*simulation_));
+  if (!made.ok()) return made.error();
+  recorder_ = std::make_unique<scene::Recorder>(std::move(made).value());
+  send_status();
+  record();
+  return {};
+}
+
+void SimulationHost::record() {
+  // A step that is shown again, or bodies that the header does not know, end the recording rather than spoil it.
+  capture_frame(*simulation_, simulation_->step_count() % 60 == 0, record_frame_);
+  record_frame_.samples.clear();
+  for (const Sample& s : simulation_->base().state.samples)
+    record_frame_.samples.push_back({std::uint16_t(s.plot), std::uint16_t(s.series), s.x, s.y});
+  if (const core::Status status = recorder_->add(record_frame_); !status.ok()) finish_recording();
+}
+
+void SimulationHost::finish_recording() {
+  if (!recorder_) return;
+  (void)recorder_->finish();
+  recorder_.reset();
+  std::string message{file_message_kind, 1, 0, 0};
+  message += recorded_;
+  recorded_.clear();
+  send_binary(std::move(message));
+  send_status();
+}
 
 void SimulationHost::complain(std::string_view message) { send(error_message(message)); }
 
@@ -284,7 +441,8 @@ core::Status SimulationHost::open(core::Result<std::unique_ptr<Simulation>> open
   // Enough steps for four-fold speed at 30 frames a second.
   clock_ = ode::FixedClock(dt, int(math::clamp(4.0 / 30.0 / dt + 1.0, 4.0, 256.0)));
   running_ = true;
-  send(opened_message(simulation_->declaration()));
+  recorder_.reset();
+  send(simulation_->opened_text());
   begin();
   return {};
 }
@@ -293,14 +451,11 @@ void SimulationHost::begin() {
   since_end_ = 0;
   clock_.reset();
   clock_.set_rate(speed_);
+  simulation_->set_layers(layers_);
+  history_.begin(*simulation_);
+  inspected_ = -1;
   send(values_message(simulation_->declaration(), simulation_->values()));
-  std::vector<BodyView> views;
-  std::vector<std::uint32_t> ignored_added, ignored_removed;
-  simulation_->take_changes(ignored_added, ignored_removed);
-  simulation_->describe(nullptr, views);
-  send(scene_message(simulation_->declaration(), views));
-  meshes_sent_ = 0;
-  send_meshes();
+  send_scene();
   samples_.clear();
   sent_.clear();
   real_window_ = simulated_window_ = 0;
@@ -311,8 +466,28 @@ void SimulationHost::begin() {
   frame(true);
 }
 
+void SimulationHost::send_scene() {
+  std::vector<std::uint32_t> ignored_added, ignored_removed;
+  simulation_->take_changes(ignored_added, ignored_removed);
+  send(simulation_->scene_text());
+  meshes_sent_ = 0;
+  send_meshes();
+  if (const std::vector<std::string>* recorded = simulation_->mesh_texts())
+    for (const std::string& mesh : *recorded) send_binary(mesh);
+}
+
+void SimulationHost::act(History::Action action) { history_.act(*simulation_, std::move(action)); }
+
+void SimulationHost::send_inspection() {
+  if (inspected_ < 0) return;
+  const std::string report = simulation_->inspect(std::uint32_t(inspected_));
+  if (report.empty()) inspected_ = -1;
+  send(inspected_message(report));
+}
+
 void SimulationHost::restart() {
   restart_wanted_ = false;
+  finish_recording();
   core::Result<std::unique_ptr<Simulation>> fresh = simulation_->reopen(simulation_->values());
   if (!fresh.ok()) {
     running_ = false;
@@ -325,6 +500,13 @@ void SimulationHost::restart() {
 }
 
 bool SimulationHost::step_once() {
+  if (const auto recorded = simulation_->recorded(); recorded && simulation_->step_count() >= recorded->last) {
+    running_ = false;
+    send_status();
+    return false;
+  }
+  // From a step of the past the run goes on as its own, without the fingers that held then.
+  if (history_.branch(*simulation_)) history_.act(*simulation_, [](Simulation& s) { s.release_all(); });
   const core::Status status = simulation_->step();
   if (!status.ok()) {
     running_ = false;
@@ -332,6 +514,8 @@ bool SimulationHost::step_once() {
     send_status();
     return false;
   }
+  if (!simulation_->recorded()) history_.stepped(*simulation_);
+  if (recorder_) record();
   StageBase::State& state = simulation_->base().state;
   samples_.insert(samples_.end(), state.samples.begin(), state.samples.end());
   state.samples.clear();
@@ -384,6 +568,7 @@ void SimulationHost::send_changes() {
   StageBase::State& state = simulation_->base().state;
   std::vector<std::uint32_t> added, removed;
   if (simulation_->take_changes(added, removed)) {
+    finish_recording();  // its header names the bodies
     std::vector<BodyView> views;
     if (!added.empty()) simulation_->describe(&added, views);
     send_meshes();
@@ -410,6 +595,10 @@ void SimulationHost::send_status() {
   if (simulation_) {
     fields.time = simulation_->time();
     fields.step = simulation_->step_count();
+    const std::optional<StepRange> recorded = simulation_->recorded();
+    fields.first = recorded ? recorded->first : history_.first();
+    fields.last = recorded ? recorded->last : history_.last();
+    fields.recording = recorder_ != nullptr;
     fields.message = simulation_->base().state.message;
     simulation_->base().state.message_changed = false;
   }
@@ -461,6 +650,9 @@ void SimulationHost::frame(bool key) {
              simulation_->worst_penetration()};
     fields.stats = &stats;
     since_stats_ = 0;
+    send(numbers_message({simulation_->profile(), budget, simulation_->arrows(), simulation_->hand_force(),
+                          simulation_->worst_joint_error(), counters.bytes}));
+    send_inspection();
   }
   send_binary(frame_message(fields));
   samples_.clear();

@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/host/history.h"
 #include "apps/host/messages.h"
+#include "apps/host/playback.h"
 #include "apps/host/simulation.h"
 #include "carom/ode/clock.h"
 
@@ -27,11 +29,13 @@ struct MenuScene {
 };
 
 struct HostOptions {
-  int threads = 1;                    ///< of every world
-  double key_interval = 2;            ///< s between key frames
-  double stats_interval = 0.25;       ///< s between stats blocks
-  std::size_t max_message = 4 << 20;  ///< bytes of one message from the page
-  std::size_t max_outbox = 64 << 20;  ///< bytes waiting for the carrier; beyond it answers are dropped
+  int threads = 1;                       ///< of every world
+  double key_interval = 2;               ///< s between key frames
+  double stats_interval = 0.25;          ///< s between stats blocks
+  std::size_t max_message = 4 << 20;     ///< bytes of one message from the page
+  std::size_t max_outbox = 64 << 20;     ///< bytes waiting for the carrier; beyond it answers are dropped
+  std::size_t max_recording = 64 << 20;  ///< bytes of one that a page sends or makes
+  HistoryOptions history;                ///< what can be gone back to
   std::vector<MenuScene> scenes;
   /// Reads a scene's text for `open_scene`; empty: refused.
   std::function<core::Result<std::unique_ptr<Demo>>(std::string_view name, std::string_view text)> parse_scene;
@@ -46,8 +50,8 @@ class SimulationHost {
 
   /// A text message of the page. Whatever it holds, the host answers or says what was wrong.
   void receive(std::string_view text);
-  /// Pages send no binary messages; this only says so.
-  void receive_binary();
+  /// A part of a recording that the page wants to see.
+  void receive_binary(std::string_view bytes);
   /// `real_seconds` have passed since the last call: steps, and puts a frame into the outbox where one is due.
   void advance(double real_seconds);
   /// The oldest waiting message; false where there is none.
@@ -65,6 +69,12 @@ class SimulationHost {
   core::Status open(core::Result<std::unique_ptr<Simulation>> opened);
   void begin();
   void restart();
+  void act(History::Action action);
+  void send_scene();
+  void send_inspection();
+  core::Status start_recording();
+  void record();
+  void finish_recording();
   void send(std::string text);
   void send_binary(std::string bytes);
   void send_status();
@@ -76,6 +86,13 @@ class SimulationHost {
 
   HostOptions options_;
   std::unique_ptr<Simulation> simulation_;
+  std::vector<std::uint8_t> upload_;  ///< parts of a recording that have come
+  std::unique_ptr<scene::Recorder> recorder_;
+  std::string recorded_;
+  scene::RecordedFrame record_frame_;
+  History history_;
+  std::uint32_t layers_ = 0;
+  std::int64_t inspected_ = -1;  ///< the body whose report is sent with the numbers, or −1
   ode::FixedClock clock_;
   std::deque<Message> outbox_;
   std::size_t outbox_bytes_ = 0;

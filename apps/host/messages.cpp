@@ -130,6 +130,9 @@ Json shape_json(const ShapeView& s) {
       out["radius"] = s.radius;
       out["half_length"] = s.size.y;
       break;
+    case ShapeKind::ellipsoid:
+      out["radii"] = {s.size.x, s.size.y, s.size.z};
+      break;
     case ShapeKind::box:
       out["half_extents"] = {s.size.x, s.size.y, s.size.z};
       out["radius"] = s.radius;
@@ -255,16 +258,53 @@ std::string values_message(const Declaration& declaration, std::span<const doubl
   return text_of({{"type", "values"}, {"values", std::move(list)}});
 }
 
+std::string numbers_message(const NumbersFields& f) {
+  const rigid::StepProfile& p = f.profile;
+  return text_of(
+      {{"type", "numbers"},
+       {"stages",
+        {{"effectors", p.effectors},
+         {"broad phase", p.broad_phase},
+         {"narrow phase", p.narrow_phase},
+         {"prepare", p.prepare},
+         {"solve", p.solve},
+         {"restitution", p.restitution},
+         {"finalize", p.finalize},
+         {"continuous", p.continuous},
+         {"sensors", p.sensors},
+         {"sleep", p.sleep},
+         {"whole step", p.total}}},
+       {"mass", f.budget.mass},
+       {"momentum", vector_json(f.budget.momentum)},
+       {"angular_momentum", vector_json(f.budget.angular_momentum)},
+       {"joint_error", f.worst_joint_error},
+       {"hand_force", f.hand_force},
+       {"bytes", f.bytes},
+       {"arrows", {{"velocity", f.arrows.velocity}, {"force", f.arrows.force}, {"impulse", f.arrows.impulse}}}});
+}
+
+std::string probed_message(std::string_view kind, const ProbeAnswer& answer) {
+  return text_of({{"type", "probed"},
+                  {"kind", std::string(kind)},
+                  {"body", answer.body},
+                  {"point", vector_json(answer.point)},
+                  {"normal", vector_json(answer.normal)},
+                  {"distance", answer.distance}});
+}
+
+std::string inspected_message(std::string_view report) {
+  if (report.empty()) return text_of({{"type", "inspected"}, {"body", -1}});
+  return "{\"type\":\"inspected\"," + std::string(report.substr(1));
+}
+
 std::string error_message(std::string_view message) {
   return text_of({{"type", "error"}, {"message", std::string(message)}});
 }
 
 std::string status_message(const StatusFields& fields) {
-  Json out = {{"type", "status"},
-              {"running", fields.running},
-              {"speed", fields.speed},
-              {"time", fields.time},
-              {"step", fields.step}};
+  Json out = {{"type", "status"},    {"running", fields.running},    {"speed", fields.speed},
+              {"time", fields.time}, {"step", fields.step},          {"first", fields.first},
+              {"last", fields.last}, {"recording", fields.recording}};
   if (!fields.message.empty()) out["message"] = std::string(fields.message);
   return text_of(out);
 }

@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "apps/host/debug_draw.h"
 #include "apps/host/simulation.h"
 
 namespace carom::host {
 
 inline constexpr int protocol_version = 1;
+/// Of the binary message that carries a file: a recording, either way.
+inline constexpr char file_message_kind = 3;
 
 /// JSON text, always valid UTF-8.
 std::string welcome_message(const char* engine, std::span<const Declaration> demos);
@@ -18,11 +21,24 @@ std::string scene_message(const Declaration& declaration, std::span<const BodyVi
 std::string bodies_message(std::span<const BodyView> added, std::span<const std::uint32_t> removed);
 std::string grabbed_message(std::int64_t pointer, const GrabAnswer& answer);
 std::string values_message(const Declaration& declaration, std::span<const double> values);
+/// What a frame's stats have no room for: stages of the last step, momentum, scale of arrows, the force of hands.
+struct NumbersFields {
+  rigid::StepProfile profile;
+  Budget budget;
+  ArrowScale arrows;
+  double hand_force = 0, worst_joint_error = 0;
+  std::size_t bytes = 0;
+};
+std::string numbers_message(const NumbersFields& fields);
+std::string probed_message(std::string_view kind, const ProbeAnswer& answer);
+/// `report`: the JSON object of Simulation::inspect, or empty where the body is gone.
+std::string inspected_message(std::string_view report);
 std::string error_message(std::string_view message);
 struct StatusFields {
   bool running = false;
   double speed = 1, time = 0;
-  std::uint64_t step = 0;
+  std::uint64_t step = 0, first = 0, last = 0;
+  bool recording = false;
   std::string_view message;
 };
 std::string status_message(const StatusFields& fields);

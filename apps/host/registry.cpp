@@ -8,8 +8,12 @@ namespace carom::host {
 namespace {
 constexpr DemoFactory factories[] = {
     demo::make_wrecking_ball,   demo::make_pyramids,       demo::make_joints,
-    demo::make_rewind,          demo::make_walker,         demo::make_hovercraft,
-    demo::make_collision_lab3,  demo::make_collision_lab2, demo::make_conveyor,
+    demo::make_paths,           demo::make_machines,       demo::make_bridge,
+    demo::make_adviser,         demo::make_rewind,         demo::make_walker,
+    demo::make_strong_walker,   demo::make_hovercraft,     demo::make_collision_lab3,
+    demo::make_collision_lab2,  demo::make_conveyor,       demo::make_ground_materials,
+    demo::make_moving_meshes,   demo::make_ellipsoids,     demo::make_decomposition,
+    demo::make_card_house,      demo::make_events,         demo::make_hooks,
     demo::make_platforms,       demo::make_rolling,        demo::make_bullets,
     demo::make_chain,           demo::make_far_away,       demo::make_target,
     demo::make_mass_properties, demo::make_race_orbit,     demo::make_race_spring,

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/host/debug_draw.h"
+#include "apps/host/hands.h"
+#include "apps/host/inspect.h"
+#include "apps/host/messages.h"
 #include "carom/core/spelling.h"
+#include "carom/rigid/path.h"
 
 namespace carom::host {
 
@@ -66,7 +71,7 @@ class SimulationOf final : public Simulation {
     release(pointer);
     if (grabs_.size() >= std::size_t(max_pointers)) return {};
     Position point{};
-    const rigid::BodyId body = pick(origin, direction, point);
+    const rigid::BodyId body = pick_body(stage_, origin, direction, point);
     const core::Result<rigid::BodyState<D>> state = world().state(body);
     if (!state.ok() || state->type != rigid::BodyType::dynamic) return {-1, in_space(point)};
     rigid::MouseJointDef<D> joint;
@@ -97,6 +102,31 @@ class SimulationOf final : public Simulation {
     return core::Error{"drag: pointer " + std::to_string(pointer) + " holds nothing; send grab first"};
   }
 
+  core::Status spawn(const SpawnRequest& request) override { return spawn_body(stage_, request); }
+  core::Result<ProbeAnswer> probe(ProbeKind kind, math::Vec3d origin, math::Vec3d direction, double radius) override {
+    return probe_world(stage_, kind, origin, direction, radius);
+  }
+  std::string inspect(std::uint32_t body) override { return inspect_body(stage_, body); }
+
+  std::unique_ptr<Memento> save() override {
+    std::unique_ptr<Demo> copied = owner_->copy();
+    if (!copied) return nullptr;
+    auto saved = std::make_unique<Saved>();
+    world().snapshot(saved->world);
+    saved->demo = std::move(copied);
+    saved->stage = stage_.remember();
+    saved->grabs = grabs_;
+    return saved;
+  }
+  core::Status restore(const Memento& memento) override {
+    const auto& saved = static_cast<const Saved&>(memento);
+    if (const core::Status status = world().restore(saved.world); !status.ok()) return status;
+    owner_->assign(*saved.demo);
+    stage_.recall(saved.stage);
+    grabs_ = saved.grabs;
+    return {};
+  }
+
   void release(std::int64_t pointer) override {
     for (std::size_t i = 0; i < grabs_.size(); ++i) {
       if (grabs_[i].pointer != pointer) continue;
@@ -105,6 +135,19 @@ class SimulationOf final : public Simulation {
       return;
     }
   }
+
+  void release_all() override {
+    while (!grabs_.empty()) release(grabs_.back().pointer);
+  }
+
+  double hand_force() const override {
+    double most = 0;
+    for (const Grab& held : grabs_)
+      if (const auto state = stage_.world().joint_state(held.joint); state.ok())
+        most = math::max(most, double(math::length(state->force)));
+    return most;
+  }
+  ArrowScale arrows() const override { return arrow_scale(stage_.world(), float(declaration_.dt), scale()); }
 
   std::size_t body_count() const override { return stage_.actors().size(); }
   void places(std::vector<BodyPlace>& out) const override {
@@ -139,6 +182,13 @@ class SimulationOf final : public Simulation {
         const std::uint32_t opacity = actor.color >> 24;
         for (std::size_t i = first; i < view.shapes.size(); ++i) {
           if (stage_.looks_in_materials) view.shapes[i].look = shape_definition->material.user_id;
+          if (const int part = view.shapes[i].material; part >= 0) {
+            // Parts of a surface stay apart: by colours of their own, or by those that the demo gave them.
+            constexpr std::uint32_t shades[] = {0x8d99a6, 0x9fd3e8, 0x4a5560, 0xb98b5e, 0x6fa36b, 0xd9c27e};
+            view.shapes[i].look = 0xff000000u | shades[part % 6];
+            if (stage_.looks_in_materials && std::size_t(part) < shape_definition->surfaces.size())
+              view.shapes[i].look = shape_definition->surfaces[std::size_t(part)].material.user_id;
+          }
           if (opacity != 0 && opacity != 255 && view.shapes[i].look == 0) view.shapes[i].look = actor.color;
         }
       }
@@ -151,6 +201,7 @@ class SimulationOf final : public Simulation {
     for (const Grab& held : grabs_)
       if (const auto state = world.state(held.body); state.ok())
         out.push_back({in_space(world_point(state->pose, held.local)), in_space(held.target), 0xffd54fff});
+    if (layers_ != 0) debug_lines(world, layers_, float(declaration_.dt), scale(), out);
     // Ropes, rods and springs hold at a distance: without a line one would not see them.
     std::vector<rigid::JointId> joints;
     world.joints(joints);
@@ -160,6 +211,7 @@ class SimulationOf final : public Simulation {
       if (!definition.ok()) continue;
       if (const auto* rod = std::get_if<rigid::DistanceJointDef<D>>(&*definition))
         out.push_back({anchor(rod->body_a, rod->frame_a.p), anchor(rod->body_b, rod->frame_b.p), 0x6b7682ff});
+      if (const auto* path = std::get_if<rigid::PathJointDef<D>>(&*definition)) draw_path(*path, out);
     }
   }
   bool take_changes(std::vector<std::uint32_t>& added, std::vector<std::uint32_t>& removed) override {
@@ -211,6 +263,19 @@ class SimulationOf final : public Simulation {
     Position target;
   };
 
+  struct Saved final : Memento {
+    rigid::Snapshot<D> world;
+    std::unique_ptr<Demo> demo;
+    typename Stage<D>::Memory stage;
+    std::vector<Grab> grabs;
+    std::size_t bytes() const override { return world.bytes() + stage.actors.size() * sizeof(stage.actors[0]) + 4096; }
+  };
+
+  /// m: how large the scene is on the screen.
+  double scale() const {
+    const Camera& c = declaration_.camera;
+    return D::dimension == 2 ? c.height : 0.7 * math::distance(c.position, c.target);
+  }
   World& world() { return stage_.world(); }
   static math::Quatf quaternion(math::Rot2f r) { return quaternion_of(r); }
   static math::Quatf quaternion(math::Quatf q) { return q; }
@@ -220,39 +285,21 @@ class SimulationOf final : public Simulation {
     return -1;
   }
 
-  rigid::BodyId pick(math::Vec3d origin, math::Vec3d direction, Position& point) {
-    if constexpr (D::dimension == 2) {
-      // Where the view ray meets the plane of the world; a finger's width around it counts as a hit.
-      const double t = direction.z != 0 ? -origin.z / direction.z : 0;
-      point = {origin.x + t * direction.x, origin.y + t * direction.y};
-      std::vector<rigid::ShapeId> found;
-      const float reach = math::clamp(float(declaration_.camera.height) * 0.006f, 1e-4f, 1e4f);
-      if (!world().overlap(geometry::Circle{reach}, {point, {}}, found).ok()) return {};
-      rigid::BodyId best;
-      double nearest = 0;
-      for (const rigid::ShapeId shape : found) {
-        const auto body = world().body_of(shape);
-        const auto state = body.ok() ? world().state(*body) : core::Result<rigid::BodyState<D>>(body.error());
-        if (!state.ok() || state->type != rigid::BodyType::dynamic) continue;
-        const double d = math::distance_squared(state->center_of_mass, point);
-        if (best && d >= nearest) continue;
-        best = *body;
-        nearest = d;
-      }
-      return best;
-    } else {
-      const auto hit = world().ray_cast(origin, math::Vec3f(math::normalize(direction) * 2000.0));
-      if (!hit.ok() || !hit->shape) return {};
-      point = hit->point;
-      const auto body = world().body_of(hit->shape);
-      return body.ok() ? *body : rigid::BodyId{};
-    }
-  }
-
   /// A point of a body in space; without a body it is one of the world.
   math::Vec3d anchor(rigid::BodyId body, typename D::Vector local) const {
     const auto state = stage_.world().state(body);
     return in_space(state.ok() ? world_point(state->pose, local) : Position(local));
+  }
+
+  void draw_path(const rigid::PathJointDef<D>& path, std::vector<Line>& out) const {
+    constexpr int steps = 8;
+    const int last = steps * int(path.points.size() - (path.closed ? 0 : 1));
+    const auto at = [&](int i) {
+      const auto point = path_point(path, float(i) / steps);
+      if (path.body_a.is_null()) return in_space(Position(path.frame_a.p) + Position(rotate(path.frame_a.q, point)));
+      return anchor(path.body_a, path.frame_a.p + rotate(path.frame_a.q, point));
+    };
+    for (int i = 0; i < last && out.size() < max_lines; ++i) out.push_back({at(i), at(i + 1), 0x6b7682ff});
   }
 
   std::unique_ptr<Demo> owner_;
@@ -263,6 +310,14 @@ class SimulationOf final : public Simulation {
 };
 
 }  // namespace
+
+std::string Simulation::opened_text() const { return opened_message(declaration_); }
+
+std::string Simulation::scene_text() {
+  std::vector<BodyView> views;
+  describe(nullptr, views);
+  return scene_message(declaration_, views);
+}
 
 core::Result<bool> Simulation::set(std::string_view name, double value) {
   std::vector<std::string_view> known;

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "apps/host/debug_draw.h"
 #include "apps/host/demo.h"
 
 namespace carom::host {
@@ -12,6 +15,33 @@ namespace carom::host {
 struct GrabAnswer {
   std::int64_t body = -1;  ///< −1: nothing there
   math::Vec3d point{};
+};
+
+/// What a page's probe found.
+struct ProbeAnswer {
+  std::int64_t body = -1;  ///< −1: nothing there
+  math::Vec3d point{}, normal{};
+  double distance = 0;  ///< m along the ray, or to the closest point
+};
+enum class ProbeKind { ray, sphere, closest };
+
+/// A body that a hand throws into the scene.
+struct SpawnRequest {
+  enum class Form { ball, box, capsule } form = Form::ball;
+  double size = 0.5;      ///< m: radius, half edge
+  double density = 1000;  ///< kg/m³ (2D: kg/m²)
+  math::Vec3d position{}, velocity{};
+};
+
+/// The whole state of a run at one step (Simulation::save).
+class Memento {
+ public:
+  virtual ~Memento() = default;
+  virtual std::size_t bytes() const = 0;  ///< memory held, about
+};
+
+struct StepRange {
+  std::uint64_t first = 0, last = 0;
 };
 
 struct Budget {
@@ -42,6 +72,33 @@ class Simulation {
   virtual GrabAnswer grab(std::int64_t pointer, math::Vec3d origin, math::Vec3d direction) = 0;
   virtual core::Status drag(std::int64_t pointer, math::Vec3d target) = 0;
   virtual void release(std::int64_t pointer) = 0;
+  virtual void release_all() = 0;
+  /// N: what the strongest of the hands pulled with in the last step.
+  virtual double hand_force() const = 0;
+
+  /// Errors: a form, size or density out of range, a scene with too many bodies already.
+  virtual core::Status spawn(const SpawnRequest& request) = 0;
+  /// Ray and sphere go from `origin` along `direction`; `closest` looks round where the ray hits the nearest body, or
+  /// round `origin` where there is none. In the plane the point is where the view ray meets it.
+  virtual core::Result<ProbeAnswer> probe(ProbeKind kind, math::Vec3d origin, math::Vec3d direction, double radius) = 0;
+  /// What a page shows of one body: a JSON object (docs/protocol.md, `inspected`); empty where there is no such body.
+  virtual std::string inspect(std::uint32_t body) = 0;
+  /// How long the arrows of debug drawing are.
+  virtual ArrowScale arrows() const = 0;
+  /// Which layers of debug drawing `lines` holds (debug_draw.h).
+  void set_layers(std::uint32_t layers) { layers_ = layers; }
+
+  /// The steps of a recording (playback.h); a run of the engine has none.
+  virtual std::optional<StepRange> recorded() const { return {}; }
+  virtual core::Status show(std::uint64_t) { return core::Error{"show: this is no recording"}; }
+  /// What a page is told when it is opened: the `opened` and `scene` messages, and meshes (null: those of `meshes`).
+  virtual std::string opened_text() const;
+  virtual std::string scene_text();
+  virtual const std::vector<std::string>* mesh_texts() const { return nullptr; }
+
+  /// The state for going back to this step; null where the demo cannot be copied. `restore` takes what this run saved.
+  virtual std::unique_ptr<Memento> save() = 0;
+  virtual core::Status restore(const Memento& memento) = 0;
 
   virtual std::size_t body_count() const = 0;
   virtual void places(std::vector<BodyPlace>& out) const = 0;  ///< of every shown body
@@ -71,6 +128,7 @@ class Simulation {
   Declaration declaration_;
   StageBase* base_ = nullptr;
   MeshLibrary meshes_;
+  std::uint32_t layers_ = 0;
 };
 
 /// The name in `known` that is closest to `name`, for "did you mean …"; empty where none is near.

@@ -87,9 +87,14 @@ rigid::BodyId Stage<D>::add(const rigid::BodyDef<D>& definition, std::initialize
   const BodyId body = keep(world_->create_body(definition));
   if (!body) return body;
   for (const Part& part : parts) keep(world_->add_shape(body, part.shape, part.definition));
+  adopt(body, color);
+  return body;
+}
+
+template <class D>
+void Stage<D>::adopt(BodyId body, std::uint32_t color) {
   actors_.push_back({body, next_id_++, color});
   added_.push_back(actors_.back().id);
-  return body;
 }
 
 template <class D>
@@ -139,6 +144,17 @@ void Stage<D>::adopt_all(bool keep_known) {
 }
 
 template <class D>
+void Stage<D>::redraw(BodyId body) {
+  for (Actor& actor : actors_) {
+    if (!(actor.body == body)) continue;
+    if (std::find(added_.begin(), added_.end(), actor.id) != added_.end()) return;
+    removed_.push_back(actor.id);
+    actor.id = next_id_++;
+    added_.push_back(actor.id);
+  }
+}
+
+template <class D>
 void Stage<D>::set_color(BodyId body, std::uint32_t color) {
   for (Actor& actor : actors_)
     if (actor.body == body) actor.color = color;
@@ -158,6 +174,32 @@ rigid::BodyId Stage<D>::floor(double level, const rigid::Material& material) {
   } else {
     return add(definition, geometry::Plane{}, shape);
   }
+}
+
+template <class D>
+typename Stage<D>::Memory Stage<D>::remember() const {
+  return {actors_, state.values, state.inputs, state.presses, state.message, declaration_.camera.follow};
+}
+
+template <class D>
+void Stage<D>::recall(const Memory& memory) {
+  // Ids rise and are never used twice, so equal ids are the same body.
+  const auto has = [](const std::vector<Actor>& actors, std::uint32_t id) {
+    const auto found = std::lower_bound(actors.begin(), actors.end(), id,
+                                        [](const Actor& a, std::uint32_t wanted) { return a.id < wanted; });
+    return found != actors.end() && found->id == id;
+  };
+  for (const Actor& actor : actors_)
+    if (!has(memory.actors, actor.id)) removed_.push_back(actor.id);
+  for (const Actor& actor : memory.actors)
+    if (!has(actors_, actor.id)) added_.push_back(actor.id);
+  actors_ = memory.actors;
+  state.values = memory.values;
+  state.inputs = memory.inputs;
+  state.presses = memory.presses;
+  state.values_changed = true;
+  say(memory.message);
+  follow(memory.follow);
 }
 
 template class Stage<rigid::Dim2>;

@@ -107,11 +107,15 @@ class Stage : public StageBase {
   BodyId add(const rigid::BodyDef<D>& definition, std::initializer_list<Part> parts, std::uint32_t color = 0);
   BodyId add(const rigid::BodyDef<D>& definition, const typename D::Shape& shape,
              const rigid::ShapeDef<D>& shape_definition = {}, std::uint32_t color = 0);
+  /// Shows a body that somebody made in this world.
+  void adopt(BodyId body, std::uint32_t color = 0);
   void remove(BodyId body);
   /// Shows every body that the world holds, and forgets those that it holds no more (after somebody else than the stage
   /// made or removed some).
   void adopt_all(bool keep_known = true);
   void set_color(BodyId body, std::uint32_t color);
+  /// Shows the body anew, after its shapes changed (terrain).
+  void redraw(BodyId body);
   /// A fixed floor: a half-space in space, a wide box in the plane, with its surface at `level`.
   BodyId floor(double level, const rigid::Material& material = {});
   /// The state of a body; of a body that is gone, a default one and the stage fails.
@@ -123,6 +127,16 @@ class Stage : public StageBase {
     std::uint32_t color = 0;
   };
   const std::vector<Actor>& actors() const { return actors_; }
+  /// The state of the stage without its world, and back. Bodies that differ count as added and removed.
+  struct Memory {
+    std::vector<Actor> actors;
+    std::vector<double> values, inputs;
+    std::vector<int> presses;
+    std::string message;
+    int follow = -1;
+  };
+  Memory remember() const;
+  void recall(const Memory& memory);
   std::vector<std::uint32_t> take_added() { return std::exchange(added_, {}); }
   std::vector<std::uint32_t> take_removed() { return std::exchange(removed_, {}); }
   bool changed() const { return !added_.empty() || !removed_.empty(); }

@@ -11,10 +11,10 @@ namespace {
 
 using bench::SceneInfo;
 
-/// A page holds no million bodies, and the trees take seconds a step yet (continuous collision of long bodies).
+/// A page holds no million bodies.
 bool showable(const SceneInfo& info) {
   const std::string_view name = info.name;
-  return (info.make2 != nullptr || info.make3 != nullptr) && name != "large_world" && !name.starts_with("trees");
+  return (info.make2 != nullptr || info.make3 != nullptr) && name != "large_world";
 }
 
 std::string id_of(const SceneInfo& info) {

@@ -1,6 +1,7 @@
 #include "apps/host/views.h"
 
 #include "carom/geometry/compound.h"
+#include "carom/geometry/detail/voxel_faces.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
@@ -10,8 +11,8 @@ namespace carom::host {
 using namespace geometry;
 
 const char* name_of(ShapeKind kind) {
-  constexpr const char* names[] = {"sphere", "capsule", "box",     "cylinder", "cone", "plane",
-                                   "mesh",   "circle",  "polygon", "segment",  "chain"};
+  constexpr const char* names[] = {"sphere", "capsule", "box",    "cylinder", "cone",    "ellipsoid",
+                                   "plane",  "mesh",    "circle", "polygon",  "segment", "chain"};
   return names[int(kind)];
 }
 
@@ -43,7 +44,14 @@ Mesh mesh_of(const Hull& hull) {
   return mesh;
 }
 
-Mesh mesh_of(const HeightField& field) {
+Mesh mesh_of(const TriangleMesh& from, int material) {
+  Mesh mesh{from.vertices, {}};
+  for (std::size_t i = 0; i < from.indices.size(); ++i)
+    if (material < 0 || from.materials[i / 3] == material) mesh.indices.push_back(from.indices[i]);
+  return mesh;
+}
+
+Mesh mesh_of(const HeightField& field, int material) {
   Mesh mesh;
   for (int j = 0; j < field.rows; ++j)
     for (int i = 0; i < field.columns; ++i)
@@ -53,6 +61,7 @@ Mesh mesh_of(const HeightField& field) {
     for (int i = 0; i + 1 < field.columns; ++i) {
       const std::size_t cell = std::size_t(j) * (field.columns - 1) + i;
       if (cell < field.holes.size() && field.holes[cell]) continue;
+      if (material >= 0 && field.materials[cell] != material) continue;
       const auto a = std::uint32_t(j * field.columns + i), b = a + 1;
       const auto c = a + std::uint32_t(field.columns), d = c + 1;
       mesh.indices.insert(mesh.indices.end(), {a, d, b, a, c, d});
@@ -61,31 +70,64 @@ Mesh mesh_of(const HeightField& field) {
   return mesh;
 }
 
+Mesh mesh_of(const Shape3& voxels, int material) {
+  Mesh mesh;
+  geometry::detail::visit_voxel_faces(*voxels.voxels, bounds(voxels, {}), [&](const geometry::detail::VoxelFace& face) {
+    if (material >= 0 && face.material != material) return true;
+    const auto first = std::uint32_t(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), face.corner, face.corner + 4);
+    mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+    return true;
+  });
+  return mesh;
+}
+
 }  // namespace
 
-std::uint32_t MeshLibrary::id_of(const Shape3& shape) {
+std::uint32_t MeshLibrary::id_of(const Shape3& shape, int material) {
   for (std::size_t i = 0; i < owners_.size(); ++i)
-    if (owners_[i].get() == shape.data.get()) return std::uint32_t(i);
+    if (owners_[i].data == shape.data && owners_[i].material == material) return std::uint32_t(i);
   switch (shape.type) {
     case ShapeType3::hull:
       meshes_.push_back(mesh_of(*shape.hull));
       break;
     case ShapeType3::height_field:
-      meshes_.push_back(mesh_of(*shape.height_field));
+      meshes_.push_back(mesh_of(*shape.height_field, material));
+      break;
+    case ShapeType3::voxels:
+      meshes_.push_back(mesh_of(shape, material));
       break;
     case ShapeType3::mesh:
-      meshes_.push_back({shape.mesh->vertices, shape.mesh->indices});
+      meshes_.push_back(mesh_of(*shape.mesh, material));
       break;
     default:
       meshes_.push_back({});
       break;
   }
-  owners_.push_back(shape.data);
+  owners_.push_back({shape.data, material});
   return std::uint32_t(owners_.size() - 1);
 }
 
 void view_shape(const Shape2& shape, const math::Transform2f& local, bool sensor, MeshLibrary&,
                 std::vector<ShapeView>& out) {
+  if (const int materials = material_count(shape); materials > 1) {
+    const Chain& chain = *shape.chain;
+    for (int i = 0; i < chain.segment_count(); ++i) {
+      const ChainSegment s = chain.segment(i);
+      if (i > 0 && chain.materials[std::size_t(i)] == chain.materials[std::size_t(i - 1)]) {
+        out.back().points.push_back(s.b);
+        continue;
+      }
+      ShapeView part;
+      part.sensor = sensor;
+      part.local = {{local.p.x, local.p.y, 0}, quaternion_of(local.q)};
+      part.kind = ShapeKind::chain;
+      part.points = {s.a, s.b};
+      part.material = chain.materials[std::size_t(i)];
+      out.push_back(std::move(part));
+    }
+    return;
+  }
   ShapeView view;
   view.sensor = sensor;
   view.local = {{local.p.x, local.p.y, 0}, quaternion_of(local.q)};
@@ -128,6 +170,28 @@ void view_shape(const Shape3& shape, const math::Transform3f& local, bool sensor
       view_shape(child.shape, local * child.local, sensor, meshes, out);
     return;
   }
+  if (const int materials = material_count(shape); materials > 1) {
+    std::vector<bool> used(std::size_t(materials), false);
+    if (shape.type == ShapeType3::voxels) {
+      for (const std::uint8_t cell : shape.voxels->cells)
+        if (cell > 0) used[std::size_t(cell) - 1] = true;
+    } else {
+      for (const std::uint8_t m :
+           shape.type == ShapeType3::mesh ? shape.mesh->materials : shape.height_field->materials)
+        used[m] = true;
+    }
+    for (int m = 0; m < materials; ++m) {
+      if (!used[std::size_t(m)]) continue;
+      ShapeView part;
+      part.sensor = sensor;
+      part.local = local;
+      part.kind = ShapeKind::mesh;
+      part.material = m;
+      part.mesh = meshes.id_of(shape, m);
+      out.push_back(std::move(part));
+    }
+    return;
+  }
   ShapeView view;
   view.sensor = sensor;
   view.local = local;
@@ -156,6 +220,10 @@ void view_shape(const Shape3& shape, const math::Transform3f& local, bool sensor
       view.radius = shape.cone.radius;
       view.size.y = shape.cone.half_height;
       break;
+    case ShapeType3::ellipsoid:
+      view.kind = ShapeKind::ellipsoid;
+      view.size = shape.ellipsoid.radii;
+      break;
     case ShapeType3::plane:
       view.kind = ShapeKind::plane;
       view.size = shape.plane.normal;
@@ -163,6 +231,7 @@ void view_shape(const Shape3& shape, const math::Transform3f& local, bool sensor
     case ShapeType3::hull:
     case ShapeType3::mesh:
     case ShapeType3::height_field:
+    case ShapeType3::voxels:
     case ShapeType3::compound:
       view.kind = ShapeKind::mesh;
       view.mesh = meshes.id_of(shape);

@@ -17,6 +17,7 @@ enum class ShapeKind : std::uint8_t {
   box,
   cylinder,
   cone,
+  ellipsoid,
   plane,
   mesh,
   circle,
@@ -28,12 +29,14 @@ const char* name_of(ShapeKind kind);
 
 struct ShapeView {
   ShapeKind kind = ShapeKind::sphere;
-  math::Vec3f size{};  ///< box: half extents; capsule: y = half length; cylinder, cone: y = half height; plane: normal
+  math::Vec3f size{};  ///< box, ellipsoid: half extents; capsule: y = half length; cylinder, cone: y = half height;
+                       ///< plane: normal
   float radius = 0;
   std::uint32_t mesh = 0;           ///< index into MeshLibrary::meshes
   std::vector<math::Vec2f> points;  ///< polygon, segment, chain
   bool loop = false;
   bool sensor = false;
+  int material = -1;       ///< of this part of a surface, as its geometry numbers them; −1: all of it
   std::uint32_t look = 0;  ///< 0xOORRGGBB, opacity first; 0: as the body
   math::Transform3f local{};
 };
@@ -64,18 +67,26 @@ struct Mesh {
 /// Hulls, meshes and height fields, each once however many bodies share it.
 class MeshLibrary {
  public:
-  std::uint32_t id_of(const geometry::Shape3& shape);
+  /// `material`: only the triangles or cells of that number; −1: all.
+  std::uint32_t id_of(const geometry::Shape3& shape, int material = -1);
   const std::vector<Mesh>& meshes() const { return meshes_; }
 
  private:
   std::vector<Mesh> meshes_;
-  std::vector<std::shared_ptr<const void>> owners_;
+  struct Owner {
+    std::shared_ptr<const void> data;
+    int material;
+  };
+  std::vector<Owner> owners_;
 };
 
 math::Quatf quaternion_of(math::Rot2f rotation);
 inline math::Vec3d in_space(math::Vec2d p) { return {p.x, p.y, 0}; }
 inline math::Vec3d in_space(math::Vec3d p) { return p; }
+inline math::Vec3d in_space(math::Vec2f v) { return {double(v.x), double(v.y), 0}; }
+inline math::Vec3d in_space(math::Vec3f v) { return math::Vec3d(v); }
 
+/// Surfaces whose parts have different materials become one view a material.
 void view_shape(const geometry::Shape2& shape, const math::Transform2f& local, bool sensor, MeshLibrary& meshes,
                 std::vector<ShapeView>& out);
 void view_shape(const geometry::Shape3& shape, const math::Transform3f& local, bool sensor, MeshLibrary& meshes,

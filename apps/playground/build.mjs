@@ -1,17 +1,42 @@
-// Bundles the page into dist/: one script, one style sheet, one document.
+// node build.mjs [--web FOLDER --module CAROM.WASM]: bundles the page into dist/, for `carom serve`; with --web into a
+// folder that any web server can host, with the engine as WebAssembly, the scenes and the presets.
 import {build} from 'esbuild';
-import {cpSync, mkdirSync, rmSync} from 'node:fs';
+import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {dirname, join, relative, resolve} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {parseArgs} from 'node:util';
 
-rmSync('dist', {recursive: true, force: true});
-mkdirSync('dist', {recursive: true});
+const here = dirname(fileURLToPath(import.meta.url)), root = join(here, '../..');
+const {values: {web, module}} = parseArgs({options: {web: {type: 'string'}, module: {type: 'string'}}});
+const out = web ? resolve(web) : join(here, 'dist');
+
+rmSync(out, {recursive: true, force: true});
+mkdirSync(out, {recursive: true});
 await build({
-  entryPoints: {main: 'src/main.ts', style: 'src/style.css'},
+  absWorkingDir: here,
+  entryPoints: {main: 'src/main.ts', worker: 'src/worker.ts', style: 'src/style.css'},
   bundle: true,
   minify: true,
   sourcemap: false,
   format: 'esm',
   target: ['es2021'],
-  outdir: 'dist',
+  outdir: out,
   legalComments: 'linked',
 });
-for (const file of ['index.html', 'icon.svg']) cpSync(`src/${file}`, `dist/${file}`);
+cpSync(join(here, 'src/icon.svg'), join(out, 'icon.svg'));
+const page = readFileSync(join(here, 'src/index.html'), 'utf8');
+writeFileSync(join(out, 'index.html'), web ? page.replace('name="engine" content="native"', 'name="engine" content="wasm"') : page);
+
+/** Scenes by NAME.json, presets by presets/KIND/NAME.json: the names by which scene files ask for each other. */
+function dataFiles() {
+  const files = {};
+  for (const entry of readdirSync(join(root, 'scenes'), {withFileTypes: true}))
+    if (entry.isFile() && entry.name.endsWith('.json')) files[entry.name] = readFileSync(join(root, 'scenes', entry.name), 'utf8');
+  for (const name of readdirSync(join(root, 'presets'), {recursive: true}))
+    if (name.endsWith('.json')) files[relative(root, join(root, 'presets', name))] = readFileSync(join(root, 'presets', name), 'utf8');
+  return files;
+}
+if (web) {
+  cpSync(module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), join(out, 'carom.wasm'));
+  writeFileSync(join(out, 'files.json'), JSON.stringify(dataFiles()));
+}

@@ -108,12 +108,12 @@ class Session : public std::enable_shared_from_this<Session> {
         self->timer_.cancel();
         return;
       }
-      if (self->stream_.got_text()) {
-        const auto data = self->buffer_.data();
-        self->host_.receive({static_cast<const char*>(data.data()), data.size()});
-      } else {
-        self->host_.receive_binary();
-      }
+      const auto data = self->buffer_.data();
+      const std::string_view bytes(static_cast<const char*>(data.data()), data.size());
+      if (self->stream_.got_text())
+        self->host_.receive(bytes);
+      else
+        self->host_.receive_binary(bytes);
       self->buffer_.consume(self->buffer_.size());
       self->write();
       // A flood of messages must not starve the simulation, nor answers pile up: read on when they have gone.

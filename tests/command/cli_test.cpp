@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -56,7 +57,7 @@ class Cli : public testing::Test {
 TEST_F(Cli, HelpHasExamplesAndExitCodes) {
   EXPECT_EQ(carom("--help"), 0);
   EXPECT_NE(out_.find("Exit status"), std::string::npos);
-  for (const char* command : {"run", "serve", "mass", "list", "doctor", "bench"}) {
+  for (const char* command : {"run", "sweep", "serve", "mass", "list", "doctor", "bench"}) {
     EXPECT_EQ(carom(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Examples:"), std::string::npos) << command;
   }
@@ -72,6 +73,33 @@ TEST_F(Cli, BadUsageIsTwo) {
     EXPECT_EQ(carom(bad), 2) << bad;
   carom("run pyramids --set fricton=0.5");
   EXPECT_NE(err_.find("did you mean \"friction\""), std::string::npos) << err_;
+}
+
+TEST_F(Cli, ASweepThatWasKilledGoesOnAndShardsMakeTheSameTable) {
+  const std::string what = "sweep chain --vary ratio=1:100:4 --vary links=5,10 --steps 30 --quiet --out ";
+  ASSERT_EQ(carom(what + "whole"), 0) << err_;
+  const std::string table = read(folder_ / "whole/table.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 9) << table;
+  EXPECT_NE(table.find("67.0,10.0"), std::string::npos) << "every combination";
+  EXPECT_TRUE(fs::exists(folder_ / "whole/report.html"));
+  // Killed within a line: what was whole counts, the rest is done again.
+  const fs::path lines = folder_ / "whole/cases-0-of-1.jsonl";
+  fs::resize_file(lines, fs::file_size(lines) / 2);
+  fs::remove(folder_ / "whole/table.csv");
+  ASSERT_EQ(carom(what + "whole"), 0) << err_;
+  EXPECT_EQ(read(folder_ / "whole/table.csv"), table);
+  // Two processes share a folder; whoever ends last merges.
+  ASSERT_EQ(carom(what + "shared --shard 1/2"), 0) << err_;
+  EXPECT_FALSE(fs::exists(folder_ / "shared/table.csv"));
+  ASSERT_EQ(carom(what + "shared --shard 0/2"), 0) << err_;
+  EXPECT_EQ(read(folder_ / "shared/table.csv"), table);
+  // A folder belongs to one sweep.
+  EXPECT_EQ(carom("sweep chain --vary ratio=1:100:5 --steps 30 --out whole"), 3);
+  EXPECT_NE(err_.find("another sweep"), std::string::npos) << err_;
+  for (const char* bad : {"sweep chain", "sweep chain --vary ratio", "sweep chain --vary ratio=1:2",
+                          "sweep chain --vary ratio=1:2:x", "sweep chain --vary ratio=1:9999:3",
+                          "sweep chain --vary ratio=1,2 --shard 2/2", "sweep chain --vary ratio=1,2 --shard x"})
+    EXPECT_EQ(carom(bad), 2) << bad;
 }
 
 TEST_F(Cli, BadInputIsThree) {

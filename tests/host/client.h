@@ -157,6 +157,7 @@ class Page {
   std::vector<Frame> frames;
   std::map<std::uint32_t, Frame::Body> bodies;  ///< as the frames left them
   std::size_t meshes = 0;
+  std::vector<std::string> files;  ///< recordings that the host made
 
  private:
   void drain() {
@@ -171,6 +172,10 @@ class Page {
       ASSERT_FALSE(message.data.empty());
       if (message.data[0] == 1) {
         ++meshes;
+        continue;
+      }
+      if (message.data[0] == file_message_kind) {
+        files.push_back(message.data.substr(4));
         continue;
       }
       frames.push_back(decode_frame(message.data));

@@ -78,7 +78,7 @@ TEST(Hostile, DeepNestingAndLongMessages) {
 
 TEST(Hostile, BinaryMessagesAreRefused) {
   Page page;
-  page.host.receive_binary();
+  page.host.receive_binary("?");
   page.hello();
   EXPECT_EQ(page.count("error"), 1);
 }

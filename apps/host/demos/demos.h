@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <type_traits>
 
 #include "apps/host/demo.h"
 
@@ -23,19 +24,41 @@ std::unique_ptr<Demo> make_tumbling_brick();
 std::unique_ptr<Demo> make_intermediate_axis();
 std::unique_ptr<Demo> make_rewind();
 std::unique_ptr<Demo> make_conveyor();
+std::unique_ptr<Demo> make_ground_materials();
+std::unique_ptr<Demo> make_moving_meshes();
+std::unique_ptr<Demo> make_ellipsoids();
+std::unique_ptr<Demo> make_decomposition();
+std::unique_ptr<Demo> make_card_house();
+std::unique_ptr<Demo> make_events();
+std::unique_ptr<Demo> make_hooks();
 std::unique_ptr<Demo> make_joints();
 std::unique_ptr<Demo> make_chain();
+std::unique_ptr<Demo> make_paths();
+std::unique_ptr<Demo> make_machines();
+std::unique_ptr<Demo> make_bridge();
+std::unique_ptr<Demo> make_adviser();
 std::unique_ptr<Demo> make_platforms();
 std::unique_ptr<Demo> make_walker();
+std::unique_ptr<Demo> make_strong_walker();
 std::unique_ptr<Demo> make_rolling();
 std::unique_ptr<Demo> make_bullets();
 std::unique_ptr<Demo> make_far_away();
 
-/// What `again()` of every demo is: another one like it.
+/// What `again()`, `copy()` and `assign()` of every demo are: another one like it, and its members.
 template <class DemoType, class Base>
 class Repeatable : public Base {
  public:
   std::unique_ptr<Demo> again() const override { return std::make_unique<DemoType>(); }
+  std::unique_ptr<Demo> copy() const override {
+    if constexpr (std::is_copy_constructible_v<DemoType> && std::is_copy_assignable_v<DemoType>)
+      return std::make_unique<DemoType>(static_cast<const DemoType&>(*this));
+    else
+      return nullptr;
+  }
+  void assign(const Demo& other) override {
+    if constexpr (std::is_copy_constructible_v<DemoType> && std::is_copy_assignable_v<DemoType>)
+      static_cast<DemoType&>(*this) = static_cast<const DemoType&>(other);
+  }
 };
 
 // One palette, chosen to stay apart in shade for the colour-blind.

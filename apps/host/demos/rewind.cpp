@@ -10,6 +10,8 @@ using rigid::Dim3;
 
 class Rewind final : public Repeatable<Rewind, Demo3> {
  public:
+  /// It keeps its own time; a copy of that would cost more than the run again.
+  std::unique_ptr<Demo> copy() const override { return nullptr; }
   Declaration declaration() const override {
     Declaration d;
     d.id = "rewind";

@@ -1,22 +1,26 @@
 // Pointers on the view: every finger (or the mouse) may hold its own body.
 import * as THREE from 'three';
+import type {Tools} from './tools';
 import type {Viewer} from './viewer';
 
 interface Hold { plane: THREE.Plane; held: boolean; point: THREE.Vector3; target: THREE.Vector3; x: number; y: number }
 
 export class Hands {
   private holds = new Map<number, Hold>();
+  private press?: {x: number; y: number};  // of another tool: a click if the pointer stays
 
-  constructor(private canvas: HTMLCanvasElement, private viewer: Viewer, private send: (message: object) => void) {
+  constructor(private canvas: HTMLCanvasElement, private viewer: Viewer, private tools: Tools, private send: (message: object) => void) {
     canvas.style.touchAction = 'none';
     // Capture phase: decide before the orbit controls see the pointer.
     canvas.addEventListener('pointerdown', (event) => this.down(event), true);
     canvas.addEventListener('pointermove', (event) => this.move(event));
-    for (const end of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(end, (event) => this.up(event.pointerId));
+    for (const end of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(end, (event) => this.up(event.pointerId, event));
   }
 
   private down(event: PointerEvent): void {
-    if (event.button !== 0 || !this.viewer.dynamicBodyAt(event.clientX, event.clientY)) return;
+    if (event.button !== 0) return;
+    if (this.tools.tool !== 'pull') { this.press = {x: event.clientX, y: event.clientY}; return; }
+    if (!this.viewer.dynamicBodyAt(event.clientX, event.clientY)) return;
     this.viewer.enableOrbit(false);
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.classList.add('grabbing');
@@ -43,10 +47,11 @@ export class Hands {
   }
 
   private move(event: PointerEvent): void {
+    this.tools.hover(event.clientX, event.clientY);
     const hold = this.holds.get(event.pointerId);
     if (!hold) {
       if (event.pointerType === 'mouse' && event.buttons === 0)
-        this.canvas.classList.toggle('grab', this.viewer.dynamicBodyAt(event.clientX, event.clientY));
+        this.canvas.classList.toggle('grab', this.tools.tool === 'pull' && this.viewer.dynamicBodyAt(event.clientX, event.clientY));
       return;
     }
     hold.x = event.clientX;
@@ -54,7 +59,9 @@ export class Hands {
     if (hold.held) this.drag(event.pointerId, hold);
   }
 
-  private up(pointer: number): void {
+  private up(pointer: number, event?: PointerEvent): void {
+    if (this.press && event?.type === 'pointerup' && Math.hypot(event.clientX - this.press.x, event.clientY - this.press.y) < 5) this.tools.click(event.clientX, event.clientY);
+    if (event) this.press = undefined;
     const hold = this.holds.get(pointer);
     if (!hold) return;
     this.holds.delete(pointer);

@@ -1,24 +1,43 @@
 // The page: joins a source of simulation to the view, the panel, the plots and the user's hands.
+import {byId} from './dom';
+import {Gamepads} from './gamepad';
 import {Hands} from './hands';
 import {Panel} from './panel';
 import {Plots} from './plots';
 import type {DemoSummary, Frame, HostMessage, Mesh, Opened} from './protocol';
-import {SocketSource, type Listener} from './source';
+import {playTo, readLink, Share, writeLink, type Link} from './share';
+import {SocketSource, WorkerSource, type Listener, type Source} from './source';
+import {Timeline} from './timeline';
+import {Timing} from './timing';
+import {Tools, type Tool} from './tools';
 import {Viewer} from './viewer';
+import {showReport} from './why';
 
-const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
+/** Who simulates: the built page says so (`./play --web`), `?engine=native` or `?engine=wasm` choose. */
+function engineOfPage(listener: Listener): Source {
+  const engine = new URLSearchParams(location.search).get('engine') ?? document.querySelector<HTMLMetaElement>('meta[name=engine]')?.content;
+  return engine === 'wasm' ? new WorkerSource(listener) : new SocketSource(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`, listener);
+}
 
 class Page implements Listener {
   private canvas = byId<HTMLCanvasElement>('view');
   readonly viewer = new Viewer(this.canvas);
-  private source = new SocketSource(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`, this);
+  private source: Source = engineOfPage(this);
   private send = (message: object) => this.source.send(message);
   private panel = new Panel(this.send);
   private plots = new Plots(byId('plot'), byId('plot-choice'));
-  private hands = new Hands(this.canvas, this.viewer, this.send);
+  private tools = new Tools(this.viewer, this.send);
+  private hands = new Hands(this.canvas, this.viewer, this.tools, this.send);
+  private timeline = new Timeline(this.send);
+  private timing = new Timing(byId('timing'));
+  private share = new Share(this.viewer, this.source, (text) => this.notice(text, 4000));
+  private wanted?: Link;  // what the next `opened` is to restore
+  private gamepads = new Gamepads(this.send);
   private demos: DemoSummary[] = [];
   private opened?: Opened;
   private running = true;
+  private resume = false;  // after that, it goes on
+  private lost?: Link;  // what was open when the connection was lost
   private held = new Map<string, string>();  // key → action
 
   constructor() {
@@ -26,6 +45,10 @@ class Page implements Listener {
     byId('step').onclick = () => this.send({type: 'step', count: 1});
     byId('restart').onclick = () => this.send({type: 'restart'});
     byId<HTMLSelectElement>('speed').onchange = (event) => this.send({type: 'speed', value: Number((event.target as HTMLSelectElement).value)});
+    byId('help-button').onclick = () => byId<HTMLDialogElement>('help').showModal();
+    byId<HTMLSelectElement>('theme').onchange = (event) => this.theme((event.target as HTMLSelectElement).value);
+    this.canvas.addEventListener('dblclick', (event) => this.choose(this.viewer.bodyAt(event.clientX, event.clientY)));
+    byId<HTMLInputElement>('search').oninput = (event) => this.search((event.target as HTMLInputElement).value);
     byId('menu').onclick = () => this.toggle('menu', 'no-demos');
     byId('panel-toggle').onclick = () => this.toggle('panel-toggle', 'no-panel');
     if (matchMedia('(max-width: 800px)').matches) { this.toggle('menu', 'no-demos'); this.toggle('panel-toggle', 'no-panel'); }
@@ -33,11 +56,22 @@ class Page implements Listener {
     addEventListener('keyup', (event) => this.key(event, false));
     addEventListener('blur', () => this.letGo());
     addEventListener('hashchange', () => {
-      const wanted = decodeURIComponent(location.hash.slice(1));
-      if (wanted !== this.opened?.demo) this.open(wanted);
+      const link = readLink(location.hash);
+      if (link.demo !== this.opened?.demo || Object.keys(link.parameters).length > 0) this.open(link);
     });
     new ResizeObserver(() => this.viewer.resize()).observe(byId('stage'));
     this.frameLoop();
+  }
+
+  private theme(name: string): void {
+    if (name) document.documentElement.dataset.theme = name; else delete document.documentElement.dataset.theme;
+    this.viewer.setTheme();
+    this.plots.redraw();
+  }
+
+  private choose(id: number): void {
+    this.viewer.choose(id);
+    this.send({type: 'inspect', body: id});
   }
 
   private toggle(button: string, name: string): void {
@@ -46,6 +80,7 @@ class Page implements Listener {
   }
 
   private frameLoop = (now = performance.now()) => {
+    this.gamepads.poll();
     this.viewer.render(now);
     this.plots.draw();
     requestAnimationFrame(this.frameLoop);
@@ -53,80 +88,114 @@ class Page implements Listener {
 
   connected(connected: boolean): void {
     this.notice(connected ? '' : 'The connection to the engine is lost. Trying again…');
-    if (!connected) this.hands.releaseAll();
+    if (connected) return;
+    this.lost ??= this.share.link();
+    this.resume = this.running;
+    if (this.lost?.step && this.lost.step > 3600) delete this.lost.step;
+    this.hands.releaseAll();
   }
 
-  private notice(text: string): void {
+  private notice(text: string, milliseconds = 0): void {
     const notice = byId('notice');
     notice.textContent = text;
     notice.hidden = text === '';
+    clearTimeout(this.noticeTimer);
+    if (milliseconds > 0) this.noticeTimer = setTimeout(() => this.notice(''), milliseconds);
   }
+  private noticeTimer?: ReturnType<typeof setTimeout>;
 
   message(message: HostMessage): void {
     switch (message.type) {
       case 'welcome': {
         this.demos = message.demos;
         this.listDemos();
-        const wanted = decodeURIComponent(location.hash.slice(1));
-        const known = this.demos.some((d) => d.id === wanted);
-        this.open(known ? wanted : this.opened?.demo ?? this.demos[0]?.id);
+        // A connection that was lost comes back to where it was: a run is made by its demo, its values and its steps.
+        const link = this.lost ?? readLink(location.hash), scene = this.share.scene;
+        this.lost = undefined;
+        if (scene && link.demo === scene.name) this.send({type: 'open_scene', ...scene});
+        else this.open(this.demos.some((d) => d.id === link.demo) ? link : {demo: this.demos[0]?.id, parameters: {}});
         break;
       }
       case 'opened': this.show(message); break;
       case 'scene':
         this.viewer.setBodies(message.bodies);
         this.viewer.setGround(message.ground?.level);
-        this.plots.restart();
         break;
       case 'bodies':
         if (message.remove?.length) this.viewer.removeBodies(message.remove);
         for (const body of message.add ?? []) this.viewer.addBody(body);
         break;
+      case 'numbers':
+        this.timing.add(message.stages);
+        this.panel.budget(message);
+        break;
+      case 'probed': this.tools.probed(message); break;
+      case 'inspected': showReport(message, this.opened?.dt ?? 1 / 60); break;
       case 'grabbed': this.hands.grabbed(message.pointer, message.body, message.point); break;
       case 'status':
         this.running = message.running;
         byId('run').textContent = message.running ? 'Pause' : 'Run';
         byId<HTMLButtonElement>('step').disabled = message.running;
         byId('verdict').textContent = message.message ?? '';
+        if (message.step === 0) this.plots.restart(); else this.plots.cut(message.time);
+        this.timeline.status(message.step, message.first, message.last);
+        this.share.step = message.step;
+        this.share.recorded(message.recording);
         byId('clock').textContent = `${message.time.toFixed(2)} s · step ${message.step}`;
         break;
       case 'values': this.panel.setValues(message.values); break;
       case 'error':
-        this.notice(message.message);
-        setTimeout(() => this.notice(''), 6000);
+        this.timeline.failed();
+        this.notice(this.share.withLine(message.message), 12000);
     }
   }
 
   mesh(mesh: Mesh): void { this.viewer.addMesh(mesh); }
+  file(bytes: ArrayBuffer): void { this.share.file(bytes); }
 
   frame(frame: Frame): void {
     this.viewer.apply(frame);
     for (const s of frame.samples) this.plots.add(s.plot, s.series, s.x, s.y);
     byId('clock').textContent = `${frame.time.toFixed(2)} s · step ${frame.step}`;
+    this.timeline.frame(frame.step);
+    this.share.step = frame.step;
     if (frame.stats) this.panel.numbers(frame.stats);
   }
 
-  private open(demo: string | undefined): void {
-    if (demo) this.send({type: 'open', demo});
+  private open(link: Link): void {
+    if (!link.demo) return;
+    this.wanted = link;
+    this.send({type: 'open', demo: link.demo, parameters: link.parameters});
   }
 
   private show(opened: Opened): void {
     this.opened = opened;
-    if (location.hash.slice(1) !== opened.demo) history.replaceState(null, '', `#${encodeURIComponent(opened.demo)}`);
+    this.share.opened = opened;
+    const wanted = this.wanted?.demo === opened.demo ? this.wanted : undefined;
+    this.wanted = undefined;
+    if (!wanted || Object.keys(wanted.parameters).length === 0) history.replaceState(null, '', writeLink({demo: opened.demo, parameters: {}}));
     document.title = `${opened.title} – Carom`;
     byId('title').textContent = opened.title;
     this.notice('');
     this.letGo();
     this.viewer.open(opened.dimension, opened.camera);
+    if (wanted?.camera) this.viewer.viewpoint = wanted.camera;
+    if (wanted?.step !== undefined) playTo(this.send, wanted.step);
+    if (this.resume) this.send({type: 'run'});
+    this.resume = false;
     this.panel.open(opened);
     this.plots.open(opened.plots);
+    this.timeline.open(opened.dt);
+    this.gamepads.inputs = opened.inputs;
+    this.tools.draw();
+    showReport({body: -1} as never, opened.dt);
     for (const link of byId('demos').querySelectorAll('a')) link.toggleAttribute('aria-current', link.dataset.demo === opened.demo);
   }
 
   private listDemos(): void {
     const groups = new Map<string, DemoSummary[]>();
     for (const demo of this.demos) groups.set(demo.group, [...(groups.get(demo.group) ?? []), demo]);
-    byId('demos').replaceChildren(...[...groups].map(([group, demos]) => {
+    byId('demo-list').replaceChildren(...[...groups].map(([group, demos]) => {
       const section = document.createElement('section');
       const heading = document.createElement('h2');
       heading.textContent = group;
@@ -140,7 +209,7 @@ class Page implements Listener {
         link.append(demo.title, summary);
         link.onclick = (event) => {
           event.preventDefault();
-          this.open(demo.id);
+          this.open({demo: demo.id, parameters: {}});
           if (matchMedia('(max-width: 800px)').matches) this.toggle('menu', 'no-demos');
         };
         const item = document.createElement('li');
@@ -150,6 +219,20 @@ class Page implements Listener {
       section.append(heading, list);
       return section;
     }));
+  }
+
+  /** Shows the demos whose title, summary or group holds every word. */
+  private search(text: string): void {
+    const words = text.toLowerCase().split(/\s+/).filter((word) => word);
+    for (const section of byId('demo-list').querySelectorAll('section')) {
+      const group = section.querySelector('h2')!.textContent!.toLowerCase();
+      let shown = 0;
+      for (const item of section.querySelectorAll('li')) {
+        item.hidden = !words.every((word) => item.textContent!.toLowerCase().includes(word) || group.includes(word));
+        if (!item.hidden) ++shown;
+      }
+      section.hidden = shown === 0;
+    }
   }
 
   private key(event: KeyboardEvent, down: boolean): void {
@@ -168,10 +251,18 @@ class Page implements Listener {
     if (!down || (target.tagName === 'BUTTON' && event.code === 'Space')) return;
     const actions: Record<string, () => void> = {
       Space: () => byId('run').click(), Period: () => byId('step').click(), KeyR: () => byId('restart').click(),
+      Comma: () => byId('back').click(), KeyF: () => this.viewer.followChosen(), KeyB: () => this.shootAhead(),
+      BracketLeft: () => this.choose(this.viewer.neighbour(-1)), BracketRight: () => this.choose(this.viewer.neighbour(1)),
+      ...Object.fromEntries(['pull', 'throw', 'ray', 'sphere', 'closest', 'why'].map((tool, i) => [`Digit${i + 1}`, () => this.tools.choose(tool as Tool)])),
       KeyD: () => byId('menu').click(), KeyP: () => byId('panel-toggle').click(), Home: () => this.viewer.resetView(),
     };
-    const action = actions[event.code];
+    const action = event.key === '?' ? () => byId('help-button').click() : actions[event.code];
     if (action) { event.preventDefault(); action(); }
+  }
+
+  private shootAhead(): void {
+    const box = this.canvas.getBoundingClientRect();
+    this.tools.shoot(box.left + box.width / 2, box.top + box.height / 2);
   }
 
   private letGo(): void {

@@ -1,12 +1,7 @@
 // The side panel: text, sliders made from the demo's declaration, and numbers.
-import type {Opened, Parameter, Stats} from './protocol';
+import type {Numbers, Opened, Parameter, Stats} from './protocol';
+import {element} from './dom';
 import {fromDisplay, short, toDisplay, unitOf} from './quantities';
-
-const element = <K extends keyof HTMLElementTagNameMap>(tag: K, properties: Record<string, unknown> = {}, ...children: (Node | string)[]) => {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-};
 
 export class Panel {
   private shown = new Map<string, (si: number) => void>();
@@ -82,6 +77,15 @@ export class Panel {
     host.hidden = demo.inputs.length === 0;
   }
 
+  budget(n: Numbers): void {
+    const size = (v: number[]) => Math.hypot(...v);
+    this.rows('budget', [
+      ['Momentum', `${short(size(n.momentum))} kg·m/s`], ['Angular momentum', `${short(size(n.angular_momentum))} kg·m²/s`], ['Mass', `${short(n.mass)} kg`],
+      ['Worst joint gap', `${short(1000 * n.joint_error, 3)} mm`], ['Pull of the hand', `${short(n.hand_force)} N`], ['Memory', `${short(n.bytes / 1e6, 3)} MB`],
+      ['Arrows: 1 m stands for', `${short(1 / n.arrows.velocity, 3)} m/s, ${short(1 / n.arrows.force, 3)} N, ${short(1 / n.arrows.impulse, 3)} N·s`],
+    ]);
+  }
+
   numbers(stats: Stats): void {
     const rows: [string, string][] = [
       ['Bodies', `${stats.bodies} (${stats.awake} awake)`], ['Contacts', String(stats.contacts)], ['Joints', String(stats.joints)],
@@ -89,7 +93,11 @@ export class Panel {
       ['Real time', `${short(stats.realTimeFactor, 3)}×`], ['Kinetic energy', `${short(stats.kinetic)} J`],
       ['Potential energy', `${short(stats.potential)} J`], ['Worst penetration', `${short(1000 * stats.penetration, 3)} mm`], ['State hash', stats.hash],
     ];
-    const list = document.getElementById('numbers')!;
+    this.rows('numbers', rows);
+  }
+
+  private rows(id: string, rows: [string, string][]): void {
+    const list = document.getElementById(id)!;
     if (list.children.length !== 2 * rows.length)
       list.replaceChildren(...rows.flatMap(([name]) => [element('dt', {textContent: name}), element('dd')]));
     rows.forEach(([, value], i) => { list.children[2 * i + 1].textContent = value; });

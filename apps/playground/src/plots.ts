@@ -1,7 +1,8 @@
 // Live plots of what the demo declared, with the fixed (analytic or published) curves beside them.
 import uPlot from 'uplot';
 import type {PlotDeclaration} from './protocol';
-import {short} from './quantities';
+import {byId, download} from './dom';
+import {short, tickLabels} from './quantities';
 
 const COLORS = ['#e4572e', '#4a8fe7', '#2a9d8f', '#d99a1c', '#9b6dd6', '#e07a9b'];
 const LIMIT = 6000;  // samples kept of a series; beyond it every second one is dropped
@@ -14,24 +15,83 @@ export class Plots {
   private chosen = 0;
   private chart?: uPlot;
   private dirty = false;
+  private zoom?: {x: [number, number]; y: [number, number]};
 
   constructor(private host: HTMLElement, private choice: HTMLElement) {
     new ResizeObserver(() => this.rebuild()).observe(host);
+    byId('plot-csv').onclick = () => this.saveCsv();
+    byId('plot-png').onclick = () => this.savePng();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.rebuild());
   }
 
   open(declarations: PlotDeclaration[]): void {
     this.declarations = declarations;
     this.chosen = 0;
+    this.zoom = undefined;
     this.choice.replaceChildren();
     if (declarations.length > 1) {
       const select = document.createElement('select');
       select.setAttribute('aria-label', 'Which plot');
       select.append(...declarations.map((d, i) => new Option(d.title, String(i))));
-      select.onchange = () => { this.chosen = Number(select.value); this.rebuild(); };
+      select.onchange = () => { this.chosen = Number(select.value); this.zoom = undefined; this.rebuild(); };
       this.choice.append(select);
     }
     this.restart();
+  }
+
+  redraw(): void { this.rebuild(); }
+
+  /** What the curves show where the cursor is. */
+  private readOut(u: uPlot): void {
+    const d = this.declarations[this.chosen], left = u.cursor.left ?? -1;
+    if (!d || left < 0) { byId('plot-value').textContent = ''; return; }
+    const x = u.posToVal(left, 'x');
+    const parts = d.series.map((s, i) => {
+      const curve = this.curves[this.chosen][i];
+      let best = -1;
+      for (let k = 0; k < curve.x.length; ++k) if (best < 0 || Math.abs(curve.x[k] - x) < Math.abs(curve.x[best] - x)) best = k;
+      return best < 0 ? '' : `${s.name} ${short(curve.y[best], 5)}`;
+    }).filter((t) => t);
+    byId('plot-value').textContent = `${d.x.label} ${short(x, 4)} ${d.x.unit}: ${parts.join(', ')} ${d.y.unit}`;
+  }
+
+  private name(suffix: string): string { return `${this.declarations[this.chosen].title.replace(/[^\w]+/g, '-').toLowerCase()}.${suffix}`; }
+
+  /** One row a sample: the series have x values of their own. */
+  private saveCsv(): void {
+    const d = this.declarations[this.chosen];
+    if (!d) return;
+    const quoted = (text: string) => `"${text.replace(/"/g, '""')}"`;
+    const head = ['series', `${d.x.label} (${d.x.unit})`, `${d.y.label} (${d.y.unit})`].map(quoted).join(',');
+    const rows = d.series.flatMap((s, i) => this.curves[this.chosen][i].x.map((x, k) => `${quoted(s.name)},${x},${this.curves[this.chosen][i].y[k]}`));
+    download(this.name('csv'), new Blob([[head, ...rows].join('\r\n'), '\r\n'], {type: 'text/csv'}));
+  }
+
+  private savePng(): void {
+    const chart = this.host.querySelector('canvas');
+    if (!chart) return;
+    const picture = document.createElement('canvas');
+    picture.width = chart.width;
+    picture.height = chart.height;
+    const ink = picture.getContext('2d')!;
+    ink.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--panel');
+    ink.fillRect(0, 0, picture.width, picture.height);
+    ink.drawImage(chart, 0, 0);
+    picture.toBlob((data) => { if (data) download(this.name('png'), data); });
+  }
+
+  /** The run went back to this time: what came after is not so any more. */
+  cut(time: number): void {
+    this.declarations.forEach((d, plot) => {
+      if (d.x.unit !== 's') return;
+      d.series.forEach((s, series) => {
+        const curve = this.curves[plot][series];
+        if (s.points || curve.x.length === 0 || curve.x[curve.x.length - 1] <= time + 1e-9) return;
+        const keep = curve.x.findIndex((x) => x > time + 1e-9);
+        curve.x.length = curve.y.length = keep;
+        this.dirty = true;
+      });
+    });
   }
 
   restart(): void {
@@ -72,15 +132,18 @@ export class Plots {
     if (!d || this.host.clientWidth < 50) return;
     const style = getComputedStyle(document.documentElement);
     const ink = style.getPropertyValue('--ink-soft'), grid = style.getPropertyValue('--line');
-    const axis = (a: {label: string; unit: string}, size: number): uPlot.Axis => ({
+    const axis = (a: {label: string; unit: string}, wide: boolean): uPlot.Axis => ({
       label: a.unit ? `${a.label} (${a.unit})` : a.label, stroke: ink, grid: {stroke: grid, width: 1}, ticks: {stroke: grid, width: 1},
-      size, labelSize: 20, font: '12px system-ui', labelFont: '12px system-ui', values: (_, ticks) => ticks.map((t) => short(t, 5)),
+      size: wide ? (_, labels) => 20 + 7 * Math.max(3, ...(labels ?? []).map((l) => l.length)) : 46, labelSize: 20, font: '12px system-ui', labelFont: '12px system-ui', values: (_, ticks, _axis, _space, increment) => tickLabels(ticks, increment),
     });
     const range = (k: 'x' | 'y') => (): [number, number] => {
+      if (this.zoom) return this.zoom[k];
       let low = Infinity, high = -Infinity;
       for (const c of this.curves[this.chosen] ?? []) for (const v of c[k]) if (Number.isFinite(v)) { if (v < low) low = v; if (v > high) high = v; }
       if (low > high) return [0, 1];
-      const pad = k === 'y' ? 0.06 * (high - low) || Math.max(1e-6, 0.1 * Math.abs(high)) || 1 : 0;
+      // What varies by less than a millionth of itself is drawn as the constant that it is.
+      const size = Math.max(Math.abs(low), Math.abs(high));
+      const pad = k === 'x' ? 0 : high - low > 1e-6 * size ? 0.06 * (high - low) : 0.1 * size || 1;
       return [low - pad, high > low || pad ? high + pad : low + 1];
     };
     // A series' path in its own x values; points beyond the pixel grid cost nothing.
@@ -100,8 +163,19 @@ export class Plots {
     this.chart = new uPlot({
       mode: 2, width: this.host.clientWidth, height: 230,
       scales: {x: {time: false, range: range('x')}, y: {range: range('y')}},
-      legend: {show: true, live: false}, cursor: {drag: {x: true, y: true}},
-      axes: [axis(d.x, 46), axis(d.y, 62)],
+      legend: {show: true, live: false}, cursor: {drag: {x: true, y: true, setScale: false}, bind: {dblclick: () => () => { this.zoom = undefined; this.dirty = true; return null; }}},
+      hooks: {
+        setCursor: [(u) => this.readOut(u)],
+        setSelect: [(u) => {
+          const {left, top, width, height} = u.select;
+          if (width < 4 && height < 4) return;
+          const whole = (low: number, high: number, k: 'x' | 'y'): [number, number] => high > low ? [low, high] : [u.scales[k].min!, u.scales[k].max!];
+          this.zoom = {x: whole(u.posToVal(left, 'x'), u.posToVal(left + width, 'x'), 'x'), y: whole(u.posToVal(top + height, 'y'), u.posToVal(top, 'y'), 'y')};
+          this.dirty = true;
+          u.setSelect({left: 0, top: 0, width: 0, height: 0}, false);
+        }],
+      },
+      axes: [axis(d.x, false), axis(d.y, true)],
       series: [{}, ...d.series.map((s, i): uPlot.Series => ({
         label: s.name, facets: [{scale: 'x', auto: true}, {scale: 'y', auto: true}], stroke: s.color ?? COLORS[i % COLORS.length],
         fill: s.style === 'points' ? s.color ?? COLORS[i % COLORS.length] : undefined, width: 1.75, paths: paths(s.style === 'points'),

@@ -15,7 +15,7 @@ export interface Opened {
   parameters: Parameter[]; plots: PlotDeclaration[]; inputs: Input[];
 }
 export interface Shape {
-  kind: string; local: number[]; radius?: number; half_length?: number; half_height?: number; half_extents?: number[];
+  kind: string; local: number[]; radius?: number; half_length?: number; half_height?: number; half_extents?: number[]; radii?: number[];
   normal?: number[]; mesh?: number; points?: number[][]; loop?: boolean;
   color?: string; opacity?: number; sensor?: boolean;
 }
@@ -23,13 +23,27 @@ export interface Body {
   id: number; name: string; type: 'fixed' | 'kinematic' | 'dynamic'; color?: string; position: number[]; rotation: number[];
   shapes: Shape[];
 }
+export interface Numbers {
+  type: 'numbers'; stages: Record<string, number>; mass: number; momentum: number[]; angular_momentum: number[]; joint_error: number;
+  hand_force: number; bytes: number; arrows: {velocity: number; force: number; impulse: number};
+}
+export interface Probed { type: 'probed'; kind: string; body: number; point: number[]; normal: number[]; distance: number }
+export interface Inspected {
+  type: 'inspected'; body: number; name: string; kind: string; mass: number; weight: number; position: number[]; velocity: number[];
+  angular_velocity: number[]; awake: boolean; why: string; advice: string[];
+  contacts: {with: string; points: number; normal: number[]; impulse: number; friction: number; depth: number; color: number}[];
+  joints: {type: string; with: string; force: number; torque: number; error: number; direct: boolean}[];
+}
 export type HostMessage =
   | {type: 'welcome'; protocol: number; version: string; engine: string; demos: DemoSummary[]}
   | Opened
   | {type: 'scene'; bodies: Body[]; ground?: {level: number}}
   | {type: 'bodies'; add: Body[]; remove: number[]}
   | {type: 'grabbed'; pointer: number; body: number; point: number[]}
-  | {type: 'status'; running: boolean; speed: number; time: number; step: number; message?: string}
+  | {type: 'status'; running: boolean; speed: number; time: number; step: number; first: number; last: number; recording: boolean; message?: string}
+  | Probed
+  | Numbers
+  | Inspected
   | {type: 'values'; values: Record<string, number>}
   | {type: 'error'; message: string};
 
@@ -49,7 +63,7 @@ export const BODY_BYTES = 24;
 const HEADER_BYTES = 56, SAMPLE_BYTES = 20, LINE_BYTES = 28, STATS_BYTES = 64;
 
 /** Decodes one binary message, or throws with what was wrong: a page must never draw half a frame. */
-export function decode(buffer: ArrayBuffer): Mesh | Frame {
+export function decode(buffer: ArrayBuffer): Mesh | Frame | {kind: 'file'; bytes: ArrayBuffer} {
   const view = new DataView(buffer);
   if (view.byteLength < 16) throw new Error(`message of ${view.byteLength} bytes, expected at least 16`);
   const kind = view.getUint8(0);
@@ -60,6 +74,7 @@ export function decode(buffer: ArrayBuffer): Mesh | Frame {
     return {kind: 'mesh', id: view.getUint32(4, true), positions: new Float32Array(buffer, 16, 3 * vertices),
       indices: new Uint32Array(buffer, 16 + 12 * vertices, indices)};
   }
+  if (kind === 3) return {kind: 'file', bytes: buffer.slice(4)};
   if (kind !== 2) throw new Error(`message of unknown kind ${kind}`);
   if (view.byteLength < HEADER_BYTES) throw new Error(`frame of ${view.byteLength} bytes has no whole header`);
   const flags = view.getUint8(1), count = view.getUint32(12, true), samples = view.getUint32(16, true), lines = view.getUint32(20, true);

@@ -16,4 +16,16 @@ export function short(value: number, digits = 4): string {
   }
   return String(Number(value.toPrecision(digits)));
 }
+/** Labels of ticks `increment` apart: as many digits as the step needs, the same power of ten for all. */
+export function tickLabels(ticks: number[], increment: number): string[] {
+  const largest = Math.max(...ticks.map(Math.abs), increment);
+  const exponent = Math.floor(Math.log10(largest));
+  // 2.5 needs one digit more than 2; what comes after the seventh is rounding of the tick itself.
+  const power = Math.floor(Math.log10(increment) + 1e-9), place = power - (increment / 10 ** power % 1 > 1e-6 ? 1 : 0);
+  if (exponent >= 6 || exponent < -3) {
+    const digits = Math.max(0, Math.min(9, exponent - place));
+    return ticks.map((t) => t === 0 ? '0' : `${(t / 10 ** exponent).toFixed(digits)}·10${superscript(exponent)}`);
+  }
+  return ticks.map((t) => (Math.abs(t) < increment / 1e6 ? 0 : t).toFixed(Math.max(0, Math.min(12, -place))));
+}
 const superscript = (n: number) => String(n).split('').map((c) => ({'-': '⁻', '0': '⁰', '1': '¹', '2': '²', '3': '³', '4': '⁴', '5': '⁵', '6': '⁶', '7': '⁷', '8': '⁸', '9': '⁹'})[c] ?? '').join('');

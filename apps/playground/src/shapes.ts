@@ -41,6 +41,10 @@ export function drawable3(shape: Shape, meshes: Map<number, Mesh>): Drawable | u
   switch (shape.kind) {
     case 'sphere':
       return {key: 'sphere', scale: new THREE.Vector3(r, r, r), build: (fine) => quartered(new THREE.SphereGeometry(1, cut(32, fine), cut(20, fine)))};
+    case 'ellipsoid': {
+      const [x, y, z] = shape.radii!;
+      return {key: 'sphere', scale: new THREE.Vector3(x, y, z), build: (fine) => quartered(new THREE.SphereGeometry(1, cut(32, fine), cut(20, fine)))};
+    }
     case 'box': {
       const [x, y, z] = shape.half_extents!;
       if (r === 0) return {key: 'box', scale: new THREE.Vector3(2 * x, 2 * y, 2 * z), build: () => plain(new THREE.BoxGeometry(1, 1, 1))};

@@ -6,10 +6,42 @@ export interface Listener {
   message(message: HostMessage): void;
   frame(frame: Frame): void;
   mesh(mesh: Mesh): void;
+  /** A recording that the host made. */
+  file(bytes: ArrayBuffer): void;
   connected(connected: boolean): void;
 }
 export interface Source {
   send(message: object): void;
+  /** A part of a file, as docs/protocol.md says. */
+  sendBytes(bytes: ArrayBuffer): void;
+}
+
+/** A message of the host, for whoever listens; frames are acknowledged once they have been taken in. */
+function deliver(data: string | ArrayBuffer, listener: Listener, source: Source): void {
+  if (typeof data === 'string') {
+    listener.message(JSON.parse(data) as HostMessage);
+    return;
+  }
+  const message = decode(data);
+  if (message.kind === 'mesh') listener.mesh(message);
+  else if (message.kind === 'file') listener.file(message.bytes);
+  else {
+    listener.frame(message);
+    source.send({type: 'ack', sequence: message.sequence});
+  }
+}
+
+/** The engine as WebAssembly in a Worker of this page. */
+export class WorkerSource implements Source {
+  private worker = new Worker(new URL('worker.js', document.baseURI), {type: 'module'});
+
+  constructor(listener: Listener) {
+    this.worker.onmessage = (event: MessageEvent<string | ArrayBuffer>) => deliver(event.data, listener, this);
+    this.worker.onerror = () => listener.message({type: 'error', message: 'The engine of this page stopped. Reload the page to start it again.'});
+    this.send({type: 'hello', protocol: 1});
+  }
+  send(message: object): void { this.worker.postMessage(JSON.stringify(message)); }
+  sendBytes(bytes: ArrayBuffer): void { this.worker.postMessage(bytes, [bytes]); }
 }
 
 /** The native engine over a WebSocket. Reconnects by itself; what is sent while the line is down is dropped. */
@@ -23,6 +55,10 @@ export class SocketSource implements Source {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
+  sendBytes(bytes: ArrayBuffer): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(bytes);
+  }
+
   private connect(): void {
     const socket = new WebSocket(this.url);
     socket.binaryType = 'arraybuffer';
@@ -31,25 +67,12 @@ export class SocketSource implements Source {
       this.send({type: 'hello', protocol: 1});
       this.listener.connected(true);
     };
-    socket.onmessage = (event) => this.receive(event.data);
+    socket.onmessage = (event) => deliver(event.data, this.listener, this);
     socket.onclose = () => {
       this.listener.connected(false);
       setTimeout(() => this.connect(), this.delay);
       this.delay = Math.min(2 * this.delay, 4000);
     };
     this.socket = socket;
-  }
-
-  private receive(data: string | ArrayBuffer): void {
-    if (typeof data === 'string') {
-      this.listener.message(JSON.parse(data) as HostMessage);
-      return;
-    }
-    const message = decode(data);
-    if (message.kind === 'mesh') this.listener.mesh(message);
-    else {
-      this.listener.frame(message);
-      this.send({type: 'ack', sequence: message.sequence});
-    }
   }
 }

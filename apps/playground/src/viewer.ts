@@ -7,6 +7,7 @@ import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
 import {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
 import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Shape} from './protocol';
 import {Ground} from './ground';
+import {Trail} from './trail';
 import {drawable2, drawable3, type Drawable} from './shapes';
 
 const PALETTE = ['#e4572e', '#f4b942', '#2a9d8f', '#4a8fe7', '#9b6dd6', '#e07a9b', '#6bbf59', '#d98e4a'];
@@ -100,7 +101,11 @@ export class Viewer {
   private controls: OrbitControls;
   private sun = new THREE.DirectionalLight('#fff4e0', 2.4);
   private sky = new THREE.HemisphereLight('#dfeaff', '#8a8072', 0.5);
+  private scheme = matchMedia('(prefers-color-scheme: dark)');
   private ground = new Ground();
+  private mark = new THREE.Group();
+  private trail = new Trail();
+  private chosen = -1;
   private lines = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({vertexColors: true, linewidth: 2.5}));
   private hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: '#ff2d55', depthTest: false}));
   private material = new THREE.MeshStandardMaterial({vertexColors: true, roughness: 0.72, metalness: 0});
@@ -139,15 +144,14 @@ export class Viewer {
     this.hand.renderOrder = 10;
     this.hand.visible = false;
     this.lines.frustumCulled = this.hand.frustumCulled = false;
-    this.scene.add(this.root, this.sun, this.sun.target, this.sky, this.ground.group, this.lines, this.hand);
+    this.scene.add(this.root, this.sun, this.sun.target, this.sky, this.ground.group, this.lines, this.hand, this.mark, this.trail.line);
     this.controls = new OrbitControls(this.camera, canvas);
-    const scheme = matchMedia('(prefers-color-scheme: dark)');
-    const theme = () => this.setTheme(scheme.matches);
-    scheme.addEventListener('change', theme);
-    theme();
+    this.scheme.addEventListener('change', () => this.setTheme());
+    this.setTheme();
   }
 
-  private setTheme(dark: boolean): void {
+  setTheme(): void {
+    const chosen = document.documentElement.dataset.theme, dark = chosen ? chosen === 'dark' : this.scheme.matches;
     this.scene.background = new THREE.Color(dark ? '#10161f' : '#dde6ee');
     this.scene.fog = null;
     this.ground.setTheme(dark);
@@ -227,6 +231,8 @@ export class Viewer {
     this.batches.clear();
     this.drawn.clear();
     this.waiting = [];
+    this.showMark();
+    this.trail.clear();
     this.setLines(new Float32Array(), new Uint32Array());
     this.showHand();
   }
@@ -320,6 +326,7 @@ export class Viewer {
         touched.add(batch);
       }
       drawn.asleep = asleep;
+      if (drawn.body.id === this.chosen) this.trail.add(drawn.position);
       if (drawn.body.id === this.follow) this.moveWith(drawn.position);
     }
     for (const batch of touched) batch.touch();
@@ -349,6 +356,21 @@ export class Viewer {
     this.lines.geometry.setColors(rgb);
   }
 
+  /** Where the camera is and what it looks at, in world coordinates. */
+  get viewpoint(): number[] { return [...this.camera.position.clone().add(this.origin).toArray(), ...this.controls.target.clone().add(this.origin).toArray()]; }
+  set viewpoint([x, y, z, tx, ty, tz]: number[]) {
+    this.camera.position.set(x, y, z).sub(this.origin);
+    this.controls.target.set(tx, ty, tz).sub(this.origin);
+    this.controls.update();
+    this.touched = true;
+  }
+
+  /** What the view shows, as a PNG. */
+  picture(): Promise<Blob | null> {
+    this.renderer.render(this.scene, this.camera);
+    return new Promise((resolve) => this.canvas.toBlob(resolve));
+  }
+
   /** The ray through a place of the canvas (CSS pixels), in world coordinates. */
   ray(x: number, y: number): THREE.Ray {
     const box = this.canvas.getBoundingClientRect();
@@ -358,18 +380,63 @@ export class Viewer {
     return caster.ray;
   }
 
-  /** Whether a body that moves lies under the pointer: then a drag pulls it, otherwise it turns the view. */
-  dynamicBodyAt(x: number, y: number): boolean {
+  /** The body under a place of the canvas, sensors apart; −1: none. */
+  bodyAt(x: number, y: number): number {
     const ray = this.ray(x, y);
     ray.origin.sub(this.origin);
     const caster = new THREE.Raycaster(ray.origin, ray.direction);
     // Sensors push nothing, and nothing holds them.
-    const solid = [...this.batches].filter(([key]) => !key.endsWith(' sensor')).map(([, batch]) => batch.mesh);
-    const hit = caster.intersectObjects(solid, false)[0];
-    if (!hit || hit.instanceId === undefined) return false;
-    for (const batch of this.batches.values())
-      if (batch.mesh === hit.object) return this.drawn.get(batch.owners[hit.instanceId])?.body.type === 'dynamic';
-    return false;
+    const solid = [...this.batches].filter(([key]) => !key.endsWith(' sensor')).map(([, batch]) => batch);
+    const hit = caster.intersectObjects(solid.map((batch) => batch.mesh), false)[0];
+    if (hit?.instanceId === undefined) return -1;
+    return solid.find((batch) => batch.mesh === hit.object)?.owners[hit.instanceId] ?? -1;
+  }
+
+  nameOf(id: number): string { return this.drawn.get(id)?.body.name || `body ${id}`; }
+  get chosenBody(): number { return this.chosen; }
+  choose(id: number): void {
+    if (id === this.chosen) return;
+    this.chosen = id;
+    this.trail.clear();
+  }
+  /** The body that moves before or after the chosen one. */
+  neighbour(way: number): number {
+    const ids = this.bodyIds('dynamic');
+    if (ids.length === 0) return -1;
+    return ids[(ids.indexOf(this.chosen) + way + ids.length + (this.chosen < 0 && way < 0 ? 1 : 0)) % ids.length];
+  }
+  /** The camera goes with the chosen body; asked again, or with none chosen, it stays where it is. */
+  followChosen(): void {
+    this.follow = this.follow === this.chosen ? -1 : this.chosen;
+    const drawn = this.drawn.get(this.follow);
+    if (drawn) this.moveWith(drawn.position);
+  }
+  get followed(): number { return this.follow; }
+
+  showShapes(on: boolean): void { this.root.visible = on; }
+  showShadows(on: boolean): void { this.sun.castShadow = on; }
+  showTrail(on: boolean): void { this.trail.line.visible = on; }
+
+  /** A point with its normal, where a probe hit; without a point nothing. */
+  showMark(point?: number[], normal?: number[]): void {
+    this.mark.visible = point !== undefined;
+    if (!point || !normal) return;
+    if (this.mark.children.length === 0) {
+      const material = new THREE.MeshBasicMaterial({color: '#d6006c', depthTest: false});
+      this.mark.add(new THREE.Mesh(new THREE.SphereGeometry(0.12, 16, 12), material), new THREE.Mesh(new THREE.CylinderGeometry(0.03, 0.03, 1, 8).translate(0, 0.5, 0), material));
+      this.mark.renderOrder = 11;
+    }
+    this.mark.position.set(point[0], point[1], point[2]).sub(this.origin);
+    const way = new THREE.Vector3(normal[0], normal[1], normal[2]);
+    this.mark.children[1].visible = way.lengthSq() > 0.5;
+    this.mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), way.lengthSq() > 0.5 ? way.normalize() : new THREE.Vector3(0, 1, 0));
+    const size = this.camera instanceof THREE.OrthographicCamera ? (this.camera.top - this.camera.bottom) / this.camera.zoom / 12 : this.camera.position.distanceTo(this.mark.position) / 14;
+    this.mark.scale.setScalar(size);
+  }
+
+  /** Whether a body that moves lies under the pointer: then a drag pulls it, otherwise it turns the view. */
+  dynamicBodyAt(x: number, y: number): boolean {
+    return this.drawn.get(this.bodyAt(x, y))?.body.type === 'dynamic';
   }
 
   /** Where a body's origin appears on the page (CSS pixels), for tests and labels. */

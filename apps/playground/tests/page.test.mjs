@@ -1,72 +1,12 @@
-// The page against the real engine: `carom serve` and headless Chromium. CAROM names the program, CHROMIUM the browser.
+// The page against the real engine: `carom serve` and headless Chromium.
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
-import {existsSync, mkdirSync, readFileSync} from 'node:fs';
-import {dirname, join} from 'node:path';
-import {after, afterEach, before, test} from 'node:test';
-import {fileURLToPath} from 'node:url';
-import {createRequire} from 'node:module';
-import {chromium} from 'playwright-core';
+import {after, before, test} from 'node:test';
+import {axe, bodies, demosOf, picture, place, screen, serve, stepOf, until, visit} from './harness.mjs';
 
-const here = dirname(fileURLToPath(import.meta.url));
-const carom = process.env.CAROM ?? join(here, '../../../build/release/apps/command/carom');
-const browserPath = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/google-chrome', '/usr/bin/chromium-browser'].find(existsSync);
-const pictures = process.env.PICTURES ?? join(here, '../../../out/page');
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-let server, browser, url;
-
-async function serve(port = 0) {
-  const child = spawn(carom, ['serve', '--port', String(port)], {stdio: ['ignore', 'pipe', 'inherit']});
-  const found = await new Promise((resolve, reject) => {
-    let text = '';
-    child.stdout.on('data', (bytes) => {
-      text += bytes;
-      const match = text.match(/http:\/\/[\w.:[\]]+\//);
-      if (match) resolve(match[0]);
-    });
-    child.on('exit', (code) => reject(new Error(`carom serve ended with ${code}: ${text}`)));
-    setTimeout(() => reject(new Error(`carom serve printed no address: ${text}`)), 20000).unref();
-  });
-  return {child, url: found};
-}
-
-before(async () => {
-  mkdirSync(pictures, {recursive: true});
-  ({child: server, url} = await serve());
-  browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
-    '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
-});
-after(async () => {
-  await browser?.close();
-  server?.kill('SIGINT');
-});
-
-/** A page with a demo open; fails the test on any error of the page. */
-const contexts = [];
-afterEach(async () => {
-  while (contexts.length > 0) await contexts.pop().close();
-});
-async function open(demo, {viewport = {width: 1000, height: 700}, ...options} = {}) {
-  const context = await browser.newContext({viewport, ...options});
-  contexts.push(context);
-  const page = await context.newPage();
-  page.problems = [];
-  page.on('pageerror', (error) => page.problems.push(String(error)));
-  page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
-  await page.goto(`${url}${demo ? `#${demo}` : ''}`);
-  await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 15000});
-  page.done = async () => {
-    assert.deepEqual(page.problems, []);
-  };
-  return page;
-}
-const stepOf = (page) => page.$eval('#clock', (e) => Number(e.textContent.match(/step (\d+)/)[1]));
-const until = (page, text) => page.waitForFunction((t) => document.querySelector('#run').textContent === t, text);
-const bodies = (page, type) => page.evaluate((t) => window.caromPage.viewer.bodyIds(t), type);
-const place = (page, id) => page.evaluate((i) => window.caromPage.viewer.bodyPosition(i), id);
-const screen = (page, id) => page.evaluate((i) => window.caromPage.viewer.screenOf(i), id);
-async function demosOf(page) { return page.$$eval('#demos a', (links) => links.map((a) => a.dataset.demo)); }
+let server;
+before(async () => { server = await serve(); });
+after(() => server?.close());
+const open = (demo, options) => visit(`${server.url}${demo ? `#${demo}` : ''}`, options);
 
 test('the page lists the demos and shows the first one moving', async () => {
   const page = await open('');
@@ -82,7 +22,7 @@ test('every demo opens, moves or stands, shows its numbers, and is accessible', 
     await page.waitForFunction((d) => document.querySelector(`#demos a[aria-current]`)?.dataset.demo === d, demo);
     await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 5, null, {timeout: 60000}); // software GL, and scenes of thousands of bodies
     await page.waitForTimeout(250);
-    await page.screenshot({path: join(pictures, `${demo.replace(/\W/g, '_')}.png`)});
+    await picture(page, demo);
     assert.notEqual(await page.textContent('#numbers'), '', demo);
     assert.ok((await page.textContent('#about')).length > 20, `${demo} says what it shows`);
     await page.evaluate(axe);
@@ -125,7 +65,7 @@ test('a body is grabbed with the mouse, follows it, and falls when let go', asyn
   await page.waitForTimeout(1200);
   const lifted = await place(page, top);
   assert.ok(lifted[1] > before[1] + 0.5, `lifted from ${before[1]} to ${lifted[1]}`);
-  await page.screenshot({path: join(pictures, 'grabbed.png')});
+  await picture(page, 'grabbed');
   await page.mouse.up();
   await page.waitForTimeout(2500);
   assert.ok((await place(page, top))[1] < lifted[1] - 0.5);
@@ -164,34 +104,35 @@ test('a phone of 360 pixels shows the view, opens the menu and the panel', async
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing sticks out');
   await page.tap('#menu');
   await page.waitForTimeout(200);
-  await page.screenshot({path: join(pictures, 'phone_menu.png')});
+  await picture(page, 'phone_menu');
   await page.tap('#demos a >> nth=1');
   await page.tap('#panel-toggle');
   await page.waitForTimeout(800);
-  await page.screenshot({path: join(pictures, 'phone_panel.png')});
+  await picture(page, 'phone_panel');
   await page.done();
 });
 
 test('dark theme', async () => {
   const page = await open('wrecking-ball', {colorScheme: 'dark'});
   await page.waitForTimeout(1500);
-  await page.screenshot({path: join(pictures, 'dark.png')});
+  await picture(page, 'dark');
   await page.done();
 });
 
 test('a lost connection is said, and mended when the server is back', async () => {
   const own = await serve();
-  const context = await browser.newContext();
-  const page = await context.newPage();
-  contexts.push(context);
-  await page.goto(own.url);
-  await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 15000});
-  own.child.kill('SIGINT');
+  const page = await visit(`${own.url}#wrecking-ball`);
+  await page.evaluate(() => window.caromPage.send({type: 'set', name: 'angle', value: 0.5}));
+  await page.waitForFunction(() => window.caromPage.share.link().parameters.angle === 0.5);
+  await page.click('#run');
+  await until(page, 'Run');
+  const held = await stepOf(page);
+  own.close();
   await page.waitForSelector('#notice:not([hidden])');
   assert.match(await page.textContent('#notice'), /connection/);
   const again = await serve(new URL(own.url).port);
   await page.waitForSelector('#notice', {state: 'hidden', timeout: 15000});
-  const step = await stepOf(page);
-  await page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) !== n, step);
-  again.child.kill('SIGINT');
+  await page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) === n, held);
+  assert.equal((await page.evaluate(() => window.caromPage.share.link())).parameters.angle, 0.5, 'as it was');
+  again.close();
 });

@@ -1,0 +1,180 @@
+#include "apps/host/playback.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "apps/host/messages.h"
+
+namespace carom::host {
+
+namespace {
+
+using Json = nlohmann::json;
+
+const core::Error only_shown{"this is a recording: it can be looked at, not changed; open the demo to take part"};
+
+class Playback final : public Simulation {
+ public:
+  Playback(Declaration declaration, std::shared_ptr<scene::Recording> recording, StepRange range)
+      : Simulation(std::move(declaration)), recording_(std::move(recording)), stage_(declaration_, {}), range_(range) {
+    base_ = &stage_;
+  }
+
+  core::Status show_frame(std::size_t index) {
+    core::Result<scene::RecordedFrame> frame = recording_->frame(index);
+    if (!frame.ok()) return frame.error();
+    frame_ = std::move(frame).value();
+    index_ = index;
+    if (frame_.has_hash) hash_ = frame_.state_hash;
+    for (const scene::RecordedSample& s : frame_.samples) stage_.sample(s.plot, s.series, s.x, s.y);
+    return {};
+  }
+
+  core::Status step() override {
+    if (index_ + 1 >= recording_->frame_count()) return {};
+    return show_frame(index_ + 1);
+  }
+  double time() const override { return frame_.time; }
+  std::uint64_t step_count() const override { return frame_.step; }
+
+  std::optional<StepRange> recorded() const override { return range_; }
+  core::Status show(std::uint64_t step) override {
+    const core::Status status = show_frame(recording_->index_at_step(step));
+    stage_.state.samples.clear();
+    return status;
+  }
+  std::string opened_text() const override { return recording_->header().declaration; }
+  std::string scene_text() override { return recording_->header().scene; }
+  const std::vector<std::string>* mesh_texts() const override { return &recording_->header().meshes; }
+
+  GrabAnswer grab(std::int64_t, math::Vec3d, math::Vec3d) override { return {}; }
+  core::Status drag(std::int64_t, math::Vec3d) override { return only_shown; }
+  void release(std::int64_t) override {}
+  void release_all() override {}
+  double hand_force() const override { return 0; }
+  core::Status spawn(const SpawnRequest&) override { return only_shown; }
+  core::Result<ProbeAnswer> probe(ProbeKind, math::Vec3d, math::Vec3d, double) override { return only_shown; }
+  std::string inspect(std::uint32_t) override { return {}; }
+  ArrowScale arrows() const override { return {1, 1, 1}; }
+  std::unique_ptr<Memento> save() override { return nullptr; }
+  core::Status restore(const Memento&) override { return only_shown; }
+
+  std::size_t body_count() const override { return frame_.bodies.size(); }
+  void places(std::vector<BodyPlace>& out) const override {
+    out.clear();
+    for (const scene::RecordedBody& b : frame_.bodies) out.push_back({b.id, b.position, b.rotation, !b.asleep});
+  }
+  void describe(const std::vector<std::uint32_t>*, std::vector<BodyView>&) override {}
+  void lines(std::vector<Line>& out) const override { out.clear(); }
+  bool take_changes(std::vector<std::uint32_t>&, std::vector<std::uint32_t>&) override { return false; }
+
+  rigid::Counters counters() const override {
+    rigid::Counters counters;
+    counters.bodies = int(frame_.bodies.size());
+    for (const scene::RecordedBody& b : frame_.bodies) counters.awake_bodies += !b.asleep;
+    return counters;
+  }
+  rigid::StepProfile profile() const override { return {}; }
+  Budget budget() const override { return {}; }
+  double worst_penetration() const override { return 0; }
+  double worst_joint_error() const override { return 0; }
+  std::uint64_t state_hash() const override { return hash_; }
+  int threads() const override { return 0; }
+  core::Result<std::unique_ptr<Simulation>> reopen(const std::vector<double>&) const override {
+    auto again = std::make_unique<Playback>(declaration_, recording_, range_);
+    if (const core::Status status = again->show_frame(0); !status.ok()) return status.error();
+    return std::unique_ptr<Simulation>(std::move(again));
+  }
+  void expectations(std::vector<Expectation>&) override {}
+
+ private:
+  class Silent final : public StageBase {
+   public:
+    using StageBase::StageBase;
+  };
+  void changed(std::string_view) override {}
+
+  std::shared_ptr<scene::Recording> recording_;
+  Silent stage_;
+  StepRange range_;
+  scene::RecordedFrame frame_;
+  std::size_t index_ = 0;
+  std::uint64_t hash_ = 0;
+};
+
+Json parsed(const std::string& text) { return Json::parse(text, nullptr, /*allow_exceptions=*/false); }
+
+/// What of the recorded declaration this side needs; the page reads the rest from the text itself.
+core::Result<Declaration> read_declaration(const scene::RecordingHeader& header) {
+  const Json opened = parsed(header.declaration), scene = parsed(header.scene);
+  if (!scene.is_object() || scene.value("type", Json()) != "scene" || !scene.contains("bodies") ||
+      !scene["bodies"].is_array())
+    return core::Error{"recording: the header holds no scene, expected the `scene` message of docs/protocol.md"};
+  if (!opened.is_object() || opened.value("type", Json()) != "opened")
+    return core::Error{"recording: the header holds no declaration, expected the `opened` message of docs/protocol.md"};
+  Declaration d;
+  d.id = "recording";
+  d.title = header.name;
+  d.dimension = header.dimension;
+  d.dt = header.dt;
+  if (opened.contains("camera") && opened["camera"].is_object()) {
+    const Json target = opened["camera"].value("target", Json());
+    if (target.is_array() && target.size() == 3 &&
+        std::all_of(target.begin(), target.end(), [](const Json& x) { return x.is_number(); }))
+      d.camera.target = {target[0].get<double>(), target[1].get<double>(), target[2].get<double>()};
+  }
+  return d;
+}
+
+}  // namespace
+
+scene::RecordingHeader recording_header(Simulation& simulation) {
+  const Declaration& d = simulation.declaration();
+  scene::RecordingHeader header;
+  header.name = d.id;
+  header.dt = d.dt;
+  header.dimension = d.dimension;
+  header.scene = simulation.scene_text();
+  header.declaration = simulation.opened_text();
+  const std::vector<Mesh>& meshes = simulation.meshes().meshes();
+  for (std::size_t i = 0; i < meshes.size(); ++i) header.meshes.push_back(mesh_message(std::uint32_t(i), meshes[i]));
+  return header;
+}
+
+void capture_frame(Simulation& simulation, bool with_hash, scene::RecordedFrame& frame) {
+  frame.step = simulation.step_count();
+  frame.time = simulation.time();
+  frame.has_hash = with_hash;
+  frame.state_hash = with_hash ? simulation.state_hash() : 0;
+  std::vector<BodyPlace> places;
+  simulation.places(places);
+  frame.bodies.clear();
+  for (const BodyPlace& p : places) frame.bodies.push_back({p.id, !p.awake, p.position, p.rotation});
+}
+
+core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_t> bytes) {
+  core::Result<scene::Recording> opened = scene::Recording::from_bytes(std::move(bytes));
+  if (!opened.ok()) return opened.error();
+  auto recording = std::make_shared<scene::Recording>(std::move(opened).value());
+  if (recording->frame_count() == 0)
+    return core::Error{"recording: found no whole frame" +
+                       (recording->damage().empty() ? std::string() : "; " + recording->damage())};
+  core::Result<Declaration> declaration = read_declaration(recording->header());
+  if (!declaration.ok()) return declaration.error();
+  const core::Result<scene::RecordedFrame> last = recording->frame(recording->frame_count() - 1);
+  if (!last.ok()) return last.error();
+  const std::uint64_t end = last->step;
+  const core::Result<scene::RecordedFrame> first = recording->frame(0);
+  if (!first.ok()) return first.error();
+  // A frame is a step of a player, however many steps of the run lie between two of them.
+  if (recording->frame_count() > 1)
+    declaration->dt = (recording->last_time() - recording->first_time()) / double(recording->frame_count() - 1);
+  if (!(declaration->dt > 0)) declaration->dt = recording->header().dt;
+  auto playback = std::make_unique<Playback>(std::move(declaration).value(), recording, StepRange{first->step, end});
+  if (const core::Status status = playback->show_frame(0); !status.ok()) return status.error();
+  playback->base().say(recording->complete() ? "recording" : "recording, not whole: " + recording->damage());
+  return std::unique_ptr<Simulation>(std::move(playback));
+}
+
+}  // namespace carom::host

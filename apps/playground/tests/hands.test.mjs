@@ -1,0 +1,159 @@
+// What one does to a scene and asks of it: going back in time, shooting, probing, asking why, layers, three fingers, a
+// gamepad, the keyboard alone.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {bodies, picture, place, screen, serve, stepOf, until, visit} from './harness.mjs';
+
+let server;
+before(async () => { server = await serve(); });
+after(() => server?.close());
+const open = (demo, options) => visit(`${server.url}#${demo}`, options);
+const at = (page, step) => page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) === n, step);
+const beyond = (page, step) => page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) > n, step, {timeout: 60000});
+const slide = (page, step) => page.$eval('#past', (slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, step);
+const hash = (page) => page.$$eval('#numbers dd', (all) => all[all.length - 1].textContent);
+const middle = async (page) => { const b = await page.locator('#view').boundingBox(); return {x: b.x + b.width / 2, y: b.y + b.height / 2}; };
+
+test('a step back, a scrub to the past, and on from there with the same bits', async () => {
+  const page = await open('wrecking-ball');
+  await beyond(page, 60);
+  await page.click('#run');
+  await until(page, 'Run');
+  const end = await stepOf(page);
+  await page.click('#back');
+  await at(page, end - 1);
+  await slide(page, 30);
+  await at(page, 30);
+  await page.waitForTimeout(500);  // the step is told before its bodies are
+  const ball = (await bodies(page, 'dynamic')).at(-1), then = await place(page, ball);
+  await slide(page, end);
+  await at(page, end);
+  await page.waitForTimeout(500);
+  assert.notDeepEqual(await place(page, ball), then);
+  const before = await hash(page);
+  await slide(page, 30);
+  await at(page, 30);
+  await page.waitForTimeout(500);
+  assert.deepEqual(await place(page, ball), then, 'the past is as it was');
+  for (let i = 30; i < end; ++i) await page.evaluate(() => window.caromPage.send({type: 'step', count: 1}));
+  await at(page, end);
+  await page.waitForTimeout(300);
+  assert.equal(await hash(page), before, 'and leads to the same present');
+  await page.done();
+});
+
+test('shooting a body, asking why, following it', async () => {
+  const page = await open('pyramids');
+  const before = (await bodies(page, 'dynamic')).length, there = await middle(page);
+  await page.keyboard.press('2');
+  await page.mouse.click(there.x, there.y);
+  await page.waitForFunction((n) => window.caromPage.viewer.bodyIds('dynamic').length === n, before + 1);
+  const shot = (await bodies(page, 'dynamic')).at(-1);
+  await page.evaluate((id) => window.caromPage.choose(id), shot);
+  await page.waitForSelector('#why-section:not([hidden])');
+  assert.match(await page.textContent('#why'), /thrown in.*dynamic/);
+  await page.focus('#view');
+  await page.keyboard.press('f');
+  assert.equal(await page.evaluate(() => window.caromPage.viewer.followed), shot);
+  await page.waitForTimeout(2500);
+  await page.locator('#why-section').scrollIntoViewIfNeeded();
+  await picture(page, 'why');
+  await page.done();
+});
+
+test('probes tell what lies under the pointer', async () => {
+  const page = await open('wrecking-ball');
+  const there = await middle(page);
+  for (const [key, text] of [['3', /along the ray/], ['4', /along the ray/], ['5', /away|nothing/]]) {
+    await page.keyboard.press(key);
+    await page.mouse.move(there.x + 20, there.y + 40);
+    await page.waitForTimeout(80);
+    await page.mouse.move(there.x, there.y + 30);
+    await page.waitForFunction(() => document.querySelector('#probe').textContent !== '');
+    assert.match(await page.textContent('#probe'), text);
+  }
+  await page.done();
+});
+
+test('every layer of debug drawing, in space and in the plane', async () => {
+  for (const demo of ['joints', 'collision-lab-2d']) {
+    const page = await open(demo);
+    for (let layer = 0; layer < 8; ++layer) {
+      await page.locator('#layers input').nth(layer).check();
+      await page.waitForTimeout(150);
+    }
+    await page.waitForTimeout(800);
+    await picture(page, `layers ${demo}`);
+    await page.locator('#timing').scrollIntoViewIfNeeded();
+    await picture(page, `numbers ${demo}`);
+    await page.done();
+  }
+});
+
+test('three fingers hold three bodies', async () => {
+  const page = await open('pyramids', {hasTouch: true});
+  await page.click('#run');
+  await until(page, 'Run');
+  const ids = (await bodies(page, 'dynamic')).slice(0, 400);
+  const spots = [];
+  const box = await page.locator('#view').boundingBox();
+  for (const id of ids) {
+    const s = await screen(page, id);
+    if (s.x > box.x + 30 && s.x < box.x + box.width - 30 && s.y > box.y + 60 && s.y < box.y + box.height - 120 && spots.every((o) => Math.hypot(o.x - s.x, o.y - s.y) > 60)) spots.push(s);
+    if (spots.length === 3) break;
+  }
+  assert.equal(spots.length, 3);
+  const answers = page.evaluate(() => new Promise((resolve) => {
+    const seen = [], message = window.caromPage.message.bind(window.caromPage);
+    window.caromPage.message = (m) => { message(m); if (m.type === 'grabbed') { seen.push(m.body); if (seen.length === 3) resolve(seen); } };
+  }));
+  const client = await page.context().newCDPSession(page);
+  const points = spots.map((s, id) => ({x: s.x, y: s.y, id}));
+  for (let n = 1; n <= 3; ++n) await client.send('Input.dispatchTouchEvent', {type: 'touchStart', touchPoints: points.slice(0, n)});
+  const held = await answers;
+  assert.ok(held.every((id) => id >= 0) && new Set(held).size === 3, `held ${held}`);
+  await client.send('Input.dispatchTouchEvent', {type: 'touchEnd', touchPoints: []});
+  await page.done();
+});
+
+test('a gamepad drives the hovercraft', async () => {
+  const page = await open('hovercraft');
+  const craft = (await bodies(page, 'dynamic'))[0], before = await place(page, craft);
+  await page.evaluate(() => {
+    const pad = {connected: true, axes: [0, -1], buttons: Array.from({length: 17}, () => ({value: 0, pressed: false}))};
+    navigator.getGamepads = () => [pad];
+    window.pad = pad;
+  });
+  await page.waitForTimeout(1500);
+  await page.evaluate(() => { window.pad.axes[1] = 0; });
+  const after = await place(page, craft);
+  assert.ok(Math.hypot(after[0] - before[0], after[1] - before[1]) > 0.3, `${before} → ${after}`);
+  await page.done();
+});
+
+test('all of it by the keyboard alone', async () => {
+  const page = await open('chain');
+  await page.focus('#view');
+  await page.keyboard.press('Space');
+  await until(page, 'Run');
+  const held = await stepOf(page);
+  await page.keyboard.press('.');
+  await at(page, held + 1);
+  await page.keyboard.press(',');
+  await at(page, held);
+  await page.keyboard.press(']');
+  await page.waitForSelector('#why-section:not([hidden])');
+  await page.keyboard.press('?');
+  await page.waitForSelector('#help[open]');
+  await picture(page, 'help');
+  await page.keyboard.press('Escape');
+  await page.waitForSelector('#help:not([open])', {state: 'attached'});
+  await page.focus('#view');
+  const before = (await bodies(page, 'dynamic')).length;
+  await page.keyboard.press('b');
+  await page.waitForFunction((n) => window.caromPage.viewer.bodyIds('dynamic').length === n, before + 1);
+  // Every control can be reached with the tab key and has a name.
+  const nameless = await page.$$eval('button, input, select, a', (all) => all.filter((e) => !e.closest('[hidden], dialog:not([open])') && !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.length || e.title)).map((e) => e.outerHTML));
+  assert.deepEqual(nameless, []);
+  await page.done();
+});

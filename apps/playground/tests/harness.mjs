@@ -1,0 +1,80 @@
+// What the tests of the page share: a browser, `carom serve`, a plain static server, and questions to ask of a page.
+// CAROM names the program, CHROMIUM the browser, PICTURES where screenshots go.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {existsSync, mkdirSync, readFileSync} from 'node:fs';
+import {createServer} from 'node:http';
+import {dirname, extname, join, normalize} from 'node:path';
+import {after, afterEach} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {createRequire} from 'node:module';
+import {chromium} from 'playwright-core';
+
+const here = dirname(fileURLToPath(import.meta.url));
+export const carom = process.env.CAROM ?? join(here, '../../../build/release/apps/command/carom');
+const browserPath = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/google-chrome', '/usr/bin/chromium-browser'].find(existsSync);
+export const pictures = process.env.PICTURES ?? join(here, '../../../out/page');
+export const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+mkdirSync(pictures, {recursive: true});
+
+/** The live server. */
+export async function serve(port = 0) {
+  const child = spawn(carom, ['serve', '--port', String(port)], {stdio: ['ignore', 'pipe', 'inherit']});
+  const url = await new Promise((resolve, reject) => {
+    let text = '';
+    child.stdout.on('data', (bytes) => {
+      text += bytes;
+      const match = text.match(/http:\/\/[\w.:[\]]+\//);
+      if (match) resolve(match[0]);
+    });
+    child.on('exit', (code) => reject(new Error(`carom serve ended with ${code}: ${text}`)));
+    setTimeout(() => reject(new Error(`carom serve printed no address: ${text}`)), 20000).unref();
+  });
+  return {url, close: () => child.kill('SIGINT')};
+}
+
+/** A folder over HTTP as the plainest web server would: no headers but the type, and that only of what browsers insist on. */
+export async function serveFolder(folder) {
+  const types = {'.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml'};
+  const server = createServer((request, response) => {
+    const path = join(folder, normalize(new URL(request.url, 'http://x').pathname).replace(/\/$/, '/index.html'));
+    if (!existsSync(path)) { response.writeHead(404).end(); return; }
+    response.writeHead(200, {'Content-Type': types[extname(path)] ?? 'application/octet-stream'}).end(readFileSync(path));
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return {url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close()};
+}
+
+const contexts = [];
+let browser;
+async function launched() {
+  browser ??= await chromium.launch({executablePath: browserPath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
+  return browser;
+}
+afterEach(async () => {
+  while (contexts.length > 0) await contexts.pop().close();
+});
+after(async () => { await browser?.close(); });
+
+/** A page at an address; `done` fails the test on any error that the page had. */
+export async function visit(address, {viewport = {width: 1000, height: 700}, ...options} = {}) {
+  const context = await (await launched()).newContext({viewport, ...options});
+  contexts.push(context);
+  const page = await context.newPage();
+  page.problems = [];
+  page.on('pageerror', (error) => page.problems.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
+  page.done = async () => assert.deepEqual(page.problems, []);
+  await page.goto(address);
+  await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 30000});
+  return page;
+}
+
+export const stepOf = (page) => page.$eval('#clock', (e) => Number(e.textContent.match(/step (\d+)/)[1]));
+export const until = (page, text) => page.waitForFunction((t) => document.querySelector('#run').textContent === t, text);
+export const bodies = (page, type) => page.evaluate((t) => window.caromPage.viewer.bodyIds(t), type);
+export const place = (page, id) => page.evaluate((i) => window.caromPage.viewer.bodyPosition(i), id);
+export const screen = (page, id) => page.evaluate((i) => window.caromPage.viewer.screenOf(i), id);
+export const demosOf = (page) => page.$$eval('#demos a', (links) => links.map((a) => a.dataset.demo));
+export const picture = (page, name) => page.screenshot({path: join(pictures, `${name.replace(/\W/g, '_')}.png`)});

@@ -1,0 +1,135 @@
+// What leaves the page and comes into it: links, recordings, scene files, plots as tables.
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {bodies, carom, demosOf, picture, place, serve, stepOf, until, visit} from './harness.mjs';
+
+let server;
+const folder = mkdtempSync(join(tmpdir(), 'carom-page-'));
+before(async () => { server = await serve(); });
+after(() => { server?.close(); rmSync(folder, {recursive: true}); });
+const open = (link) => visit(`${server.url}#${link}`);
+const at = (page, step) => page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) === n, step, {timeout: 60000});
+const slide = (page, step) => page.$eval('#past', (slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, step);
+const give = (page, ...files) => page.setInputFiles('#share input[type=file]', files);
+
+test('a link restores demo, parameters, moment and view', async () => {
+  const page = await open('wrecking-ball?angle=0.6&step=90&camera=12,5,9,0,2,0');
+  await at(page, 90);
+  await until(page, 'Run');
+  const link = await page.evaluate(() => window.caromPage.share.link());
+  assert.equal(link.parameters.angle, 0.6);
+  link.camera.forEach((x, i) => assert.ok(Math.abs(x - [12, 5, 9, 0, 2, 0][i]) < 1e-3, `camera ${link.camera}`));
+  const ball = (await bodies(page, 'dynamic')).at(-1), there = await place(page, ball);
+  const again = await open(`wrecking-ball?angle=0.6&step=90`);
+  await at(again, 90);
+  await again.waitForTimeout(300);
+  assert.deepEqual(await place(again, ball), there);
+  await page.done();
+});
+
+test('a recording is made, saved, opened again and scrubbed', async () => {
+  const page = await open('chain');
+  await page.click('#run');
+  await until(page, 'Run');
+  await page.click('#share button:has-text("Record")');
+  await page.waitForSelector('#share button:has-text("Save recording")');
+  const start = await stepOf(page);
+  await page.evaluate(() => window.caromPage.send({type: 'step', count: 60}));
+  await at(page, start + 60);
+  const ids = await bodies(page, 'dynamic'), end = await place(page, ids.at(-1));
+  const [saved] = await Promise.all([page.waitForEvent('download'), page.click('#share button:has-text("Save recording")')]);
+  const file = join(folder, 'chain.carom-rec');
+  await saved.saveAs(file);
+  await page.evaluate(() => { location.hash = 'pyramids'; });
+  await page.waitForFunction(() => document.title.includes('pyramids'));
+  await give(page, file);
+  await page.waitForFunction(() => document.title.includes('Chain'));
+  await page.waitForFunction(() => document.querySelector('#verdict').textContent === 'recording');
+  await slide(page, start + 60);
+  await at(page, start + 60);
+  await page.waitForTimeout(300);
+  const shown = await place(page, ids.at(-1));
+  shown.forEach((x, i) => assert.ok(Math.abs(x - end[i]) < 1e-5, `${shown} instead of ${end}`));
+  await slide(page, start + 10);
+  await at(page, start + 10);
+  await picture(page, 'recording');
+  await page.done();
+});
+
+test('a recording of 30 MB opens and is scrubbed; a broken one is named', {timeout: 240000}, async () => {
+  execFileSync(carom, ['run', 'heap', '--set', 'layers=25', '--steps', '500', '--no-pictures', '--quiet', '--out', folder]);
+  const file = join(folder, 'recording.carom-rec');
+  assert.ok(statSync(file).size > 25e6, `${statSync(file).size} bytes`);
+  const page = await open('chain');
+  await give(page, file);
+  await page.waitForFunction(() => document.title.includes('Heap'), null, {timeout: 60000});
+  await page.click('#run').catch(() => {});
+  for (const step of [480, 20, 250]) {
+    await slide(page, step);
+    await at(page, step);
+  }
+  await picture(page, 'large recording');
+  const bytes = readFileSync(file).subarray(0, 5000);
+  bytes[100] ^= 1;
+  writeFileSync(join(folder, 'broken.carom-rec'), bytes);
+  await give(page, join(folder, 'broken.carom-rec'));
+  await page.waitForSelector('#notice:not([hidden])');
+  assert.match(await page.textContent('#notice'), /recording/);
+  assert.match(await page.title(), /Heap/, 'what was open stays open');
+  await page.done();
+});
+
+test('a scene file opens, and a wrong one is shown at its line', async () => {
+  const page = await open('chain');
+  const scene = {name: 'Two balls', dimension: 3, bodies: [{name: 'ball', position: [0, '2 m', 0], shape: {type: 'sphere', radius: '0.5 m'}}]};
+  writeFileSync(join(folder, 'good.json'), JSON.stringify(scene, null, 1));
+  await give(page, join(folder, 'good.json'));
+  await page.waitForFunction(() => document.title.includes('Two balls'));
+  writeFileSync(join(folder, 'bad.json'), '{\n "name": "bad", "dimension": 3,\n "bodies": [\n  {"masss": "3 kg"}\n ]\n}');
+  await give(page, join(folder, 'bad.json'));
+  await page.waitForSelector('#notice:not([hidden])');
+  assert.match(await page.textContent('#notice'), /bad\.json:4:.*masss[^]*4 │ \{"masss": "3 kg"\}/);
+  await picture(page, 'wrong scene');
+  assert.match(await page.title(), /Two balls/);
+  await page.done();
+});
+
+test('a plot is saved as a table and as a picture, and read at the cursor', async () => {
+  const page = await open('chain');
+  await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) > 40, null, {timeout: 60000});
+  const [csv] = await Promise.all([page.waitForEvent('download'), page.click('#plot-csv')]);
+  await csv.saveAs(join(folder, 'plot.csv'));
+  const rows = readFileSync(join(folder, 'plot.csv'), 'utf8').trim().split('\r\n');
+  assert.match(rows[0], /time \(s\)/);
+  assert.ok(rows.length > 30 && rows.slice(1).every((row) => /^"[^"]+",[-\d.e]+,[-\d.e]+$/.test(row)), rows[1]);
+  const [png] = await Promise.all([page.waitForEvent('download'), page.click('#plot-png')]);
+  await png.saveAs(join(folder, 'plot.png'));
+  assert.equal(readFileSync(join(folder, 'plot.png')).subarray(1, 4).toString(), 'PNG');
+  await page.click('#run');
+  const box = await page.locator('#plot .u-over').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForFunction(() => /time [\d.]+ s: chain/.test(document.querySelector('#plot-value').textContent));
+  // Zoom: drag over a part, double click for the whole.
+  const range = () => page.evaluate(() => window.caromPage.plots.chart.scales.x.max - window.caromPage.plots.chart.scales.x.min);
+  const whole = await range();
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.75 * box.width, box.y + 0.8 * box.height, {steps: 4});
+  await page.mouse.up();
+  await page.waitForFunction((w) => window.caromPage.plots.chart.scales.x.max - window.caromPage.plots.chart.scales.x.min < 0.6 * w, whole);
+  await page.mouse.dblclick(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForFunction((w) => window.caromPage.plots.chart.scales.x.max - window.caromPage.plots.chart.scales.x.min > 0.9 * w, whole);
+  await page.done();
+});
+
+test('demos are found by words', async () => {
+  const page = await open('chain');
+  const all = (await demosOf(page)).length;
+  await page.fill('#search', 'hover');
+  const shown = await page.$$eval('#demos li:not([hidden]) a', (links) => links.map((a) => a.dataset.demo));
+  assert.ok(shown.includes('hovercraft') && shown.length < all / 3, String(shown));
+  await page.done();
+});
