@@ -12,6 +12,13 @@ set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fno-exceptions -fno-rtti -D_WASI_EMULATED_PROCESS_CLOCKS")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-lwasi-emulated-process-clocks")
+# Optimised when it is linked, so the archives hold clang's own form of code, which an older llvm-ar cannot read: the
+# plain ar does not look, and the linker needs no index.
+find_program(CAROM_WASM_AR NAMES ar REQUIRED)
+set(CMAKE_AR ${CAROM_WASM_AR})
+set(CMAKE_CXX_COMPILER_AR ${CAROM_WASM_AR})
+set(CMAKE_RANLIB true)
+set(CMAKE_CXX_COMPILER_RANLIB true)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 # (CMake resets the one without a language for a system that it does not know.)
 set(CMAKE_EXECUTABLE_SUFFIX_C .wasm)

@@ -72,10 +72,30 @@ build_native() {
   else quietly build cmake --build build/release --parallel "$jobs"; fi
 }
 
+# What building for WebAssembly needs, given the version that newest_clang names.
+wasm_packages() { echo "clang-$1" "lld-$1" wasi-libc "libc++-$1-dev-wasm32" "libclang-rt-$1-dev-wasm32"; }
+
+# build_wasm TARGET…: in build/wasm.
+build_wasm() {
+  local extra=()
+  command -v ccache >/dev/null && extra+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  say "building for WebAssembly"
+  quietly configure-wasm cmake --preset wasm -DCAROM_UNITY=ON "${extra[@]}"
+  quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "$@"
+}
+
+# build_page: for `carom serve`, in apps/playground/dist.
 build_page() {
   say "building the page"
   if [ ! -d apps/playground/node_modules ] || [ apps/playground/package-lock.json -nt apps/playground/node_modules/.package-lock.json ]; then
     quietly npm-ci npm ci --prefix apps/playground --no-audit --no-fund
   fi
   quietly page npm run --prefix apps/playground build
+}
+
+# build_web: the page with the engine in it, in out/web, for any web server.
+build_web() {
+  build_wasm carom_module
+  build_page
+  quietly web node apps/playground/build.mjs --web out/web
 }

@@ -1,6 +1,6 @@
 // Prints the state hashes of scenes that every build of Carom must agree on: compilers, SIMD widths, thread counts and
 // WebAssembly (tools/check_determinism.sh compares the printed lines).
-//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--scenes]
+//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--scenes] [--models]
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -8,6 +8,10 @@
 #include "apps/host/registry.h"
 #include "apps/host/simulation.h"
 #include "benchmarks/measure.h"
+#include "carom/ballistics/aim.h"
+#include "carom/ballistics/batch.h"
+#include "carom/ballistics/shell.h"
+#include "carom/core/hash.h"
 
 namespace {
 
@@ -47,11 +51,43 @@ void print_scenes(int threads, int width) {
   }
 }
 
+/// Models that no scene runs yet.
+void print_models(int width) {
+  using namespace carom;
+  using math::Vec3d;
+  const auto print = [](const char* name, std::uint64_t hash) {
+    std::printf("model %s %016llx\n", name, static_cast<unsigned long long>(hash));
+  };
+  const ballistics::Conditions air{.wind = environment::WindColumn(environment::Wind{
+                                       .velocity = {5, 0, 3}, .profile = environment::WindProfile::power}),
+                                   .gravity_model = ballistics::GravityModel::round_earth,
+                                   .rotation = ballistics::earth_rotation_rate(0.8, 1.1)};
+  ballistics::ProjectileBatch batch(ballistics::DragCurve(ballistics::DragFunction::g1), air, {}, width);
+  for (int i = 0; i < 100; ++i)
+    batch.add({{0, 100.0 + i, 0}, (200.0 + 7 * i) * ballistics::direction(0.01 * i, i)}, 1e-3);
+  for (int i = 0; i < 120; ++i) batch.step(1.0 / 60);
+  core::StateHash hash;
+  for (int k = 0; k < 6; ++k)
+    for (const float x : batch.array(k)) hash.add(x);
+  print("projectile_batch", hash.digest());
+
+  hash = {};
+  const auto hash_vector = [&](Vec3d v) { hash.add(v.x).add(v.y).add(v.z); };
+  const auto shell = ballistics::fly_shell(ballistics::m107(), air, {{}, 474.0 * ballistics::direction(0.5)},
+                                           ballistics::ShellModel::six_degrees, {.time = 10, .tolerance = 1e-7});
+  for (const ballistics::Trajectory::Node& node : shell->path.nodes())
+    hash_vector(node.position), hash_vector(node.velocity);
+  const auto aims = ballistics::aim(ballistics::projectile_from_coefficient(ballistics::DragFunction::g7, 0.3), air,
+                                    {.muzzle_speed = 500}, ballistics::Target{{600, 20, 100}, {10, 0, -30}});
+  for (const ballistics::Shot& shot : {*aims->low, *aims->high}) hash_vector(shot.direction), hash.add(shot.time);
+  print("shell_and_aim", hash.digest());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   int threads = 1, width = 0;
-  bool demos = false, scenes = false;
+  bool demos = false, scenes = false, models = false;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--threads") && i + 1 < argc)
       threads = std::atoi(argv[++i]);
@@ -61,12 +97,15 @@ int main(int argc, char** argv) {
       demos = true;
     else if (!std::strcmp(argv[i], "--scenes"))
       scenes = true;
+    else if (!std::strcmp(argv[i], "--models"))
+      models = true;
     else {
       std::fprintf(stderr, "state_hashes: unknown option %s\n", argv[i]);
       return 2;
     }
   }
-  const bool all = !demos && !scenes;
+  const bool all = !demos && !scenes && !models;
   if ((all || demos) && !print_demos(threads)) return 1;
+  if (all || models) print_models(width);
   if (all || scenes) print_scenes(threads, width);
 }

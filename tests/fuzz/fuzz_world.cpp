@@ -150,7 +150,7 @@ struct Player {
                                  : geometry::make_box2({in.size(), in.size()});
       }
     } else {
-      switch (in.byte() % 9) {
+      switch (in.byte() % 12) {
         case 0:
           return geometry::Sphere{in.size()};
         case 1:
@@ -172,6 +172,19 @@ struct Player {
           auto field = geometry::make_height_field(3, 3, {in.size(), in.size()},
                                                    {0, in.number(), 0, in.number(), 0, in.number(), 0, 0.1f, 0});
           return field.ok() ? geometry::Shape3(*field) : geometry::Shape3(geometry::Plane{vector()});
+        }
+        case 8:
+          return geometry::Ellipsoid{{in.size(), in.size(), in.size()}};
+        case 9: {
+          std::vector<std::uint8_t> cells;
+          for (int i = 0; i < 27; ++i) cells.push_back(std::uint8_t(in.byte() % 3));
+          auto grid = geometry::make_voxel_grid(3, 3, 3, in.size(), cells);
+          return grid.ok() ? geometry::Shape3(*grid) : geometry::Shape3(geometry::Box{});
+        }
+        case 10: {  // closed, where its corners are no plane: a body of its own
+          auto mesh = geometry::make_triangle_mesh({vector(), vector(), vector(), vector()},
+                                                   {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3}, {0, 1, 0, in.byte()});
+          return mesh.ok() ? geometry::Shape3(*mesh) : geometry::Shape3(geometry::Sphere{});
         }
         case 7: {
           auto compound = geometry::make_compound({{geometry::Box{{in.size(), in.size(), in.size()}}, transform()},
@@ -217,6 +230,7 @@ struct Player {
       d.filter = {in.byte(), in.byte(), std::int32_t(in.byte()) - 128};
     }
     if (in.byte() > 230) d.surface_velocity = vector();
+    while (in.byte() > 200) d.surfaces.push_back({{in.number(), in.number()}, vector()});
     if (in.byte() > 230) d.one_way = vector();
     const auto made = world.add_shape(body(), any_shape(), d);
     if (made.ok()) shapes.push_back(*made);
@@ -360,9 +374,35 @@ struct Player {
     }
   }
 
+  bool change_ground() {
+    const SurfaceMaterial<D> surface{{in.number(), in.number(), in.number()}, vector()};
+    if (in.byte() < 60) return world.set_surface(shape(), int(in.byte()) - 2, surface).ok();
+    if constexpr (D::dimension == 3) {
+      const int at[3] = {in.byte() % 5 - 1, in.byte() % 5 - 1, in.byte() % 5 - 1};
+      const int size[3] = {in.byte() % 4, in.byte() % 4, in.byte() % 4};
+      std::vector<float> heights;
+      std::vector<std::uint8_t> cells;
+      for (int i = 0; i < size[0] * size[1]; ++i) heights.push_back(in.number());
+      const int count = size[0] * size[1] * (in.flag() ? size[2] : 1);
+      for (int i = 0; i < count; ++i) cells.push_back(std::uint8_t(in.byte() % 3));
+      const geometry::GridRectangle rectangle{at[0], at[1], size[0], size[1]};
+      switch (in.byte() % 4) {
+        case 0:
+          return world.set_heights(shape(), rectangle, heights).ok();
+        case 1:
+          return world.set_holes(shape(), rectangle, cells).ok();
+        case 2:
+          return world.set_cell_materials(shape(), rectangle, cells).ok();
+        default:
+          return world.set_cells(shape(), {at[0], at[1], at[2], size[0], size[1], size[2]}, cells).ok();
+      }
+    }
+    return false;
+  }
+
   /// False where the call was refused.
   bool act() {
-    switch (in.byte() % 32) {
+    switch (in.byte() % 34) {
       case 0:
       case 1:
         return bodies.size() < 40 && add_body();
@@ -433,6 +473,9 @@ struct Player {
         return world.set_gravity(vector(5)).ok();
       case 27:
         return query();
+      case 32:
+      case 33:
+        return change_ground();
       case 28:
       case 29:
         return snapshots();

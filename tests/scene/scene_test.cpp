@@ -38,6 +38,18 @@ Scene parse(std::string_view text) {
   EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
   return scene.ok() ? *scene : Scene{};
 }
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+/// The message of a scene that must not load or start.
+std::string parse_error(std::string_view text) {
+  const Result<Scene> scene = parse_scene(text, "test");
+  if (!scene.ok()) return scene.error().message;
+  const Result<SceneWorld> world = scene->instantiate();
+  return world.ok() ? "accepted" : world.error().message;
+}
 SceneWorld start(const Scene& scene, std::span<const ParameterValue> values = {}) {
   Result<SceneWorld> world = scene.instantiate(values);
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
@@ -231,7 +243,10 @@ TEST(SceneJoints, OfEveryTypeInBothDimensions) {
      "limit": {"lower": "-10 cm", "upper": "10 cm"}, "motor": {"speed": "10 rpm", "max_torque": "1 N*m"}},
     {"type": "gear", "body_a": "a", "body_b": "b", "ratio": -2},
     {"type": "rack", "body_a": "a", "body_b": "b", "slide_axis": [A1], "radius": "20 cm"},
-    {"type": "pulley", "body_a": "a", "body_b": "b", "anchor": [A0], "ground_a": [A1], "ground_b": [A0], "ratio": 2}])";
+    {"type": "pulley", "body_a": "a", "body_b": "b", "anchor": [A0], "ground_a": [A1], "ground_b": [A0], "ratio": 2},
+    {"type": "path", "body_a": "a", "body_b": "c", "points": [[A0], [A1], [A2]], "follow": true, "spring": {"frequency": "1 Hz"},
+     "target_distance": "50 cm", "max_spring_force": "20 N", "limit": {"lower": 0, "upper": "1 m"}},
+    {"type": "path", "body_a": "world", "body_b": "b", "points": [[A0], [A1], [A2]], "tangents": [[A1], [A1], [A1]], "closed": true, "friction": "2 N"}])";
   for (const int dimension : {2, 3}) {
     std::string text = "{\"dimension\": " + std::to_string(dimension) + ", \"bodies\": [";
     for (const char* name : {"a", "b", "c"})
@@ -239,10 +254,11 @@ TEST(SceneJoints, OfEveryTypeInBothDimensions) {
               (dimension == 2 ? "circle" : "sphere") + "\"}, \"position\": [A1]}";
     text += std::string("], ") + joints + "}";
     for (const auto& [from, to] : {std::pair<std::string, std::string>{"[A0]", dimension == 2 ? "[0, 0]" : "[0, 0, 0]"},
+                                   {"[A2]", dimension == 2 ? "[2, 0]" : "[2, 0, 1]"},
                                    {"[A1]", dimension == 2 ? "[1, 1]" : "[1, 1, 1]"}})
       for (std::size_t at = 0; (at = text.find(from)) != std::string::npos;) text.replace(at, from.size(), to);
     SceneWorld world = start(parse(text));
-    EXPECT_EQ(world.joints.size(), 12u);
+    EXPECT_EQ(world.joints.size(), 14u);
     EXPECT_EQ(world.bodies.size(), 4u) << "and the body \"world\"";
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(world.step().ok());
     const Result<std::string> written = write_scene(world);
@@ -300,7 +316,10 @@ TEST(WriteScene, KeepsEveryKindOfShape) {
   const SceneWorld space = start(parse(R"({"bodies": [
     {"name": "fixed", "type": "fixed", "shapes": [{"type": "plane", "normal": [0.1, 1, 0]},
       {"type": "mesh", "vertices": [[0,0,0],[1,0,0],[0,0,1],[1,0.3,1]], "indices": [0,2,1,1,2,3]},
-      {"type": "height_field", "columns": 3, "rows": 2, "cell": [1, 0.5], "heights": [0, 0.1, 0, 0.2, 0.3, 0.1], "holes": [0, 1]}]},
+      {"type": "height_field", "columns": 3, "rows": 2, "cell": [1, 0.5], "heights": [0, 0.1, 0, 0.2, 0.3, 0.1], "holes": [0, 1]},
+      {"type": "voxels", "columns": 3, "layers": 2, "rows": 4, "cell_size": "25 cm", "runs": [7, 1, 5, 0, 3, 2, 9, 1], "surfaces": [{"material": {"friction": 1}}, {"material": {"friction": 0.1}}]}]},
+    {"name": "egg", "position": [2, 9, 1], "shape": {"type": "ellipsoid", "radii": [0.3, "20 cm", 0.4]}},
+    {"name": "tetrahedron", "position": [7, 9, 1], "shape": {"type": "mesh", "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "indices": [0,2,1,0,1,3,1,2,3,2,0,3], "density": 500, "filter": {"mask": 2}}},
     {"name": "hull", "position": [0.1, 5.3, 0.7], "awake": false, "user_data": "0xfedcba9876543210", "locks": ["x", "rotation_z"],
       "shape": {"type": "hull", "points": [[0,0,0],[1,0,0],[0,1.1,0],[0,0,1.3],[0.7,0.7,0.7]], "radius": 0.02, "filter": {"category": [1, 40], "mask": "0xff", "group": -3}}},
     {"name": "compound", "position": [5, 5, 5], "velocity": [1, 2, 3], "angular_velocity": [0.3, 0.2, 0.1], "rotation": {"yaw": "33 deg", "pitch": "12 deg"},
@@ -318,6 +337,8 @@ TEST(WriteScene, KeepsEveryKindOfShape) {
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].rule.friction, 0.05f);
   EXPECT_NE(text.find("surface_velocity"), std::string::npos);
+  EXPECT_NE(text.find("\"runs\": [7, 1, 5, 0, 3, 2, 9, 1]"), std::string::npos);
+  EXPECT_NEAR(read(copy, "tetrahedron.mass"), 500.0 / 6, 1e-4) << "of what the mesh encloses";
   EXPECT_EQ(write_scene(copy).value(), text);
   const SceneWorld plane = start(parse(R"({"dimension": 2, "bodies": [
     {"type": "fixed", "shapes": [{"type": "segment", "points": [[-1, 0], [1, 0.1]]}, {"type": "chain", "points": [[0,0],[1,0],[1,1]], "loop": true},
@@ -326,6 +347,42 @@ TEST(WriteScene, KeepsEveryKindOfShape) {
   const std::string flat = write_scene(plane).value();
   EXPECT_EQ(start(parse(flat)).state_hash(), plane.state_hash());
   EXPECT_EQ(write_scene(start(parse(flat))).value(), flat);
+}
+
+TEST(SceneShapes, HavePartsOfDifferentMaterials) {
+  const char* const space = R"({"dimension": 3, "materials": {"ice": {"friction": 0.05, "user_id": 3}},
+    "bodies": [{"name": "ground", "type": "fixed", "shape": SHAPE}]})";
+  const char* const shapes[] = {
+      R"({"type": "mesh", "vertices": [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]], "indices": [0, 1, 2, 2, 1, 3],
+          "materials": [0, 1], "surfaces": ["ice", {"material": {"friction": 2}, "surface_velocity": ["3 m/s", 0, 0]}]})",
+      R"({"type": "height_field", "columns": 3, "rows": 2, "heights": [0, 0, 0, 0, 0, 0], "materials": [0, 1],
+          "surfaces": ["ice", {"material": {"friction": 2}, "surface_velocity": ["3 m/s", 0, 0]}]})"};
+  for (const std::string shape : shapes) {
+    const SceneWorld world = start(parse(replaced(space, "SHAPE", shape)));
+    std::vector<rigid::ShapeId> ids;
+    world.world3->shapes(world.bodies[0].id, ids);
+    const std::vector<rigid::SurfaceMaterial<rigid::Dim3>> surfaces =
+        world.world3->shape_definition(ids[0]).value().surfaces;
+    ASSERT_EQ(surfaces.size(), 2u);
+    EXPECT_EQ(surfaces[0].material.user_id, 3u);
+    EXPECT_EQ(surfaces[0].material.friction, 0.05f);
+    EXPECT_EQ(surfaces[1].material.friction, 2.0f);
+    EXPECT_EQ(surfaces[1].surface_velocity, (math::Vec3f{3, 0, 0}));
+    EXPECT_EQ(geometry::material_count(world.world3->shape_geometry(ids[0]).value()), 2);
+    const std::string written = write_scene(world).value();
+    EXPECT_EQ(write_scene(start(parse(written))).value(), written);
+    EXPECT_NE(parse_error(replaced(space, "SHAPE", replaced(shape, "[0, 1]", "[0, 256]")))
+                  .find("whole numbers from 0 to 255"),
+              std::string::npos);
+    EXPECT_NE(parse_error(replaced(space, "SHAPE", replaced(shape, "\"ice\"", "\"icy\""))).find("did you mean"),
+              std::string::npos);
+  }
+  const SceneWorld flat = start(parse(R"({"dimension": 2, "bodies": [{"name": "ground", "type": "fixed", "shape":
+    {"type": "chain", "points": [[2, 0], [1, 0], [0, 0]], "materials": [1, 0], "surfaces":
+     [{"material": {"friction": 1}}, {"material": {"friction": 2}}]}}]})"));
+  const std::string written = write_scene(flat).value();
+  EXPECT_NE(written.find("\"materials\": [1, 0]"), std::string::npos);
+  EXPECT_EQ(write_scene(start(parse(written))).value(), written);
 }
 
 TEST(Probe, ReadsExpressionsWithUnits) {
