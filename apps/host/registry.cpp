@@ -1,12 +1,15 @@
 #include "apps/host/registry.h"
 
+#include <vector>
+
 #include "apps/host/demos/demos.h"
 #include "apps/host/stress_demo.h"
 
 namespace carom::host {
 
 namespace {
-constexpr DemoFactory factories[] = {
+/// The engine's own; what stands on it has a list in its folder of demos/.
+constexpr DemoFactory engine[] = {
     demo::make_wrecking_ball,   demo::make_pyramids,       demo::make_joints,
     demo::make_paths,           demo::make_machines,       demo::make_bridge,
     demo::make_adviser,         demo::make_rewind,         demo::make_walker,
@@ -21,10 +24,20 @@ constexpr DemoFactory factories[] = {
 };
 }  // namespace
 
-std::span<const DemoFactory> demos() { return factories; }
+std::span<const DemoFactory> demos() {
+  static const std::vector<DemoFactory> all = [] {
+    std::vector<DemoFactory> list(std::begin(engine), std::end(engine));
+    for (const std::span<const DemoFactory> group :
+         {demo::particle_demos(), demo::fluid_demos(), demo::rope_demos(), demo::ballistics_demos(),
+          demo::blast_demos(), demo::sports_demos(), demo::billiards_demos()})
+      list.insert(list.end(), group.begin(), group.end());
+    return list;
+  }();
+  return all;
+}
 
 std::unique_ptr<Demo> make_demo(std::string_view id) {
-  for (const DemoFactory make : factories) {
+  for (const DemoFactory make : demos()) {
     std::unique_ptr<Demo> demo = make();
     if (demo->declaration().id == id) return demo;
   }

@@ -8,12 +8,14 @@
 #include "apps/host/registry.h"
 #include "apps/host/simulation.h"
 #include "benchmarks/measure.h"
-#include "carom/ballistics/aim.h"
-#include "carom/ballistics/batch.h"
-#include "carom/ballistics/shell.h"
-#include "carom/core/hash.h"
+#include "tests/determinism/models.h"
 
 namespace {
+
+void print_models(int width) {
+  using namespace carom::determinism;
+  ballistics_models(width);
+}
 
 bool print_demos(int threads) {
   carom::host::SimulationOptions options;
@@ -49,38 +51,6 @@ void print_scenes(int threads, int width) {
     std::printf("scene %s %d %016llx\n", scene.path().c_str(), scene.hash_steps,
                 static_cast<unsigned long long>(outcome.hash));
   }
-}
-
-/// Models that no scene runs yet.
-void print_models(int width) {
-  using namespace carom;
-  using math::Vec3d;
-  const auto print = [](const char* name, std::uint64_t hash) {
-    std::printf("model %s %016llx\n", name, static_cast<unsigned long long>(hash));
-  };
-  const ballistics::Conditions air{.wind = environment::WindColumn(environment::Wind{
-                                       .velocity = {5, 0, 3}, .profile = environment::WindProfile::power}),
-                                   .gravity_model = ballistics::GravityModel::round_earth,
-                                   .rotation = ballistics::earth_rotation_rate(0.8, 1.1)};
-  ballistics::ProjectileBatch batch(ballistics::DragCurve(ballistics::DragFunction::g1), air, {}, width);
-  for (int i = 0; i < 100; ++i)
-    batch.add({{0, 100.0 + i, 0}, (200.0 + 7 * i) * ballistics::direction(0.01 * i, i)}, 1e-3);
-  for (int i = 0; i < 120; ++i) batch.step(1.0 / 60);
-  core::StateHash hash;
-  for (int k = 0; k < 6; ++k)
-    for (const float x : batch.array(k)) hash.add(x);
-  print("projectile_batch", hash.digest());
-
-  hash = {};
-  const auto hash_vector = [&](Vec3d v) { hash.add(v.x).add(v.y).add(v.z); };
-  const auto shell = ballistics::fly_shell(ballistics::m107(), air, {{}, 474.0 * ballistics::direction(0.5)},
-                                           ballistics::ShellModel::six_degrees, {.time = 10, .tolerance = 1e-7});
-  for (const ballistics::Trajectory::Node& node : shell->path.nodes())
-    hash_vector(node.position), hash_vector(node.velocity);
-  const auto aims = ballistics::aim(ballistics::projectile_from_coefficient(ballistics::DragFunction::g7, 0.3), air,
-                                    {.muzzle_speed = 500}, ballistics::Target{{600, 20, 100}, {10, 0, -30}});
-  for (const ballistics::Shot& shot : {*aims->low, *aims->high}) hash_vector(shot.direction), hash.add(shot.time);
-  print("shell_and_aim", hash.digest());
 }
 
 }  // namespace

@@ -2,13 +2,24 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <type_traits>
 
 #include "apps/host/demo.h"
+#include "apps/host/registry.h"
 
 namespace carom::host::demo {
 
 using namespace math;
+
+/// The demos of each folder here, in the order of the gallery.
+std::span<const DemoFactory> particle_demos();
+std::span<const DemoFactory> fluid_demos();
+std::span<const DemoFactory> rope_demos();
+std::span<const DemoFactory> ballistics_demos();
+std::span<const DemoFactory> blast_demos();
+std::span<const DemoFactory> sports_demos();
+std::span<const DemoFactory> billiards_demos();
 
 std::unique_ptr<Demo> make_wrecking_ball();
 std::unique_ptr<Demo> make_pyramids();

@@ -1,0 +1,9 @@
+#include "apps/host/demos/demos.h"
+
+namespace carom::host::demo {
+
+std::span<const DemoFactory> particle_demos() {
+  return {};  // static constexpr DemoFactory list[] = {make_…}; return list;
+}
+
+}  // namespace carom::host::demo

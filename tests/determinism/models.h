@@ -1,0 +1,16 @@
+// Models that no scene runs: each room prints a line for each of its own, in models_<room>.cpp.
+#pragma once
+
+#include <cstdio>
+
+#include "carom/core/hash.h"
+
+namespace carom::determinism {
+
+inline void print_model(const char* name, const core::StateHash& hash) {
+  std::printf("model %s %016llx\n", name, static_cast<unsigned long long>(hash.digest()));
+}
+
+void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine has
+
+}  // namespace carom::determinism
