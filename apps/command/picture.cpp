@@ -178,6 +178,31 @@ void body2(cairo_t* c, const Plane2& view, const host::BodyView& body, bool awak
   }
 }
 
+void surface2(cairo_t* c, const Plane2& view, const host::Surface& surface) {
+  set(c, rgb(surface.rgba >> 8, (surface.rgba & 255) / 255.0));
+  cairo_new_path(c);
+  for (std::size_t i = 0; i + 2 < surface.triangles.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f p = surface.corners[surface.triangles[i + k]];
+      if (k == 0)
+        cairo_move_to(c, view.x(p.x), view.y(p.y));
+      else
+        cairo_line_to(c, view.x(p.x), view.y(p.y));
+    }
+    cairo_close_path(c);
+  }
+  cairo_fill(c);
+}
+
+void points2(cairo_t* c, const Plane2& view, const host::Points& points) {
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    set(c, rgb(points.rgbas[i] >> 8, (points.rgbas[i] & 255) / 255.0));
+    cairo_arc(c, view.x(points.positions[i].x), view.y(points.positions[i].y),
+              std::max(0.7, double(points.radii[i]) * view.scale), 0, 2 * pi);
+    cairo_fill(c);
+  }
+}
+
 void scale_bar(cairo_t* c, double metres, double pixels, int width, int height) {
   const double x = width - 40 - pixels, y = height - 40;
   set(c, rgb(0xffffff, 0.82));
@@ -212,7 +237,11 @@ Surface plane_picture(host::Simulation& simulation, const std::vector<host::Body
   const Plane2 view{scale, center.x - 0.5 * width / scale, center.y + 0.5 * height / scale};
   const double spacing = round_length(height / scale / 8);
   grid2(c, view, width, height, spacing);
+  const host::StageBase::State& drawn = simulation.base().state;
+  for (const host::Surface& s : drawn.surfaces)
+    if (!s.corners.empty()) surface2(c, view, s);
   for (std::size_t i = 0; i < bodies.size(); ++i) body2(c, view, bodies[i], i < places.size() ? places[i].awake : true);
+  points2(c, view, drawn.points);
   cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
   std::vector<host::Line> lines;
   simulation.lines(lines);
@@ -253,6 +282,9 @@ Surface space_picture(host::Simulation& simulation, const std::vector<host::Body
       tessellate(shape, simulation.meshes(), body.position, body.rotation, color_of(body), detail, scene.triangles);
     }
   }
+  tessellate(simulation.base().state.points, scene.triangles);
+  for (const host::Surface& s : simulation.base().state.surfaces)
+    if (!s.corners.empty()) tessellate(s, scene.triangles);
   simulation.lines(scene.lines);
   const Image image = render(scene, width, height);
   Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));

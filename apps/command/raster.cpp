@@ -229,7 +229,8 @@ void paint(const Triangle& t, const View& view, const ShadowMap& shadows, Buffer
     if (depth >= out.depth[at]) return;
     const double u = a * w[0] / inverse, v = b * w[1] / inverse, s = 1 - u - v;
     const Vec3d point = t.corner[0] * u + t.corner[1] * v + t.corner[2] * s;
-    const Vec3d normal = normalize(t.normal[0] * u + t.normal[1] * v + t.normal[2] * s);
+    Vec3d normal = normalize(t.normal[0] * u + t.normal[1] * v + t.normal[2] * s);
+    if (t.two_sided && dot(normal, view.eye - point) < 0) normal = -normal;
     const Vec3d color = shade(albedo, normal, normalize(view.eye - point), shadows.lit(point, normal));
     if (t.opacity < 1) {
       out.color[at] = lerp(out.color[at], Vec3f(color), float(t.opacity));

@@ -139,4 +139,40 @@ void tessellate(const host::ShapeView& shape, const host::MeshLibrary& meshes, c
   }
 }
 
+void tessellate(const host::Points& points, std::vector<Triangle>& out) {
+  constexpr Vec3d axes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  constexpr int faces[8][3] = {{0, 2, 4}, {4, 2, 1}, {1, 2, 5}, {5, 2, 0}, {4, 3, 0}, {1, 3, 4}, {5, 3, 1}, {0, 3, 5}};
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const Vec3d center(points.positions[i]);
+    for (const auto& face : faces) {
+      Triangle t;
+      for (int k = 0; k < 3; ++k) {
+        t.normal[k] = axes[face[k]];
+        t.corner[k] = center + double(points.radii[i]) * axes[face[k]];
+      }
+      t.color = points.rgbas[i] >> 8;
+      t.opacity = double(points.rgbas[i] & 255) / 255;
+      out.push_back(t);
+    }
+  }
+}
+
+void tessellate(const host::Surface& surface, std::vector<Triangle>& out) {
+  std::vector<Vec3d> normals(surface.corners.size());
+  const auto corner = [&](std::size_t i) { return Vec3d(surface.corners[surface.triangles[i]]); };
+  for (std::size_t i = 0; i + 2 < surface.triangles.size(); i += 3) {
+    const Vec3d n = cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i));
+    for (std::size_t k = 0; k < 3; ++k) normals[surface.triangles[i + k]] += n;
+  }
+  for (Vec3d& n : normals) n = length(n) > 0 ? n / length(n) : Vec3d{0, 1, 0};
+  for (std::size_t i = 0; i + 2 < surface.triangles.size(); i += 3) {
+    Triangle t;
+    for (std::size_t k = 0; k < 3; ++k) t.corner[k] = corner(i + k), t.normal[k] = normals[surface.triangles[i + k]];
+    t.color = surface.rgba >> 8;
+    t.opacity = double(surface.rgba & 255) / 255;
+    t.two_sided = true;
+    out.push_back(t);
+  }
+}
+
 }  // namespace carom::command

@@ -13,6 +13,7 @@ namespace carom::host {
 
 using math::Vec2d;
 using math::Vec3d;
+using math::Vec3f;
 
 struct Parameter {
   std::string name;  ///< identifier, as `--set name=value` takes it
@@ -91,6 +92,22 @@ struct Sample {
 struct Line {
   Vec3d a, b;
   std::uint32_t rgba = 0xffffffff;
+};
+
+/// Many small balls: of particles, of a fluid. All arrays of one length.
+struct Points {
+  std::vector<Vec3f> positions;  ///< m, in the world
+  std::vector<float> radii;      ///< m
+  std::vector<std::uint32_t> rgbas;
+  void clear() { positions.clear(), radii.clear(), rgbas.clear(); }
+};
+
+/// Triangles whose corners move: cloth, a soft body, water.
+struct Surface {
+  std::vector<Vec3f> corners;            ///< m, in the world
+  std::vector<std::uint32_t> triangles;  ///< three corners each
+  std::uint32_t rgba = 0xffffffff;
+  std::uint32_t topology = 0;  ///< counts how often `triangles` changed
 };
 
 }  // namespace carom::host

@@ -95,8 +95,10 @@ core::Result<bool> History::seek(std::unique_ptr<Simulation>& simulation, std::u
   const std::uint64_t now = simulation->step_count();
   if (step == now) return false;
   bool another = false;
-  const auto after = std::upper_bound(saved_.begin(), saved_.end(), step,
-                                      [](std::uint64_t wanted, const Saved& saved) { return wanted < saved.step; });
+  // From before it where that is remembered: what a demo draws is made by its steps, not saved.
+  auto after = std::lower_bound(saved_.begin(), saved_.end(), step,
+                                [](const Saved& saved, std::uint64_t wanted) { return saved.step < wanted; });
+  if (after == saved_.begin() && after != saved_.end() && after->step == step) ++after;
   const Saved* from = after == saved_.begin() ? nullptr : &*std::prev(after);
   // Forward from where it stands is shorter where no saved state lies between.
   const bool ahead = now < step && (from == nullptr || from->step <= now);

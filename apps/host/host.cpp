@@ -458,6 +458,7 @@ void SimulationHost::begin() {
   send_scene();
   samples_.clear();
   sent_.clear();
+  surfaces_sent_.clear();
   real_window_ = simulated_window_ = 0;
   real_time_factor_ = 1;
   acknowledged_ = sequence_;  // the page starts afresh
@@ -590,6 +591,20 @@ void SimulationHost::send_meshes() {
     send_binary(mesh_message(std::uint32_t(meshes_sent_), meshes[meshes_sent_]));
 }
 
+void SimulationHost::send_drawn(bool key) {
+  const StageBase::State& state = simulation_->base().state;
+  // An empty message takes the last points away.
+  if (!state.points.positions.empty() || points_sent_) send_binary(points_message(state.points));
+  points_sent_ = !state.points.positions.empty();
+  surfaces_sent_.resize(state.surfaces.size());
+  for (std::size_t i = 0; i < state.surfaces.size(); ++i) {
+    const Surface& surface = state.surfaces[i];
+    if (surface.corners.empty()) continue;
+    send_binary(surface_message(std::uint32_t(i), surface, key || surfaces_sent_[i] != surface.topology));
+    surfaces_sent_[i] = surface.topology;
+  }
+}
+
 void SimulationHost::send_status() {
   StatusFields fields{running_, speed_};
   if (simulation_) {
@@ -654,6 +669,7 @@ void SimulationHost::frame(bool key) {
                           simulation_->worst_joint_error(), counters.bytes}));
     send_inspection();
   }
+  send_drawn(key);
   send_binary(frame_message(fields));
   samples_.clear();
   std::swap(sent_, now_);

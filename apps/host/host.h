@@ -79,6 +79,7 @@ class SimulationHost {
   void send_binary(std::string bytes);
   void send_status();
   void send_meshes();
+  void send_drawn(bool key);
   bool step_once();
   bool at_end() const;  ///< of a demo that loops
   void send_changes();
@@ -103,6 +104,8 @@ class SimulationHost {
   bool greeted_ = false;
   double speed_ = 1;
   std::uint32_t sequence_ = 0, acknowledged_ = 0;
+  std::vector<std::uint32_t> surfaces_sent_;  ///< topology that the page knows
+  bool points_sent_ = false;
   std::size_t meshes_sent_ = 0;
   double since_key_ = 0, since_stats_ = 0, since_end_ = 0;
   double real_window_ = 0, simulated_window_ = 0, real_time_factor_ = 1;

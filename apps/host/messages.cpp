@@ -368,4 +368,52 @@ std::string mesh_message(std::uint32_t id, const Mesh& mesh) {
   return out.take();
 }
 
+std::string points_message(const Points& points) {
+  math::Vec3f low{}, high{};
+  float largest = 0;
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const math::Vec3f p = points.positions[i];
+    low = i == 0 ? p : math::min(low, p);
+    high = i == 0 ? p : math::max(high, p);
+    largest = math::max(largest, points.radii[i]);
+  }
+  const math::Vec3f size = high - low;
+  const auto part = [](float x, float whole) {
+    return whole > 0 ? std::uint16_t(math::clamp(x / whole, 0.0f, 1.0f) * 65535.0f + 0.5f) : std::uint16_t{0};
+  };
+  Writer out(36 + 12 * points.positions.size());
+  out.put(std::uint8_t{4});
+  out.put(std::uint8_t{0});
+  out.put(std::uint16_t{0});
+  out.put(std::uint32_t(points.positions.size()));
+  out.put(low);
+  out.put(size);
+  out.put(largest);
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const math::Vec3f p = points.positions[i] - low;
+    out.put(part(p.x, size.x));
+    out.put(part(p.y, size.y));
+    out.put(part(p.z, size.z));
+    out.put(part(points.radii[i], largest));
+    out.put(points.rgbas[i]);
+  }
+  return out.take();
+}
+
+std::string surface_message(std::uint32_t id, const Surface& surface, bool with_triangles) {
+  const std::size_t indices = with_triangles ? surface.triangles.size() : 0;
+  Writer out(20 + 12 * surface.corners.size() + 4 * indices);
+  out.put(std::uint8_t{5});
+  out.put(std::uint8_t(with_triangles ? 1 : 0));
+  out.put(std::uint16_t{0});
+  out.put(id);
+  out.put(std::uint32_t(surface.corners.size()));
+  out.put(std::uint32_t(indices));
+  out.put(surface.rgba);
+  for (const math::Vec3f p : surface.corners) out.put(p);
+  if (with_triangles)
+    for (const std::uint32_t corner : surface.triangles) out.put(corner);
+  return out.take();
+}
+
 }  // namespace carom::host

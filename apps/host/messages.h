@@ -65,5 +65,8 @@ struct FrameFields {
 };
 std::string frame_message(const FrameFields& fields);
 std::string mesh_message(std::uint32_t id, const Mesh& mesh);
+/// Of what is drawn beside bodies; sent before the frame of the same step.
+std::string points_message(const Points& points);
+std::string surface_message(std::uint32_t id, const Surface& surface, bool with_triangles);
 
 }  // namespace carom::host

@@ -56,6 +56,7 @@ class SimulationOf final : public Simulation {
   core::Status step() override {
     if (!stage_.state.status.ok()) return stage_.state.status;
     stage_.state.lines.clear();
+    stage_.state.points.clear();
     demo_.before_step(stage_);
     stage_.check(demo_.step(stage_));
     demo_.after_step(stage_);

@@ -60,6 +60,59 @@ void StageBase::say(std::string message) {
   state.message_changed = true;
 }
 
+namespace {
+/// Of so many points, every k-th is shown.
+std::size_t stride_for(std::size_t count, std::size_t shown) {
+  const std::size_t room = max_points > shown ? max_points - shown : 1;
+  return (count + room - 1) / room;
+}
+}  // namespace
+
+void StageBase::points(std::span<const math::Vec3f> positions, float radius, std::uint32_t rgba) {
+  Points& out = state.points;
+  const std::size_t stride = stride_for(positions.size(), out.positions.size());
+  for (std::size_t i = 0; i < positions.size() && out.positions.size() < max_points; i += stride)
+    out.positions.push_back(positions[i]), out.radii.push_back(radius), out.rgbas.push_back(rgba);
+}
+
+void StageBase::points(std::span<const math::Vec3f> positions, std::span<const float> radii,
+                       std::span<const std::uint32_t> rgbas) {
+  if (radii.size() != positions.size() || rgbas.size() != positions.size())
+    return fail({"points: " + std::to_string(positions.size()) + " positions, " + std::to_string(radii.size()) +
+                 " radii and " + std::to_string(rgbas.size()) + " colours; expected as many of each"});
+  Points& out = state.points;
+  const std::size_t stride = stride_for(positions.size(), out.positions.size());
+  for (std::size_t i = 0; i < positions.size() && out.positions.size() < max_points; i += stride)
+    out.positions.push_back(positions[i]), out.radii.push_back(radii[i]), out.rgbas.push_back(rgbas[i]);
+}
+
+int StageBase::add_surface(std::vector<std::uint32_t> triangles, std::uint32_t rgba) {
+  state.surfaces.push_back({{}, std::move(triangles), rgba, 1});
+  return int(state.surfaces.size()) - 1;
+}
+
+void StageBase::set_surface(int surface, std::span<const math::Vec3f> corners) {
+  if (surface < 0 || std::size_t(surface) >= state.surfaces.size())
+    return fail({"set_surface: there is no surface " + std::to_string(surface)});
+  Surface& shown = state.surfaces[std::size_t(surface)];
+  if (corners.size() < shown.corners.size() || shown.corners.empty())
+    for (const std::uint32_t corner : shown.triangles)
+      if (corner >= corners.size())
+        return fail({"set_surface: a triangle names corner " + std::to_string(corner) + " of " +
+                     std::to_string(corners.size())});
+  shown.corners.assign(corners.begin(), corners.end());
+}
+
+void StageBase::set_surface(int surface, std::span<const math::Vec3f> corners, std::vector<std::uint32_t> triangles) {
+  if (surface >= 0 && std::size_t(surface) < state.surfaces.size()) {
+    Surface& shown = state.surfaces[std::size_t(surface)];
+    shown.triangles = std::move(triangles);
+    ++shown.topology;
+    shown.corners.clear();  // so that the new triangles are looked at
+  }
+  set_surface(surface, corners);
+}
+
 void StageBase::fail(const core::Error& error) {
   if (state.status.ok()) state.status = error;
 }
@@ -178,7 +231,8 @@ rigid::BodyId Stage<D>::floor(double level, const rigid::Material& material) {
 
 template <class D>
 typename Stage<D>::Memory Stage<D>::remember() const {
-  return {actors_, state.values, state.inputs, state.presses, state.message, declaration_.camera.follow};
+  return {
+      actors_, state.values, state.inputs, state.presses, state.surfaces, state.message, declaration_.camera.follow};
 }
 
 template <class D>
@@ -197,6 +251,14 @@ void Stage<D>::recall(const Memory& memory) {
   state.values = memory.values;
   state.inputs = memory.inputs;
   state.presses = memory.presses;
+  // What is drawn for one step is drawn anew by the next one. Where a surface was torn, the page gets its triangles.
+  state.lines.clear();
+  state.points.clear();
+  for (std::size_t i = 0; i < memory.surfaces.size() && i < state.surfaces.size(); ++i) {
+    const std::uint32_t topology = state.surfaces[i].topology;
+    state.surfaces[i] = memory.surfaces[i];
+    state.surfaces[i].topology = topology + 1;
+  }
   state.values_changed = true;
   say(memory.message);
   follow(memory.follow);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -38,6 +39,17 @@ class StageBase {
   void sample(int plot, int series, double x, double y);
   void line(math::Vec3d a, math::Vec3d b, std::uint32_t rgba);
   void line(math::Vec2d a, math::Vec2d b, std::uint32_t rgba) { line(in_space(a), in_space(b), rgba); }
+  /// Balls drawn until the next step, at most `max_points`: of more, every k-th is shown. One radius and colour for
+  /// all, or arrays as long as `positions`.
+  void points(std::span<const math::Vec3f> positions, float radius, std::uint32_t rgba);
+  void points(std::span<const math::Vec3f> positions, std::span<const float> radii,
+              std::span<const std::uint32_t> rgbas);
+  /// A surface that is drawn from both sides; `triangles` names three corners each. Gives its number.
+  int add_surface(std::vector<std::uint32_t> triangles, std::uint32_t rgba);
+  /// Where its corners are now; with `triangles`, where it was torn. A triangle that names a corner beyond the last
+  /// fails the stage.
+  void set_surface(int surface, std::span<const math::Vec3f> corners);
+  void set_surface(int surface, std::span<const math::Vec3f> corners, std::vector<std::uint32_t> triangles);
   /// A verdict or a read-out, one short line; shown until the next.
   void say(std::string message);
   void fail(const core::Error& error);
@@ -67,6 +79,8 @@ class StageBase {
     std::vector<int> presses;
     std::vector<Sample> samples;
     std::vector<Line> lines;
+    Points points;
+    std::vector<Surface> surfaces;
     std::string message;
     bool message_changed = false, values_changed = false;
     core::Status status;
@@ -82,6 +96,7 @@ class StageBase {
 
 inline constexpr std::size_t max_samples = 20'000;
 inline constexpr std::size_t max_lines = 8'192;
+inline constexpr std::size_t max_points = 60'000;
 
 template <class D>
 class Stage : public StageBase {
@@ -132,6 +147,7 @@ class Stage : public StageBase {
     std::vector<Actor> actors;
     std::vector<double> values, inputs;
     std::vector<int> presses;
+    std::vector<Surface> surfaces;
     std::string message;
     int follow = -1;
   };

@@ -56,6 +56,30 @@ class Reader {
   std::size_t at_ = 0;
 };
 
+/// Points and surfaces: what the messages say of their own length must be so.
+inline std::size_t decode_points(const std::string& bytes) {
+  Reader in(bytes);
+  EXPECT_EQ(in.get<std::uint32_t>(), 4u);
+  const std::size_t count = in.get<std::uint32_t>();
+  for (int k = 0; k < 6; ++k) EXPECT_TRUE(math::is_finite(in.get<float>()));
+  EXPECT_GE(in.get<float>(), 0);
+  EXPECT_EQ(bytes.size(), 36 + 12 * count);
+  return count;
+}
+inline std::size_t decode_surface(const std::string& bytes) {
+  Reader in(bytes);
+  EXPECT_EQ(in.get<std::uint8_t>(), 5);
+  const bool with_triangles = in.get<std::uint8_t>() & 1;
+  in.get<std::uint16_t>(), in.get<std::uint32_t>();
+  const std::size_t corners = in.get<std::uint32_t>(), indices = in.get<std::uint32_t>();
+  in.get<std::uint32_t>();
+  for (std::size_t i = 0; i < 3 * corners; ++i) EXPECT_TRUE(math::is_finite(in.get<float>()));
+  EXPECT_EQ(indices > 0, with_triangles);
+  for (std::size_t i = 0; i < indices; ++i) EXPECT_LT(in.get<std::uint32_t>(), corners);
+  EXPECT_TRUE(in.at_end());
+  return indices / 3;
+}
+
 inline Frame decode_frame(const std::string& bytes) {
   Frame f;
   Reader in(bytes);
@@ -157,6 +181,8 @@ class Page {
   std::vector<Frame> frames;
   std::map<std::uint32_t, Frame::Body> bodies;  ///< as the frames left them
   std::size_t meshes = 0;
+  std::size_t points = 0;          ///< shown now
+  std::size_t triangles = 0;       ///< of surfaces, that came so far
   std::vector<std::string> files;  ///< recordings that the host made
 
  private:
@@ -176,6 +202,14 @@ class Page {
       }
       if (message.data[0] == file_message_kind) {
         files.push_back(message.data.substr(4));
+        continue;
+      }
+      if (message.data[0] == 4) {
+        points = decode_points(message.data);
+        continue;
+      }
+      if (message.data[0] == 5) {
+        triangles += decode_surface(message.data);
         continue;
       }
       frames.push_back(decode_frame(message.data));

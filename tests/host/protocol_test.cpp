@@ -250,4 +250,48 @@ TEST(Protocol, WhatRestsIsNotSentAgain) {
 }
 
 }  // namespace
+class Bare final : public StageBase {
+ public:
+  using StageBase::StageBase;
+};
+
+TEST(Drawn, PointsAreThinnedAndKeepTheirPlaces) {
+  Declaration declaration;
+  Bare stage(declaration, {});
+  std::vector<math::Vec3f> many(150'000);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i] = {float(i), -1, 2};
+  stage.points(many, 0.1f, 0xff0000ff);
+  EXPECT_LE(stage.state.points.positions.size(), max_points);
+  EXPECT_GT(stage.state.points.positions.size(), max_points / 2);
+  EXPECT_TRUE(stage.state.status.ok());
+  const std::string message = points_message(stage.state.points);
+  EXPECT_EQ(test::decode_points(message), stage.state.points.positions.size());
+  // The last point's x is the whole of the box, its radius the whole of the largest.
+  std::uint16_t x, radius;
+  std::memcpy(&x, message.data() + message.size() - 12, 2);
+  std::memcpy(&radius, message.data() + message.size() - 6, 2);
+  EXPECT_EQ(x, 65535);
+  EXPECT_EQ(radius, 65535);
+  const std::vector<float> radii(2);
+  const std::vector<std::uint32_t> colors(3);
+  stage.points(std::span(many).first(3), radii, colors);
+  EXPECT_NE(stage.state.status.error().message.find("2 radii"), std::string::npos);
+}
+
+TEST(Drawn, ASurfaceTellsItsTrianglesOnceAndRefusesWrongOnes) {
+  Declaration declaration;
+  Bare stage(declaration, {});
+  const int sheet = stage.add_surface({0, 1, 2, 2, 1, 3}, 0x80ff00ff);
+  const std::vector<math::Vec3f> corners(4);
+  stage.set_surface(sheet, corners);
+  EXPECT_EQ(test::decode_surface(surface_message(0, stage.state.surfaces[0], true)), 2u);
+  EXPECT_EQ(test::decode_surface(surface_message(0, stage.state.surfaces[0], false)), 0u);
+  const std::uint32_t before = stage.state.surfaces[0].topology;
+  stage.set_surface(sheet, corners, {0, 1, 2});
+  EXPECT_NE(stage.state.surfaces[0].topology, before);
+  EXPECT_TRUE(stage.state.status.ok());
+  stage.set_surface(sheet, corners, {0, 1, 4});
+  EXPECT_NE(stage.state.status.error().message.find("corner 4 of 4"), std::string::npos);
+}
+
 }  // namespace carom::host::test

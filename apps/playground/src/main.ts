@@ -4,7 +4,7 @@ import {Gamepads} from './gamepad';
 import {Hands} from './hands';
 import {Panel} from './panel';
 import {Plots} from './plots';
-import type {DemoSummary, Frame, HostMessage, Mesh, Opened} from './protocol';
+import type {DemoSummary, Frame, HostMessage, Mesh, Opened, Points, Surface} from './protocol';
 import {playTo, readLink, Share, writeLink, type Link} from './share';
 import {SocketSource, WorkerSource, type Listener, type Source} from './source';
 import {Timeline} from './timeline';
@@ -151,6 +151,8 @@ class Page implements Listener {
   }
 
   mesh(mesh: Mesh): void { this.viewer.addMesh(mesh); }
+  points(points: Points): void { this.viewer.setPoints(points); }
+  surface(surface: Surface): void { this.viewer.setSurface(surface); }
   file(bytes: ArrayBuffer): void { this.share.file(bytes); }
 
   frame(frame: Frame): void {

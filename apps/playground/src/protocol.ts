@@ -59,11 +59,20 @@ export interface Frame {
   lines: Float32Array; lineColors: Uint32Array; stats?: Stats;
 }
 
+/** Small balls: positions and radii as parts (0 … 65535) of a box and of the largest radius. */
+export interface Points {
+  kind: 'points'; count: number; low: number[]; size: number[]; radius: number;
+  /** Per point four 16-bit numbers: x, y, z, radius. */
+  places: Uint16Array; colors: Uint8Array;
+}
+/** Corners of triangles that move; `triangles` only where they changed. */
+export interface Surface { kind: 'surface'; id: number; rgba: number; corners: Float32Array; triangles?: Uint32Array }
+
 export const BODY_BYTES = 24;
 const HEADER_BYTES = 56, SAMPLE_BYTES = 20, LINE_BYTES = 28, STATS_BYTES = 64;
 
 /** Decodes one binary message, or throws with what was wrong: a page must never draw half a frame. */
-export function decode(buffer: ArrayBuffer): Mesh | Frame | {kind: 'file'; bytes: ArrayBuffer} {
+export function decode(buffer: ArrayBuffer): Mesh | Frame | Points | Surface | {kind: 'file'; bytes: ArrayBuffer} {
   const view = new DataView(buffer);
   if (view.byteLength < 16) throw new Error(`message of ${view.byteLength} bytes, expected at least 16`);
   const kind = view.getUint8(0);
@@ -74,6 +83,8 @@ export function decode(buffer: ArrayBuffer): Mesh | Frame | {kind: 'file'; bytes
     return {kind: 'mesh', id: view.getUint32(4, true), positions: new Float32Array(buffer, 16, 3 * vertices),
       indices: new Uint32Array(buffer, 16 + 12 * vertices, indices)};
   }
+  if (kind === 4) return decodePoints(view);
+  if (kind === 5) return decodeSurface(buffer, view);
   if (kind === 3) return {kind: 'file', bytes: buffer.slice(4)};
   if (kind !== 2) throw new Error(`message of unknown kind ${kind}`);
   if (view.byteLength < HEADER_BYTES) throw new Error(`frame of ${view.byteLength} bytes has no whole header`);
@@ -104,4 +115,31 @@ export function decode(buffer: ArrayBuffer): Mesh | Frame | {kind: 'file'; bytes
     };
   }
   return frame;
+}
+
+const POINTS_HEADER = 36, POINT_BYTES = 12;
+function decodePoints(view: DataView): Points {
+  const count = view.getUint32(4, true), expected = POINTS_HEADER + POINT_BYTES * count;
+  if (view.byteLength !== expected) throw new Error(`points of ${view.byteLength} bytes, expected ${expected}`);
+  const three = (at: number) => [view.getFloat32(at, true), view.getFloat32(at + 4, true), view.getFloat32(at + 8, true)];
+  const places = new Uint16Array(4 * count), colors = new Uint8Array(4 * count);
+  for (let i = 0, at = POINTS_HEADER; i < count; ++i, at += POINT_BYTES) {
+    for (let k = 0; k < 4; ++k) places[4 * i + k] = view.getUint16(at + 2 * k, true);
+    const rgba = view.getUint32(at + 8, true);
+    colors[4 * i] = rgba >>> 24;
+    colors[4 * i + 1] = rgba >>> 16 & 255;
+    colors[4 * i + 2] = rgba >>> 8 & 255;
+    colors[4 * i + 3] = rgba & 255;
+  }
+  return {kind: 'points', count, low: three(8), size: three(20), radius: view.getFloat32(32, true), places, colors};
+}
+
+function decodeSurface(buffer: ArrayBuffer, view: DataView): Surface {
+  if (view.byteLength < 20) throw new Error(`surface of ${view.byteLength} bytes has no whole header`);
+  const corners = view.getUint32(8, true), indices = view.getUint32(12, true), expected = 20 + 12 * corners + 4 * indices;
+  if (view.byteLength !== expected) throw new Error(`surface of ${view.byteLength} bytes, expected ${expected}`);
+  return {
+    kind: 'surface', id: view.getUint32(4, true), rgba: view.getUint32(16, true), corners: new Float32Array(buffer, 20, 3 * corners),
+    triangles: view.getUint8(1) & 1 ? new Uint32Array(buffer, 20 + 12 * corners, indices) : undefined,
+  };
 }

@@ -1,11 +1,13 @@
 // Where a simulation comes from. A source carries the protocol's messages whole and in order; the page does not know
 // whether a server, a Worker or a recording is behind it.
-import {decode, type Frame, type HostMessage, type Mesh} from './protocol';
+import {decode, type Frame, type HostMessage, type Mesh, type Points, type Surface} from './protocol';
 
 export interface Listener {
   message(message: HostMessage): void;
   frame(frame: Frame): void;
   mesh(mesh: Mesh): void;
+  points(points: Points): void;
+  surface(surface: Surface): void;
   /** A recording that the host made. */
   file(bytes: ArrayBuffer): void;
   connected(connected: boolean): void;
@@ -24,6 +26,8 @@ function deliver(data: string | ArrayBuffer, listener: Listener, source: Source)
   }
   const message = decode(data);
   if (message.kind === 'mesh') listener.mesh(message);
+  else if (message.kind === 'points') listener.points(message);
+  else if (message.kind === 'surface') listener.surface(message);
   else if (message.kind === 'file') listener.file(message.bytes);
   else {
     listener.frame(message);

@@ -5,8 +5,9 @@ import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
 import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
 import {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
-import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Shape} from './protocol';
+import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Points, type Shape, type Surface} from './protocol';
 import {Ground} from './ground';
+import {Cloud, Surfaces} from './particles';
 import {Trail} from './trail';
 import {drawable2, drawable3, type Drawable} from './shapes';
 
@@ -105,6 +106,8 @@ export class Viewer {
   private ground = new Ground();
   private mark = new THREE.Group();
   private trail = new Trail();
+  private cloud = new Cloud();
+  private surfaces = new Surfaces();
   private chosen = -1;
   private lines = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({vertexColors: true, linewidth: 2.5}));
   private hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: '#ff2d55', depthTest: false}));
@@ -144,7 +147,7 @@ export class Viewer {
     this.hand.renderOrder = 10;
     this.hand.visible = false;
     this.lines.frustumCulled = this.hand.frustumCulled = false;
-    this.scene.add(this.root, this.sun, this.sun.target, this.sky, this.ground.group, this.lines, this.hand, this.mark, this.trail.line);
+    this.scene.add(this.root, this.sun, this.sun.target, this.sky, this.ground.group, this.lines, this.hand, this.mark, this.trail.line, this.cloud.object, this.surfaces.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.scheme.addEventListener('change', () => this.setTheme());
     this.setTheme();
@@ -233,6 +236,8 @@ export class Viewer {
     this.waiting = [];
     this.showMark();
     this.trail.clear();
+    this.cloud.clear();
+    this.surfaces.clear();
     this.setLines(new Float32Array(), new Uint32Array());
     this.showHand();
   }
@@ -304,6 +309,9 @@ export class Viewer {
       if (drawn) this.addShape(drawn, shape);
     }
   }
+
+  setPoints(points: Points): void { this.cloud.set(points, this.origin.clone().negate(), this.dimension === 2); }
+  setSurface(surface: Surface): void { this.surfaces.set(surface, this.origin.clone().negate(), this.dimension === 2); }
 
   apply(frame: Frame): void {
     // Positions come relative to the frame's origin; what is drawn is relative to the view's own.
@@ -500,6 +508,8 @@ export class Viewer {
     const center = this.controls.target;
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).add(new THREE.Vector3(0.45, 1, 0.35).normalize().multiplyScalar(3 * reach));
+    this.camera.updateMatrixWorld();
+    this.cloud.view(this.camera, this.renderer.domElement.height / 2, this.sun.position.clone().sub(center));
     this.renderer.render(this.scene, this.camera);
   }
 }
