@@ -50,7 +50,7 @@ export class Cloud {
   set(points: Points, shift: THREE.Vector3, flat: boolean): void {
     this.object.visible = points.count > 0;
     if (points.count === 0) return;
-    let geometry = this.object.geometry;
+    let geometry = this.object.geometry;  // without a `position`: three.js would count by it
     if (points.count > this.room) {
       // Grows by doubling: the GPU's buffers are made anew only then.
       this.room = Math.max(1024, 2 ** Math.ceil(Math.log2(points.count)));
@@ -58,8 +58,6 @@ export class Cloud {
       geometry = this.object.geometry = new THREE.BufferGeometry();
       geometry.setAttribute('place', new THREE.BufferAttribute(new Uint16Array(4 * this.room), 4, true).setUsage(THREE.DynamicDrawUsage));
       geometry.setAttribute('tone', new THREE.BufferAttribute(new Uint8Array(4 * this.room), 4, true).setUsage(THREE.DynamicDrawUsage));
-      // three.js asks for a position to count by; the shader does not read it.
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3), 3));
     }
     const place = geometry.getAttribute('place') as THREE.BufferAttribute, tone = geometry.getAttribute('tone') as THREE.BufferAttribute;
     place.array.set(points.places);
