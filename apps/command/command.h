@@ -72,6 +72,17 @@ struct RunOptions {
 };
 int run(const RunOptions& options);
 
+struct RenderOptions {
+  std::string source;  ///< a recording, a demo's name or a scene file
+  std::string out;     ///< NAME.gif, NAME.mp4 or a folder
+  std::vector<std::string> settings;
+  std::string size = "1280x720";
+  double rate = 30, from = 0, to = 0;  ///< to 0: all of it
+  int threads = 1;
+  bool quiet = false;
+};
+int render(const RenderOptions& options);
+
 struct SweepOptions {
   std::string scene, out;
   std::vector<std::string> settings;

@@ -108,6 +108,33 @@ int main(int count, char** arguments) {
       result = sweep(sweep_options);
   });
 
+  RenderOptions render_options;
+  CLI::App* render_command = app.add_subcommand(
+      "render", "Pictures of a recording, or of a scene as it runs: a GIF, an MP4 (with ffmpeg) or PNG files");
+  render_command
+      ->add_option("source", render_options.source, "a recording (.carom-rec), a scene file, or a demo's name")
+      ->required();
+  render_command->add_option("--out,-o", render_options.out, "NAME.gif, NAME.mp4, or a folder for PNG files")
+      ->required();
+  render_command->add_option("--set,-s", render_options.settings, "a parameter of a scene: name=value with its unit")
+      ->take_all();
+  render_command->add_option("--size", render_options.size, "of the pictures (1280x720)");
+  render_command->add_option("--rate,-r", render_options.rate, "pictures a simulated second (30)")
+      ->check(CLI::Range(0.01, 1000.0));
+  render_command->add_option("--from", render_options.from, "s; the first picture (0)")->check(CLI::Range(0.0, 1e7));
+  render_command->add_option("--to", render_options.to, "s; the last picture (the end)")->check(CLI::Range(0.0, 1e7));
+  render_command->add_option("--threads,-t", render_options.threads, "worker threads; 0: all processors")
+      ->check(CLI::Range(0, 64));
+  render_command->add_flag("--quiet,-q", render_options.quiet, "say nothing");
+  render_command->footer(
+      with_examples("  carom render out/wrecking-ball/recording.carom-rec --out wall.gif --size 640x360 --rate 20\n"
+                    "  carom render pyramids --out pyramids.mp4 --to 5\n"
+                    "  carom render scenes/heap.json --out out/frames\n"));
+  render_command->callback([&] {
+    render_options.threads = threads_of(render_options.threads);
+    result = render(render_options);
+  });
+
   ServeOptions serve_options;
   CLI::App* serve_command =
       app.add_subcommand("serve", "Serve the playground; the engine runs here, the page shows it");

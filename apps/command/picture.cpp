@@ -36,6 +36,11 @@ std::uint32_t color_of(const host::BodyView& body) {
 
 void caption(cairo_t* c, const host::Simulation& simulation, int width, int height, const std::string& scale) {
   const host::Declaration& d = simulation.declaration();
+  cairo_save(c);
+  const double k = std::min(1.0, std::max(0.4, height / 720.0));  // small pictures have small letters
+  cairo_scale(c, k, k);
+  width = int(width / k);
+  height = int(height / k);
   char line[128];
   std::snprintf(line, sizeof line, "t = %.2f s   ·   %zu bodies   ·   %s", simulation.time(), simulation.body_count(),
                 scale.c_str());
@@ -61,6 +66,7 @@ void caption(cairo_t* c, const host::Simulation& simulation, int width, int heig
     set(c, rgb(0x1d242b));
     text(c, 28, height - 26, message, 0, 1);
   }
+  cairo_restore(c);
 }
 
 // --- the plane -----------------------------------------------------------------------------------------------------
@@ -204,7 +210,11 @@ void points2(cairo_t* c, const Plane2& view, const host::Points& points) {
 }
 
 void scale_bar(cairo_t* c, double metres, double pixels, int width, int height) {
-  const double x = width - 40 - pixels, y = height - 40;
+  cairo_save(c);
+  const double k = std::min(1.0, std::max(0.4, height / 720.0));
+  cairo_scale(c, k, k);
+  pixels /= k;
+  const double x = width / k - 40 - pixels, y = height / k - 40;
   set(c, rgb(0xffffff, 0.82));
   cairo_rectangle(c, x - 12, y - 24, pixels + 24, 36);
   cairo_fill(c);
@@ -219,6 +229,7 @@ void scale_bar(cairo_t* c, double metres, double pixels, int width, int height) 
   cairo_stroke(c);
   font(c, 14);
   text(c, x + 0.5 * pixels, y - 6, length_text(metres), 0.5, 1);
+  cairo_restore(c);
 }
 
 Surface plane_picture(host::Simulation& simulation, const std::vector<host::BodyView>& bodies,
@@ -310,15 +321,17 @@ Surface space_picture(host::Simulation& simulation, const std::vector<host::Body
 
 }  // namespace
 
-core::Status write_picture(host::Simulation& simulation, const std::string& path, int width, int height) {
+Surface picture_of(host::Simulation& simulation, int width, int height) {
   std::vector<host::BodyView> bodies;
   std::vector<host::BodyPlace> places;
   simulation.describe(nullptr, bodies);
   simulation.places(places);
-  const Surface surface = simulation.declaration().dimension == 2
-                              ? plane_picture(simulation, bodies, places, width, height)
-                              : space_picture(simulation, bodies, width, height);
-  return write_png(surface.get(), path);
+  return simulation.declaration().dimension == 2 ? plane_picture(simulation, bodies, places, width, height)
+                                                 : space_picture(simulation, bodies, width, height);
+}
+
+core::Status write_picture(host::Simulation& simulation, const std::string& path, int width, int height) {
+  return write_png(picture_of(simulation, width, height).get(), path);
 }
 
 }  // namespace carom::command

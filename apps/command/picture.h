@@ -3,10 +3,13 @@
 
 #include <string>
 
+#include "apps/command/canvas.h"
 #include "apps/host/simulation.h"
 
 namespace carom::command {
 
+/// 32-bit pixels, 0x00RRGGBB.
+Surface picture_of(host::Simulation& simulation, int width, int height);
 core::Status write_picture(host::Simulation& simulation, const std::string& path, int width = 1280, int height = 720);
 
 }  // namespace carom::command

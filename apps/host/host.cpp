@@ -473,8 +473,6 @@ void SimulationHost::send_scene() {
   send(simulation_->scene_text());
   meshes_sent_ = 0;
   send_meshes();
-  if (const std::vector<std::string>* recorded = simulation_->mesh_texts())
-    for (const std::string& mesh : *recorded) send_binary(mesh);
 }
 
 void SimulationHost::act(History::Action action) { history_.act(*simulation_, std::move(action)); }

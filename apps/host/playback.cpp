@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "apps/host/messages.h"
+#include "apps/host/read_views.h"
 
 namespace carom::host {
 
@@ -16,9 +17,15 @@ const core::Error only_shown{"this is a recording: it can be looked at, not chan
 
 class Playback final : public Simulation {
  public:
-  Playback(Declaration declaration, std::shared_ptr<scene::Recording> recording, StepRange range)
-      : Simulation(std::move(declaration)), recording_(std::move(recording)), stage_(declaration_, {}), range_(range) {
+  Playback(Declaration declaration, std::shared_ptr<scene::Recording> recording, StepRange range,
+           std::vector<BodyView> views, MeshLibrary meshes)
+      : Simulation(std::move(declaration)),
+        recording_(std::move(recording)),
+        stage_(declaration_, {}),
+        range_(range),
+        views_(std::move(views)) {
     base_ = &stage_;
+    meshes_ = std::move(meshes);
   }
 
   core::Status show_frame(std::size_t index) {
@@ -46,7 +53,6 @@ class Playback final : public Simulation {
   }
   std::string opened_text() const override { return recording_->header().declaration; }
   std::string scene_text() override { return recording_->header().scene; }
-  const std::vector<std::string>* mesh_texts() const override { return &recording_->header().meshes; }
 
   GrabAnswer grab(std::int64_t, math::Vec3d, math::Vec3d) override { return {}; }
   core::Status drag(std::int64_t, math::Vec3d) override { return only_shown; }
@@ -65,7 +71,17 @@ class Playback final : public Simulation {
     out.clear();
     for (const scene::RecordedBody& b : frame_.bodies) out.push_back({b.id, b.position, b.rotation, !b.asleep});
   }
-  void describe(const std::vector<std::uint32_t>*, std::vector<BodyView>&) override {}
+  /// The bodies of the header that are there now, where they are now. A page reads the header itself.
+  void describe(const std::vector<std::uint32_t>*, std::vector<BodyView>& out) override {
+    std::size_t at = 0;
+    for (const scene::RecordedBody& b : frame_.bodies) {
+      while (at < views_.size() && views_[at].id < b.id) ++at;
+      if (at == views_.size() || views_[at].id != b.id) continue;
+      out.push_back(views_[at]);
+      out.back().position = b.position;
+      out.back().rotation = b.rotation;
+    }
+  }
   void lines(std::vector<Line>& out) const override { out.clear(); }
   bool take_changes(std::vector<std::uint32_t>&, std::vector<std::uint32_t>&) override { return false; }
 
@@ -82,7 +98,7 @@ class Playback final : public Simulation {
   std::uint64_t state_hash() const override { return hash_; }
   int threads() const override { return 0; }
   core::Result<std::unique_ptr<Simulation>> reopen(const std::vector<double>&) const override {
-    auto again = std::make_unique<Playback>(declaration_, recording_, range_);
+    auto again = std::make_unique<Playback>(declaration_, recording_, range_, views_, meshes_);
     if (const core::Status status = again->show_frame(0); !status.ok()) return status.error();
     return std::unique_ptr<Simulation>(std::move(again));
   }
@@ -98,32 +114,23 @@ class Playback final : public Simulation {
   std::shared_ptr<scene::Recording> recording_;
   Silent stage_;
   StepRange range_;
+  std::vector<BodyView> views_;  ///< of the header, by rising id
   scene::RecordedFrame frame_;
   std::size_t index_ = 0;
   std::uint64_t hash_ = 0;
 };
 
-Json parsed(const std::string& text) { return Json::parse(text, nullptr, /*allow_exceptions=*/false); }
-
 /// What of the recorded declaration this side needs; the page reads the rest from the text itself.
 core::Result<Declaration> read_declaration(const scene::RecordingHeader& header) {
-  const Json opened = parsed(header.declaration), scene = parsed(header.scene);
-  if (!scene.is_object() || scene.value("type", Json()) != "scene" || !scene.contains("bodies") ||
-      !scene["bodies"].is_array())
-    return core::Error{"recording: the header holds no scene, expected the `scene` message of docs/protocol.md"};
+  const Json opened = Json::parse(header.declaration, nullptr, /*allow_exceptions=*/false);
   if (!opened.is_object() || opened.value("type", Json()) != "opened")
     return core::Error{"recording: the header holds no declaration, expected the `opened` message of docs/protocol.md"};
   Declaration d;
   d.id = "recording";
-  d.title = header.name;
+  d.title = opened.contains("title") && opened["title"].is_string() ? opened["title"].get<std::string>() : header.name;
   d.dimension = header.dimension;
   d.dt = header.dt;
-  if (opened.contains("camera") && opened["camera"].is_object()) {
-    const Json target = opened["camera"].value("target", Json());
-    if (target.is_array() && target.size() == 3 &&
-        std::all_of(target.begin(), target.end(), [](const Json& x) { return x.is_number(); }))
-      d.camera.target = {target[0].get<double>(), target[1].get<double>(), target[2].get<double>()};
-  }
+  read_camera(header.declaration, d.camera);
   return d;
 }
 
@@ -162,6 +169,17 @@ core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_
                        (recording->damage().empty() ? std::string() : "; " + recording->damage())};
   core::Result<Declaration> declaration = read_declaration(recording->header());
   if (!declaration.ok()) return declaration.error();
+  core::Result<SceneViews> views = read_scene(recording->header().scene, recording->header().meshes.size());
+  if (!views.ok()) return core::Error{"recording: " + views.error().message};
+  std::sort(views->bodies.begin(), views->bodies.end(),
+            [](const BodyView& a, const BodyView& b) { return a.id < b.id; });
+  declaration->ground = views->ground;
+  MeshLibrary meshes;
+  for (const std::string& text : recording->header().meshes) {
+    core::Result<Mesh> mesh = read_mesh(text);
+    if (!mesh.ok()) return core::Error{"recording: " + mesh.error().message};
+    meshes.add(std::move(mesh).value());
+  }
   const core::Result<scene::RecordedFrame> last = recording->frame(recording->frame_count() - 1);
   if (!last.ok()) return last.error();
   const std::uint64_t end = last->step;
@@ -171,7 +189,8 @@ core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_
   if (recording->frame_count() > 1)
     declaration->dt = (recording->last_time() - recording->first_time()) / double(recording->frame_count() - 1);
   if (!(declaration->dt > 0)) declaration->dt = recording->header().dt;
-  auto playback = std::make_unique<Playback>(std::move(declaration).value(), recording, StepRange{first->step, end});
+  auto playback = std::make_unique<Playback>(std::move(declaration).value(), recording, StepRange{first->step, end},
+                                             std::move(views->bodies), std::move(meshes));
   if (const core::Status status = playback->show_frame(0); !status.ok()) return status.error();
   playback->base().say(recording->complete() ? "recording" : "recording, not whole: " + recording->damage());
   return std::unique_ptr<Simulation>(std::move(playback));

@@ -91,10 +91,9 @@ class Simulation {
   /// The steps of a recording (playback.h); a run of the engine has none.
   virtual std::optional<StepRange> recorded() const { return {}; }
   virtual core::Status show(std::uint64_t) { return core::Error{"show: this is no recording"}; }
-  /// What a page is told when it is opened: the `opened` and `scene` messages, and meshes (null: those of `meshes`).
+  /// What a page is told when it is opened: the `opened` and `scene` messages.
   virtual std::string opened_text() const;
   virtual std::string scene_text();
-  virtual const std::vector<std::string>* mesh_texts() const { return nullptr; }
 
   /// The state for going back to this step; null where the demo cannot be copied. `restore` takes what this run saved.
   virtual std::unique_ptr<Memento> save() = 0;

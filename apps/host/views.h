@@ -69,6 +69,8 @@ class MeshLibrary {
  public:
   /// `material`: only the triangles or cells of that number; −1: all.
   std::uint32_t id_of(const geometry::Shape3& shape, int material = -1);
+  /// One that somebody else numbered: by its place.
+  void add(Mesh mesh) { meshes_.push_back(std::move(mesh)); }
   const std::vector<Mesh>& meshes() const { return meshes_; }
 
  private:

@@ -57,7 +57,7 @@ class Cli : public testing::Test {
 TEST_F(Cli, HelpHasExamplesAndExitCodes) {
   EXPECT_EQ(carom("--help"), 0);
   EXPECT_NE(out_.find("Exit status"), std::string::npos);
-  for (const char* command : {"run", "sweep", "serve", "mass", "list", "doctor", "bench"}) {
+  for (const char* command : {"run", "sweep", "render", "serve", "mass", "list", "doctor", "bench"}) {
     EXPECT_EQ(carom(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Examples:"), std::string::npos) << command;
   }
@@ -100,6 +100,30 @@ TEST_F(Cli, ASweepThatWasKilledGoesOnAndShardsMakeTheSameTable) {
                           "sweep chain --vary ratio=1:2:x", "sweep chain --vary ratio=1:9999:3",
                           "sweep chain --vary ratio=1,2 --shard 2/2", "sweep chain --vary ratio=1,2 --shard x"})
     EXPECT_EQ(carom(bad), 2) << bad;
+}
+
+TEST_F(Cli, RendersRecordingsAndScenes) {
+  ASSERT_EQ(carom("run bullets --steps 60 --no-pictures --quiet --out run"), 0) << err_;
+  ASSERT_EQ(carom("render run/recording.carom-rec --out frames --rate 5 --size 160x90"), 0) << err_;
+  // Both ends of a second count: 0, 0.2, … 1.
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "frames"), fs::directory_iterator()), 6);
+  EXPECT_EQ(read(folder_ / "frames/frame-000005.png").substr(1, 3), "PNG");
+  // A recording shows what the scene itself shows.
+  ASSERT_EQ(carom("render bullets --to 1 --out live --rate 5 --size 160x90"), 0) << err_;
+  for (const char* frame : {"frame-000002.png", "frame-000005.png"})
+    EXPECT_GT(fs::file_size(folder_ / "live" / frame), 1000u) << frame;
+  ASSERT_EQ(carom("render pyramids --to 0.2 --out movie.gif --rate 10 --size 96x54"), 0) << err_;
+  const std::string gif = read(folder_ / "movie.gif");
+  EXPECT_EQ(gif.substr(0, 6), "GIF89a");
+  EXPECT_EQ(gif.back(), ';');
+  EXPECT_EQ(carom("render no-such --out x.gif"), 3);
+  EXPECT_EQ(carom("render run/recording.carom-rec --set speed=3 --out x.gif"), 3);
+  EXPECT_EQ(carom("render pyramids --out x.gif --size 5x"), 2);
+  EXPECT_EQ(carom("render pyramids --out x.mp4 --size 101x90"), 2);
+  std::ofstream(folder_ / "bad.carom-rec") << "no recording";
+  EXPECT_EQ(carom("render bad.carom-rec --out x.gif"), 3);
+  EXPECT_NE(err_.find("bad.carom-rec"), std::string::npos) << err_;
+  EXPECT_TRUE(no_leftovers());
 }
 
 TEST_F(Cli, BadInputIsThree) {
