@@ -86,6 +86,12 @@ struct SimulationHost::Handlers {
       return core::Error{"this host speaks protocol " + std::to_string(protocol_version) +
                          "; reload the page to get the one that belongs to it"};
     std::vector<Declaration> list;
+    if (host.options_.game) {
+      list.push_back(host.options_.game->declaration);
+      host.greeted_ = true;
+      host.send(welcome_message("game", list));
+      return {};
+    }
     for (const DemoFactory make : demos()) list.push_back(make()->declaration());
     for (const MenuScene& scene : host.options_.scenes) list.push_back(scene.summary);
     for (const std::unique_ptr<Demo>& demo : stress_demos()) list.push_back(demo->declaration());
@@ -97,6 +103,11 @@ struct SimulationHost::Handlers {
   core::Status open() {
     const std::string id = field.text(m, "demo");
     if (!field.status.ok()) return field.status;
+    if (host.options_.game) {
+      std::unique_ptr<Demo> game = host.options_.game->watch();
+      Demo& watcher = *game;
+      return host.open(watcher.open(std::move(game), {}, {host.options_.threads}));
+    }
     std::unique_ptr<Demo> demo = make_demo(id);
     for (const MenuScene& scene : host.options_.scenes) {
       if (demo || scene.summary.id != id) continue;
@@ -157,11 +168,13 @@ struct SimulationHost::Handlers {
   }
 
   core::Status run() {
+    if (host.options_.game) host.options_.game->pause(false);
     host.running_ = true;
     host.send_status();
     return {};
   }
   core::Status pause() {
+    if (host.options_.game) host.options_.game->pause(true);
     host.running_ = false;
     host.send_status();
     return {};
@@ -174,6 +187,10 @@ struct SimulationHost::Handlers {
     const std::int64_t count = field.integer(m, "count", 1, 1000);
     if (!field.status.ok()) return field.status;
     if (host.running_) return core::Error{"step: the simulation runs; pause it first"};
+    if (host.options_.game) {
+      host.options_.game->step(int(count));
+      return {};
+    }
     if (host.restart_wanted_) host.restart();
     for (std::int64_t i = 0; i < count && host.step_once(); ++i) {
     }
@@ -337,23 +354,24 @@ void SimulationHost::receive(std::string_view text) {
     const char* type;
     core::Status (Handlers::*handle)();
     bool needs_simulation;
+    bool of_the_clock = false;  ///< not for a world that somebody else steps
   };
   constexpr Entry entries[] = {
       {"hello", &Handlers::hello, false},
       {"open", &Handlers::open, false},
-      {"open_scene", &Handlers::open_scene, false},
+      {"open_scene", &Handlers::open_scene, false, true},
       {"set", &Handlers::set, true},
       {"run", &Handlers::run, true},
       {"pause", &Handlers::pause, true},
-      {"restart", &Handlers::restart, true},
+      {"restart", &Handlers::restart, true, true},
       {"step", &Handlers::step, true},
-      {"speed", &Handlers::speed, false},
+      {"speed", &Handlers::speed, false, true},
       {"grab", &Handlers::grab, true},
       {"drag", &Handlers::drag, true},
       {"release", &Handlers::release, true},
       {"input", &Handlers::input, true},
       {"record", &Handlers::record, true},
-      {"seek", &Handlers::seek, true},
+      {"seek", &Handlers::seek, true, true},
       {"spawn", &Handlers::spawn, true},
       {"probe", &Handlers::probe, true},
       {"inspect", &Handlers::inspect, true},
@@ -373,6 +391,8 @@ void SimulationHost::receive(std::string_view text) {
     if (name != entry.type) continue;
     if (!greeted_ && name != "hello") return complain("send hello first");
     if (entry.needs_simulation && !simulation_) return complain(name + ": no demo is open");
+    if (options_.game && entry.of_the_clock)
+      return complain(name + ": the game keeps its own time; it can be paused and stepped");
     Handlers handlers{*this, message};
     const core::Status status = (handlers.*entry.handle)();
     if (!status.ok()) complain(status.error().message);
@@ -452,7 +472,8 @@ void SimulationHost::begin() {
   clock_.reset();
   clock_.set_rate(speed_);
   simulation_->set_layers(layers_);
-  history_.begin(*simulation_);
+  if (!options_.game) history_.begin(*simulation_);
+  shown_ = simulation_->step_count();
   inspected_ = -1;
   send(values_message(simulation_->declaration(), simulation_->values()));
   send_scene();
@@ -475,7 +496,35 @@ void SimulationHost::send_scene() {
   send_meshes();
 }
 
-void SimulationHost::act(History::Action action) { history_.act(*simulation_, std::move(action)); }
+void SimulationHost::act(History::Action action) {
+  if (options_.game)
+    action(*simulation_);
+  else
+    history_.act(*simulation_, std::move(action));
+}
+
+void SimulationHost::close() {
+  if (simulation_) simulation_->release_all();
+}
+
+void SimulationHost::follow_game(double real_seconds) {
+  const bool running = !options_.game->paused();
+  if (std::exchange(running_, running) != running) send_status();
+  if (simulation_->step_count() == shown_) return;
+  simulated_window_ += double(simulation_->step_count() - shown_) * simulation_->declaration().dt;
+  shown_ = simulation_->step_count();
+  if ((real_window_ += real_seconds) > 0.5) {
+    real_time_factor_ = simulated_window_ / real_window_;
+    real_window_ = simulated_window_ = 0;
+  }
+  if (const core::Status status = simulation_->step(); !status.ok()) return complain(status.error().message);
+  if (recorder_) record();
+  frame_wanted_ = true;
+  if (!running) {
+    since_stats_ = options_.stats_interval;
+    send_status();
+  }
+}
 
 void SimulationHost::send_inspection() {
   if (inspected_ < 0) return;
@@ -539,8 +588,11 @@ void SimulationHost::advance(double real_seconds) {
   since_key_ += real_seconds;
   since_stats_ += real_seconds;
   // What loops shows its last picture for a moment.
-  if (running_ && at_end() && (since_end_ += real_seconds) > end_pause) restart();
-  if (running_ && !at_end()) {
+  if (!options_.game && running_ && at_end() && (since_end_ += real_seconds) > end_pause) restart();
+  if (options_.game) {
+    follow_game(real_seconds);
+    send_changes();
+  } else if (running_ && !at_end()) {
     real_window_ += real_seconds;
     const ode::Frame due = clock_.advance(real_seconds);
     double spent = 0;
@@ -609,8 +661,8 @@ void SimulationHost::send_status() {
     fields.time = simulation_->time();
     fields.step = simulation_->step_count();
     const std::optional<StepRange> recorded = simulation_->recorded();
-    fields.first = recorded ? recorded->first : history_.first();
-    fields.last = recorded ? recorded->last : history_.last();
+    fields.first = options_.game ? fields.step : recorded ? recorded->first : history_.first();
+    fields.last = options_.game ? fields.step : recorded ? recorded->last : history_.last();
     fields.recording = recorder_ != nullptr;
     fields.message = simulation_->base().state.message;
     simulation_->base().state.message_changed = false;

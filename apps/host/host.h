@@ -28,6 +28,15 @@ struct MenuScene {
   std::function<core::Result<std::unique_ptr<Demo>>()> load;
 };
 
+/// A world that a game steps, while pages look at it. Every function is called where the host is.
+struct Game {
+  Declaration declaration;
+  std::function<std::unique_ptr<Demo>()> watch;  ///< a demo round the world, whose `step` leaves it alone
+  std::function<bool()> paused;
+  std::function<void(bool paused)> pause;
+  std::function<void(int count)> step;  ///< while paused
+};
+
 struct HostOptions {
   int threads = 1;                       ///< of every world
   double key_interval = 2;               ///< s between key frames
@@ -37,6 +46,7 @@ struct HostOptions {
   std::size_t max_recording = 64 << 20;  ///< bytes of one that a page sends or makes
   HistoryOptions history;                ///< what can be gone back to
   std::vector<MenuScene> scenes;
+  std::shared_ptr<const Game> game;  ///< the only thing in the menu, where there is one
   /// Reads a scene's text for `open_scene`; empty: refused.
   std::function<core::Result<std::unique_ptr<Demo>>(std::string_view name, std::string_view text)> parse_scene;
 };
@@ -58,6 +68,9 @@ class SimulationHost {
   bool take(Message& message);
   /// Lets a carrier refuse a message itself (too long, wrong kind).
   void complain(std::string_view message);
+
+  /// Lets go of what the page holds: before the host ends while the world goes on.
+  void close();
 
   const Simulation* simulation() const { return simulation_.get(); }
   bool running() const { return running_; }
@@ -81,6 +94,7 @@ class SimulationHost {
   void send_meshes();
   void send_drawn(bool key);
   bool step_once();
+  void follow_game(double real_seconds);
   bool at_end() const;  ///< of a demo that loops
   void send_changes();
   void frame(bool key);
@@ -107,6 +121,7 @@ class SimulationHost {
   std::vector<std::uint32_t> surfaces_sent_;  ///< topology that the page knows
   bool points_sent_ = false;
   std::size_t meshes_sent_ = 0;
+  std::uint64_t shown_ = 0;  ///< the game's step that the page has seen
   double since_key_ = 0, since_stats_ = 0, since_end_ = 0;
   double real_window_ = 0, simulated_window_ = 0, real_time_factor_ = 1;
 };

@@ -72,7 +72,10 @@ class Session : public std::enable_shared_from_this<Session> {
         host_(server.options.host_options ? server.options.host_options() : host::HostOptions{}) {
     ++server_.clients;
   }
-  ~Session() { --server_.clients; }
+  ~Session() {
+    guarded([this] { host_.close(); });
+    --server_.clients;
+  }
 
   void start(const http::request<http::empty_body>& request) {
     // From here on the WebSocket has timeouts of its own.
@@ -101,6 +104,13 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
  private:
+  void guarded(const std::function<void()>& work) {
+    if (server_.options.guard)
+      server_.options.guard(work);
+    else
+      work();
+  }
+
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error) {
@@ -110,10 +120,12 @@ class Session : public std::enable_shared_from_this<Session> {
       }
       const auto data = self->buffer_.data();
       const std::string_view bytes(static_cast<const char*>(data.data()), data.size());
-      if (self->stream_.got_text())
-        self->host_.receive(bytes);
-      else
-        self->host_.receive_binary(bytes);
+      self->guarded([&] {
+        if (self->stream_.got_text())
+          self->host_.receive(bytes);
+        else
+          self->host_.receive_binary(bytes);
+      });
       self->buffer_.consume(self->buffer_.size());
       self->write();
       // A flood of messages must not starve the simulation, nor answers pile up: read on when they have gone.
@@ -131,7 +143,7 @@ class Session : public std::enable_shared_from_this<Session> {
     timer_.async_wait([self = shared_from_this()](beast::error_code error) {
       if (error || self->closing_) return;
       const Clock::time_point now = Clock::now();
-      self->host_.advance(std::chrono::duration<double>(now - self->last_).count());
+      self->guarded([&] { self->host_.advance(std::chrono::duration<double>(now - self->last_).count()); });
       self->last_ = now;
       self->write();
       self->tick();

@@ -21,6 +21,8 @@ struct ServerOptions {
   double frame_interval = 1.0 / 60;                 ///< s
   int idle_seconds = 120;                           ///< silent connections are pinged, then closed
   std::function<host::HostOptions()> host_options;  ///< for every new simulation
+  /// Where simulations touch what is not theirs alone: every use of one runs within it. Empty: at once.
+  std::function<void(const std::function<void()>&)> guard;
   std::function<void(const std::string&)> log;      ///< one line a connection; called from any thread
 };
 

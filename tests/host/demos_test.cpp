@@ -14,6 +14,7 @@ TEST_P(DemoExpectations, AreMetAfterTheDeclaredTime) {
   auto simulation = demo.open(std::move(owner), {}, {});
   ASSERT_TRUE(simulation.ok()) << simulation.error().message;
   const Declaration& d = (*simulation)->declaration();
+  EXPECT_EQ(d.dimension, (*simulation)->world2() ? 2 : 3);
   while ((*simulation)->time() + 0.5 * d.dt < d.duration) {
     const core::Status status = (*simulation)->step();
     ASSERT_TRUE(status.ok()) << status.error().message;

@@ -13,6 +13,7 @@ class Adviser final : public Repeatable<Adviser, Demo2> {
   Declaration declaration() const override {
     Declaration d;
     d.id = "adviser";
+    d.dimension = 2;
     d.title = "The adviser";
     d.summary = "It predicts how far a tower will sag, and gives the one that needs them more substeps.";
     d.group = "Rigid bodies";
@@ -25,7 +26,8 @@ class Adviser final : public Repeatable<Adviser, Demo2> {
         "are given to the island of the right tower alone; the left one costs what it did.\n\n"
         "  sag ≈ Σ P/(Σ m_eff ω²),  ω = 2π f";
     d.duration = 8;
-    d.camera = {{0, 13, 42}, {0, 13, 0}, 0.75};
+    d.camera = {{0, 13, 20}, {0, 13, 0}};
+    d.camera.height = 32;
     d.ground = 0;
     d.parameters = {
         {"boxes", "Boxes", "", "", "of each tower", 5, 40, 1, 28, false},
