@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "apps/command/command.h"
 #include "apps/host/registry.h"
@@ -142,7 +143,11 @@ std::vector<host::MenuScene> menu_scenes() {
       if (!loaded.ok()) return loaded.error();
       return host::make_scene_demo(std::move(loaded).value(), id);
     };
-    out.push_back({host::declaration_of(*scene, id), load});
+    const auto text = [path = file.path] {
+      std::ifstream in(path, std::ios::binary);
+      return std::string((std::istreambuf_iterator<char>(in)), {});
+    };
+    out.push_back({host::declaration_of(*scene, id), load, text});
   }
   return out;
 }

@@ -36,7 +36,22 @@ class Watched final : public host::DemoOf<D> {
     return d;
   }
   std::unique_ptr<host::Demo> again() const override { return std::make_unique<Watched>(world_, options_); }
-  void build(StageD& stage) override { stage.use(world_); }
+  void build(StageD& stage) override {
+    stage.use(world_);
+    if constexpr (D::dimension == 3) {
+      // The page draws a level floor as its ground, with marks of length.
+      std::vector<rigid::ShapeId> shapes;
+      for (const auto& actor : stage.actors()) {
+        shapes.clear();
+        world_.shapes(actor.body, shapes);
+        for (const rigid::ShapeId id : shapes) {
+          const auto shape = world_.shape_geometry(id);
+          const auto* plane = shape.ok() ? std::get_if<geometry::Plane>(&*shape) : nullptr;
+          if (plane && plane->normal.y > 0.999f) stage.set_ground(stage.at(actor.body).pose.position.y);
+        }
+      }
+    }
+  }
   core::Status step(StageD& stage) override {
     stage.adopt_all();  // the game makes and destroys bodies as it likes
     return {};

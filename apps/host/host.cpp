@@ -109,11 +109,13 @@ struct SimulationHost::Handlers {
       return host.open(watcher.open(std::move(game), {}, {host.options_.threads}));
     }
     std::unique_ptr<Demo> demo = make_demo(id);
+    std::string name_of_scene, text_of_scene;
     for (const MenuScene& scene : host.options_.scenes) {
       if (demo || scene.summary.id != id) continue;
       core::Result<std::unique_ptr<Demo>> loaded = scene.load();
       if (!loaded.ok()) return loaded.error();
       demo = std::move(loaded).value();
+      if (scene.text) name_of_scene = id.substr(id.find(':') + 1), text_of_scene = scene.text();
     }
     if (!demo) {
       std::vector<std::string> ids;
@@ -140,7 +142,9 @@ struct SimulationHost::Handlers {
       }
     }
     Demo& opener = *demo;
-    return host.open(opener.open(std::move(demo), values, {host.options_.threads}));
+    const core::Status status = host.open(opener.open(std::move(demo), values, {host.options_.threads}));
+    if (status.ok()) host.source_name_ = std::move(name_of_scene), host.source_text_ = std::move(text_of_scene);
+    return status;
   }
 
   core::Status open_scene() {
@@ -151,7 +155,14 @@ struct SimulationHost::Handlers {
     if (!demo.ok()) return demo.error();
     std::unique_ptr<Demo> owner = std::move(demo).value();
     Demo& opener = *owner;
-    return host.open(opener.open(std::move(owner), {}, {host.options_.threads}));
+    const core::Status status = host.open(opener.open(std::move(owner), {}, {host.options_.threads}));
+    if (status.ok()) host.source_name_ = name.substr(0, 256), host.source_text_ = text;
+    return status;
+  }
+
+  core::Status source() {
+    host.send(source_message(host.source_name_, host.source_text_));
+    return {};
   }
 
   core::Status set() {
@@ -357,25 +368,16 @@ void SimulationHost::receive(std::string_view text) {
     bool of_the_clock = false;  ///< not for a world that somebody else steps
   };
   constexpr Entry entries[] = {
-      {"hello", &Handlers::hello, false},
-      {"open", &Handlers::open, false},
-      {"open_scene", &Handlers::open_scene, false, true},
-      {"set", &Handlers::set, true},
-      {"run", &Handlers::run, true},
-      {"pause", &Handlers::pause, true},
-      {"restart", &Handlers::restart, true, true},
-      {"step", &Handlers::step, true},
-      {"speed", &Handlers::speed, false, true},
-      {"grab", &Handlers::grab, true},
-      {"drag", &Handlers::drag, true},
-      {"release", &Handlers::release, true},
-      {"input", &Handlers::input, true},
-      {"record", &Handlers::record, true},
-      {"seek", &Handlers::seek, true, true},
-      {"spawn", &Handlers::spawn, true},
-      {"probe", &Handlers::probe, true},
-      {"inspect", &Handlers::inspect, true},
-      {"draw", &Handlers::draw, false},
+      {"hello", &Handlers::hello, false},    {"open", &Handlers::open, false},
+      {"source", &Handlers::source, false},  {"open_scene", &Handlers::open_scene, false, true},
+      {"set", &Handlers::set, true},         {"run", &Handlers::run, true},
+      {"pause", &Handlers::pause, true},     {"restart", &Handlers::restart, true, true},
+      {"step", &Handlers::step, true},       {"speed", &Handlers::speed, false, true},
+      {"grab", &Handlers::grab, true},       {"drag", &Handlers::drag, true},
+      {"release", &Handlers::release, true}, {"input", &Handlers::input, true},
+      {"record", &Handlers::record, true},   {"seek", &Handlers::seek, true, true},
+      {"spawn", &Handlers::spawn, true},     {"probe", &Handlers::probe, true},
+      {"inspect", &Handlers::inspect, true}, {"draw", &Handlers::draw, false},
       {"ack", &Handlers::ack, false},
   };
   if (outbox_bytes_ >= options_.max_outbox) return;  // a page that does not read gets no more answers
@@ -412,6 +414,7 @@ void SimulationHost::receive_binary(std::string_view bytes) {
   }
   upload_.insert(upload_.end(), bytes.begin() + 4, bytes.end());
   if (bytes[1] == 0) return;  // more follows
+  source_name_.clear(), source_text_.clear();
   const core::Status status = open(open_recording(std::exchange(upload_, {})));
   if (!status.ok()) complain(status.error().message);
 }

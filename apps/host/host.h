@@ -26,6 +26,7 @@ struct Message {
 struct MenuScene {
   Declaration summary;  ///< id, title, summary, group, chapter, dimension
   std::function<core::Result<std::unique_ptr<Demo>>()> load;
+  std::function<std::string()> text;  ///< of its file, for who wants to edit it
 };
 
 /// A world that a game steps, while pages look at it. Every function is called where the host is.
@@ -101,6 +102,7 @@ class SimulationHost {
 
   HostOptions options_;
   std::unique_ptr<Simulation> simulation_;
+  std::string source_name_, source_text_;  ///< of the open scene; empty where a program made it
   std::vector<std::uint8_t> upload_;  ///< parts of a recording that have come
   std::unique_ptr<scene::Recorder> recorder_;
   std::string recorded_;

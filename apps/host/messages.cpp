@@ -297,6 +297,10 @@ std::string inspected_message(std::string_view report) {
   return "{\"type\":\"inspected\"," + std::string(report.substr(1));
 }
 
+std::string source_message(std::string_view name, std::string_view text) {
+  return text_of({{"type", "source"}, {"name", std::string(name)}, {"text", std::string(text)}});
+}
+
 std::string error_message(std::string_view message) {
   return text_of({{"type", "error"}, {"message", std::string(message)}});
 }

@@ -33,6 +33,7 @@ std::string numbers_message(const NumbersFields& fields);
 std::string probed_message(std::string_view kind, const ProbeAnswer& answer);
 /// `report`: the JSON object of Simulation::inspect, or empty where the body is gone.
 std::string inspected_message(std::string_view report);
+std::string source_message(std::string_view name, std::string_view text);
 std::string error_message(std::string_view message);
 struct StatusFields {
   bool running = false;

@@ -19,6 +19,8 @@ await build({
   minify: true,
   sourcemap: false,
   format: 'esm',
+  splitting: true,  // the editor comes when it is asked for
+  chunkNames: '[name]-[hash]',
   target: ['es2021'],
   outdir: out,
   legalComments: 'linked',

@@ -75,7 +75,8 @@ CAROM_MODULE("carom_start") void carom_start() {
     const core::Result<scene::Scene> scene = scene::parse_scene(text, name, files.resolver());
     if (!scene.ok()) continue;
     options.scenes.push_back({host::declaration_of(*scene, id),
-                              [&files, name = name, id] { return files.demo(name, files.text.at(name), id); }});
+                              [&files, name = name, id] { return files.demo(name, files.text.at(name), id); },
+                              [&files, name = name] { return files.text.at(name); }});
   }
   options.parse_scene = [&files](std::string_view name, std::string_view text) {
     return files.demo(name, text, std::string(name));

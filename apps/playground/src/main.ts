@@ -1,5 +1,6 @@
 // The page: joins a source of simulation to the view, the panel, the plots and the user's hands.
 import {byId} from './dom';
+import {Editing} from './editing';
 import {Gamepads} from './gamepad';
 import {Hands} from './hands';
 import {Panel} from './panel';
@@ -30,7 +31,17 @@ class Page implements Listener {
   private hands = new Hands(this.canvas, this.viewer, this.tools, this.send);
   private timeline = new Timeline(this.send);
   private timing = new Timing(byId('timing'));
-  private share = new Share(this.viewer, this.source, (text) => this.notice(text, 4000));
+  private share = new Share(this.viewer, this.source, (text) => this.notice(text, 4000), () => { void this.editing.open(); });
+  private editing = new Editing(this.send, (name, text) => {
+    // An edit changes the scene, not where one looks from, nor whether it runs.
+    this.share.scene = {name, text};
+    const same = this.opened?.demo === name || this.opened?.demo === `scene:${name.replace(/\.json$/, '')}`;
+    this.wanted = {demo: name, parameters: {}, camera: same ? this.viewer.viewpoint : undefined};
+    this.pausedEdit = !this.running && same;
+    this.edited = name;
+  });
+  private edited?: string;     // the scene that the editor has opened last
+  private pausedEdit = false;  // it was paused, and stays so
   private wanted?: Link;  // what the next `opened` is to restore
   private gamepads = new Gamepads(this.send);
   private demos: DemoSummary[] = [];
@@ -108,6 +119,7 @@ class Page implements Listener {
     switch (message.type) {
       case 'welcome': {
         this.demos = message.demos;
+        document.body.classList.toggle('game', message.engine === 'game');  // a running game keeps its own time
         this.listDemos();
         // A connection that was lost comes back to where it was: a run is made by its demo, its values and its steps.
         const link = this.lost ?? readLink(location.hash), scene = this.share.scene;
@@ -129,6 +141,7 @@ class Page implements Listener {
         this.timing.add(message.stages);
         this.panel.budget(message);
         break;
+      case 'source': void this.editing.fill(message.name, message.text || undefined); break;
       case 'probed': this.tools.probed(message); break;
       case 'inspected': showReport(message, this.opened?.dt ?? 1 / 60); break;
       case 'grabbed': this.hands.grabbed(message.pointer, message.body, message.point); break;
@@ -146,7 +159,7 @@ class Page implements Listener {
       case 'values': this.panel.setValues(message.values); break;
       case 'error':
         this.timeline.failed();
-        this.notice(this.share.withLine(message.message), 12000);
+        if (!this.editing.refused(message.message)) this.notice(this.share.withLine(message.message), 12000);
     }
   }
 
@@ -189,6 +202,10 @@ class Page implements Listener {
     this.plots.open(opened.plots);
     this.timeline.open(opened.dt);
     this.gamepads.inputs = opened.inputs;
+    if (this.pausedEdit) this.send({type: 'pause'});
+    this.pausedEdit = false;
+    if (opened.demo === this.edited) this.editing.accepted();
+    else if (this.editing.active) this.send({type: 'source'});
     this.tools.draw();
     showReport({body: -1} as never, opened.dt);
     for (const link of byId('demos').querySelectorAll('a')) link.toggleAttribute('aria-current', link.dataset.demo === opened.demo);
@@ -240,7 +257,7 @@ class Page implements Listener {
   private key(event: KeyboardEvent, down: boolean): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target as HTMLElement;
-    if (/^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName)) return;
+    if (/^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName) || target.isContentEditable) return;
     const input = this.opened?.inputs.find((i) => i.keys.includes(event.code));
     if (input) {
       event.preventDefault();
@@ -256,6 +273,7 @@ class Page implements Listener {
       Comma: () => byId('back').click(), KeyF: () => this.viewer.followChosen(), KeyB: () => this.shootAhead(),
       BracketLeft: () => this.choose(this.viewer.neighbour(-1)), BracketRight: () => this.choose(this.viewer.neighbour(1)),
       ...Object.fromEntries(['pull', 'throw', 'ray', 'sphere', 'closest', 'why'].map((tool, i) => [`Digit${i + 1}`, () => this.tools.choose(tool as Tool)])),
+      KeyE: () => { if (this.editing.active) this.editing.close(); else void this.editing.open(); },
       KeyD: () => byId('menu').click(), KeyP: () => byId('panel-toggle').click(), Home: () => this.viewer.resetView(),
     };
     const action = event.key === '?' ? () => byId('help-button').click() : actions[event.code];

@@ -44,6 +44,7 @@ export type HostMessage =
   | Probed
   | Numbers
   | Inspected
+  | {type: 'source'; name: string; text: string}
   | {type: 'values'; values: Record<string, number>}
   | {type: 'error'; message: string};
 
