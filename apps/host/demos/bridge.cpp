@@ -13,6 +13,7 @@ class Bridge final : public Repeatable<Bridge, Demo2> {
   Declaration declaration() const override {
     Declaration d;
     d.id = "bridge";
+    d.dimension = 2;
     d.title = "A bridge that breaks";
     d.summary = "Planks hinged to a bridge carry a load until a hinge is pulled above what it bears.";
     d.group = "Rigid bodies";
@@ -23,7 +24,9 @@ class Bridge final : public Repeatable<Bridge, Demo2> {
         "tight bridge breaks sooner than a slack one. Blocks are put on until it gives way.\n\n"
         "  T = √(H² + (W/2)²)";
     d.duration = 12;
-    d.camera = {{0, 1, 14}, {0, 1, 0}, 0.75};
+    d.camera = {{0, 1, 14}, {0, 1, 0}};
+    d.camera.height = 11;
+    d.camera.width = 15;
     d.parameters = {
         {"strength", "Strength of a hinge", "N", "kN", "force above which it breaks", 500, 20000, 0, 6000, false},
         {"load", "Mass of a block", "kg", "kg", "one is dropped every second", 5, 200, 5, 60, false},
