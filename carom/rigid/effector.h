@@ -3,9 +3,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <variant>
 
+#include "carom/forces/drag_law.h"
 #include "carom/rigid/state.h"
+
+namespace carom::environment {
+class Environment;
+}
 
 namespace carom::rigid {
 
@@ -38,10 +44,53 @@ struct QuadraticDrag : EffectorTarget {
   typename D::Vector point{};      ///< body frame, from the origin
   double angular_coefficient = 0;  ///< N·m·s²/rad²: torque −c |ω| ω
 };
-/// The air moves: what drag effectors of the same world feel. Log or power profiles come with the environment issue.
+/// All that is around the bodies of a world, from one object (environment/environment.h): its gravity (beside the
+/// world's own) and turning frame act on every body, drag and lift effectors feel its wind and air, and what floats
+/// floats on its water. The last one added counts. In the plane x and y of it are taken, at z = 0. Snapshots in memory
+/// keep it; bytes do not carry it, like a CustomEffector.
+template <class D>
+struct Surroundings {
+  std::shared_ptr<const environment::Environment> environment;
+};
+/// The air moves, everywhere alike: what drag effectors of the same world feel, beside the wind of its Surroundings.
 template <class D>
 struct Wind {
   typename D::Vector velocity{};  ///< m/s
+};
+/// Drag by the flow round the body: C_d from Reynolds and Mach number (forces/drag_law.h). The air is that of the
+/// world's Surroundings, or what stands here.
+template <class D>
+struct BodyDrag : EffectorTarget {
+  forces::DragLaw law{};
+  double diameter = 1;                 ///< m, the length that Re is made with
+  double area = 0.785398163397448310;  ///< m²; in the plane m² per metre of depth
+  typename D::Vector point{};          ///< body frame, from the origin
+  double density = 1.225;              ///< kg/m³
+  double viscosity = 1.7894e-5;        ///< Pa·s
+  double speed_of_sound = 340.294;     ///< m/s
+};
+/// Lift of a spinning ball by measured coefficients: ½ ρ π r² V² C_L(rω/V), across spin and way.
+template <class D>
+struct MagnusLift : EffectorTarget {
+  forces::LiftLaw law{};
+  double radius = 0.5;     ///< m
+  double density = 1.225;  ///< kg/m³, where the world has no Surroundings
+};
+/// The world stands in a frame that turns: −2 Ω × v, and the centrifugal Ω² r on request. The Earth's: environment::
+/// earth_rate. Coriolis' force does no work here either, whatever the step.
+template <class D>
+struct TurningFrame : EffectorTarget {
+  typename D::Angular rate{};     ///< rad/s
+  typename D::Position center{};  ///< m, on the axis
+  bool centrifugal = false;
+};
+/// Uniform fields on charged bodies: F = q (E + v × B). The magnetic part turns velocities as Boris (1970) does it: it
+/// does no work, and the circles have r = m v/(q B) for any step. In the plane only z of B counts.
+template <class D>
+struct ElectromagneticField : EffectorTarget {
+  double charge = 0;              ///< C, of each body acted on
+  typename D::Vector electric{};  ///< V/m
+  Vec3f magnetic{};               ///< T
 };
 /// Spring and damper between points of two bodies, or of a body and the world (body_b null, point_b in the world).
 /// Solved with the joints in every substep, so that stiff springs are stable and undamped ones keep their energy.
@@ -55,7 +104,9 @@ struct SpringDamper {
   double damping = 0;              ///< N·s/m
 };
 /// Archimedes: ρ g times the submerged volume, at its centre, with drag of the wet part. The surface is
-/// y = level + Σ a sin(k x − ω t + φ) in x (deep water: ω² = g k).
+/// y = level + Σ a sin(k x − ω t + φ) in x (deep water: ω² = g k). Where the world has Surroundings with water, that is
+/// the water: density, level, waves and current here are not used, and what is wet is also pushed with the water's own
+/// acceleration (Froude and Krylov).
 template <class D>
 struct Buoyancy : EffectorTarget {
   double density = 1025;    ///< kg/m³
@@ -67,6 +118,10 @@ struct Buoyancy : EffectorTarget {
   } waves[4];
   int wave_count = 0;
   typename D::Vector current{};  ///< m/s
+  /// Shares of the displaced mass that speed up with the body along each of its own axes: .5 of a sphere
+  /// (forces/added_mass.h).
+  typename D::Vector added_mass{};
+  typename D::Angular added_inertia{};  ///< m²: the same for turning, kg·m² for each displaced kg
 };
 /// A thruster fixed to a body.
 template <class D>
@@ -113,6 +168,7 @@ struct CustomEffector : EffectorTarget {
 
 template <class D>
 using EffectorDef = std::variant<SphericalGravity<D>, LinearDrag<D>, QuadraticDrag<D>, Wind<D>, SpringDamper<D>,
-                                 Buoyancy<D>, Thrust<D>, RadialField<D>, VortexField<D>, CustomEffector<D>>;
+                                 Buoyancy<D>, Thrust<D>, RadialField<D>, VortexField<D>, CustomEffector<D>,
+                                 Surroundings<D>, BodyDrag<D>, MagnusLift<D>, TurningFrame<D>, ElectromagneticField<D>>;
 
 }  // namespace carom::rigid

@@ -93,7 +93,7 @@ void write_effectors(ByteWriter& out, const std::vector<EffectorData<D>>& effect
             std::memcpy(words.data(), &value, sizeof(T));
             SectionModel model(words.size());
             out.difference(words.data(), nullptr, words.size(), model);
-          } else {
+          } else if constexpr (requires { value.body; }) {
             out.word(value.body.packed());  // a function of the caller: only whom it pushes
           }
         },
@@ -114,7 +114,7 @@ bool read_effector(ByteReader& in, std::size_t index, Variant& definition) {
       SectionModel model(words.size());
       in.difference(words.data(), words.size(), model);
       std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
-    } else {
+    } else if constexpr (requires { value.body; }) {
       const std::uint64_t packed = in.word();
       value.body = {std::uint32_t(packed >> 32), std::uint16_t(packed >> 16), std::uint16_t(packed)};
     }

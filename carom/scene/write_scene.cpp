@@ -376,6 +376,11 @@ class SceneWriter {
     return f.put("circulation", e.circulation).put("core_radius", e.core_radius).put("rate", e.rate).object();
   }
   std::string effector_text(const CustomEffector<D>&) const { return {}; }
+  std::string effector_text(const Surroundings<D>&) const { return {}; }
+  std::string effector_text(const BodyDrag<D>&) const { return {}; }
+  std::string effector_text(const MagnusLift<D>&) const { return {}; }
+  std::string effector_text(const TurningFrame<D>&) const { return {}; }
+  std::string effector_text(const ElectromagneticField<D>&) const { return {}; }
 
   const World<D>& world_;
   const WriteOptions& options_;

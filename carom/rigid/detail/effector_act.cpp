@@ -31,6 +31,7 @@ template <class D>
 struct FieldForces {
   WorldImplementation<D>& world;
   double dt;
+  const environment::Environment* around;
   using Position = typename D::Position;
 
   void operator()(const SphericalGravity<D>& e) const {
@@ -55,7 +56,15 @@ struct FieldForces {
   }
   void operator()(const Buoyancy<D>& e) const {
     for_each_target(world, e.body, dt,
-                    [&](const EffectorBody<D>& body) { float_body(world, e, body, world.time + 0.5 * dt); });
+                    [&](const EffectorBody<D>& body) { float_body(world, e, body, world.time + 0.5 * dt, around); });
+  }
+  void operator()(const Surroundings<D>& e) const {
+    if (e.environment.get() != around || !around->has_gravity()) return;
+    for_each_target(world, {}, dt, [&](const EffectorBody<D>& body) {
+      const double scale = world.bodies.motion[std::size_t(body.slot)].gravity_scale;
+      push(world, body,
+           part_of(around->gravity(place_of(body.center)), static_cast<D*>(nullptr)) * (body.mass * scale));
+    });
   }
   void operator()(const CustomEffector<D>& e) const {
     if (!e.model) return;
@@ -87,12 +96,74 @@ struct FieldForces {
   void operator()(const Other&) const {}
 };
 
+/// What turns velocities: frames and magnetic fields. After the fields, so that what they do in the same step is turned
+/// with it, as J. P. Boris does it (Relativistic plasma simulation, 4th Conf. Num. Sim. Plasmas, 1970): half of the
+/// push, a turn by 2 atan(½ |Ω| dt), the other half. No work is done.
+template <class D>
+struct Turns {
+  WorldImplementation<D>& world;
+  double dt;
+  const environment::Environment* around;
+  using Position = typename D::Position;
+
+  /// v̇ = a + rate × v.
+  void turn(const EffectorBody<D>& body, Vec3d rate) const {
+    const Vec3d half_push = place_of(other_acceleration(world, body)) * (0.5 * dt);
+    const Vec3d before = place_of(body.velocity) + half_push, t = rate * (0.5 * dt);
+    const Vec3d middle = before + math::cross(t, before);
+    const Vec3d change = math::cross(t, middle) * (2 / (1 + math::length_squared(t)));
+    push(world, body, part_of(change * (body.mass / dt), static_cast<D*>(nullptr)));
+  }
+  void turn_frame(const EffectorBody<D>& body, Vec3d rate, Vec3d center, bool centrifugal) const {
+    if (centrifugal) {
+      const Vec3d r = place_of(body.center) - center;
+      push(world, body, part_of(math::cross(rate, math::cross(rate, r)) * -body.mass, static_cast<D*>(nullptr)));
+    }
+    turn(body, -2.0 * rate);
+  }
+
+  void operator()(const Surroundings<D>& e) const {
+    if (e.environment.get() != around || !around->turns()) return;
+    const environment::RotatingFrame& frame = around->definition().frame;
+    for_each_target(world, {}, dt, [&](const EffectorBody<D>& body) {
+      turn_frame(body, frame.rate, frame.origin, frame.centrifugal);
+    });
+  }
+  void operator()(const TurningFrame<D>& e) const {
+    Vec3d rate{};
+    if constexpr (D::dimension == 2)
+      rate.z = e.rate;
+    else
+      rate = Vec3d(e.rate);
+    for_each_target(world, e.body, dt,
+                    [&](const EffectorBody<D>& body) { turn_frame(body, rate, place_of(e.center), e.centrifugal); });
+  }
+  void operator()(const ElectromagneticField<D>& e) const {
+    Vec3d field(e.magnetic);
+    if constexpr (D::dimension == 2) field.x = field.y = 0;
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      push(world, body, Position(e.electric) * e.charge);
+      turn(body, field * (-e.charge * body.inverse_mass));
+    });
+  }
+  template <class Other>
+  void operator()(const Other&) const {}
+};
+
 template <class D>
 struct Resistances {
   WorldImplementation<D>& world;
   double dt;
-  typename D::Position wind{};
+  const environment::Environment* around;
+  typename D::Position uniform_wind{};
   using Position = typename D::Position;
+
+  /// The wind at the body's point `arm` away from its centre.
+  Position wind_at(const EffectorBody<D>& body, Position arm = {}) const {
+    if (around == nullptr || !around->has_wind()) return uniform_wind;
+    return uniform_wind +
+           part_of(around->wind(place_of(body.center + arm), world.time + 0.5 * dt), static_cast<D*>(nullptr));
+  }
 
   /// −c ω averaged over the step, for the most agile axis: stable for any c.
   void slow_spin(const EffectorBody<D>& body, double c) const {
@@ -111,7 +182,7 @@ struct Resistances {
   void operator()(const LinearDrag<D>& e) const {
     for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
       if (e.coefficient > 0)
-        push(world, body, resist(world, body, e.coefficient * body.inverse_mass, body.velocity - wind));
+        push(world, body, resist(world, body, e.coefficient * body.inverse_mass, body.velocity - wind_at(body)));
       if (e.angular_coefficient > 0) slow_spin(body, e.angular_coefficient);
     });
   }
@@ -119,7 +190,7 @@ struct Resistances {
     for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
       const auto& motion = world.bodies.motion[std::size_t(body.slot)];
       const Position arm(rotate(body.pose.rotation, e.point - motion.local_center));
-      const Position v = forces::relative_velocity(body.velocity, body.spin, arm, wind);
+      const Position v = forces::relative_velocity(body.velocity, body.spin, arm, wind_at(body, arm));
       // |v| of mid-step, by one more evaluation: second order in dt.
       const double c = 0.5 * e.density * e.drag_coefficient * e.area * body.inverse_mass;
       const double rate = c * math::length(v);
@@ -134,6 +205,35 @@ struct Resistances {
           speed = math::length(body.spin);
         slow_spin(body, e.angular_coefficient * speed);
       }
+    });
+  }
+  void operator()(const BodyDrag<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const auto& motion = world.bodies.motion[std::size_t(body.slot)];
+      const Position arm(rotate(body.pose.rotation, e.point - motion.local_center));
+      const Position v = forces::relative_velocity(body.velocity, body.spin, arm, wind_at(body, arm));
+      double density = e.density, viscosity = e.viscosity, sound = e.speed_of_sound;
+      if (around != nullptr) {
+        const environment::AirState air = around->air(place_of(body.center));
+        density = air.density, viscosity = air.viscosity, sound = air.speed_of_sound;
+      }
+      // c |v| with the coefficient at that speed, twice: at the start, then in the middle of the step.
+      const auto rate_at = [&](double speed) {
+        const double c = forces::drag_coefficient(e.law, forces::reynolds_number(density, speed, e.diameter, viscosity),
+                                                  speed / sound);
+        return 0.5 * density * e.area * body.inverse_mass * c * speed;
+      };
+      const double slow = 1e-9;  // at rest drag is Stokes': the rate stays finite
+      const double rate = rate_at(math::max(math::length(v), slow));
+      const Position middle =
+          v + (other_acceleration(world, body) - rate * v) * (0.5 * dt * mean_decay(0.5 * rate * dt));
+      push_at(world, body, resist(world, body, rate_at(math::max(math::length(middle), slow)), v), arm);
+    });
+  }
+  void operator()(const MagnusLift<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const double density = around != nullptr ? around->thin_air(place_of(body.center)).density : e.density;
+      push(world, body, forces::magnus_force(e.law, density, e.radius, body.spin, body.velocity - wind_at(body)));
     });
   }
   void operator()(const VortexField<D>& e) const {
@@ -156,18 +256,29 @@ struct Resistances {
 
 template <class D>
 void apply_effectors(WorldImplementation<D>& world, float dt) {
-  const EffectorStore<D>& store = world.effectors;
+  EffectorStore<D>& store = world.effectors;
   if (store.in_order.empty()) return;
-  Resistances<D> resistances{world, double(dt), {}};
-  const FieldForces<D> fields{world, double(dt)};
+  store.added.clear();
+  Resistances<D> resistances{world, double(dt), nullptr, {}};
+  bool turning = false;
   for (const std::int32_t slot : store.in_order) {
     const EffectorDef<D>& definition = store.data[std::size_t(slot)].definition;
     if (const auto* wind = std::get_if<Wind<D>>(&definition))
-      resistances.wind += typename D::Position(wind->velocity);
-    else
-      std::visit(fields, definition);
+      resistances.uniform_wind += typename D::Position(wind->velocity);
+    else if (const auto* surroundings = std::get_if<Surroundings<D>>(&definition))
+      resistances.around = surroundings->environment.get(), turning = true;
+    else if (std::holds_alternative<TurningFrame<D>>(definition) ||
+             std::holds_alternative<ElectromagneticField<D>>(definition))
+      turning = true;
+  }
+  const FieldForces<D> fields{world, double(dt), resistances.around};
+  for (const std::int32_t slot : store.in_order) std::visit(fields, store.data[std::size_t(slot)].definition);
+  if (turning) {
+    const Turns<D> turns{world, double(dt), resistances.around};
+    for (const std::int32_t slot : store.in_order) std::visit(turns, store.data[std::size_t(slot)].definition);
   }
   for (const std::int32_t slot : store.in_order) std::visit(resistances, store.data[std::size_t(slot)].definition);
+  if (!store.added.empty()) apply_added_masses(world, double(dt));
 }
 
 template <class D>

@@ -5,6 +5,7 @@
 // gain nor lose energy. Resistances are taken after all other forces, as the exact decay over the step (see `resist`).
 #pragma once
 
+#include "carom/environment/environment.h"
 #include "carom/math/elementary.h"
 #include "carom/rigid/detail/world_implementation.h"
 
@@ -70,9 +71,19 @@ typename D::Position resist(const WorldImplementation<D>& world, const EffectorB
   return (mean_decay(k * body.dt) * (a - k * v) - a) * body.mass;
 }
 
-/// Buoyancy and its drag on one body.
+/// In the plane the environment is that at z = 0.
+inline Vec3d place_of(Vec2d p) { return {p.x, p.y, 0}; }
+inline Vec3d place_of(Vec3d p) { return p; }
+inline Vec2d part_of(Vec3d v, Dim2*) { return {v.x, v.y}; }
+inline Vec3d part_of(Vec3d v, Dim3*) { return v; }
+
+/// Buoyancy and its drag on one body. `surroundings` may be null.
 template <class D>
-void float_body(WorldImplementation<D>& world, const Buoyancy<D>& water, const EffectorBody<D>& body, double time);
+void float_body(WorldImplementation<D>& world, const Buoyancy<D>& water, const EffectorBody<D>& body, double time,
+                const environment::Environment* surroundings);
+/// The water that goes along with floating bodies takes its share of all the force on them: last of the effectors.
+template <class D>
+void apply_added_masses(WorldImplementation<D>& world, double dt);
 
 /// Frees the effector's slot, and the joint of a spring.
 template <class D>

@@ -1,5 +1,4 @@
 // Bodies in water: for every shape the wet volume and its centre, by carom/forces, in the shape's own frame.
-#include "carom/environment/water.h"
 #include "carom/forces/buoyancy.h"
 #include "carom/geometry/compound.h"
 #include "carom/geometry/hull.h"
@@ -12,35 +11,38 @@ namespace {
 /// The surface near a point: through `point` with `normal`, and how the water moves there.
 template <class D>
 struct LocalWater {
-  typename D::Position point{}, normal{}, velocity{};
+  typename D::Position point{}, normal{}, velocity{}, acceleration{};
 };
 
+/// `radius` is of what feels the water: of the surroundings' water, waves short against it count less.
 template <class D>
-LocalWater<D> water_near(const WorldImplementation<D>& world, const Buoyancy<D>& def, typename D::Position p,
-                         double time) {
+LocalWater<D> water_near(const WorldImplementation<D>& world, const Buoyancy<D>& def, const environment::Sea* sea,
+                         typename D::Position p, double time, double radius) {
+  D* const d = nullptr;
+  environment::WaterPoint sample;
+  if (sea != nullptr) {
+    sample = sea->sample(place_of(p), time, radius);
+  } else {
+    environment::Wave waves[4];
+    for (int i = 0; i < def.wave_count; ++i)
+      waves[i] = {def.waves[i].amplitude, def.waves[i].wavelength, def.waves[i].phase, 1, 0};
+    environment::Water water;
+    water.level = def.level;
+    water.waves = {waves, std::size_t(def.wave_count)};
+    water.density = def.density;
+    const double g = math::length(typename D::Position(world.definition.gravity));
+    if (g > 0) water.gravity = g;
+    sample = environment::sample(water, place_of(p), time);
+  }
   LocalWater<D> out;
-  environment::Wave waves[4];
-  for (int i = 0; i < def.wave_count; ++i)
-    waves[i] = {def.waves[i].amplitude, def.waves[i].wavelength, def.waves[i].phase, 1, 0};
-  environment::Water water;
-  water.level = def.level;
-  water.waves = {waves, std::size_t(def.wave_count)};
-  water.density = def.density;
-  const double g = math::length(typename D::Position(world.definition.gravity));
-  if (g > 0) water.gravity = g;
-  Vec3d at{p.x, p.y, 0};
-  if constexpr (D::dimension == 3) at.z = p.z;
-  const environment::WaterPoint sample = environment::sample(water, at, time);
   out.point = p;
   out.point.y = sample.height;
-  if constexpr (D::dimension == 3) {
-    out.normal = sample.normal;
-    out.velocity = sample.velocity;
-  } else {
-    out.normal = normalize(Vec2d{sample.normal.x, sample.normal.y});
-    out.velocity = {sample.velocity.x, sample.velocity.y};
-  }
-  out.velocity += typename D::Position(def.current);
+  out.normal = normalize(part_of(sample.normal, d));
+  out.velocity = part_of(sample.velocity, d);
+  if (sea != nullptr)
+    out.acceleration = part_of(sample.acceleration, d);
+  else
+    out.velocity += typename D::Position(def.current);
   return out;
 }
 
@@ -149,39 +151,107 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
 double volume_of(const forces::Submerged2& part) { return part.area; }
 double volume_of(const forces::Submerged3& part) { return part.volume; }
 
+/// Radius of what a shape feels of the waves: of a disc as wide as it.
+double felt_radius(const geometry::Shape2& shape) {
+  const geometry::Bounds2f b = geometry::bounds(shape, math::Transform2f{});
+  return 0.577 * double(b.high.x - b.low.x);
+}
+double felt_radius(const geometry::Shape3& shape) {
+  const geometry::Bounds3f b = geometry::bounds(shape, math::Transform3f{});
+  return 0.577 * double(math::min(b.high.x - b.low.x, b.high.z - b.low.z));
+}
+
+/// Half of its height as it lies.
+double half_height(const geometry::Shape2& shape, const Pose2& pose) {
+  const geometry::Bounds2f b = geometry::bounds(shape, math::Transform2f{{}, pose.rotation});
+  return 0.5 * double(b.high.y - b.low.y);
+}
+double half_height(const geometry::Shape3& shape, const Pose3& pose) {
+  const geometry::Bounds3f b = geometry::bounds(shape, math::Transform3f{{}, pose.rotation});
+  return 0.5 * double(b.high.y - b.low.y);
+}
+
+/// The parts of a shape that each have their own plane of water: a box that is long against the waves is cut across.
+template <class Add>
+void for_each_part(const geometry::Shape2& shape, const Pose2& pose, double, const Add& add) {
+  add(pose, shape, felt_radius(shape));
+}
+template <class Add>
+void for_each_part(const geometry::Shape3& shape, const Pose3& pose, double piece, const Add& add) {
+  constexpr int most = 8;
+  const auto cuts = [&](float half) {
+    return int(math::clamp(math::ceil(2 * double(half) / piece), 1.0, double(most)));
+  };
+  const int columns = shape.type == geometry::ShapeType3::box ? cuts(shape.box.half_extents.x) : 1;
+  const int rows = shape.type == geometry::ShapeType3::box ? cuts(shape.box.half_extents.z) : 1;
+  if (columns * rows == 1) return add(pose, shape, felt_radius(shape));
+  geometry::Shape3 part = shape;
+  const Vec3f half = shape.box.half_extents;
+  part.box.half_extents.x = half.x / float(columns);
+  part.box.half_extents.z = half.z / float(rows);
+  const double radius = felt_radius(part);
+  for (int i = 0; i < columns; ++i)
+    for (int k = 0; k < rows; ++k) {
+      const Vec3f center{part.box.half_extents.x * float(2 * i + 1 - columns), 0,
+                         part.box.half_extents.z * float(2 * k + 1 - rows)};
+      add(Pose3{pose.position + Vec3d(rotate(pose.rotation, center)), pose.rotation}, part, radius);
+    }
+}
+
 }  // namespace
 
 template <class D>
-void float_body(WorldImplementation<D>& world, const Buoyancy<D>& def, const EffectorBody<D>& body, double time) {
+void float_body(WorldImplementation<D>& world, const Buoyancy<D>& def, const EffectorBody<D>& body, double time,
+                const environment::Environment* surroundings) {
   using Position = typename D::Position;
   using RotationD = std::conditional_t<D::dimension == 2, Rot2d, Quatd>;
   const std::size_t i = std::size_t(body.slot);
   BodyMotion<D>& motion = world.bodies.motion[i];
-  const LocalWater<D> here = water_near(world, def, body.center, time);
+  const environment::Sea* sea = surroundings != nullptr ? surroundings->water() : nullptr;
+  const bool waves = sea != nullptr ? !sea->components().empty() : def.wave_count > 0;
+  const LocalWater<D> here = water_near(world, def, sea, body.center, time, 0);
   if (dot(body.center - here.point, here.normal) > double(motion.outer_extent)) return;  // all dry
 
+  const double piece = sea != nullptr && waves ? 2 * math::pi / (6 * sea->mean_wave_number()) : 0;  // m
   double wet = 0;
-  Position moment{};
-  for (std::int32_t s = world.bodies.record[i].first_shape; s != none; s = world.shapes.at(s).next) {
-    const ShapeRecord<D>& shape = world.shapes.at(s);
-    if (shape.flags & shape_sensor) continue;
-    const typename D::Pose pose = shape.at_origin ? body.pose : body.pose * shape.local;
-    const LocalWater<D> surface = def.wave_count > 0 ? water_near(world, def, pose.position, time) : here;
+  Position moment{}, flow{}, push_of_waves{};
+  const auto add = [&](const typename D::Pose& pose, const typename D::Shape& shape, double radius) {
+    Position asked = pose.position;
+    if (sea != nullptr && waves) {  // the water's motion about half way down what is wet
+      const double high = half_height(shape, pose), bottom = asked.y - high;
+      asked.y = math::min(asked.y, 0.5 * (math::min(sea->water().level, asked.y + high) + bottom));
+    }
+    const LocalWater<D> surface = waves ? water_near(world, def, sea, asked, time, radius) : here;
     const RotationD q(pose.rotation);
-    const auto part = wet_part(world.effectors, shape.geometry,
+    const auto part = wet_part(world.effectors, shape,
                                {inverse_rotate(q, surface.normal), dot(surface.normal, surface.point - pose.position)});
     const double volume = volume_of(part);
     wet += volume;
     moment += volume * (pose.position + rotate(q, part.centroid) - body.center);
+    flow += volume * surface.velocity;
+    push_of_waves += volume * surface.acceleration;
+  };
+  for (std::int32_t s = world.bodies.record[i].first_shape; s != none; s = world.shapes.at(s).next) {
+    const ShapeRecord<D>& shape = world.shapes.at(s);
+    if (shape.flags & shape_sensor) continue;
+    const typename D::Pose pose = shape.at_origin ? body.pose : body.pose * shape.local;
+    if (sea != nullptr && waves)
+      for_each_part(shape.geometry, pose, piece, add);
+    else
+      add(pose, shape.geometry, 0);
   }
   if (!(wet > 0)) return;
   const Position arm = moment / wet;  // of the centre of buoyancy, from the centre of mass
-  const double displaced = def.density * wet;
-  push_at(world, body, Position(world.definition.gravity) * -displaced, arm);
+  const double displaced = (sea != nullptr ? sea->water().density : def.density) * wet;
+  Position gravity(world.definition.gravity);
+  if (surroundings != nullptr && surroundings->has_gravity())
+    gravity += part_of(surroundings->gravity(place_of(body.center)), static_cast<D*>(nullptr));
+  const Position water_velocity = flow / wet, water_acceleration = push_of_waves / wet;
+  push_at(world, body, (water_acceleration - gravity) * displaced, arm);
   if (def.linear_drag > 0) {
     // The rate is relative to the displaced mass; averaged over the step it is stable for any rate.
     const double z = def.linear_drag * displaced * body.inverse_mass * body.dt;
-    const Position v = body.velocity + cross(body.spin, arm) - here.velocity;
+    const Position v = body.velocity + cross(body.spin, arm) - water_velocity;
     push_at(world, body, v * (-def.linear_drag * displaced * mean_decay(z)), arm);
   }
   if (def.angular_drag > 0) {
@@ -196,9 +266,62 @@ void float_body(WorldImplementation<D>& world, const Buoyancy<D>& def, const Eff
       motion.torque += factor * rotate(q, motion.inertia * inverse_rotate(q, spin));
     }
   }
+  if (def.added_mass != typename D::Vector{} || def.added_inertia != typename D::Angular{})
+    world.effectors.added.push_back(
+        {body.slot, displaced, Position(def.added_mass), water_velocity, water_acceleration, def.added_inertia});
 }
 
-template void float_body(WorldImplementation<Dim2>&, const Buoyancy<Dim2>&, const EffectorBody<Dim2>&, double);
-template void float_body(WorldImplementation<Dim3>&, const Buoyancy<Dim3>&, const EffectorBody<Dim3>&, double);
+template <class D>
+void apply_added_masses(WorldImplementation<D>& world, double dt) {
+  using Position = typename D::Position;
+  using RotationD = std::conditional_t<D::dimension == 2, Rot2d, Quatd>;
+  for (const auto& added : world.effectors.added) {
+    const EffectorBody<D> body(world, added.body, dt);
+    BodyMotion<D>& motion = world.bodies.motion[std::size_t(added.body)];
+    const RotationD q(body.pose.rotation);
+    const Position u = inverse_rotate(q, body.velocity - added.water_velocity);
+    const Position water = inverse_rotate(q, added.water_acceleration);
+    Position force = inverse_rotate(q, other_acceleration(world, body) * body.mass), carried{};
+    for (int i = 0; i < D::dimension; ++i) carried[i] = added.share[i] * added.displaced * u[i];
+    // Kirchhoff 1869: (m + A) a = F + A a_w + A(ω × u) − ω × (A u), and the moment −u × (A u) that turns a body
+    // broadside.
+    const auto spin = [&] {
+      if constexpr (D::dimension == 2)
+        return body.spin;
+      else
+        return inverse_rotate(q, body.spin);
+    }();
+    const Position turned = cross(spin, u), cross_flow = cross(spin, carried);
+    Position extra{};
+    for (int i = 0; i < D::dimension; ++i) {
+      const double a = added.share[i] * added.displaced;
+      const double all = force[i] + a * (water[i] + turned[i]) - cross_flow[i];
+      extra[i] = body.mass * all / (body.mass + a) - force[i];
+    }
+    push(world, body, rotate(q, extra));
+    const auto munk = cross(u, carried);
+    if constexpr (D::dimension == 2) {
+      const double inertia = double(motion.inertia), j = double(added.inertia) * added.displaced;
+      const double torque = double(motion.torque) - munk;
+      motion.torque = inertia > 0 ? float(torque * inertia / (inertia + j)) : motion.torque;
+    } else {
+      const Vec3d torque = inverse_rotate(q, Vec3d(motion.torque)) - munk;
+      const Mat3d inertia(motion.inertia);
+      Mat3d all = inertia;
+      all.cx.x += double(added.inertia.x) * added.displaced;
+      all.cy.y += double(added.inertia.y) * added.displaced;
+      all.cz.z += double(added.inertia.z) * added.displaced;
+      const Vec3d through = math::inverse(all) * torque;
+      if (is_finite(through)) motion.torque = Vec3f(rotate(q, inertia * through));
+    }
+  }
+}
+
+template void float_body(WorldImplementation<Dim2>&, const Buoyancy<Dim2>&, const EffectorBody<Dim2>&, double,
+                         const environment::Environment*);
+template void float_body(WorldImplementation<Dim3>&, const Buoyancy<Dim3>&, const EffectorBody<Dim3>&, double,
+                         const environment::Environment*);
+template void apply_added_masses(WorldImplementation<Dim2>&, double);
+template void apply_added_masses(WorldImplementation<Dim3>&, double);
 
 }  // namespace carom::rigid::detail

@@ -20,6 +20,14 @@ struct EffectorStore {
   core::SlotPool<EffectorTag> slots;
   std::vector<EffectorData<D>> data;   ///< by slot
   std::vector<std::int32_t> in_order;  ///< slots in order of creation: the order in which they act
+  /// Water that goes along with a body this step: shares of what it displaces, by body.
+  struct AddedMass {
+    std::int32_t body = none;
+    double displaced = 0;  ///< kg
+    typename D::Position share{}, water_velocity{}, water_acceleration{};
+    typename D::Angular inertia{};  ///< m²
+  };
+  std::vector<AddedMass> added;
   // Triangles of a hull while its wet part is measured.
   std::vector<Vec3d> vertices;
   std::vector<std::uint32_t> indices;

@@ -72,10 +72,11 @@ void visit_joints(Joints& store, Visit& visit) {
 
 template <class Effectors, class Visit>
 void visit_effectors(Effectors& store, Visit& visit) {
-  auto& [slots, data, in_order, vertices, indices] = store;
+  auto& [slots, data, in_order, added, vertices, indices] = store;
   visit_slots(slots, visit);
   visit.effectors(data);
   visit.state(in_order);
+  visit.scratch(added);
   visit.scratch(vertices);
   visit.scratch(indices);
 }

@@ -58,6 +58,14 @@ struct EffectorCheck {
     c.not_negative("angular_drag", e.angular_drag);
     c.vector("current", e.current);
     if (e.wave_count < 0 || e.wave_count > 4) c.say(core::refused("wave_count", e.wave_count, "0 … 4"));
+    c.vector("added_mass", e.added_mass);
+    for (int i = 0; c.none_yet() && i < D::dimension; ++i) c.not_negative("added_mass", double(e.added_mass[i]));
+    if constexpr (D::dimension == 2) {
+      c.not_negative("added_inertia", double(e.added_inertia));
+    } else {
+      c.vector("added_inertia", e.added_inertia);
+      for (int i = 0; c.none_yet() && i < 3; ++i) c.not_negative("added_inertia", double(e.added_inertia[i]));
+    }
     for (int i = 0; c.none_yet() && i < e.wave_count; ++i) {
       c.finite(core::text("waves[", i, "].amplitude"), e.waves[i].amplitude);
       c.positive(core::text("waves[", i, "].wavelength"), e.waves[i].wavelength);
@@ -87,6 +95,47 @@ struct EffectorCheck {
     c.finite("circulation", e.circulation);
     c.positive("core_radius", e.core_radius);
     c.not_negative("rate", e.rate);
+  }
+  void operator()(const Surroundings<D>& e) {
+    if (e.environment == nullptr) c.say("environment is null, expected one");
+  }
+  void operator()(const BodyDrag<D>& e) {
+    target(e);
+    using Kind = forces::DragLaw::Kind;
+    if (e.law.kind < Kind::constant || e.law.kind > Kind::by_mach)
+      c.say(core::refused("law.kind", int(e.law.kind), "one of the laws"));
+    if (e.law.kind == Kind::constant) c.not_negative("law.coefficient", e.law.coefficient);
+    if (c.none_yet() && (e.law.kind == Kind::by_reynolds || e.law.kind == Kind::by_mach)) {
+      c.status(forces::validate(e.law.table));
+      for (int i = 0; c.none_yet() && i < e.law.table.count; ++i) c.not_negative("law.table", e.law.table.y[i]);
+    }
+    c.positive("diameter", e.diameter);
+    c.not_negative("area", e.area);
+    c.vector("point", e.point);
+    c.not_negative("density", e.density);
+    c.positive("viscosity", e.viscosity);
+    c.positive("speed_of_sound", e.speed_of_sound);
+  }
+  void operator()(const MagnusLift<D>& e) {
+    target(e);
+    c.not_negative("law.a", e.law.a);
+    c.positive("law.b", e.law.b);
+    c.positive("radius", e.radius);
+    c.not_negative("density", e.density);
+  }
+  void operator()(const TurningFrame<D>& e) {
+    target(e);
+    if constexpr (D::dimension == 2)
+      c.finite("rate", double(e.rate));
+    else
+      c.vector("rate", e.rate);
+    c.vector("center", e.center);
+  }
+  void operator()(const ElectromagneticField<D>& e) {
+    target(e);
+    c.finite("charge", e.charge);
+    c.vector("electric", e.electric);
+    c.vector("magnetic", e.magnetic);
   }
   void operator()(const CustomEffector<D>& e) {
     target(e);

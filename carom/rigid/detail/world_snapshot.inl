@@ -222,6 +222,14 @@ void adopt_handles(WorldImplementation<D>& world) {
   for (SensorEvent& e : world.scratch.pending_sensor_end) adopt(e.sensor), adopt(e.visitor);
 }
 
+/// Whether it is something of the caller's that bytes did not carry.
+template <class D>
+bool lacks_own(const EffectorDef<D>& definition) {
+  if (const auto* custom = std::get_if<CustomEffector<D>>(&definition)) return !custom->model;
+  if (const auto* around = std::get_if<Surroundings<D>>(&definition)) return around->environment == nullptr;
+  return false;
+}
+
 /// The hulls and meshes that a decoded snapshot knows by their fingerprint, out of this world's own.
 template <class D>
 Result<std::shared_ptr<const std::vector<typename D::Shape>>> find_geometry(const WorldImplementation<D>& world,
@@ -294,16 +302,16 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
         "World::restore: the snapshot's sections are not those of a world, expected one of this version"};
   const auto geometry = find_geometry(world, data);
   if (!geometry.ok()) return geometry.error();
-  std::vector<EffectorData<D>> kept;  // the caller's own functions, where bytes could not carry them
+  std::vector<EffectorData<D>> kept;  // the caller's own functions and surroundings, where bytes could not carry them
   for (std::size_t i = 0; i < data.effectors.size(); ++i) {
-    const auto* custom = std::get_if<CustomEffector<D>>(&data.effectors[i].definition);
-    if (custom == nullptr || custom->model || !data.decoded) continue;
-    const auto* own =
-        i < world.effectors.data.size() ? std::get_if<CustomEffector<D>>(&world.effectors.data[i].definition) : nullptr;
-    if (own == nullptr || !own->model)
+    if (!data.decoded || !lacks_own<D>(data.effectors[i].definition)) continue;
+    const bool has_own = i < world.effectors.data.size() &&
+                         world.effectors.data[i].definition.index() == data.effectors[i].definition.index() &&
+                         !lacks_own<D>(world.effectors.data[i].definition);
+    if (!has_own)
       return core::Error{core::text("World::restore: effector #", i + 1,
-                                    " is the caller's own function, which bytes do not carry, expected one in the same "
-                                    "slot of this world")};
+                                    " is the caller's own function or surroundings, which bytes do not carry, expected "
+                                    "one in the same slot of this world")};
     if (kept.empty()) kept = world.effectors.data;
   }
 
@@ -313,10 +321,14 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
     for (std::size_t i = 0; i < world.shapes.record.size(); ++i) world.shapes.record[i].geometry = (**geometry)[i];
     world.shapes.geometry_copy = *geometry;
   }
-  for (std::size_t i = 0; i < world.effectors.data.size() && !kept.empty(); ++i) {
-    auto* custom = std::get_if<CustomEffector<D>>(&world.effectors.data[i].definition);
-    if (custom != nullptr && !custom->model && i < kept.size())
+  for (std::size_t i = 0; i < world.effectors.data.size() && i < kept.size(); ++i) {
+    EffectorDef<D>& here = world.effectors.data[i].definition;
+    if (!lacks_own<D>(here)) continue;
+    if (auto* custom = std::get_if<CustomEffector<D>>(&here)) {
       if (auto* own = std::get_if<CustomEffector<D>>(&kept[i].definition)) custom->model = own->model;
+    } else if (std::holds_alternative<Surroundings<D>>(kept[i].definition)) {
+      here = kept[i].definition;
+    }
   }
   world.joints.trees.stale = true;
   if (data.world_number != world.world_number) adopt_handles(world);
