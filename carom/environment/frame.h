@@ -24,7 +24,7 @@ constexpr math::Vec3d frame_acceleration(const RotatingFrame& frame, math::Vec3d
 inline math::Vec3d earth_rate(double latitude, double bearing = 0.5 * math::pi, double rate = 7.292115e-5) {
   const math::SinCos<double> phi = math::sincos(latitude), b = math::sincos(bearing);
   // North in axes x (bearing b), y up, z to the right of x: cos b along x, −sin b along z.
-  return {rate * phi.cos * b.cos, rate * phi.sin, -rate * phi.cos * b.sin};
+  return {rate * phi.cos * b.cos, rate * phi.sin, 0.0 - rate * phi.cos * b.sin};
 }
 
 }  // namespace carom::environment

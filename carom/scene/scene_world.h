@@ -77,6 +77,7 @@ class CAROM_API SceneWorld {
   std::vector<SceneBody> bodies;  ///< in creation order
   std::vector<SceneJoint> joints;
   std::vector<SceneEffector> effectors;
+  rigid::EffectorId environment{};  ///< of the key "environment"; null where the scene has none
 
   Status step();  ///< by dt
   double time() const;

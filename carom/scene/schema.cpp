@@ -43,7 +43,8 @@ std::string field_schema(const Field& field) {
     case FieldType::quantity:
       return "\"$ref\": " + quote("#/$defs/" + measure_name(field.measure));
     case FieldType::vector:
-      if (field.measure == Measure::angular_speed)
+      if (field.measure == Measure::angular_speed || field.measure == Measure::flux_density ||
+          field.measure == Measure::area)  // a number in the plane
         return "\"anyOf\": [" + quantity + ", {\"type\": \"array\", \"items\": " + quantity +
                ", \"minItems\": 3, \"maxItems\": 3}]";
       return "\"type\": \"array\", \"items\": " + quantity + ", \"minItems\": " + (field.dimensions == 3 ? "3" : "2") +

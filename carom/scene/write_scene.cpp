@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/text.h"
 
 namespace carom::scene {
@@ -61,14 +62,21 @@ class SceneWriter {
     std::vector<EffectorId> effectors;
     world_.effectors(effectors);
     bool first = true;
+    std::string environment;
     for (const EffectorId id : effectors) {
       const Result<EffectorDef<D>> d = world_.effector_definition(id);
       if (!d) return d.error();
       if (std::holds_alternative<CustomEffector<D>>(*d)) continue;
+      if (const auto* around = std::get_if<Surroundings<D>>(&*d)) {  // the last one counts
+        environment = environment_text(*around->environment, D::dimension);
+        continue;
+      }
       out += (first ? "\n    " : ",\n    ") + std::visit([this](const auto& e) { return this->effector_text(e); }, *d);
       first = false;
     }
-    return out + "\n  ]\n}\n";
+    out += "\n  ]";
+    if (!environment.empty()) out += ",\n  \"environment\": " + environment;
+    return out + "\n}\n";
   }
 
  private:
@@ -348,6 +356,8 @@ class SceneWriter {
         .put("linear_drag", e.linear_drag)
         .put("angular_drag", e.angular_drag);
     f.put("current", vector_text(e.current));
+    if (e.added_mass != typename D::Vector{}) f.put("added_mass", vector_text(e.added_mass));
+    if (e.added_inertia != typename D::Angular{}) f.put("added_inertia", angular_text(e.added_inertia));
     std::string waves;
     for (int i = 0; i < e.wave_count; ++i)
       waves += (i > 0 ? ", " : "") + Fields()
@@ -377,10 +387,36 @@ class SceneWriter {
   }
   std::string effector_text(const CustomEffector<D>&) const { return {}; }
   std::string effector_text(const Surroundings<D>&) const { return {}; }
-  std::string effector_text(const BodyDrag<D>&) const { return {}; }
-  std::string effector_text(const MagnusLift<D>&) const { return {}; }
-  std::string effector_text(const TurningFrame<D>&) const { return {}; }
-  std::string effector_text(const ElectromagneticField<D>&) const { return {}; }
+  std::string effector_text(const BodyDrag<D>& e) const {
+    constexpr const char* laws[] = {"constant", "sphere", "cylinder", "disc", "by_reynolds", "by_mach"};
+    Fields f = effector_fields("body_drag", e.body);
+    f.put("law", quote(laws[int(e.law.kind)])).put("drag_coefficient", e.law.coefficient);
+    std::string table;
+    for (int i = 0; i < e.law.table.count; ++i)
+      table += (i > 0 ? ", " : "") + digits(e.law.table.x[i]) + ", " + digits(e.law.table.y[i]);
+    if (!table.empty()) f.put("table", "[" + table + "]").flag("logarithmic", e.law.table.logarithmic != 0, false);
+    f.put("diameter", e.diameter).put("area", e.area).put("point", vector_text(e.point)).put("density", e.density);
+    return f.put("viscosity", e.viscosity).put("speed_of_sound", e.speed_of_sound).object();
+  }
+  std::string effector_text(const MagnusLift<D>& e) const {
+    return effector_fields("magnus_lift", e.body)
+        .put("lift", "[" + digits(e.law.a) + ", " + digits(e.law.b) + "]")
+        .put("radius", e.radius)
+        .put("density", e.density)
+        .object();
+  }
+  std::string effector_text(const TurningFrame<D>& e) const {
+    return effector_fields("turning_frame", e.body)
+        .put("angular_velocity", angular_text(e.rate))
+        .put("center", vector_text(e.center))
+        .flag("centrifugal", e.centrifugal, false)
+        .object();
+  }
+  std::string effector_text(const ElectromagneticField<D>& e) const {
+    Fields f = effector_fields("electromagnetic_field", e.body);
+    f.put("charge", e.charge).put("electric", vector_text(e.electric));
+    return f.put("magnetic", D::dimension == 2 ? digits(e.magnetic.z) : vector_text(e.magnetic)).object();
+  }
 
   const World<D>& world_;
   const WriteOptions& options_;

@@ -1,6 +1,7 @@
 #include "carom/scene/detail/builder.h"
 
 #include "carom/core/spelling.h"
+#include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/joints.h"
 
 namespace carom::scene::detail {
@@ -420,6 +421,14 @@ bool build(Reader& reader, const Scene& scene, const Object& o, const Instantiat
   if (!read_world<D>(reader, o, options, def)) return false;
   world_slot(out, static_cast<D*>(nullptr)) = std::make_unique<World<D>>(def);
   if (!read_material_pairs(reader, o, *world_slot(out, static_cast<D*>(nullptr)))) return false;
+  if (o.has("environment")) {
+    auto around = read_environment(reader, o);
+    if (around == nullptr) return false;
+    const Result<EffectorId> id =
+        world_slot(out, static_cast<D*>(nullptr))->add_effector(Surroundings<D>{std::move(around)});
+    if (!reader.accept(id.ok() ? Status{} : Status{id.error()}, *o.find("environment"), "environment")) return false;
+    out.environment = *id;
+  }
   return Builder<D>(reader, scene, out, false).run();
 }
 template <class D>
@@ -428,6 +437,12 @@ bool update(Reader& reader, const Scene& scene, const Object& o, SceneWorld& out
   if (o.has("gravity")) {
     const auto gravity = vector_for(reader.vector(o, "gravity"), static_cast<D*>(nullptr));
     if (reader.failed() || !reader.accept(world.set_gravity(gravity), *o.find("gravity"), "gravity")) return false;
+  }
+  if (o.has("environment")) {
+    auto around = read_environment(reader, o);
+    if (around == nullptr || !reader.accept(world.set_effector(out.environment, Surroundings<D>{std::move(around)}),
+                                            *o.find("environment"), "environment"))
+      return false;
   }
   return Builder<D>(reader, scene, out, true).run();
 }

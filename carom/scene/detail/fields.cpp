@@ -1,5 +1,7 @@
 #include "carom/scene/detail/fields.h"
 
+#include "carom/scene/detail/environment_fields.h"
+
 namespace carom::scene::detail {
 namespace {
 using T = FieldType;
@@ -15,8 +17,11 @@ constexpr std::string_view joint_types[] = {"distance",    "ball",    "hinge",  
                                             "cylindrical", "planar",  "universal", "wheel",  "path"};
 constexpr std::string_view joint_solvers[] = {"automatic", "iterative", "direct"};
 constexpr std::string_view effector_types[] = {
-    "spherical_gravity", "linear_drag", "quadratic_drag", "wind",        "spring",
-    "buoyancy",          "thrust",      "radial_field",   "vortex_field"};
+    "spherical_gravity", "linear_drag",   "quadratic_drag",       "wind",         "spring",
+    "buoyancy",          "thrust",        "radial_field",         "vortex_field", "body_drag",
+    "magnus_lift",       "turning_frame", "electromagnetic_field"};
+constexpr std::string_view drag_laws[] = {"constant", "sphere", "cylinder", "disc", "by_reynolds", "by_mach"};
+constexpr std::string_view lift_balls[] = {"rough_ball", "baseball", "tennis_ball"};
 constexpr std::string_view series_styles[] = {"line", "points"};
 constexpr std::string_view earth_models[] = {"flat", "round", "wgs84"};
 constexpr std::string_view gravity_models[] = {"uniform", "inverse_square"};
@@ -327,9 +332,27 @@ constexpr Field effector_fields[] = {
     {"coefficient", T::quantity, M::damping, "linear drag"},
     {"angular_coefficient", T::quantity, M::count_, "linear drag: N*m*s; quadratic drag: N*m*s^2"},
     {"density", T::quantity, M::density, "of the medium"},
-    {"drag_coefficient", T::quantity, M::plain, "quadratic drag"},
-    {"area", T::quantity, M::area, "quadratic drag"},
-    {"point", T::vector, M::length, "quadratic drag and thrust, in the body"},
+    {"drag_coefficient", T::quantity, M::plain, "quadratic drag; body drag whose law is constant"},
+    {"area", T::quantity, M::area, "quadratic drag; body drag, that of a disc of its diameter unless given"},
+    {"point", T::vector, M::length, "quadratic and body drag and thrust, in the body"},
+    {"law", T::choice, M::plain, "body drag, sphere unless given", nullptr, drag_laws},
+    {"table", T::number_list, M::plain, "body drag by Reynolds or Mach number: x, C_d, x, C_d …"},
+    {"logarithmic", T::flag, M::plain, "the table is linear over the logarithm of x"},
+    {"diameter", T::quantity, M::length, "body drag, of the Reynolds number"},
+    {"viscosity", T::quantity, M::viscosity, "body drag, where the scene has no environment"},
+    {"speed_of_sound", T::quantity, M::speed, "body drag, where the scene has no environment"},
+    {"radius", T::quantity, M::length, "magnus lift"},
+    {"ball", T::choice, M::plain, "magnus lift: whose measurements; rough_ball unless given", nullptr, lift_balls},
+    {"lift", T::number_list, M::plain, "magnus lift: a and b of 1/(a + b/S) instead of a ball"},
+    {"angular_velocity", T::vector, M::angular_speed, "turning frame; a number in the plane"},
+    {"latitude", T::quantity, M::angle, "turning frame: the Earth's there, instead of an angular_velocity"},
+    {"bearing", T::quantity, M::angle, "turning frame: of the x axis, from north over east; 90 deg unless given"},
+    {"centrifugal", T::flag, M::plain, "turning frame: the centrifugal force too"},
+    {"charge", T::quantity, M::charge, "electromagnetic field, of each body"},
+    {"electric", T::vector, M::electric_field, "electromagnetic field"},
+    {"magnetic", T::vector, M::flux_density, "electromagnetic field; a number in the plane"},
+    {"added_mass", T::vector, M::plain, "buoyancy: shares of the displaced mass along the body's axes"},
+    {"added_inertia", T::vector, M::area, "buoyancy: the same for turning; a number in the plane"},
     {"velocity", T::vector, M::speed, "wind"},
     {"body_a", T::name, M::plain, "spring"},
     {"body_b", T::name, M::plain, "spring; the world where absent"},
@@ -504,6 +527,7 @@ constexpr Field scene_fields[] = {
     {"bodies", T::list, M::plain, "bodies and groups", &body_kind},
     {"joints", T::list, M::plain, "joints and groups", &joint_kind},
     {"effectors", T::list, M::plain, "effectors and groups", &effector_kind},
+    {"environment", T::object, M::plain, "gravity, air, wind and water around the bodies", &environment_kind},
     {"camera", T::object, M::plain, "", &camera_kind},
     {"plots", T::list, M::plain, "", &plot_kind},
     {"expectations", T::list, M::plain, "", &expectation_kind},
@@ -561,7 +585,20 @@ const ObjectKind* const all_kinds[] = {&scene_kind,
                                        &flight_kind,
                                        &earth_kind,
                                        &vehicle_kind,
-                                       &initial_kind};
+                                       &initial_kind,
+                                       &environment_kind,
+                                       &gravity_field_kind,
+                                       &turning_frame_kind,
+                                       &air_kind,
+                                       &wind_field_kind,
+                                       &wind_layer_kind,
+                                       &gust_kind,
+                                       &turbulence_kind,
+                                       &thermal_kind,
+                                       &obstacle_kind,
+                                       &wake_kind,
+                                       &sea_kind,
+                                       &sea_wave_kind};
 
 }  // namespace
 

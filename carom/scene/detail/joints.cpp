@@ -1,5 +1,7 @@
 #include "carom/scene/detail/joints.h"
 
+#include "carom/environment/frame.h"
+
 namespace carom::scene::detail {
 namespace {
 using namespace rigid;
@@ -399,6 +401,8 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       e.linear_drag = reader.number(o, "linear_drag", 0);
       e.angular_drag = reader.number(o, "angular_drag", 0);
       e.current = vector_for(reader.vector(o, "current"), d);
+      e.added_mass = vector_for(reader.vector(o, "added_mass"), d);
+      e.added_inertia = angular_for(reader.angular(o, "added_inertia"), d);
       const Node* waves = o.find("waves");
       if (waves == nullptr) return e;
       const std::string path = o.path_of("waves");
@@ -429,6 +433,63 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       e.reference = reader.number(o, "reference", e.reference);
       e.exponent = reader.number(o, "exponent", e.exponent);
       e.range = reader.number(o, "range", e.range);
+      return e;
+    }
+    case 9: {
+      BodyDrag<D> e{target};
+      e.law.kind = forces::DragLaw::Kind(reader.choice(o, "law", int(e.law.kind)));
+      e.law.coefficient = reader.number(o, "drag_coefficient", e.law.coefficient);
+      if (o.has("table")) {
+        const std::vector<double> table = reader.numbers(o, "table");
+        const std::size_t most = 2 * std::size_t(forces::CoefficientTable::capacity);
+        if (!reader.failed() && (table.empty() || table.size() % 2 != 0 || table.size() > most))
+          reader.expected(*o.find("table"), o.path_of("table"), "up to 16 pairs of x and C_d, one after another");
+        for (std::size_t i = 0; i + 1 < table.size() && i < most; i += 2) {
+          e.law.table.x[i / 2] = table[i];
+          e.law.table.y[i / 2] = table[i + 1];
+          ++e.law.table.count;
+        }
+      }
+      e.law.table.logarithmic = reader.flag(o, "logarithmic", false) ? 1 : 0;
+      e.diameter = reader.number(o, "diameter", e.diameter);
+      e.area = reader.number(o, "area", 0.25 * math::pi * e.diameter * e.diameter);
+      e.point = vector_for(reader.vector(o, "point"), d);
+      e.density = reader.number(o, "density", e.density);
+      e.viscosity = reader.number(o, "viscosity", e.viscosity);
+      e.speed_of_sound = reader.number(o, "speed_of_sound", e.speed_of_sound);
+      return e;
+    }
+    case 10: {
+      MagnusLift<D> e{target};
+      constexpr forces::LiftLaw balls[] = {forces::rough_ball_lift, forces::baseball_lift, forces::tennis_lift};
+      e.law = balls[reader.choice(o, "ball", 0)];
+      if (o.has("lift")) {
+        const std::vector<double> lift = reader.numbers(o, "lift", 2);
+        if (lift.size() == 2) e.law = {lift[0], lift[1]};
+      }
+      e.radius = reader.number(o, "radius", e.radius);
+      e.density = reader.number(o, "density", e.density);
+      return e;
+    }
+    case 11: {
+      TurningFrame<D> e{target};
+      e.rate = angular_for(reader.angular(o, "angular_velocity"), d);
+      if (o.has("latitude")) {
+        if (o.has("angular_velocity"))
+          reader.fail(*o.node, o.path, "found both angular_velocity and latitude, expected one of them");
+        const math::Vec3d rate =
+            environment::earth_rate(reader.number(o, "latitude", 0), reader.number(o, "bearing", 0.5 * math::pi));
+        e.rate = angular_for(rate, d);
+      }
+      e.center = position_of(reader.vector(o, "center"), d);
+      e.centrifugal = reader.flag(o, "centrifugal", false);
+      return e;
+    }
+    case 12: {
+      ElectromagneticField<D> e{target};
+      e.charge = reader.number(o, "charge", 0);
+      e.electric = vector_for(reader.vector(o, "electric"), d);
+      e.magnetic = math::Vec3f(reader.angular(o, "magnetic"));
       return e;
     }
     default: {

@@ -28,6 +28,13 @@ constexpr MeasureInfo measures[] = {
     {"a quadratic angular damping", "N*m*s^2", "2 N*m*s^2"},
     {"a circulation", "m^2/s", "10 m^2/s"},
     {"a gravitational parameter", "m^3/s^2", "3.986004418e14 m^3/s^2"},
+    {"a pressure", "Pa", "1013 hPa"},
+    {"a viscosity", "Pa*s", "1.8e-5 Pa*s"},
+    {"a temperature difference", "K", "10 K"},
+    {"a wave number", "1/m", "0.1 1/m"},
+    {"a charge", "C", "2 C"},
+    {"an electric field", "V/m", "100 V/m"},
+    {"a magnetic flux density", "T", "0.5 T"},
 };
 static_assert(sizeof measures / sizeof measures[0] == std::size_t(Measure::count_));
 

@@ -54,6 +54,13 @@ enum class Measure : std::uint8_t {
   quadratic_angular_damping,
   circulation,
   gravitational_parameter,
+  pressure,
+  viscosity,
+  temperature,
+  wave_number,
+  charge,
+  electric_field,
+  flux_density,
   count_
 };
 struct MeasureInfo {

@@ -6,6 +6,15 @@
 #include "carom/math/elementary.h"
 
 namespace carom::scene::detail {
+namespace {
+
+/// "a body", "an effector".
+std::string with_article(std::string_view name) {
+  const bool vowel = !name.empty() && std::string_view("aeiou").find(name[0]) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(name);
+}
+
+}  // namespace
 
 std::string Object::path_of(std::string_view key) const {
   return path.empty() ? std::string(key) : path + "." + std::string(key);
@@ -57,7 +66,7 @@ bool Reader::open(const Node& node, std::string path, const ObjectKind& kind, Ob
       std::vector<std::string_view> names;
       for (const Field& f : kind.fields) names.push_back(f.name);
       fail(node.children[i], out.path_of(node.keys[i]),
-           "found the unknown key " + quote(node.keys[i].substr(0, 60)) + " in a " + kind.name +
+           "found the unknown key " + quote(node.keys[i].substr(0, 60)) + " in " + with_article(kind.name) +
                core::did_you_mean(node.keys[i], names));
       return false;
     }
@@ -69,7 +78,7 @@ bool Reader::open(const Node& node, std::string path, const ObjectKind& kind, Ob
   }
   for (const Field& f : kind.fields) {
     if (f.required && node.find(f.name) == nullptr) {
-      fail(node, out.path, std::string("the key ") + quote(f.name) + " is missing in a " + kind.name);
+      fail(node, out.path, std::string("the key ") + quote(f.name) + " is missing in " + with_article(kind.name));
       return false;
     }
   }
