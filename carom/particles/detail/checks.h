@@ -1,0 +1,20 @@
+// Messages about what the caller filled in.
+#pragma once
+
+#include <string>
+
+#include "carom/core/result.h"
+#include "carom/math/vec.h"
+
+namespace carom::particles::detail {
+
+inline bool finite(math::Vec3d v) { return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z); }
+inline bool finite(math::Vec3f v) { return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z); }
+inline core::Error bad(const char* what, const char* field, const std::string& found, const char* expected) {
+  return core::Error{std::string(what) + ": " + field + " is " + found + ", expected " + expected};
+}
+inline core::Error bad(const char* what, const char* field, double found, const char* expected) {
+  return bad(what, field, std::to_string(found), expected);
+}
+
+}  // namespace carom::particles::detail

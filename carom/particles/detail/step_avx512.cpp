@@ -1,0 +1,12 @@
+// The kernels of a particle step for 16 lanes.
+#include "carom/math/simd.h"
+#include "carom/particles/detail/step_data.h"
+
+#define CAROM_PARTICLE_NAMESPACE particles_avx512
+#define CAROM_PARTICLE_WIDTH 16
+#include "carom/particles/detail/lanes.inl"
+// The functions above first.
+#include "carom/particles/detail/collide_kernel.inl"
+#include "carom/particles/detail/move_kernel.inl"
+#undef CAROM_PARTICLE_NAMESPACE
+#undef CAROM_PARTICLE_WIDTH
