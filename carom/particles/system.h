@@ -158,6 +158,11 @@ class CAROM_API ParticleSystem {
                     const detail::Kernels& kernels);
   void cast_block(const detail::SurfaceData& surface, const geometry::Shape3& shape, int from, int to,
                   detail::Path& path) const;
+  void find_surfaces(double dt, const detail::Kernels& kernels);
+  void step_contacts(double dt, core::TaskScheduler& scheduler, const detail::Kernels& kernels);
+  void place_grains(int from, int to, detail::Path& path);
+  void distance_block(const detail::SurfaceData& surface, const geometry::Shape3& shape, float margin, int from, int to,
+                      detail::Path& path) const;
   void collect_events();
   void remove_dead();
   void rebase_time();
@@ -175,7 +180,7 @@ class CAROM_API ParticleSystem {
   Air air_;
   std::vector<Attractor> attractors_;
   std::vector<Collider> colliders_;
-  ContactSolver solver_;
+  detail::ContactSolver solver_;
   double worst_overlap_ = 0;
 
   // What a step needs.
@@ -194,6 +199,9 @@ class CAROM_API ParticleSystem {
   std::vector<double> chunk_exchanged_;
   std::vector<std::int32_t> chunk_touching_;
   std::vector<Exchange> exchanges_;
+  std::vector<math::Vec3f> gained_, contact_centers_;
+  std::vector<double> contact_exchanged_;
+  std::vector<std::int32_t> contact_touching_;
   std::vector<ParticleEvent> deaths_, hits_;
 };
 

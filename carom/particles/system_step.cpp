@@ -20,12 +20,15 @@ constexpr float immortal = 1e29f;
 detail::Kernels kernels_of(int lanes) {
 #if defined(__x86_64__)
   if (lanes == 16)
-    return {detail::particles_avx512::move, detail::particles_avx512::collide, detail::particles_avx512::find_dead};
+    return {detail::particles_avx512::move, detail::particles_avx512::collide, detail::particles_avx512::find_near,
+            detail::particles_avx512::find_dead};
   if (lanes == 8)
-    return {detail::particles_avx2::move, detail::particles_avx2::collide, detail::particles_avx2::find_dead};
+    return {detail::particles_avx2::move, detail::particles_avx2::collide, detail::particles_avx2::find_near,
+            detail::particles_avx2::find_dead};
 #endif
   (void)lanes;
-  return {detail::particles_baseline::move, detail::particles_baseline::collide, detail::particles_baseline::find_dead};
+  return {detail::particles_baseline::move, detail::particles_baseline::collide, detail::particles_baseline::find_near,
+          detail::particles_baseline::find_dead};
 }
 
 }  // namespace
@@ -100,7 +103,10 @@ void ParticleSystem::run_chunk(int begin, int end, const detail::Kernels& kernel
   for (std::size_t k = 0; k < colliders; ++k) chunk_touching_[chunk * colliders + k] = 0;
   for (int from = begin; from < end; from += detail::block_size) {
     const int last = math::min(from + detail::block_size, end), to = (last + 15) / 16 * 16;
-    kernels.move(move_, arrays, from, to, path);
+    if (definition_.contacts.enabled)
+      place_grains(from, to, path);
+    else
+      kernels.move(move_, arrays, from, to, path);
     // Who was pushed by one surface into another is seen by the second round.
     if (colliders > 0 && collide_block(from, to, path, hits, exchanged, kernels) > 0 && colliders > 1)
       collide_block(from, to, path, hits, exchanged, kernels);
@@ -119,6 +125,13 @@ void ParticleSystem::collect_events() {
       exchanges_[c].impulse -= Vec3d{e[0], e[1], e[2]};
       exchanges_[c].angular_impulse -= Vec3d{e[3], e[4], e[5]};
       exchanges_[c].touching += chunk_touching_[chunk * colliders + c];
+    }
+  if (definition_.contacts.enabled)
+    for (std::size_t c = 0; c < colliders; ++c) {
+      const double* e = contact_exchanged_.data() + 6 * c;
+      exchanges_[c].impulse += Vec3d{e[0], e[1], e[2]};
+      exchanges_[c].angular_impulse += Vec3d{e[3], e[4], e[5]};
+      exchanges_[c].touching += contact_touching_[c];
     }
   hits_.clear();
   if (!definition_.report_hits) return;
@@ -169,12 +182,10 @@ core::Status ParticleSystem::step(double dt, core::TaskScheduler* scheduler) {
   prepare_move(dt);
   prepare_surfaces(dt);
   const detail::Kernels kernels = kernels_of(lanes_);
-  const auto body = [&](int begin, int end, int) { run_chunk(begin, end, kernels); };
-  if (scheduler != nullptr) {
-    scheduler->parallel_for(count_, chunk_size, body);
-  } else {
-    for (int begin = 0; begin < count_; begin += chunk_size) body(begin, math::min(begin + chunk_size, count_), 0);
-  }
+  core::SerialScheduler serial;
+  core::TaskScheduler& tasks = scheduler != nullptr ? *scheduler : serial;
+  if (definition_.contacts.enabled) step_contacts(dt, tasks, kernels);
+  tasks.parallel_for(count_, chunk_size, [&](int begin, int end, int) { run_chunk(begin, end, kernels); });
   collect_events();
   remove_dead();
   for (Emitter& emitter : emitters_) bear(emitter, dt);

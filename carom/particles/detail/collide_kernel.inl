@@ -229,13 +229,15 @@ CAROM_SIMD_INLINE int collide_form(const CollideData& d, const SurfaceData& s, c
     if (s.answer == Answer::stick && arrays.held != nullptr && !s.moves)
       math::select(m.hit, splat(1), F::load(arrays.held + i)).store(arrays.held + i);
 
-    for (std::uint32_t bits = math::bitmask(m.hit); bits != 0; bits &= bits - 1) {
-      const int lane = __builtin_ctz(bits), index = i + lane;
-      if (index >= count) break;
-      ++touched;
-      const V out_normal = turn(s.turn1, n);
+    std::uint32_t bits = math::bitmask(m.hit);
+    if (i + width > count) bits &= (1u << (count > i ? count - i : 0)) - 1u;  // behind the last there is none
+    touched += __builtin_popcount(bits);
+    if (hits.room == 0 && hits.exchanged == nullptr) continue;
+    const V toward = turn(s.turn1, n);
+    for (; bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
       if (hits.count < hits.room && speed[lane] > hits.slowest)
-        hits.hits[hits.count++] = {index, {out_normal.x[lane], out_normal.y[lane], out_normal.z[lane]}, speed[lane]};
+        hits.hits[hits.count++] = {i + lane, {toward.x[lane], toward.y[lane], toward.z[lane]}, speed[lane]};
       if (hits.exchanged == nullptr) continue;
       const double m_i = mass[lane];
       const double jx = m_i * (double(new_v.x[lane]) - double(v1.x[lane]));
@@ -252,6 +254,52 @@ CAROM_SIMD_INLINE int collide_form(const CollideData& d, const SurfaceData& s, c
     }
   }
   return touched;
+}
+
+template <Form form>
+CAROM_SIMD_INLINE void near_form(const CollideData& d, const SurfaceData& s, const Arrays& arrays, float margin,
+                                 int from, int to, Path& path) {
+  const V center = splat(s.place0);
+  for (int i = from; i < to; i += width) {
+    const int k = i - from;
+    const F scale = arrays.scale != nullptr ? F::load(arrays.scale + i) : splat(1);
+    const F radius = splat(d.radius) * scale;
+    const V off = load(arrays.position, i) - center;
+    M near = M::all();
+    if (s.reach < far_gap) {
+      const F reach = splat(s.reach + margin) + radius;
+      near = dot(off, off) < reach * reach;
+    }
+    if (!math::any(near)) {
+      splat(far_gap).store(path.gap + k);
+      continue;
+    }
+    const Closest c = closest<form>(s, turn_back(s.turn0, off));
+    math::select(near, c.gap - radius, splat(far_gap)).store(path.gap + k);
+    store(turn(s.turn0, c.normal), path.normal, k);
+  }
+}
+
+void find_near(const CollideData& d, const SurfaceData& s, const Arrays& arrays, float margin, int from, int to,
+               Path& path) {
+  switch (s.form) {
+    case Form::plane:
+      return near_form<Form::plane>(d, s, arrays, margin, from, to, path);
+    case Form::sphere:
+      return near_form<Form::sphere>(d, s, arrays, margin, from, to, path);
+    case Form::capsule:
+      return near_form<Form::capsule>(d, s, arrays, margin, from, to, path);
+    case Form::box:
+      return near_form<Form::box>(d, s, arrays, margin, from, to, path);
+    case Form::cylinder:
+      return near_form<Form::cylinder>(d, s, arrays, margin, from, to, path);
+    case Form::hull:
+      return near_form<Form::hull>(d, s, arrays, margin, from, to, path);
+    case Form::height_field:
+      return near_form<Form::height_field>(d, s, arrays, margin, from, to, path);
+    case Form::given:
+      break;  // cast one by one, by the caller
+  }
 }
 
 int collide(const CollideData& d, const SurfaceData& s, const Arrays& arrays, int from, int to, int count, Path& path,

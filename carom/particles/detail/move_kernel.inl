@@ -99,7 +99,7 @@ CAROM_SIMD_INLINE void move_all(const MoveData& d, const Arrays& arrays, int fro
       store(v, path.speed, i - from);
       dt.store(path.left + (i - from));
     }
-    store(p1, arrays.position, i);
+    if (!d.velocity_only) store(p1, arrays.position, i);
     store(v1, arrays.velocity, i);
   }
 }

@@ -60,6 +60,7 @@ struct MoveData {
   float decay, mean, half;  ///< of the uniform rate: e^{−x}, φ₁, φ₂ with x = rate × dt
   const float* drag_table;  ///< null, or the factor by age: 64 cells of value and difference
   bool keep_path;
+  bool velocity_only;  ///< leaves positions: contacts decide about them
 };
 
 enum class Form : int { plane, sphere, capsule, box, cylinder, hull, height_field, given };
@@ -109,6 +110,10 @@ struct HitList {
   /** Lets them meet a surface; `count`: the first that is no particle. Returns the number that touched it. */        \
   int collide(const CollideData& data, const SurfaceData& surface, const Arrays& arrays, int from, int to, int count, \
               Path& path, HitList& hits);                                                                             \
+  /** Gap and normal of every particle to a surface as it stood at the start of the step, into path.gap and           \
+   * path.normal (world axes); far_gap where it is farther than `margin` from its sphere. */                          \
+  void find_near(const CollideData& data, const SurfaceData& surface, const Arrays& arrays, float margin, int from,   \
+                 int to, Path& path);                                                                                 \
   /** Indices of those whose time is over or that are lost; returns how many. */                                      \
   int find_dead(const Arrays& arrays, float now, float limit, int from, int to, int count, std::int32_t* dead);
 
@@ -127,6 +132,7 @@ CAROM_PARTICLE_KERNELS
 struct Kernels {
   decltype(&particles_baseline::move) move;
   decltype(&particles_baseline::collide) collide;
+  decltype(&particles_baseline::find_near) find_near;
   decltype(&particles_baseline::find_dead) find_dead;
 };
 
