@@ -1,0 +1,213 @@
+// Particles of ropes against the shapes of the world.
+#include "carom/math/elementary.h"
+#include "carom/particles/detail/rope_solver.h"
+
+namespace carom::particles::detail {
+
+namespace {
+
+constexpr double slowest_slip = 0.01;  // m/s: friction grows up to here
+
+/// The nearest plane of a shape to a ball; false where there is none within the margin.
+bool nearest_plane(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
+                   float& separation) {
+  const geometry::Shape3 ball(geometry::Sphere{radius});
+  const math::Transform3f place{center, {}};
+  bool found = false;
+  const auto take = [&](const geometry::Manifold3& manifold) {
+    for (int k = 0; k < manifold.count; ++k)
+      if (manifold.points[k].separation <= margin && (!found || manifold.points[k].separation < separation)) {
+        found = true;
+        separation = manifold.points[k].separation;
+        normal = manifold.normal;
+      }
+  };
+  if (is_convex(shape) || shape.type == geometry::ShapeType3::plane) {
+    geometry::PairCache cache;
+    geometry::Manifold3 manifold;
+    geometry::collide(shape, ball, place, margin, cache, manifold);
+    take(manifold);
+  } else {
+    geometry::Manifold3 manifolds[4];
+    const int count = geometry::collide_many(shape, ball, place, margin, manifolds);
+    for (int k = 0; k < count; ++k) take(manifolds[k]);
+  }
+  return found;
+}
+
+}  // namespace
+
+Vec3d RopeSolver::shape_point(const RopeShape& shape, Vec3d point) const {
+  const RopeBody& body = set.bodies_[std::size_t(shape.body)];
+  const Vec3d local = inverse_rotate(body.rotation, point - body.center) + body.local_center;
+  return inverse_rotate(shape.turn, local - shape.place);
+}
+
+void RopeSolver::find_contacts(Rope& rope) {
+  const std::size_t n = rope.position.size();
+  if (!rope.collide) return;
+  const double radius = rope.material.radius;
+  geometry::Bounds3d bounds{rope.position[0], rope.position[0]};
+  double fastest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    bounds.low = min(bounds.low, rope.position[i]);
+    bounds.high = max(bounds.high, rope.position[i]);
+    fastest = math::max(fastest, length(rope.velocity[i]));
+  }
+  const double reach = 0.25 * rope.segment + 1.5 * dt * (fastest + dt * length(gravity));
+  (void)world.overlap_bounds(grow(bounds, radius + reach), set.found_);
+
+  for (RopeContact& contact : rope.contacts) contact.separation = 1e30;
+  for (const rigid::ShapeId id : set.found_) {
+    const auto definition = world.shape_definition(id);
+    const auto owner = world.body_of(id);
+    if (!definition || !owner || definition->sensor) continue;
+    const rigid::Filter& other = definition->filter;
+    const bool same_group = other.group != 0 && other.group == rope.filter.group;
+    if (same_group ? other.group < 0
+                   : (other.category & rope.filter.mask) == 0 || (rope.filter.category & other.mask) == 0)
+      continue;
+    bool ignored = false;
+    for (const RopeGrip& grip : rope.grips) ignored |= grip.attachment.body == *owner && !grip.attachment.collide;
+    if (ignored) continue;
+    const auto shape = world.shape_geometry(id);
+    const int index = body_index(*owner);
+    if (!shape || index < 0) continue;
+    const int number = int(set.shapes_.size());
+    set.shapes_.push_back({*shape, id, index, Quatd(definition->local.q), Vec3d(definition->local.p)});
+    const double friction = math::sqrt(rope.material.friction * double(definition->material.friction));
+    const geometry::Bounds3f tight = geometry::bounds(*shape, {});
+    for (std::size_t i = 0; i < n; ++i) {
+      const double margin = 0.25 * rope.segment + 1.5 * dt * (length(rope.velocity[i]) + dt * length(gravity));
+      const Vec3f local(shape_point(set.shapes_.back(), rope.position[i]));
+      if (!contains(grow(tight, float(radius + margin)), geometry::Bounds3f{local, local})) continue;
+      RopeContact& contact = rope.contacts[i];
+      Vec3f normal;
+      float separation = 0;
+      if (!nearest_plane(*shape, local, float(radius), float(margin), normal, separation)) continue;
+      if (double(separation) >= contact.separation) continue;
+      if (contact.shape != id) contact.state = RopeHold::none;
+      contact.separation = double(separation);
+      contact.shape = id;
+      contact.near = number;
+      contact.body = index;
+      contact.friction = friction;
+    }
+  }
+  for (RopeContact& contact : rope.contacts)
+    if (contact.separation == 1e30) contact = RopeContact{};
+}
+
+void RopeSolver::place_contacts(Rope& rope) {
+  if (!rope.collide) return;
+  for (std::size_t i = 0; i < rope.position.size(); ++i) {
+    RopeContact& contact = rope.contacts[i];
+    RopeNode& node = rope.nodes[i];
+    if (contact.near < 0 || node.hold == RopeHold::attached) continue;
+    // The plane where the particle will be: that of the start would brake what runs round a post, since the tension of
+    // the implicit step acts in the directions of its end.
+    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+    const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+    const float radius = float(rope.material.radius);
+    const Vec3d drift = rope.velocity[i] - body.velocity_at(rope.position[i]);
+    Vec3f normal;
+    float here = 0, ahead = 0;
+    if (!nearest_plane(near.shape, Vec3f(shape_point(near, rope.position[i])), radius, 1e3f, normal, here) ||
+        !nearest_plane(near.shape, Vec3f(shape_point(near, rope.position[i] + h * drift)), radius, 1e3f, normal,
+                       ahead)) {
+      contact.state = RopeHold::none;
+      continue;
+    }
+    contact.separation = double(here);
+    node.normal = rotate(body.rotation, rotate(near.turn, Vec3d(normal)));
+    node.body = contact.body;
+    node.arm = rope.position[i] - rope.material.radius * node.normal - body.center;
+    // Where the step is to leave it at least: on the surface, or a fifth less deep than now.
+    const double deep = math::min(double(here), 0.0), end = deep + math::min(-0.2 * deep, h * 1.0);
+    node.target = body.velocity + cross(body.spin, node.arm) +
+                  (dot(node.normal, drift) + (end - double(ahead)) / h) * node.normal;
+    node.hold = contact.state;
+    const double most = h * contact.friction * contact.push;
+    node.resistance = most / slowest_slip;
+    node.grip = h * (contact.grip - dot(contact.grip, node.normal) * node.normal);
+    if (contact.state == RopeHold::slide) {
+      const Vec3d against = rope.velocity[i] - node.target;
+      node.resistance = most / math::max(length(against - dot(against, node.normal) * node.normal), slowest_slip);
+      node.grip = {};
+    }
+  }
+}
+
+Vec3d RopeSolver::change_at(const RopeNode& node) const {
+  if (node.body < 0) return {};
+  const RopeBody& body = set.bodies_[std::size_t(node.body)];
+  if (body.column < 0) return {};
+  const double* change = &set.right_[std::size_t(body.column) * 6];
+  return Vec3d{change[0], change[1], change[2]} + cross(Vec3d{change[3], change[4], change[5]}, node.arm);
+}
+
+// Coulomb's friction as an implicit resistance whose coefficient follows the normal force and the slip of the last
+// iteration. What sticks keeps its grip from substep to substep, so that it does not creep.
+bool RopeSolver::update_holds(Rope& rope, int iteration) {
+  if (!rope.collide) return false;
+  bool changed = false;
+  for (std::size_t i = 0; i < rope.position.size(); ++i) {
+    RopeContact& contact = rope.contacts[i];
+    RopeNode& node = rope.nodes[i];
+    if (contact.near < 0 || node.hold == RopeHold::attached) continue;
+    const Vec3d against = rope.solution[i] - node.target - change_at(node);
+    const double closing = dot(node.normal, against);
+    if (node.hold == RopeHold::none) {
+      if (closing >= -1e-9 || iteration > 5) continue;
+      node.hold = RopeHold::slide;
+      node.resistance = 0;
+      node.grip = {};
+      changed = true;
+      continue;
+    }
+    const double push = dot(node.normal, node.reaction);
+    if (push < 0) {
+      node.hold = RopeHold::none;
+      changed = true;
+      continue;
+    }
+    if (contact.friction == 0 || iteration > 6) continue;
+    const double most = contact.friction * push, speed = length(against - closing * node.normal);
+    contact.slip = speed;
+    const Vec3d along = node.reaction - push * node.normal;
+    const double held = length(along);
+    if (node.hold == RopeHold::stick && held > most * 1.0001) {
+      node.hold = RopeHold::slide;
+      changed = true;
+    }
+    const Vec3d grip = node.grip;
+    const double before = node.resistance;
+    if (node.hold == RopeHold::stick) {
+      node.resistance = most / slowest_slip;
+    } else if (speed > slowest_slip) {
+      node.resistance = most / speed;
+      node.grip = {};
+    } else {
+      // About to slide: all of the friction that there is, the way it held; a tenth of it gives way with the slip.
+      node.resistance = 0.1 * most / slowest_slip;
+      node.grip = held > 0 ? (math::max(most - node.resistance * speed, 0.0) / held) * along : Vec3d{};
+    }
+    changed |= math::abs(node.resistance - before) > 0.004 * (node.resistance + before) ||
+               length(node.grip - grip) > 0.01 * most;
+  }
+  return changed;
+}
+
+void RopeSolver::keep_contact(RopeContact& contact, const RopeNode& node, bool gone) const {
+  contact.state = gone ? RopeHold::none : node.hold;
+  contact.push = gone ? 0 : math::max(dot(node.normal, node.reaction), 0.0) / h;
+  contact.grip = {};
+  if (gone) return;
+  Vec3d grip = node.reaction / h - (dot(node.normal, node.reaction) / h) * node.normal;
+  const double size = length(grip), most = contact.friction * contact.push;
+  contact.state = node.hold == RopeHold::slide && contact.slip > slowest_slip ? RopeHold::slide : RopeHold::stick;
+  if (size > most) grip = grip * (most / size);
+  contact.grip = grip;
+}
+
+}  // namespace carom::particles::detail

@@ -1,0 +1,57 @@
+// The passes of a step of ropes, in the order in which they run.
+#pragma once
+
+#include "carom/particles/detail/rope_data.h"
+
+namespace carom::particles::detail {
+
+struct RopeSolver {
+  RopeSet& set;
+  rigid::World3& world;
+  double dt;
+  double h = 0;
+  Vec3d gravity{};
+
+  Status run();
+
+  // rope_bodies.cpp
+  int body_index(rigid::BodyId id);  ///< −1: not there
+  void gather();
+  void find_mobility();
+  void find_joints();
+  void find_support();
+  void couple();  ///< the bodies' changes of velocity from all ropes' rows
+  void commit_bodies();
+  Vec3d change_at(const RopeNode& node) const;  ///< of the velocity of what holds a particle, by the solve
+  void move_bodies();
+  void hand_over();
+
+  // rope_contact.cpp
+  void find_contacts(Rope& rope);
+  Vec3d shape_point(const RopeShape& shape, Vec3d point) const;  ///< in the shape's frame
+  void place_contacts(Rope& rope);                               ///< at the start of a substep
+  bool update_holds(Rope& rope, int iteration);                  ///< true: something changed
+  void keep_contact(RopeContact& contact, const RopeNode& node, bool gone) const;
+
+  // rope_step.cpp
+  int needed_substeps(const Rope& rope) const;
+  void wind_winches(Rope& rope);
+  void prepare(Rope& rope);  ///< what the particles are held by, at the start of a step
+  void weigh(Rope& rope);    ///< winches turn; masses
+  void forces(Rope& rope);
+  void hold_grips(Rope& rope);
+  void assemble(Rope& rope);
+  void solve(Rope& rope);
+  void react(Rope& rope);     ///< impulses on the particles that the solution asks for
+  double change(Rope& rope);  ///< the greatest strain by which the last iteration was off, squared; tensions
+  void advance(Rope& rope, int index);
+};
+
+// rope_forces.cpp
+void add_bending(Rope& rope);
+void add_twist(Rope& rope, std::vector<RopeBody>& bodies, double h);
+double bending_energy(const Rope& rope);
+/// The first segment's director, carried along the rope without twist, at the last segment.
+Vec3d carried_director(const Rope& rope, Vec3d director);
+
+}  // namespace carom::particles::detail

@@ -1,0 +1,397 @@
+// A substep of ropes: Newton's method on the implicit step, by Thomas' elimination of 3×3 blocks.
+#include "carom/core/string.h"
+#include "carom/math/elementary.h"
+#include "carom/particles/detail/rope_solver.h"
+
+namespace carom::particles::detail {
+
+namespace {
+
+constexpr int most_iterations = 10;
+constexpr int most_substeps = 256;
+constexpr double gap_rate = 0.4;  // share of a gap between a particle and its anchor that is closed in a step
+
+/// The share of implicitness of a spring with z = (ω h)²: none while it is slow (Verlet's symplectic step), all for a
+/// stiff one (implicit Euler's); stable for every z.
+double implicit_share(double z) { return z > 1 ? 1 - 1 / z : 0; }
+
+Vec3d across(const RopeNode& node, Vec3d v) { return v - dot(node.normal, v) * node.normal; }
+/// The part of a momentum row that a hold leaves.
+Vec3d project(const RopeNode& node, Vec3d r) {
+  if (node.hold == RopeHold::none) return r;
+  return node.hold == RopeHold::attached ? Vec3d{} : across(node, r);
+}
+Mat3d project(const RopeNode& node, const Mat3d& m) {
+  return {project(node, m.cx), project(node, m.cy), project(node, m.cz)};
+}
+/// What a hold puts in its place, for a velocity of the surface; `mass` makes it a momentum.
+Vec3d held_part(const RopeNode& node, double mass, Vec3d v) {
+  if (node.hold == RopeHold::none) return {};
+  if (node.hold == RopeHold::attached) return mass * v;
+  return (mass * dot(node.normal, v)) * node.normal + node.resistance * across(node, v);
+}
+
+}  // namespace
+
+int RopeSolver::needed_substeps(const Rope& rope) const {
+  int needed = set.substeps_;
+  if (rope.material.bending_stiffness > 0) {
+    double shortest = rope.rest[0];
+    for (const double rest : rope.rest) shortest = math::min(shortest, rest);
+    shortest = math::max(shortest, 0.5 * rope.segment);
+    // The fastest mode of a row of particles with bending: ω = 4 √(EI/ρ)/l².
+    const double omega =
+        4 * math::sqrt(rope.material.bending_stiffness / rope.material.mass_per_length) / (shortest * shortest);
+    const double rate = math::max(omega, 2 * rope.material.bending_damping * omega * omega);
+    const double wanted = math::ceil(dt * rate / 1.2);
+    needed = wanted > most_substeps ? most_substeps + 1 : math::max(needed, int(wanted));
+  }
+  return needed;
+}
+
+void RopeSolver::wind_winches(Rope& rope) {
+  for (int end = 0; end < 2; ++end) {
+    if (rope.winch[end] == 0) continue;
+    const auto last = [&] { return end == 0 ? std::size_t(0) : rope.rest.size() - 1; };
+    const double shortest = 0.5 * rope.segment;
+    const double rest = rope.rest[last()];
+    if (rest < shortest && rope.rest.size() > 1) {
+      // The particle beside the end is taken off; its neighbour's segment reaches to the end.
+      const std::size_t node = end == 0 ? 1 : rope.position.size() - 2;
+      const std::size_t gone = last(), kept = end == 0 ? 1 : gone - 1;
+      for (const RopeGrip& grip : rope.grips)
+        if (std::size_t(grip.attachment.node) == node) return;  // reeled in as far as it goes
+      rope.rest[kept] += rope.rest[gone];
+      rope.lump[end == 0 ? 0 : rope.lump.size() - 1] += rope.lump[node];
+      const auto erase = [](auto& list, std::size_t at) { list.erase(list.begin() + std::ptrdiff_t(at)); };
+      erase(rope.position, node);
+      erase(rope.velocity, node);
+      erase(rope.lump, node);
+      erase(rope.contacts, node);
+      erase(rope.rest, gone);
+      erase(rope.tension, gone);
+      erase(rope.broken, gone);
+      for (RopeGrip& grip : rope.grips)
+        if (std::size_t(grip.attachment.node) > node) --grip.attachment.node;
+      rope.resize(rope.position.size());
+    } else if (rest > 1.5 * rope.segment) {
+      const std::size_t at = last(), node = at + 1;  // the new particle, between `at` and what was `at + 1`
+      const double share = end == 0 ? (rest - rope.segment) / rest : rope.segment / rest;
+      const auto insert = [](auto& list, std::size_t place, auto value) {
+        list.insert(list.begin() + std::ptrdiff_t(place), value);
+      };
+      const double far = rope.segment, near = rest - rope.segment;
+      insert(rope.position, node, lerp(rope.position[at], rope.position[at + 1], share));
+      insert(rope.velocity, node, lerp(rope.velocity[at], rope.velocity[at + 1], share));
+      insert(rope.lump, node, 0.0);
+      insert(rope.contacts, node, RopeContact{});
+      insert(rope.tension, at, rope.tension[at]);
+      insert(rope.broken, at, std::uint8_t(0));
+      insert(rope.rest, at, 0.0);
+      rope.rest[at] = end == 0 ? near : far;
+      rope.rest[at + 1] = end == 0 ? far : near;
+      for (RopeGrip& grip : rope.grips)
+        if (std::size_t(grip.attachment.node) >= node) ++grip.attachment.node;
+      rope.resize(rope.position.size());
+    }
+  }
+}
+
+void RopeSolver::weigh(Rope& rope) {
+  for (int end = 0; end < 2; ++end) {
+    double& rest = rope.rest[end == 0 ? 0 : rope.rest.size() - 1];
+    rest = math::max(rest - h * rope.winch[end], math::min(rest, 0.2 * rope.segment));
+  }
+  const int n = rope.count();
+  const double half = 0.5 * rope.material.mass_per_length;
+  for (int i = 0; i < n; ++i) {
+    const std::size_t k = std::size_t(i);
+    rope.mass[k] = rope.lump[k] + half * ((i > 0 ? rope.rest[k - 1] : 0) + (i + 1 < n ? rope.rest[k] : 0));
+  }
+}
+
+void RopeSolver::prepare(Rope& rope) {
+  const int n = rope.count();
+  rope.peak = 0;
+  for (RopeGrip& grip : rope.grips) {
+    const auto bias = [&](std::size_t node, Vec3d local) {
+      const Vec3d place = grip.body < 0 ? local : set.bodies_[std::size_t(grip.body)].place(local);
+      return (gap_rate / dt) * (place - rope.position[node]);
+    };
+    const std::size_t node = std::size_t(grip.attachment.node);
+    grip.impulse = {};
+    grip.bias = bias(node, grip.attachment.point);
+    if (grip.attachment.clamped) grip.second_bias = bias(node == 0 ? 1 : node - 1, grip.second);
+  }
+  rope.touched.clear();
+  const auto touch = [&](int body) {
+    if (body < 0 || !set.bodies_[std::size_t(body)].moves) return;
+    for (const int known : rope.touched)
+      if (known == body) return;
+    rope.touched.push_back(body);
+  };
+  // In the order of particles, so that the bodies' matrix is narrow.
+  for (int i = 0; i < n; ++i) {
+    for (const RopeGrip& grip : rope.grips)
+      if (grip.attachment.node == i) touch(grip.body);
+    if (rope.contacts[std::size_t(i)].shape != rigid::ShapeId{}) touch(rope.contacts[std::size_t(i)].body);
+  }
+  rope.columns.resize(rope.touched.size() * 6 * std::size_t(n));
+}
+
+void RopeSolver::forces(Rope& rope) {
+  const std::size_t n = rope.position.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    rope.force[i] = rope.mass[i] * gravity;
+    rope.start[i] = rope.guess[i] = rope.velocity[i];
+  }
+  add_bending(rope);
+  add_twist(rope, set.bodies_, h);
+  const RopeMaterial& m = rope.material;
+  const double density = set.air_.density;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    if (rope.broken[i]) {
+      rope.theta[2 * i] = rope.theta[2 * i + 1] = 0;
+      continue;
+    }
+    const Vec3d d = rope.position[i + 1] - rope.position[i];
+    const double l = length(d), lightness = 2 * (1 / rope.mass[i] + 1 / rope.mass[i + 1]);
+    rope.theta[2 * i] = implicit_share(h * h * m.axial_stiffness / rope.rest[i] * lightness);
+    rope.theta[2 * i + 1] = h * h * lightness;
+    rope.pull[i] = math::max(rope.tension[i], 0.0);
+    if (density == 0 || (m.drag_coefficient == 0 && m.skin_coefficient == 0)) continue;
+    const Vec3d middle = 0.5 * (rope.position[i] + rope.position[i + 1]);
+    const Vec3d air = environment::wind_at(set.air_.wind, middle.y) - 0.5 * (rope.velocity[i] + rope.velocity[i + 1]);
+    const Vec3d t = normalize(d), along = dot(air, t) * t, across = air - along;
+    const double surface = density * m.radius * l;
+    const double c = surface * m.drag_coefficient * length(across);
+    const double s = math::pi * surface * m.skin_coefficient * length(along);
+    const double tame = 1 / (1 + h * (c + s) / (rope.mass[i] + rope.mass[i + 1]));
+    const Vec3d half = (0.5 * tame) * (c * across + s * along);
+    rope.force[i] += half;
+    rope.force[i + 1] += half;
+  }
+}
+
+void RopeSolver::hold_grips(Rope& rope) {
+  for (RopeNode& node : rope.nodes) node = RopeNode{};
+  for (const RopeGrip& grip : rope.grips) {
+    const auto hold = [&](std::size_t i, Vec3d bias) {
+      RopeNode& node = rope.nodes[i];
+      node.hold = RopeHold::attached;
+      node.body = grip.body;
+      node.target = bias;
+      if (grip.body < 0) return;
+      const RopeBody& body = set.bodies_[std::size_t(grip.body)];
+      node.arm = rope.position[i] - body.center;
+      node.target += body.velocity_at(rope.position[i]);
+    };
+    const std::size_t i = std::size_t(grip.attachment.node);
+    hold(i, grip.bias);
+    if (grip.attachment.clamped) hold(i == 0 ? 1 : i - 1, grip.second_bias);
+  }
+}
+
+void RopeSolver::assemble(Rope& rope) {
+  const std::size_t n = rope.position.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    rope.diagonal[i] = Mat3d::diagonal({rope.mass[i], rope.mass[i], rope.mass[i]});
+    rope.lower[i] = rope.upper[i] = Mat3d::zero();
+    rope.momentum[i] = rope.mass[i] * rope.start[i] + h * rope.force[i];
+  }
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    if (rope.broken[i]) continue;
+    const Vec3d d = rope.position[i + 1] - rope.position[i], closing = rope.guess[i + 1] - rope.guess[i];
+    const double stiffness = rope.material.axial_stiffness / rope.rest[i];
+    // The turning of a taut segment stiffens it across by T/l: with T as the last solution has it, since that of the
+    // guess, a hair too long, would be far off.
+    const double across = rope.pull[i] / math::max(length(d), 1e-9);
+    const double axial = rope.theta[2 * i], lateral = implicit_share(across * rope.theta[2 * i + 1]);
+    const Vec3d reach = d + (axial * h) * closing, aim = d + (lateral * h) * closing;
+    const double l = length(reach);
+    const Vec3d g = normalize_or(reach, Vec3d{0, 1, 0}, 1e-12), way = normalize_or(aim, g, 1e-12);
+    const double damping = rope.material.axial_damping / rope.rest[i];
+    const double wound = (i == 0 ? rope.winch[0] : 0) + (i + 2 == n ? rope.winch[1] : 0);  // m/s off the rest length
+    const double tension = stiffness * (l - rope.rest[i]) + damping * (dot(g, closing) + wound * l / rope.rest[i]);
+    Mat3d c = (h * (axial * h * stiffness + damping)) * math::outer(way, g);
+    if (lateral > 0) {
+      const double turn = h * h * lateral * rope.pull[i] / math::max(length(aim), 1e-9);
+      c = c + turn * (Mat3d::identity() + (-1.0) * math::outer(way, way));
+    }
+    const Vec3d pull = h * tension * way - c * closing;
+    rope.diagonal[i] = rope.diagonal[i] + c;
+    rope.diagonal[i + 1] = rope.diagonal[i + 1] + c;
+    rope.upper[i] = (-1.0) * c;
+    rope.lower[i + 1] = (-1.0) * c;
+    rope.momentum[i] += pull;
+    rope.momentum[i + 1] -= pull;
+  }
+}
+
+void RopeSolver::solve(Rope& rope) {
+  const std::size_t n = rope.position.size();
+  // `factor` the inverse of the eliminated diagonal, `held` factor·upper; `right` is eliminated downward.
+  for (std::size_t i = 0; i < n; ++i) {
+    const RopeNode& node = rope.nodes[i];
+    Mat3d d = project(node, rope.diagonal[i]);
+    Vec3d r = project(node, rope.momentum[i]);
+    if (node.hold == RopeHold::attached) {
+      d = d + Mat3d::diagonal({rope.mass[i], rope.mass[i], rope.mass[i]});
+    } else if (node.hold != RopeHold::none) {
+      const Mat3d normal = math::outer(node.normal, node.normal);
+      d = d + rope.mass[i] * normal + node.resistance * (Mat3d::identity() + (-1.0) * normal);
+      r += node.grip;
+    }
+    r += held_part(node, rope.mass[i], node.target);
+    if (i > 0) {
+      const Mat3d low = project(node, rope.lower[i]);
+      d = d + (-1.0) * (low * rope.held[i - 1]);
+      r -= low * rope.right[i - 1];
+    }
+    rope.factor[i] = inverse(d);
+    rope.right[i] = rope.factor[i] * r;
+    rope.held[i] = rope.factor[i] * project(node, rope.upper[i]);
+  }
+  rope.solution[n - 1] = rope.right[n - 1];
+  for (std::size_t i = n - 1; i-- > 0;) rope.solution[i] = rope.right[i] - rope.held[i] * rope.solution[i + 1];
+
+  for (std::size_t t = 0; t < rope.touched.size(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      Vec3d* column = &rope.columns[(t * 6 + std::size_t(k)) * n];
+      const Vec3d unit{double(k % 3 == 0), double(k % 3 == 1), double(k % 3 == 2)};
+      for (std::size_t i = 0; i < n; ++i) {
+        const RopeNode& node = rope.nodes[i];
+        Vec3d r{};
+        if (node.hold != RopeHold::none && node.body == rope.touched[t])
+          r = held_part(node, rope.mass[i], k < 3 ? unit : cross(unit, node.arm));
+        if (i > 0) r -= project(node, rope.lower[i] * column[i - 1]);
+        column[i] = rope.factor[i] * r;
+      }
+      for (std::size_t i = n - 1; i-- > 0;) column[i] -= rope.held[i] * column[i + 1];
+    }
+}
+
+void RopeSolver::react(Rope& rope) {
+  const std::size_t n = rope.position.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    RopeNode& node = rope.nodes[i];
+    if (node.hold == RopeHold::none) continue;
+    Vec3d row = rope.diagonal[i] * rope.solution[i] - rope.momentum[i];
+    if (i > 0) row += rope.lower[i] * rope.solution[i - 1];
+    if (i + 1 < n) row += rope.upper[i] * rope.solution[i + 1];
+    node.reaction = row;
+  }
+}
+
+double RopeSolver::change(Rope& rope) {
+  double worst = 0;
+  for (std::size_t i = 0; i + 1 < rope.position.size(); ++i) {
+    if (rope.broken[i]) continue;
+    const Vec3d closing = rope.guess[i + 1] - rope.guess[i];
+    const Vec3d reach = rope.position[i + 1] - rope.position[i] + (rope.theta[2 * i] * h) * closing;
+    const double l = length(reach);
+    const Vec3d off = (rope.solution[i + 1] - rope.guess[i + 1]) - (rope.solution[i] - rope.guess[i]);
+    worst = math::max(worst, h * h * length_squared(off) / (rope.rest[i] * rope.rest[i]));
+    const double stretch = l - rope.rest[i] + rope.theta[2 * i] * h * dot(reach, off) / math::max(l, 1e-9);
+    rope.pull[i] = math::max(rope.material.axial_stiffness / rope.rest[i] * stretch, 0.0);
+  }
+  return worst;
+}
+
+void RopeSolver::advance(Rope& rope, int index) {
+  const std::size_t n = rope.position.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    rope.velocity[i] = rope.solution[i];
+    rope.position[i] += h * rope.velocity[i];
+    const RopeNode& node = rope.nodes[i];
+    RopeContact& contact = rope.contacts[i];
+    if (node.hold != RopeHold::attached) keep_contact(contact, node, node.hold == RopeHold::none);
+    if (node.hold == RopeHold::none || node.body < 0) continue;
+    RopeBody& body = set.bodies_[std::size_t(node.body)];
+    body.impulse -= node.reaction;
+    body.turn -= cross(node.arm, node.reaction);
+  }
+  for (RopeGrip& grip : rope.grips) {
+    const std::size_t i = std::size_t(grip.attachment.node);
+    grip.impulse -= rope.nodes[i].reaction;
+    if (grip.attachment.clamped) grip.impulse -= rope.nodes[i == 0 ? 1 : i - 1].reaction;
+  }
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    if (rope.broken[i]) continue;
+    const double stretch = distance(rope.position[i], rope.position[i + 1]) - rope.rest[i];
+    const double tension = rope.material.axial_stiffness * stretch / rope.rest[i];
+    rope.tension[i] = tension;
+    rope.peak = math::max(rope.peak, tension);
+    if (rope.material.break_tension > 0 && tension > rope.material.break_tension) {
+      rope.broken[i] = 1;
+      rope.tension[i] = 0;
+      set.breaks_.push_back({index, int(i), tension});
+    }
+  }
+}
+
+Status RopeSolver::run() {
+  gravity = Vec3d(world.definition().gravity);
+  set.breaks_.clear();
+  int substeps = set.substeps_;
+  for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
+    const int needed = needed_substeps(set.ropes_[r]);
+    if (needed > most_substeps)
+      return core::Error{core::text("rope ", r, ": bending_stiffness ", set.ropes_[r].material.bending_stiffness,
+                                    " N·m² on segments of ", set.ropes_[r].segment, " m needs more than ",
+                                    most_substeps, " substeps; expected longer segments, or a shorter step")};
+    substeps = math::max(substeps, needed);
+  }
+  h = dt / substeps;
+  gather();
+  for (Rope& rope : set.ropes_) {
+    wind_winches(rope);
+    find_contacts(rope);
+  }
+  find_mobility();
+  for (Rope& rope : set.ropes_) prepare(rope);
+  for (int s = 0; s < substeps; ++s) {
+    for (RopeBody& body : set.bodies_) {
+      if (!body.moves) continue;
+      const Vec3d weight = (h * body.mass) * body.gravity;
+      body.velocity += body.linear * weight;
+      body.spin += transpose(body.mixed) * weight;
+    }
+    for (Rope& rope : set.ropes_) {
+      weigh(rope);
+      forces(rope);
+      hold_grips(rope);
+      place_contacts(rope);
+    }
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+      for (Rope& rope : set.ropes_) {
+        assemble(rope);
+        solve(rope);
+        react(rope);
+      }
+      couple();
+      bool again = false;
+      for (Rope& rope : set.ropes_) {
+        react(rope);
+        if (iteration + 1 == most_iterations) continue;
+        again |= update_holds(rope, iteration);
+        const double off = change(rope);
+        again |= iteration < 7 && off > 2e-9;
+        // A guess turns no segment by more than about a third in one iteration.
+        const double share = off > 0.1 ? math::sqrt(0.1 / off) : 1;
+        for (std::size_t i = 0; i < rope.position.size(); ++i)
+          rope.guess[i] = share == 1 ? rope.solution[i] : lerp(rope.guess[i], rope.solution[i], share);
+      }
+      if (!again) break;
+    }
+    commit_bodies();
+    for (std::size_t r = 0; r < set.ropes_.size(); ++r) advance(set.ropes_[r], int(r));
+    move_bodies();
+  }
+  for (Rope& rope : set.ropes_)
+    for (RopeGrip& grip : rope.grips) grip.force = grip.impulse / dt;
+  hand_over();
+  return {};
+}
+
+}  // namespace carom::particles::detail
