@@ -1,0 +1,28 @@
+#include "carom/sports/effector.h"
+
+#include "carom/math/elementary.h"
+
+namespace carom::sports {
+
+rigid::CustomEffector<rigid::Dim3> flight_effector(const Ball& ball, const Conditions& conditions, rigid::BodyId body) {
+  rigid::CustomEffector<rigid::Dim3> effector;
+  effector.body = body;
+  effector.model = [ball, conditions](const rigid::EffectorInput<rigid::Dim3>& input) {
+    const double height = input.state.center_of_mass.y;
+    BallMotion motion;
+    motion.velocity = Vec3d(input.state.linear_velocity) - conditions.wind.at(height);
+    motion.spin = Vec3d(input.state.angular_velocity);
+    motion.time = input.time;
+    if (ball.side.kind == SideForce::Kind::turning_seam) {
+      const math::Quatf q = input.state.pose.rotation;
+      const double turn = math::dot(Vec3d{q.x, q.y, q.z}, motion.spin);
+      const double rate = math::length(motion.spin);
+      if (rate > 0) motion.turned = 2 * math::atan2(turn / rate, double(q.w));
+    }
+    const forces::Wrench3 load = air_load(ball, {conditions.air.at(height).density, conditions.viscosity}, motion);
+    return rigid::Wrench<rigid::Dim3>{math::Vec3f(load.force), math::Vec3f(load.moment)};
+  };
+  return effector;
+}
+
+}  // namespace carom::sports
