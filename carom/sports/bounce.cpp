@@ -177,7 +177,9 @@ core::Result<Shot> play(const Ball& ball, const Conditions& conditions, const Ba
     const Ground at = ground(s.position.x, s.position.z);
     return math::dot(s.velocity, at.normal) < 0 ? (s.position.y - at.height) * at.normal.y - ball.radius : 1.0;
   };
-  bool on_ground = !(gap(start) > 0);
+  const Ground first = ground(start.position.x, start.position.z);
+  bool on_ground = (start.position.y - first.height) * first.normal.y - ball.radius <= 1e-9 &&
+                   math::dot(start.velocity, first.normal) <= 1e-9;
   for (int i = 0; !on_ground && now < limits.time; ++i) {
     auto leg = fly_until(ball, conditions, state, [&](double, const BallState& s) { return gap(s); },
                          {.time = limits.time - now, .tolerance = limits.tolerance});
