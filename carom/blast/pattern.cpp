@@ -1,0 +1,333 @@
+#include "carom/blast/pattern.h"
+
+#include <algorithm>
+
+#include "carom/core/string.h"
+#include "carom/math/elementary.h"
+#include "carom/math/random.h"
+
+namespace carom::blast {
+
+using math::Vec3d;
+
+namespace {
+
+geometry::Bounds3d bounds_of(const ConvexCell& cell) {
+  if (cell.empty()) return {};
+  geometry::Bounds3d b{cell.vertices()[0], cell.vertices()[0]};
+  for (const Vec3d& v : cell.vertices()) b = {min(b.low, v), max(b.high, v)};
+  return b;
+}
+
+bool inside(const ConvexCell& cell, Vec3d p) {
+  for (const ConvexCell::Face& face : cell.faces())
+    if (dot(face.normal, p) > face.offset) return false;
+  return true;
+}
+
+/// Uniform in the container; after many misses (a sliver in its box) the box's own.
+Vec3d draw_inside(const ConvexCell& cell, const geometry::Bounds3d& box, math::Random& random) {
+  Vec3d p{};
+  for (int tries = 0; tries < 1000; ++tries) {
+    p = {random.uniform(box.low.x, box.high.x), random.uniform(box.low.y, box.high.y),
+         random.uniform(box.low.z, box.high.z)};
+    if (inside(cell, p)) break;
+  }
+  return p;
+}
+
+/// Sites sorted into a grid of cubes, about two in each.
+class SiteGrid {
+ public:
+  SiteGrid(std::span<const Vec3d> sites, const geometry::Bounds3d& box) : sites_(sites), low_(box.low) {
+    Vec3d size = box.high - box.low;
+    for (const Vec3d& s : sites) low_ = min(low_, s), size = max(size, s - box.low);
+    const double largest = math::max(size.x, math::max(size.y, size.z));
+    size = max(size, 0.01 * Vec3d{largest, largest, largest});
+    edge_ = math::cbrt(2 * size.x * size.y * size.z / double(sites.size()));
+    if (!(edge_ > 0)) edge_ = 1;
+    for (int k = 0; k < 3; ++k) count_[k] = math::clamp(int(size[k] / edge_) + 1, 1, 256);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
+    order.reserve(sites.size());
+    for (std::uint32_t i = 0; i < sites.size(); ++i) order.push_back({index(sites[i]), i});
+    std::sort(order.begin(), order.end());
+    first_.assign(std::size_t(count_[0]) * std::size_t(count_[1]) * std::size_t(count_[2]) + 1, 0);
+    for (const auto& [cube, site] : order) ++first_[cube + 1], members_.push_back(site);
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  }
+  double edge() const { return edge_; }
+  int rings() const { return math::max(count_[0], math::max(count_[1], count_[2])); }
+
+  struct Near {
+    double distance_squared;
+    std::uint32_t site;
+  };
+  /// The sites of the cubes that are `ring` away from the site's own and within the limit, nearest first.
+  void ring(std::uint32_t site, int ring, double limit_squared, std::vector<Near>& found) const {
+    found.clear();
+    int c[3], low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+      c[k] = place(sites_[site], k);
+      low[k] = math::max(c[k] - ring, 0), high[k] = math::min(c[k] + ring, count_[k] - 1);
+    }
+    for (int z = low[2]; z <= high[2]; ++z)
+      for (int y = low[1]; y <= high[1]; ++y) {
+        const bool shell = math::abs(z - c[2]) == ring || math::abs(y - c[1]) == ring;
+        for (int x = low[0]; x <= high[0]; ++x) {
+          if (!shell && math::abs(x - c[0]) != ring) {
+            x = math::max(x, c[0] + ring - 1);  // across the inside
+            continue;
+          }
+          const std::size_t cube = std::size_t((z * count_[1] + y) * count_[0] + x);
+          for (std::uint32_t m = first_[cube]; m < first_[cube + 1]; ++m)
+            if (members_[m] != site) {
+              const double d = distance_squared(sites_[members_[m]], sites_[site]);
+              if (d <= limit_squared) found.push_back({d, members_[m]});
+            }
+        }
+      }
+    std::sort(found.begin(), found.end(), [](const Near& a, const Near& b) {
+      return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.site < b.site;
+    });
+  }
+
+ private:
+  int place(Vec3d p, int axis) const { return math::clamp(int((p[axis] - low_[axis]) / edge_), 0, count_[axis] - 1); }
+  std::uint32_t index(Vec3d p) const {
+    return std::uint32_t((place(p, 2) * count_[1] + place(p, 1)) * count_[0] + place(p, 0));
+  }
+  std::span<const Vec3d> sites_;
+  Vec3d low_;
+  double edge_ = 1;
+  int count_[3] = {1, 1, 1};
+  std::vector<std::uint32_t> first_, members_;
+};
+
+/// How far a cell goes from its site: a sphere and a box.
+struct Reach {
+  double squared = 0;
+  Vec3d low{}, high{};
+  Reach(const ConvexCell& cell, Vec3d site) {
+    for (const Vec3d& v : cell.vertices()) {
+      const Vec3d d = v - site;
+      squared = math::max(squared, length_squared(d));
+      low = min(low, d), high = max(high, d);
+    }
+  }
+  /// No less than the greatest of `way`·(v − site) over the corners v.
+  double along(Vec3d way) const {
+    return math::max(way.x * low.x, way.x * high.x) + math::max(way.y * low.y, way.y * high.y) +
+           math::max(way.z * low.z, way.z * high.z);
+  }
+};
+
+core::Status check(const ConvexCell& container) {
+  if (container.empty()) return core::Error{"fracture: the container is empty, expected a convex solid"};
+  return {};
+}
+
+/// Planes that cells of a lattice share must not pass exactly through corners of a mesh.
+constexpr double off_lattice = 1.7e-7;
+
+}  // namespace
+
+std::vector<Vec3d> uniform_sites(const ConvexCell& container, int count, std::uint64_t seed) {
+  math::Random random(seed);
+  const geometry::Bounds3d box = bounds_of(container);
+  std::vector<Vec3d> sites;
+  if (container.empty()) return sites;
+  for (int i = 0; i < count; ++i) sites.push_back(draw_inside(container, box, random));
+  return sites;
+}
+
+std::vector<Vec3d> even_sites(const ConvexCell& container, int count, int rounds, std::uint64_t seed) {
+  std::vector<Vec3d> sites = uniform_sites(container, count, seed);
+  for (int round = 0; round < rounds; ++round) {
+    const auto pattern = voronoi_pattern(container, sites);
+    if (!pattern.ok()) break;
+    for (std::size_t i = 0; i < sites.size(); ++i)
+      if (!pattern->cells[i].empty()) sites[i] = pattern->cells[i].mass_properties(1).center;
+  }
+  return sites;
+}
+
+std::vector<Vec3d> clustered_sites(const ConvexCell& container, Vec3d impact, double radius, int count,
+                                   std::uint64_t seed) {
+  math::Random random(seed);
+  const geometry::Bounds3d box = bounds_of(container);
+  std::vector<Vec3d> sites;
+  if (container.empty()) return sites;
+  for (int i = 0; i < count; ++i) {
+    Vec3d p{};
+    bool found = false;
+    for (int tries = 0; tries < 60 && i % 2 == 0 && !found; ++tries) {
+      p = impact + (radius * random.exponential()) * random.on_sphere();
+      found = inside(container, p);
+    }
+    sites.push_back(found ? p : draw_inside(container, box, random));
+  }
+  return sites;
+}
+
+core::Result<std::vector<Vec3d>> radial_sites(const ConvexCell& container, const RadialSites& r, std::uint64_t seed) {
+  if (auto s = check(container); !s) return s.error();
+  if (!(r.first_radius > 0) || !math::is_finite(r.first_radius))
+    return core::Error{core::refused("first_radius", r.first_radius, "a finite number of metres > 0")};
+  if (!(r.growth > 1) || !math::is_finite(r.growth))
+    return core::Error{core::refused("growth", r.growth, "a number > 1")};
+  if (r.sectors < 3 || r.sectors > 1000) return core::Error{core::refused("sectors", r.sectors, "3 to 1000")};
+  if (!(r.jitter >= 0 && r.jitter <= 1)) return core::Error{core::refused("jitter", r.jitter, "0 to 1")};
+  if (!(math::abs(length_squared(r.axis) - 1) < 1e-6)) return core::Error{"axis: expected a unit vector"};
+  if (!is_finite(r.impact)) return core::Error{"impact is not finite"};
+  math::Random random(seed);
+  const Vec3d u = normalize(perpendicular(r.axis)), v = cross(r.axis, u);
+  double reach = 0;  // square to the axis
+  for (const Vec3d& p : container.vertices())
+    reach = math::max(reach, math::hypot(dot(p - r.impact, u), dot(p - r.impact, v)));
+  if (r.limit > 0) reach = math::min(reach, r.limit);
+  std::vector<Vec3d> sites{r.impact};
+  double inner = r.first_radius;
+  for (int ring = 0; inner < reach && ring < 64; ++ring) {
+    const double outer = inner * r.growth, middle = 0.5 * (inner + outer);
+    const double turn = random.uniform(0.0, 2 * math::pi);
+    for (int k = 0; k < r.sectors; ++k) {
+      const double angle = turn + 2 * math::pi * (k + 0.5 * r.jitter * random.uniform(-1.0, 1.0)) / double(r.sectors);
+      const double radius = middle + 0.5 * r.jitter * (outer - inner) * random.uniform(-1.0, 1.0);
+      sites.push_back(r.impact + (radius * math::cos(angle)) * u + (radius * math::sin(angle)) * v);
+    }
+    inner = outer;
+  }
+  return sites;
+}
+
+core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<const Vec3d> sites) {
+  if (auto s = check(container); !s) return s.error();
+  if (sites.empty()) return core::Error{"voronoi_pattern: no sites, expected at least one"};
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    if (!is_finite(sites[i])) return core::Error{core::text("voronoi_pattern: site ", i, " is not finite")};
+  const SiteGrid grid(sites, bounds_of(container));
+  Pattern pattern;
+  pattern.cells.reserve(sites.size());
+  pattern.meetings.reserve(8 * sites.size());
+  ConvexCell::Scratch scratch;
+  std::vector<SiteGrid::Near> near;
+  ConvexCell cell;
+  for (std::uint32_t i = 0; i < sites.size(); ++i) {
+    cell = container;
+    const Vec3d site = sites[i];
+    Reach reach(cell, site);
+    for (int ring = 0; ring < grid.rings() && !cell.empty(); ++ring) {
+      if (ring > 1 && math::square((ring - 1) * grid.edge()) > 4 * reach.squared) break;
+      grid.ring(i, ring, 4 * reach.squared, near);
+      for (const SiteGrid::Near& n : near) {
+        if (n.distance_squared > 4 * reach.squared) break;
+        if (!(n.distance_squared > 0))
+          return core::Error{core::text("voronoi_pattern: sites ", i, " and ", n.site, " are in one place")};
+        const Vec3d way = sites[n.site] - site;
+        if (reach.along(way) <= 0.5 * n.distance_squared) continue;
+        const Vec3d middle = 0.5 * (site + sites[n.site]), normal = way / math::sqrt(n.distance_squared);
+        const ConvexCell::Cut cut = cell.clip({normal, dot(normal, middle), int(n.site)}, scratch);
+        if (cut == ConvexCell::Cut::all) break;
+        if (cut == ConvexCell::Cut::part) reach = Reach(cell, site);
+      }
+    }
+    for (const ConvexCell::Face& face : cell.faces())
+      if (face.tag >= 0 && std::uint32_t(face.tag) > i)
+        pattern.meetings.push_back({i, std::uint32_t(face.tag), face.tag, int(i)});
+    pattern.cells.push_back(cell);
+  }
+  return pattern;
+}
+
+core::Result<Pattern> slab_pattern(const ConvexCell& container, Vec3d normal, int count, double jitter,
+                                   std::uint64_t seed) {
+  if (auto s = check(container); !s) return s.error();
+  if (count < 1 || count > 65536) return core::Error{core::refused("count", count, "1 to 65536 slabs")};
+  if (!(jitter >= 0 && jitter <= 1)) return core::Error{core::refused("jitter", jitter, "0 to 1")};
+  if (!(length_squared(normal) > 0) || !is_finite(normal)) return core::Error{"normal: expected a direction"};
+  normal = normalize(normal);
+  math::Random random(seed);
+  double low = dot(normal, container.vertices()[0]), high = low;
+  for (const Vec3d& v : container.vertices())
+    low = math::min(low, dot(normal, v)), high = math::max(high, dot(normal, v));
+  const double step = (high - low) / count;
+  std::vector<double> borders;
+  for (int k = 1; k < count; ++k)
+    borders.push_back(low + step * (k + off_lattice + 0.5 * jitter * random.uniform(-1.0, 1.0)));
+  Pattern pattern;
+  for (int k = 0; k < count; ++k) {
+    ConvexCell cell = container;
+    if (k > 0) cell.clip({-normal, -borders[std::size_t(k - 1)], k - 1});
+    if (k + 1 < count && !cell.empty()) cell.clip({normal, borders[std::size_t(k)], k + 1});
+    pattern.cells.push_back(std::move(cell));
+    if (k > 0) pattern.meetings.push_back({std::uint32_t(k - 1), std::uint32_t(k), k, k - 1});
+  }
+  return pattern;
+}
+
+core::Result<Pattern> brick_pattern(const ConvexCell& container, Vec3d size, Vec3d corner) {
+  if (auto s = check(container); !s) return s.error();
+  if (!(size.x > 0 && size.y > 0 && size.z > 0) || !is_finite(size))
+    return core::Error{core::text("size is (", size.x, ", ", size.y, ", ", size.z, "), expected metres > 0")};
+  if (!is_finite(corner)) return core::Error{"corner is not finite"};
+  const geometry::Bounds3d box = bounds_of(container);
+  // Per axis the first and the last brick, for courses that are shifted and for those that are not.
+  std::int64_t first[2][3], last[2][3], low[3], count[3];
+  for (int k = 0; k < 3; ++k) {
+    for (int odd = 0; odd < 2; ++odd) {
+      const double shift = k == 0 ? 0.5 * odd : 0;
+      const double from = (box.low[k] - corner[k]) / size[k] - shift, to = (box.high[k] - corner[k]) / size[k] - shift;
+      if (!(math::abs(from) < 1e6 && math::abs(to) < 1e6)) return core::Error{"brick_pattern: more than 65536 bricks"};
+      first[odd][k] = std::int64_t(math::floor(from + 1e-6));
+      last[odd][k] = std::int64_t(math::floor(to - 1e-6));
+    }
+    low[k] = math::min(first[0][k], first[1][k]);
+    count[k] = math::max(last[0][k], last[1][k]) - low[k] + 1;
+  }
+  if (count[0] * count[1] * count[2] > 65536)
+    return core::Error{
+        core::text("brick_pattern: ", count[0] * count[1] * count[2], " bricks, expected at most 65536")};
+  Pattern pattern;
+  const auto index = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    const bool exists = x >= 0 && y >= 0 && z >= 0 && x < count[0] && y < count[1] && z < count[2];
+    return exists ? std::int64_t((z * count[1] + y) * count[0] + x) : -1;
+  };
+  ConvexCell::Scratch scratch;
+  for (std::int64_t z = 0; z < count[2]; ++z)
+    for (std::int64_t y = 0; y < count[1]; ++y)
+      for (std::int64_t x = 0; x < count[0]; ++x) {
+        const std::int64_t here = index(x, y, z);
+        const bool odd = ((y + low[1]) & 1) != 0;
+        const auto border = [&](int axis, std::int64_t i) {
+          return corner[axis] + (double(i + low[axis]) + (axis == 0 && odd ? 0.5 : 0.0) + off_lattice) * size[axis];
+        };
+        const std::int64_t place[3] = {x, y, z};
+        ConvexCell cell = container;
+        for (int axis = 0; axis < 3 && !cell.empty(); ++axis) {
+          const std::int64_t i = place[axis] + low[axis];
+          if (i < first[odd][axis] || i > last[odd][axis]) {
+            cell = {};
+            break;
+          }
+          // The container closes the outermost.
+          Vec3d n{};
+          n[axis] = -1;
+          if (i > first[odd][axis]) cell.clip({n, -border(axis, place[axis]), 2 * axis}, scratch);
+          n[axis] = 1;
+          if (i < last[odd][axis] && !cell.empty())
+            cell.clip({n, border(axis, place[axis] + 1), 2 * axis + 1}, scratch);
+        }
+        pattern.cells.push_back(std::move(cell));
+        const auto meet = [&](std::int64_t other, int tag, int other_tag) {
+          if (other >= 0) pattern.meetings.push_back({std::uint32_t(here), std::uint32_t(other), tag, other_tag, true});
+        };
+        meet(index(x + 1, y, z), 1, 0);
+        meet(index(x, y, z + 1), 5, 4);
+        // The course above is shifted: two bricks of it lie on each.
+        meet(index(odd ? x : x - 1, y + 1, z), 3, 2);
+        meet(index(odd ? x + 1 : x, y + 1, z), 3, 2);
+      }
+  return pattern;
+}
+
+}  // namespace carom::blast
