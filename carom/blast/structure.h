@@ -1,0 +1,149 @@
+// Things that break: parts held by bonds, one rigid body as long as they hold (chapter 18.8). After every step the
+// blows that a body took are spread over its bonds; bonds that carry too much give way, and what no bond holds any more
+// becomes a body of its own, with the velocity that it had as part of the whole.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "carom/blast/fracture.h"
+#include "carom/blast/fracture2.h"
+#include "carom/rigid/world.h"
+
+namespace carom::blast {
+
+/// What bonds bear, and how stiff they are.
+struct BondMaterial {
+  double tensile_strength = 3e6;      ///< Pa, > 0
+  double compressive_strength = 3e7;  ///< Pa, > 0
+  double shear_strength = 3e6;        ///< Pa, > 0
+  double youngs_modulus = 3e10;       ///< Pa, > 0: only how it differs between bonds matters
+  /// s: how long a blow lasts. A world's step tells the impulse of a blow, bonds feel impulse/time.
+  double contact_time = 1e-3;
+};
+/// Numbers of common use, of the right size; measured ones scatter by half.
+enum class Substance { glass, brick_and_mortar, concrete, ceramic, wood, ice };
+CAROM_API BondMaterial bond_material(Substance substance);
+CAROM_API double density_of(Substance substance);  ///< kg/m³
+
+inline constexpr std::uint32_t ground = 0xffffffff;
+
+template <class D>
+struct StructureDef {
+  struct Part {
+    std::vector<typename D::Shape> shapes;  ///< about the centre, axes of the structure
+    typename D::MassProperties mass;        ///< in the frame of the structure, about its centre
+    std::uint32_t user_id = 0;              ///< of the shapes' material, 0: that of `shape`
+  };
+  struct Joint {
+    std::uint32_t a = 0, b = 0;               ///< parts; b may be `ground`
+    double area = 0;                          ///< m² (2D: m, a metre thick)
+    typename D::Position center{}, normal{};  ///< in the frame of the structure; from a to b
+    float strength = 1;                       ///< times the material's
+  };
+  std::vector<Part> parts;
+  std::vector<Joint> bonds;
+  BondMaterial material{};
+  rigid::ShapeDef<D> shape{};              ///< of all shapes; density and local are set by the structure
+  typename D::Pose pose{};                 ///< of the structure's frame
+  typename D::Vector linear_velocity{};    ///< m/s, of the centre of mass
+  typename D::Angular angular_velocity{};  ///< rad/s
+  bool bullet_pieces = false;              ///< what breaks off is continuous against moving bodies too
+  int iterations = 48;                     ///< of the solver for stresses, 1 … 1000
+};
+/// All pieces that have a hull, of one density (kg/m³, > 0). Mass of pieces without one goes to the neighbour with
+/// which they share most; without a neighbour it is lost.
+CAROM_API StructureDef<rigid::Dim3> structure_of(const Fracture& fracture, double density);
+CAROM_API StructureDef<rigid::Dim2> structure_of(const Fracture2& fracture, double density);
+/// Bonds to the ground for parts with corners below `level` (m, in the structure's frame, along y): area by the extent
+/// of the part there.
+CAROM_API void anchor_below(StructureDef<rigid::Dim3>& definition, double level);
+CAROM_API void anchor_below(StructureDef<rigid::Dim2>& definition, double level);
+
+/// What happened in a step.
+template <class D>
+struct BreakEvent {
+  std::uint32_t bond = 0;
+  double load = 0;  ///< stress by strength
+};
+
+/// A structure in a world. Copy it with a snapshot of the world, and restore both.
+template <class D>
+class CAROM_API Structure {
+ public:
+  using World = rigid::World<D>;
+  using Vector = typename D::Vector;
+  using Position = typename D::Position;
+
+  Structure() = default;
+  /// Makes the bodies. Errors: no part, a part without shape or mass, bonds to parts that do not exist or without area,
+  /// numbers out of range, what the world refuses.
+  static core::Result<Structure> make(World& world, const StructureDef<D>& definition);
+
+  /// After each step of `dt` s: breaks what must. Of a blow that broke bonds, what they could not bear is given back to
+  /// both, so that the striker goes on with what is left and meets the loose parts in the next step.
+  core::Status after_step(World& world, float dt);
+  /// A load besides what touches: an impulse (N·s, at a point of the world) that acted within `duration` s on a part.
+  /// It counts in the next after_step; the body has to be told of it by someone else (an Explosion does).
+  void add_load(std::uint32_t part, Vector impulse, Position point, double duration);
+
+  /// The part that a shape is of, or `ground` (none).
+  std::uint32_t part_of(rigid::ShapeId shape) const;
+  rigid::BodyId body_of(std::uint32_t part) const { return clusters_[cluster_of_[part]].body; }
+  std::size_t part_count() const { return cluster_of_.size(); }
+  std::size_t cluster_count() const { return clusters_.size(); }
+  bool holds(std::uint32_t bond) const { return intact_[bond] != 0; }
+  std::size_t broken() const { return broken_; }
+  std::span<const BreakEvent<D>> events() const { return events_; }  ///< bonds that broke in the last after_step
+  /// Bodies that the last after_step made: for who shows them.
+  std::span<const rigid::BodyId> made() const { return made_; }
+  const StructureDef<D>& definition() const { return *definition_; }
+  /// Greatest stress by strength of each bond when it was last computed.
+  std::span<const float> loads() const { return bond_loads_; }
+  /// Breaks a bond by hand; it counts in the next after_step.
+  void break_bond(std::uint32_t bond);
+
+ private:
+  struct Cluster {
+    rigid::BodyId body{};
+    Position origin{};  // of the body, in the structure's frame
+    std::vector<std::uint32_t> parts;
+    bool fixed = false;
+    bool stale = true;        // topology or loads not looked at yet
+    double resting_load = 0;  // N, sum when last looked at
+  };
+  struct ShapeOf {
+    std::uint32_t index;
+    rigid::ShapeId shape;
+    std::uint32_t part;
+  };
+  struct Load {
+    std::uint32_t part;
+    Vector impulse;
+    Position point;
+    double duration;
+  };
+  core::Status make_body(World& world, Cluster& cluster, const typename D::Pose& frame, Vector velocity,
+                         typename D::Angular spin);
+  core::Status split(World& world, std::uint32_t cluster);
+  core::Status look_at(World& world, std::uint32_t cluster, float dt);
+
+  std::shared_ptr<const StructureDef<D>> definition_;
+  std::vector<std::uint32_t> cluster_of_;
+  std::vector<Cluster> clusters_;
+  std::vector<ShapeOf> shapes_;  // by index of the handle
+  std::vector<std::uint8_t> intact_;
+  std::vector<float> bond_loads_;
+  std::vector<Load> loads_;
+  std::vector<BreakEvent<D>> events_;
+  std::vector<rigid::BodyId> made_;
+  std::size_t broken_ = 0;
+};
+
+extern template class CAROM_API Structure<rigid::Dim2>;
+extern template class CAROM_API Structure<rigid::Dim3>;
+using Structure2 = Structure<rigid::Dim2>;
+using Structure3 = Structure<rigid::Dim3>;
+
+}  // namespace carom::blast
