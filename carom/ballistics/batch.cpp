@@ -1,5 +1,8 @@
 #include "carom/ballistics/batch.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "carom/ballistics/detail/batch_step.h"
 
 namespace carom::ballistics {
@@ -58,9 +61,14 @@ ProjectileBatch::ProjectileBatch(const DragCurve& drag, const Conditions& condit
 void ProjectileBatch::reserve(std::size_t count) {
   for (std::vector<float>& array : data_)
     array.reserve((count + detail::padding - 1) / detail::padding * detail::padding);
+  rounds_.reserve(count);
 }
 
 std::size_t ProjectileBatch::add(const FlightPoint& start, double area_per_mass) {
+  return add(start, BatchRound{.area_per_mass = area_per_mass});
+}
+
+std::size_t ProjectileBatch::add(const FlightPoint& start, const BatchRound& round) {
   if (count_ == data_[0].size())
     for (std::vector<float>& array : data_) array.resize(count_ + detail::padding, 0.0f);
   const std::size_t i = count_++;
@@ -69,7 +77,9 @@ std::size_t ProjectileBatch::add(const FlightPoint& start, double area_per_mass)
     data_[k][i] = data_[6 + k][i] = float(position[k]);
     data_[3 + k][i] = float(start.velocity[k]);
   }
-  data_[9][i] = float(0.5 * area_per_mass);
+  data_[9][i] = float(0.5 * round.area_per_mass);
+  rounds_.push_back(round);
+  if (!(round.frontal_area > 0)) rounds_.back().frontal_area = round.area_per_mass * round.mass;
   return i;
 }
 
@@ -80,10 +90,58 @@ void ProjectileBatch::remove(std::size_t index) {
     array[index] = array[count_];
     array[count_] = 0;  // padding flies too, and must stay finite
   }
+  rounds_[index] = rounds_[count_];
+  rounds_.pop_back();
+}
+
+void ProjectileBatch::place(std::size_t index, const FlightPoint& point) {
+  const Vec3d position = point.position - origin_;
+  for (int k = 0; k < 3; ++k) {
+    data_[k][index] = float(position[k]);
+    data_[3 + k][index] = float(point.velocity[k]);
+  }
+}
+
+void ProjectileBatch::sort(double cell) {
+  const float per_metre = float(1 / cell);
+  // Eleven bits an axis, the lowest bits of x, y and z side by side; the index below them keeps equal keys in order.
+  const auto spread = [](std::uint64_t x) {
+    x = (x | x << 16) & 0x0000ff0000ffull;
+    x = (x | x << 8) & 0x00f00f00f00full;
+    x = (x | x << 4) & 0x0c30c30c30c3ull;
+    return (x | x << 2) & 0x249249249249ull;
+  };
+  keys_.resize(count_);
+  keys_scratch_.resize(count_);
+  for (std::size_t i = 0; i < count_; ++i) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float place = math::clamp(data_[k][i] * per_metre + 1024.0f, 0.0f, 2047.0f);
+      key |= spread(std::uint64_t(place)) << k;
+    }
+    keys_[i] = key << 24 | i;
+  }
+  for (int shift = 24; shift < 57; shift += 11) {
+    std::uint32_t starts[2048] = {};
+    for (const std::uint64_t key : keys_) ++starts[key >> shift & 2047];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : starts) sum += std::exchange(start, sum);
+    for (const std::uint64_t key : keys_) keys_scratch_[starts[key >> shift & 2047]++] = key;
+    keys_.swap(keys_scratch_);
+  }
+  moved_.resize(count_);
+  for (std::vector<float>& array : data_) {
+    for (std::size_t i = 0; i < count_; ++i) moved_[i] = array[keys_[i] & 0xffffff];
+    std::copy(moved_.begin(), moved_.end(), array.begin());
+  }
+  moved_rounds_.resize(count_);
+  for (std::size_t i = 0; i < count_; ++i) moved_rounds_[i] = rounds_[keys_[i] & 0xffffff];
+  rounds_.swap(moved_rounds_);
 }
 
 void ProjectileBatch::clear() {
   count_ = 0;
+  rounds_.clear();
   for (std::vector<float>& array : data_) array.clear();
 }
 

@@ -29,6 +29,49 @@ double lambert_jonas_residual(double speed, double limit_speed, double a, double
   return a * math::pow(math::pow(speed, p) - math::pow(limit_speed, p), 1 / p);
 }
 
+core::Status check_layers(std::span<const Layer> layers) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Layer& layer = layers[i];
+    const struct {
+      const char* name;
+      double value;
+      bool zero;
+    } fields[] = {{"thickness", layer.thickness, false},   {"strength", layer.medium.strength, false},
+                  {"inertia", layer.medium.inertia, true}, {"limit_speed", layer.limit_speed, true},
+                  {"density", layer.density, true},        {"ricochet_angle", layer.ricochet_angle, true}};
+    for (const auto& field : fields)
+      if (!math::is_finite(field.value) || field.value < 0 || (field.value == 0 && !field.zero))
+        return core::Error{core::text(
+            "layer ", i + 1, ": ",
+            core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
+    if (!(layer.ricochet_restitution >= 0 && layer.ricochet_restitution <= 1))
+      return core::Error{core::text("layer ", i + 1, ": ",
+                                    core::refused("ricochet_restitution", layer.ricochet_restitution, "0 to 1"))};
+  }
+  return {};
+}
+
+LayerPassage pass_layer(const Penetrator& bullet, const Layer& layer, double angle) {
+  LayerPassage passage{.speed_in = bullet.speed};
+  if (angle < layer.ricochet_angle) {
+    passage.outcome = LayerOutcome::ricochet;
+    passage.speed_out = layer.ricochet_restitution * bullet.speed;
+  } else {
+    passage.path = layer.thickness / math::sin(angle);
+    if (layer.limit_speed > 0) {
+      // A plate met aslant is thicker by 1/sin: its limit grows alike.
+      const double plug = layer.density * bullet.area * passage.path;
+      passage.speed_out = recht_ipson_residual(bullet.speed, layer.limit_speed / math::sin(angle), bullet.mass, plug);
+    } else {
+      passage.speed_out = poncelet_residual(bullet, layer.medium, passage.path);
+      if (passage.speed_out == 0) passage.path = poncelet_depth(bullet, layer.medium);
+    }
+    passage.outcome = passage.speed_out > 0 ? LayerOutcome::passed : LayerOutcome::stopped;
+  }
+  passage.energy = 0.5 * bullet.mass * (bullet.speed * bullet.speed - passage.speed_out * passage.speed_out);
+  return passage;
+}
+
 core::Result<std::vector<LayerPassage>> penetrate(const Penetrator& bullet, std::span<const Layer> layers,
                                                   double angle) {
   const auto bad = [](double x, bool zero) { return !math::is_finite(x) || x < 0 || (x == 0 && !zero); };
@@ -40,50 +83,14 @@ core::Result<std::vector<LayerPassage>> penetrate(const Penetrator& bullet, std:
     return core::Error{core::refused("speed of the bullet", bullet.speed, "a finite number >= 0")};
   if (!(angle > 0) || angle > math::pi / 2 + 1e-9)
     return core::Error{core::refused("angle to the surface", angle, "more than 0 and at most pi/2 rad")};
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    const Layer& layer = layers[i];
-    const struct {
-      const char* name;
-      double value;
-      bool zero;
-    } fields[] = {{"thickness", layer.thickness, false},   {"strength", layer.medium.strength, false},
-                  {"inertia", layer.medium.inertia, true}, {"limit_speed", layer.limit_speed, true},
-                  {"density", layer.density, true},        {"ricochet_angle", layer.ricochet_angle, true}};
-    for (const auto& field : fields)
-      if (bad(field.value, field.zero))
-        return core::Error{core::text(
-            "layer ", i + 1, ": ",
-            core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
-    if (!(layer.ricochet_restitution >= 0 && layer.ricochet_restitution <= 1))
-      return core::Error{core::text("layer ", i + 1, ": ",
-                                    core::refused("ricochet_restitution", layer.ricochet_restitution, "0 to 1"))};
-  }
+  if (const core::Status checked = check_layers(layers); !checked.ok()) return checked.error();
   std::vector<LayerPassage> passages;
-  double speed = bullet.speed;
+  Penetrator here = bullet;
   for (const Layer& layer : layers) {
-    if (!(speed > 0)) break;
-    LayerPassage passage{.speed_in = speed};
-    Penetrator here = bullet;
-    here.speed = speed;
-    if (angle < layer.ricochet_angle) {
-      passage.outcome = LayerOutcome::ricochet;
-      passage.speed_out = layer.ricochet_restitution * speed;
-    } else {
-      passage.path = layer.thickness / math::sin(angle);
-      if (layer.limit_speed > 0) {
-        // A plate met aslant is thicker by 1/sin: its limit grows alike.
-        const double plug = layer.density * bullet.area * passage.path;
-        passage.speed_out = recht_ipson_residual(speed, layer.limit_speed / math::sin(angle), bullet.mass, plug);
-      } else {
-        passage.speed_out = poncelet_residual(here, layer.medium, passage.path);
-        if (passage.speed_out == 0) passage.path = poncelet_depth(here, layer.medium);
-      }
-      passage.outcome = passage.speed_out > 0 ? LayerOutcome::passed : LayerOutcome::stopped;
-    }
-    passage.energy = 0.5 * bullet.mass * (speed * speed - passage.speed_out * passage.speed_out);
-    speed = passage.speed_out;
-    passages.push_back(passage);
-    if (passage.outcome != LayerOutcome::passed) break;
+    if (!(here.speed > 0)) break;
+    passages.push_back(pass_layer(here, layer, angle));
+    here.speed = passages.back().speed_out;
+    if (passages.back().outcome != LayerOutcome::passed) break;
   }
   return passages;
 }

@@ -58,6 +58,11 @@ struct LayerPassage {
   double path = 0;                     ///< m, in the layer
   double energy = 0;                   ///< J, left in it
 };
+/// The first layer or field that cannot be, by name.
+CAROM_API core::Status check_layers(std::span<const Layer> layers);
+/// One layer alone, of what `check_layers` lets through: as `penetrate`.
+CAROM_API LayerPassage pass_layer(const Penetrator& bullet, const Layer& layer, double angle = math::pi / 2);
+
 /// Layer by layer until the bullet stops or skips off; `angle` (rad) between path and surface, 0 < angle ≤ π/2; the
 /// bullet goes straight on. Errors name the layer and the field.
 CAROM_API core::Result<std::vector<LayerPassage>> penetrate(const Penetrator& bullet, std::span<const Layer> layers,
