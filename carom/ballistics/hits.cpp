@@ -113,56 +113,63 @@ core::Status BatchHits<D>::set_default(std::span<const Layer> layers) {
   return {};
 }
 
-/// Groups of 16 neighbours ask together whether there is anything at all.
+/// Casts a piece of the batch at a time, so that what is asked and answered stays in the cache.
 template <class D>
-core::Status BatchHits<D>::gather(const ProjectileBatch& batch, const rigid::World<D>& world,
-                                  const HitOptions& options) {
-  constexpr std::size_t group = 16;
-  ways_.clear();
+core::Status BatchHits<D>::cast_batch(const ProjectileBatch& batch, const rigid::World<D>& world, double dt,
+                                      const HitOptions& options) {
+  constexpr std::size_t piece = 1024;
   const std::size_t count = batch.size();
   std::span<const float> arrays[9];
   for (int k = 0; k < 9; ++k) arrays[k] = batch.array(k);
-  for (std::size_t first = 0; first < count; first += group) {
-    const std::size_t last = math::min(first + group, count);
-    Vec3d low, high;
-    for (int k = 0; k < 3; ++k) {
-      float least = arrays[k][first], most = least;
-      for (std::size_t i = first; i < last; ++i) {
-        least = math::min(least, math::min(arrays[k][i], arrays[6 + k][i]));
-        most = math::max(most, math::max(arrays[k][i], arrays[6 + k][i]));
-      }
-      low[k] = least;
-      high[k] = most;
+  const Vec3d origin = batch.origin();
+  met_.clear();
+  for (std::size_t first = 0; first < count; first += piece) {
+    const std::size_t size = math::min(piece, count - first);
+    queries_.resize(size);
+    found_.resize(size);
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::size_t i = first + k;
+      const Vec3d from{arrays[6][i], arrays[7][i], arrays[8][i]};
+      queries_[k].origin = detail::to_world<D>(origin + from);
+      queries_[k].translation =
+          typename D::Vector(detail::to_world<D>(Vec3d{arrays[0][i], arrays[1][i], arrays[2][i]} - from));
+      queries_[k].filter = options.filter;
     }
-    const typename D::Bounds bounds{detail::to_world<D>(low + batch.origin()),
-                                    detail::to_world<D>(high + batch.origin())};
-    if (const core::Status s = world.overlap_bounds(bounds, near_, options.filter); !s.ok()) return s;
-    if (near_.empty()) continue;
-    for (std::size_t i = first; i < last; ++i) {
+    if (const core::Status s = world.cast_rays(queries_, found_); !s.ok()) return s;
+    for (std::size_t k = 0; k < size; ++k) {
+      if (found_[k].shape == rigid::ShapeId{}) continue;
+      const std::size_t i = first + k;
       const Vec3d from = batch.previous_position(i);
       const FlightPoint now = batch.at(i);
-      ways_.push_back({i, 0, from, now.position - from, now.velocity});
+      met_.push_back({{i, 0, from, now.position - from, now.velocity}, found_[k], double(found_[k].fraction) * dt});
     }
   }
+  cast_ += count;
+  return {};
+}
+
+/// What goes on behind a surface, once more.
+template <class D>
+core::Status BatchHits<D>::cast_rest(const rigid::World<D>& world, double dt, const HitOptions& options) {
+  queries_.resize(ways_.size());
+  found_.resize(ways_.size());
+  for (std::size_t i = 0; i < ways_.size(); ++i)
+    queries_[i] = {detail::to_world<D>(ways_[i].from), typename D::Vector(detail::to_world<D>(ways_[i].along)),
+                   options.filter};
+  cast_ += ways_.size();
+  if (const core::Status s = world.cast_rays(queries_, found_); !s.ok()) return s;
+  met_.clear();
+  for (std::size_t i = 0; i < ways_.size(); ++i)
+    if (found_[i].shape != rigid::ShapeId{})
+      met_.push_back({ways_[i], found_[i], ways_[i].time + double(found_[i].fraction) * (dt - ways_[i].time)});
   return {};
 }
 
 template <class D>
-core::Status BatchHits<D>::cast(const rigid::World<D>& world, const HitOptions& options) {
-  queries_.resize(ways_.size());
-  found_.resize(ways_.size());
-  for (std::size_t i = 0; i < ways_.size(); ++i) {
-    queries_[i].origin = detail::to_world<D>(ways_[i].from);
-    queries_[i].translation = typename D::Vector(detail::to_world<D>(ways_[i].along));
-    queries_[i].filter = options.filter;
-  }
-  cast_ += ways_.size();
-  return world.cast_rays(queries_, found_);
-}
-
-template <class D>
-bool BatchHits<D>::strike(ProjectileBatch& batch, rigid::World<D>& world, double dt, const HitOptions& options,
-                          const Way& way, const rigid::RayHit<D>& found, int order) {
+void BatchHits<D>::strike(ProjectileBatch& batch, rigid::World<D>& world, double dt, const HitOptions& options,
+                          const Met& met, int order) {
+  const Way& way = met.way;
+  const rigid::RayHit<D>& found = met.found;
   const BatchRound& round = batch.round(way.projectile);
   BatchHit hit;
   hit.projectile = way.projectile;
@@ -170,7 +177,7 @@ bool BatchHits<D>::strike(ProjectileBatch& batch, rigid::World<D>& world, double
   hit.order = order;
   hit.shape = found.shape;
   hit.material = found.material;
-  hit.time = way.time + double(found.fraction) * (dt - way.time);
+  hit.time = met.time;
   hit.point = way.from + double(found.fraction) * way.along;
   hit.velocity = way.velocity;
   hit.normal = detail::from_world(found.normal);
@@ -231,15 +238,14 @@ bool BatchHits<D>::strike(ProjectileBatch& batch, rigid::World<D>& world, double
   if (hit.outcome == LayerOutcome::stopped) {
     batch.place(way.projectile, {hit.exit, hit.exit_velocity});
     stopped_.push_back(way.projectile);
-    return false;
+    return;
   }
   // On from there, a hair away from the surface.
   const double left = dt - hit.time, gone = math::length(hit.exit_velocity);
   const Vec3d away = gone > 0 ? hit.exit_velocity / gone : -path;
   const Vec3d from = hit.exit + (hit.outcome == LayerOutcome::ricochet ? 1e-3 * hit.normal : 1e-4 * away);
-  next_.push_back({way.projectile, hit.time, from, left * hit.exit_velocity, hit.exit_velocity});
+  ways_.push_back({way.projectile, hit.time, from, left * hit.exit_velocity, hit.exit_velocity});
   batch.place(way.projectile, {from + left * hit.exit_velocity, hit.exit_velocity});
-  return true;
 }
 
 template <class D>
@@ -250,19 +256,14 @@ core::Status BatchHits<D>::collect(ProjectileBatch& batch, rigid::World<D>& worl
   cast_ = 0;
   if (!(dt > 0) || !math::is_finite(dt))
     return core::Error{core::text("BatchHits::collect: ", core::refused("dt", dt, "a finite number of seconds > 0"))};
-  if (const core::Status s = gather(batch, world, options); !s.ok()) return s;
-  for (int round = 0; round < options.most_hits && !ways_.empty(); ++round) {
-    if (const core::Status s = cast(world, options); !s.ok()) return s;
-    met_.clear();
-    for (std::size_t i = 0; i < ways_.size(); ++i)
-      if (found_[i].shape != rigid::ShapeId{})
-        met_.push_back({i, ways_[i].time + double(found_[i].fraction) * (dt - ways_[i].time)});
-    std::sort(met_.begin(), met_.end(), [&](const Met& a, const Met& b) {
-      return a.time != b.time ? a.time < b.time : ways_[a.way].projectile < ways_[b.way].projectile;
+  if (const core::Status s = cast_batch(batch, world, dt, options); !s.ok()) return s;
+  for (int order = 0; order < options.most_hits && !met_.empty(); ++order) {
+    std::sort(met_.begin(), met_.end(), [](const Met& a, const Met& b) {
+      return a.time != b.time ? a.time < b.time : a.way.projectile < b.way.projectile;
     });
-    next_.clear();
-    for (const Met& met : met_) strike(batch, world, dt, options, ways_[met.way], found_[met.way], round);
-    ways_.swap(next_);
+    ways_.clear();
+    for (const Met& met : met_) strike(batch, world, dt, options, met, order);
+    if (const core::Status s = cast_rest(world, dt, options); !s.ok()) return s;
   }
   std::sort(hits_.begin(), hits_.end(), [](const BatchHit& a, const BatchHit& b) {
     if (a.time != b.time) return a.time < b.time;

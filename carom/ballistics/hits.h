@@ -75,22 +75,23 @@ class CAROM_API BatchHits {
     math::Vec3d velocity{};
   };
   struct Met {
-    std::size_t way = 0;
-    double time = 0;
+    Way way;
+    rigid::RayHit<D> found;
+    double time = 0;  // s, since the step began
   };
-  core::Status gather(const ProjectileBatch& batch, const rigid::World<D>& world, const HitOptions& options);
-  core::Status cast(const rigid::World<D>& world, const HitOptions& options);
-  bool strike(ProjectileBatch& batch, rigid::World<D>& world, double dt, const HitOptions& options, const Way& way,
-              const rigid::RayHit<D>& found, int order);
+  core::Status cast_batch(const ProjectileBatch& batch, const rigid::World<D>& world, double dt,
+                          const HitOptions& options);
+  core::Status cast_rest(const rigid::World<D>& world, double dt, const HitOptions& options);
+  void strike(ProjectileBatch& batch, rigid::World<D>& world, double dt, const HitOptions& options, const Met& met,
+              int order);
 
   std::vector<Wall> walls_;  // sorted by user_id
   std::vector<Layer> default_;
   std::vector<BatchHit> hits_;
-  std::vector<Way> ways_, next_;
+  std::vector<Way> ways_;
   std::vector<Met> met_;
   std::vector<rigid::RayQuery<D>> queries_;
   std::vector<rigid::RayHit<D>> found_;
-  std::vector<rigid::ShapeId> near_;
   std::vector<std::size_t> stopped_;
   std::size_t cast_ = 0;
 };

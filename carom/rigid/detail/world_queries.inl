@@ -163,6 +163,48 @@ void query_trees(const WorldImplementation<D>& world, const typename D::Bounds& 
   }
 }
 
+inline constexpr int rays_a_group = 16;
+/// With the slack of cast_in_trees.
+template <class D>
+typename D::Bounds bounds_of_rays(std::span<const RayQuery<D>> rays, int first, int last) {
+  using Position = typename D::Position;
+  Position low = rays[std::size_t(first)].origin, high = low, longest{};
+  for (int i = first; i < last; ++i) {
+    const RayQuery<D>& ray = rays[std::size_t(i)];
+    const Position way(ray.translation), end = ray.origin + way;
+    low = min(low, min(ray.origin, end));
+    high = max(high, max(ray.origin, end));
+    longest = max(longest, max(way, -way));
+  }
+  const double slack = 2e-5 + 4e-6 * math::length(longest);
+  for (int k = 0; k < D::dimension; ++k) {
+    low[k] -= slack;
+    high[k] += slack;
+  }
+  return {low, high};
+}
+/// False: no shape's box meets `box`. True where one may.
+template <class D>
+bool anything_near(const WorldImplementation<D>& world, const typename D::Bounds& box) {
+  bool any = false;
+  for (int t = 0; t < 3 && !any; ++t) {
+    const auto& tree = world.shapes.trees[t];
+    if (tree.empty()) continue;
+    const auto found = [&](std::uint32_t) {
+      any = true;
+      return false;
+    };
+    const auto* made = query_tree<D>(world, t);
+    if (made == nullptr)
+      tree.query(box, found);
+    else if (made->wide.nodes.empty())
+      any = !made->items.empty();
+    else
+      query(made->wide, box, found);
+  }
+  return any;
+}
+
 template <class D>
 RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray) {
   const SeenFilter filter(world, ray.filter);
@@ -248,11 +290,23 @@ template <class D>
 Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const {
   constexpr std::string_view call = "World::cast_rays";
   if (const Status s = detail::check_batch(call, rays.size(), "hits", hits.size()); !s.ok()) return s;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
-      return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
-  detail::for_queries<D>(*self_, rays.size(),
-                         [&](std::size_t i) { hits[i] = detail::closest_on_ray<D>(*self_, rays[i]); });
+  double nothing = 0;  // NaN as soon as one number is not finite
+  for (const RayQuery<D>& ray : rays)
+    for (int k = 0; k < D::dimension; ++k) nothing += 0 * ray.origin[k] + 0 * double(ray.translation[k]);
+  if (nothing != 0)
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
+        return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
+  // Neighbours ask first whether there is anything at all where they go: one walk for a group.
+  self_->scheduler->parallel_for(int(rays.size()), detail::queries_a_chunk, [&](int begin, int end, int) {
+    for (int first = begin; first < end; first += detail::rays_a_group) {
+      const int last = math::min(first + detail::rays_a_group, end);
+      bool near = true;
+      if (last - first > 2) near = detail::anything_near<D>(*self_, detail::bounds_of_rays<D>(rays, first, last));
+      for (int i = first; i < last; ++i)
+        hits[std::size_t(i)] = near ? detail::closest_on_ray<D>(*self_, rays[std::size_t(i)]) : RayHit<D>{};
+    }
+  });
   return {};
 }
 

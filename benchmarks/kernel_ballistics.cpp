@@ -1,0 +1,99 @@
+// What ballistics cost: a step of 100 000 projectiles, their hits in a world of 10 000 shapes, and taking aim.
+#include <benchmark/benchmark.h>
+
+#include "carom/ballistics/aim.h"
+#include "carom/ballistics/hits.h"
+#include "carom/math/random.h"
+
+namespace {
+
+using namespace carom;
+using namespace carom::ballistics;
+using math::Vec3d;
+using rigid::Dim3;
+
+const Conditions windy{.wind = environment::WindColumn(
+                           environment::Wind{.velocity = {6, 0, 3}, .profile = environment::WindProfile::power})};
+
+/// Guns on a ring of 600 m fire over a town; those that are gone are fired anew.
+void fire(ProjectileBatch& batch, math::Random& random, double lead) {
+  const double around = random.uniform(-math::pi, math::pi);
+  const Vec3d from{600 * math::cos(around), 2, 600 * math::sin(around)};
+  const Vec3d to{random.uniform(-400.0, 400.0), random.uniform(10.0, 250.0), random.uniform(-400.0, 400.0)};
+  const double speed = random.uniform(300.0, 850.0);
+  batch.add({from + lead * (to - from), speed * math::normalize(to - from)},
+            BatchRound{.area_per_mass = 5e-3, .mass = .01, .frontal_area = 4.8e-5});
+}
+
+void batch_step(benchmark::State& state) {
+  ProjectileBatch batch(DragCurve(DragFunction::g7), windy, {}, int(state.range(0)));
+  math::Random random(1);
+  for (int i = 0; i < 100'000; ++i) fire(batch, random, random.uniform());
+  for (auto _ : state) batch.step(1.0 / 600);
+  state.SetItemsProcessed(state.iterations() * 100'000);
+}
+BENCHMARK(batch_step)->Arg(4)->Arg(8)->Arg(16)->Unit(benchmark::kMillisecond);
+
+/// A town of 10 000 houses on a plain of ground, 100 000 bullets over and in it. `sorted`: with `sort` every 16 steps.
+void batch_hits(benchmark::State& state) {
+  rigid::World3 world;
+  math::Random random(2);
+  const auto place = [&](const geometry::Shape3& shape, Vec3d position) {
+    rigid::BodyDef<Dim3> body;
+    body.type = rigid::BodyType::fixed;
+    body.position = position;
+    (void)*world.add_shape(*world.create_body(body), shape);
+  };
+  place(geometry::Box{{700, 1, 700}}, {0, -1, 0});
+  for (int i = 0; i < 9'999; ++i) {
+    const float height = float(random.uniform(2.0, 12.0));
+    place(geometry::Box{{float(random.uniform(1.0, 3.0)), height, float(random.uniform(1.0, 3.0))}},
+          {random.uniform(-450.0, 450.0), height, random.uniform(-450.0, 450.0)});
+  }
+  if (!world.step(1.0f / 60).ok()) return state.SkipWithError("the world");
+  ProjectileBatch batch(DragCurve(DragFunction::g7), windy, {}, int(state.range(0)));
+  for (int i = 0; i < 100'000; ++i) fire(batch, random, random.uniform());
+  BatchHits<Dim3> hits;
+  const double dt = 1.0 / 60;
+  std::size_t met = 0, asked = 0;
+  int steps = 0;
+  for (auto _ : state) {
+    if (steps++ % 16 == 0 && state.range(1) != 0) batch.sort();
+    batch.step(dt);
+    if (!hits.collect(batch, world, dt).ok()) return state.SkipWithError("the hits");
+    met += hits.hits().size();
+    asked += hits.rays();
+    state.PauseTiming();
+    while (batch.size() < 100'000) fire(batch, random, 0);
+    for (std::size_t i = 0; i < batch.size(); ++i)  // far away: again
+      if (const Vec3d p = batch.at(i).position; p.y > 400 || math::hypot(p.x, p.z) > 900) batch.remove(i--);
+    while (batch.size() < 100'000) fire(batch, random, 0);
+    state.ResumeTiming();
+  }
+  state.counters["hits"] = double(met) / double(state.iterations());
+  state.counters["rays"] = double(asked) / double(state.iterations());
+}
+BENCHMARK(batch_hits)->Args({8, 0})->Args({8, 1})->Args({16, 1})->Unit(benchmark::kMillisecond)->Iterations(96);
+
+enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar };
+void take_aim(benchmark::State& state) {
+  const AimCase which = AimCase(state.range(0));
+  Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
+  Shooter shooter{.muzzle_speed = 400, .velocity = {5, 0, 3}};
+  Target target{{900, 30, 200}, {0, 0, 0}};
+  AimOptions options;
+  options.high_arc = which != low_arc;
+  if (which == out_of_reach) target.position = {5500, 200, 0};
+  if (which == moving) target.velocity = {-20, 2, 30};
+  if (which == mortar) {
+    shot = projectile_from_size(DragCurve(.14), 13.585, .11956);
+    shooter.muzzle_speed = 250;
+    target.position = {3500, 50, 300};
+  }
+  static const char* names[] = {"low arc", "both arcs", "out of reach", "moving, both", "mortar, both"};
+  for (auto _ : state) benchmark::DoNotOptimize(aim(shot, windy, shooter, target, options));
+  state.SetLabel(names[which]);
+}
+BENCHMARK(take_aim)->DenseRange(low_arc, mortar)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
