@@ -35,26 +35,38 @@ class AimSolver {
   /// Newton's method for u and T together.
   struct Root {
     bool found = false;
+    double slope = 0;  // m/s², of the speed that is needed over T: falls on the low side, rises on the high one
     Guess guess{};
     Arrival arrival{};
   };
-  Root refine(Guess guess) const {
+  /// `eager`: gives up where the first steps do not lead there.
+  Root refine(Guess guess, int most = 40, bool eager = false) const {
     Root root;
     Inverse inverse;
-    // The paths are integrated a good deal better than they still miss.
-    double accuracy = 0.02 * math::length(target_(guess.time) - shooter_.muzzle) + options_.tolerance;
+    // Paths are integrated a good deal better than they still miss; the last ones as well as they must be.
+    // What they err adds up: bends of drag curves and layers of wind, met on the way, pass the estimate unseen.
+    const double fine = 0.1 * options_.tolerance / (1 + 0.25 * guess.time);
+    Schedule schedule;  // of the first path that is as good as it must be
+    double accuracy = math::max(0.02 * math::length(target_(guess.time) - shooter_.muzzle), fine);
+    double last_accuracy = accuracy, last_missed = 1e300, first_missed = 1e300;
     Vec3d last_u{}, last_x{};
     double last_time = 0;
-    for (int i = 0; i < 40; ++i) {
-      const Arrival end = propagate(guess.u, guess.time, accuracy);
+    for (int i = 0; i < most; ++i) {
+      const bool recorded = schedule.count > 0 && schedule.count <= Schedule::most;
+      const Arrival end = recorded ? follow(guess.u, guess.time, schedule)
+                                   : propagate(guess.u, guess.time, accuracy, accuracy <= fine ? &schedule : nullptr);
       const Vec3d place = target_(guess.time), miss = place - end.position;
-      if (i == 0)
+      if (i == 0) {
         inverse = estimate(guess, end);
-      else  // what the change of u alone did to the arrival
-        update(inverse, guess.u - last_u, end.position - last_x - (guess.time - last_time) * end.velocity);
+      } else {  // what the change of u alone did to the arrival, where that is more than what integration errs
+        const Vec3d moved = end.position - last_x - (guess.time - last_time) * end.velocity;
+        if (recorded || math::length_squared(moved) > math::square(10 * (accuracy + last_accuracy)))
+          update(inverse, guess.u - last_u, moved);
+      }
       last_u = guess.u;
       last_x = end.position;
       last_time = guess.time;
+      last_accuracy = accuracy;
       const Vec3d barrel = guess.u - shooter_.velocity;
       const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed;
       const double missed = math::length(miss);
@@ -63,17 +75,22 @@ class AimSolver {
       const double slope = math::dot(d, to_drift);
       if (!math::is_finite(missed) || !math::is_finite(slope) || slope == 0) return root;
       const double allowed = options_.tolerance;
-      if (accuracy <= 0.02 * allowed && math::abs(lack) * guess.time < allowed && missed < allowed) {
-        root = {true, guess, end};
+      if (accuracy <= fine && math::abs(lack) * guess.time < allowed && missed < allowed) {
+        root = {true, slope, guess, end};
         root.guess.u = shooter_.velocity + shooter_.muzzle_speed * d;
         return root;
       }
-      accuracy = math::min(accuracy, math::max(0.02 * missed, 0.01 * allowed));
+      // The next miss is some tenth of this one: then integration may err a tenth of that.
+      accuracy = math::min(accuracy, 0.02 * math::min(missed, last_missed));
+      if (accuracy < 100 * fine) accuracy = fine;
+      if (i == 0) first_missed = missed;
+      if (eager && i >= 4 && missed > 0.2 * first_missed) return root;
+      last_missed = missed;
       double dt = (lack - math::dot(d, to_miss)) / slope;
       dt = math::clamp(dt, -0.5 * guess.time, guess.time);
       Vec3d du = to_miss + dt * to_drift;
-      const double most = shooter_.muzzle_speed;
-      if (math::length(du) > most) du *= most / math::length(du);
+      const double longest = shooter_.muzzle_speed;
+      if (math::length(du) > longest) du *= longest / math::length(du);
       guess.u += du;
       guess.time += dt;
       if (!(guess.time > 1e-9) || guess.time > 2 * options_.longest_time) return root;
@@ -174,7 +191,7 @@ class AimSolver {
 
   /// The usual case, in which the speed to spare has one peak over T, with an arc on either side of it. False: it is
   /// not the usual case, and the scan must tell.
-  bool two_arcs(Aims& aims) const {
+  bool two_arcs(Aims& aims, bool steady) const {
     // In vacuum the lack is cheap: more than one peak there means a target whose motion makes further arcs.
     constexpr int samples = 48;
     double previous = -1e300;
@@ -187,7 +204,7 @@ class AimSolver {
       previous = lack;
     }
     if (peaks + (rises ? 1 : 0) > 1) return false;
-    return by_guesses(aims) || climb(aims);
+    return by_guesses(aims) || (steady && out_of_reach()) || climb(aims);
   }
 
  private:
@@ -203,10 +220,14 @@ class AimSolver {
     }
     if (!(time > 0)) return false;
     const Vec3d flat = target_(time) - shooter_.muzzle + Vec3d{0, 0.5 * g * time * time, 0} - time * shooter_.velocity;
-    const Root low = refine({shooter_.velocity + (speed / math::length(flat)) * flat, time});
+    const Root low = refine({shooter_.velocity + (speed / math::length(flat)) * flat, time}, 14, true);
     if (!low.found) return false;
     if (!options_.high_arc) {
-      // It is the earliest where a little less time would need more speed.
+      // It is the earliest where a little less time would need more speed; the slope tells, unless it is near the peak.
+      if (low.slope * low.guess.time < -0.1 * speed) {
+        keep(aims, low);
+        return true;
+      }
       Guess sooner{low.guess.u, 0.98 * low.guess.time};
       const Need at_sooner = need(sooner);
       if (!at_sooner.known || at_sooner.lack >= 0) return false;
@@ -234,6 +255,81 @@ class AimSolver {
     keep(aims, low);
     keep(aims, high);
     return true;
+  }
+
+  /// How a shot passes the distance of the target.
+  struct Pass {
+    bool plain = false;  // it does so once and at a slant, or never
+    double over = 0;     // m above the target; where it falls short, less what it lacks in distance
+    double aside = 0;    // rad, how much farther to turn
+  };
+  Pass pass(double elevation, double azimuth) const {
+    Vec3d x = shooter_.muzzle, v = shooter_.velocity + shooter_.muzzle_speed * direction(elevation, azimuth),
+          k = at(x, v);
+    const auto beyond = [&](Vec3d place, double t) {  // m past the target's distance
+      const Vec3d to = target_(t) - shooter_.muzzle, way = place - shooter_.muzzle;
+      return math::sqrt(way.x * way.x + way.z * way.z) - math::sqrt(to.x * to.x + to.z * to.z);
+    };
+    const double start = beyond(x, 0);
+    double t = 0;
+    for (int i = 0; i < 400 && t < options_.longest_time; ++i) {
+      const double speed = math::length(v),
+                   h = math::min(0.12 * math::max(speed, 0.5 * fall_speed_) / math::max(math::length(k), 1e-9),
+                                 -0.5 * start / math::max(speed, 1e-9));
+      const Step end = step(x, v, k, h);
+      const double gone = beyond(end.x, t + h);
+      if (gone >= 0) {
+        // Within the step: the cubic through both ends, halved to a thousandth.
+        double low = 0, high = 1;
+        Vec3d place = end.x;
+        for (int j = 0; j < 12; ++j) {
+          const double s = 0.5 * (low + high), s2 = s * s, s3 = s2 * s;
+          place =
+              (2 * s3 - 3 * s2 + 1) * x + (s3 - 2 * s2 + s) * h * v + (3 * s2 - 2 * s3) * end.x + (s3 - s2) * h * end.v;
+          (beyond(place, t + s * h) >= 0 ? high : low) = s;
+        }
+        const double when = t + high * h;
+        const Vec3d to = target_(when) - shooter_.muzzle, way = place - shooter_.muzzle;
+        const double radial = (v.x * way.x + v.z * way.z) / math::max(math::hypot(way.x, way.z), 1e-9);
+        const double turn = math::atan2(to.z, to.x) - math::atan2(way.z, way.x);
+        return {radial > 2 * math::length(velocity_of_target(when)), way.y - to.y,
+                turn > math::pi    ? turn - 2 * math::pi
+                : turn < -math::pi ? turn + 2 * math::pi
+                                   : turn};
+      }
+      x = end.x;
+      v = end.v;
+      k = end.k;
+      t += h;
+      const double above = x.y - target_(t).y;
+      if (v.y < 0 && above < 0.5 * start) return {true, above + gone, 0};
+    }
+    return {};
+  }
+
+  /// True: certainly no solution. Shots at eight elevations pass the target's distance below it, and so does the best
+  /// one between them, by a good margin.
+  bool out_of_reach() const {
+    const Vec3d way = target_(0) - shooter_.muzzle;
+    const double away = math::hypot(way.x, way.z), level = math::atan2(way.y, away);
+    if (away < 0.3 * math::length(way) || math::length(velocity_of_target(0)) > 0.2 * shooter_.muzzle_speed ||
+        math::length(shooter_.velocity) > 0.5 * shooter_.muzzle_speed)
+      return false;
+    constexpr int shots = 8;
+    double elevation[shots], over[shots], azimuth = math::atan2(way.z, way.x);
+    int best = 0;
+    for (int i = 0; i < shots; ++i) {
+      elevation[i] = level + (1.5 - level) * (i + 0.5) / shots;
+      const Pass at = pass(elevation[i], azimuth);
+      if (!at.plain || at.over > -0.05 * away) return false;
+      over[i] = at.over;
+      azimuth += at.aside;
+      if (over[i] > over[best]) best = i;
+    }
+    if (best == 0 || best == shots - 1) return false;
+    // A parabola through the best and its neighbours: the peak is b²/4a above the middle one.
+    const double a = over[best] - 0.5 * (over[best - 1] + over[best + 1]), b = 0.5 * (over[best + 1] - over[best - 1]);
+    return a > 0 && over[best] + 2 * b * b / (4 * a) < -0.05 * away;
   }
 
   /// From the best time in vacuum up to the peak of the speed to spare, then down both sides of it.
@@ -340,46 +436,74 @@ class AimSolver {
     return (target_(time + h) - target_(time)) / h;
   }
 
-  /// Dormand and Prince's pair of orders 5 and 4, its steps held by the error of the velocity: at every moment so small
-  /// that it moves the end by less than `allowed` m.
-  Arrival propagate(Vec3d u, double time, double allowed) const {
-    Vec3d x = shooter_.muzzle, v = u, k1 = at(x, v);
+  /// The steps of a path as shares of its time. Paths that follow the same ones err alike, whatever air in layers and
+  /// the bends of drag curves do to the estimate of the error: Newton's method converges on them without noise.
+  struct Schedule {
+    static constexpr int most = 600;
+    int count = 0;  // most + 1: too many
+    float ends[most];
+    void add(double end) {
+      if (count < most) ends[count] = float(end);
+      if (count <= most) ++count;
+    }
+  };
+
+  struct Step {
+    Vec3d x{}, v{}, k{};
+    double error = 0;  // m/s
+  };
+  /// Dormand and Prince's pair of orders 5 and 4; k1 is the acceleration at the start, k the one at the end.
+  [[gnu::always_inline]] Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
+    const Vec3d v2 = v + (h / 5) * k1, k2 = at(x + (h / 5) * v, v2);
+    const Vec3d v3 = v + h * (3.0 / 40 * k1 + 9.0 / 40 * k2);
+    const Vec3d k3 = at(x + h * (3.0 / 40 * v + 9.0 / 40 * v2), v3);
+    const Vec3d v4 = v + h * (44.0 / 45 * k1 - 56.0 / 15 * k2 + 32.0 / 9 * k3);
+    const Vec3d k4 = at(x + h * (44.0 / 45 * v - 56.0 / 15 * v2 + 32.0 / 9 * v3), v4);
+    const Vec3d v5 = v + h * (19372.0 / 6561 * k1 - 25360.0 / 2187 * k2 + 64448.0 / 6561 * k3 - 212.0 / 729 * k4);
+    const Vec3d k5 =
+        at(x + h * (19372.0 / 6561 * v - 25360.0 / 2187 * v2 + 64448.0 / 6561 * v3 - 212.0 / 729 * v4), v5);
+    const Vec3d v6 =
+        v + h * (9017.0 / 3168 * k1 - 355.0 / 33 * k2 + 46732.0 / 5247 * k3 + 49.0 / 176 * k4 - 5103.0 / 18656 * k5);
+    const Vec3d k6 =
+        at(x + h * (9017.0 / 3168 * v - 355.0 / 33 * v2 + 46732.0 / 5247 * v3 + 49.0 / 176 * v4 - 5103.0 / 18656 * v5),
+           v6);
+    Step end;
+    end.v = v + h * (35.0 / 384 * k1 + 500.0 / 1113 * k3 + 125.0 / 192 * k4 - 2187.0 / 6784 * k5 + 11.0 / 84 * k6);
+    end.x = x + h * (35.0 / 384 * v + 500.0 / 1113 * v3 + 125.0 / 192 * v4 - 2187.0 / 6784 * v5 + 11.0 / 84 * v6);
+    end.k = at(end.x, end.v);
+    end.error = h * math::length(71.0 / 57600 * k1 - 71.0 / 16695 * k3 + 71.0 / 1920 * k4 - 17253.0 / 339200 * k5 +
+                                 22.0 / 525 * k6 - 1.0 / 40 * end.k);
+    return end;
+  }
+
+  /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
+  Arrival propagate(Vec3d u, double time, double allowed, Schedule* schedule = nullptr) const {
+    // Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
+    // error: no long steps there, the shorter the better the path must be known.
+    const double share = allowed / math::max(math::length(u) * time, 1e-9);
+    const double bend_speed = sound_ * math::clamp(0.6 * math::sqrt(math::sqrt(share)), 0.03, 0.2);
+    constexpr double far_bend = 3;
     const double least = 0.5 * fall_speed_, tolerance = allowed / time;
-    double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k1), 1e-9), time);
+    Vec3d x = shooter_.muzzle, v = u, k = at(x, v);
+    double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
     for (int i = 0; i < 4000; ++i) {
-      // Through the sound barrier drag curves bend too sharply for the estimate of the error: no long steps there.
-      const double speed = math::length(v), bend = 0.03 * sound_ / math::max(math::length(k1), 1e-9);
-      if (h > bend && speed - h * math::length(k1) < 1.15 * sound_ && speed > 0.85 * sound_) h = bend;
+      const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
+      if (speed > 0.85 * sound_) {
+        if (h > far_bend * bend) h = far_bend * bend;
+        if (h > bend && speed - h * pull < 1.15 * sound_) h = bend;
+      }
       const bool last = t + h >= time * (1 - 1e-12);
       if (last) h = time - t;
-      const Vec3d v2 = v + (h / 5) * k1, k2 = at(x + (h / 5) * v, v2);
-      const Vec3d v3 = v + h * (3.0 / 40 * k1 + 9.0 / 40 * k2);
-      const Vec3d k3 = at(x + h * (3.0 / 40 * v + 9.0 / 40 * v2), v3);
-      const Vec3d v4 = v + h * (44.0 / 45 * k1 - 56.0 / 15 * k2 + 32.0 / 9 * k3);
-      const Vec3d k4 = at(x + h * (44.0 / 45 * v - 56.0 / 15 * v2 + 32.0 / 9 * v3), v4);
-      const Vec3d v5 = v + h * (19372.0 / 6561 * k1 - 25360.0 / 2187 * k2 + 64448.0 / 6561 * k3 - 212.0 / 729 * k4);
-      const Vec3d k5 =
-          at(x + h * (19372.0 / 6561 * v - 25360.0 / 2187 * v2 + 64448.0 / 6561 * v3 - 212.0 / 729 * v4), v5);
-      const Vec3d v6 =
-          v + h * (9017.0 / 3168 * k1 - 355.0 / 33 * k2 + 46732.0 / 5247 * k3 + 49.0 / 176 * k4 - 5103.0 / 18656 * k5);
-      const Vec3d k6 = at(
-          x + h * (9017.0 / 3168 * v - 355.0 / 33 * v2 + 46732.0 / 5247 * v3 + 49.0 / 176 * v4 - 5103.0 / 18656 * v5),
-          v6);
-      const Vec3d v7 =
-          v + h * (35.0 / 384 * k1 + 500.0 / 1113 * k3 + 125.0 / 192 * k4 - 2187.0 / 6784 * k5 + 11.0 / 84 * k6);
-      const Vec3d x7 =
-          x + h * (35.0 / 384 * v + 500.0 / 1113 * v3 + 125.0 / 192 * v4 - 2187.0 / 6784 * v5 + 11.0 / 84 * v6);
-      const Vec3d k7 = at(x7, v7);
-      const double error = h * math::length(71.0 / 57600 * k1 - 71.0 / 16695 * k3 + 71.0 / 1920 * k4 -
-                                            17253.0 / 339200 * k5 + 22.0 / 525 * k6 - 1.0 / 40 * k7);
-      const double room = tolerance / math::max(error, 1e-30);
+      const Step end = step(x, v, k, h);
+      const double room = tolerance / math::max(end.error, 1e-30);
       // The fifth root, near enough: the root of the root, held closer to one.
       const double factor = math::clamp(0.85 * math::sqrt(math::sqrt(room)), 0.2, 3.0);
       if (room >= 1) {
-        x = x7;
-        v = v7;
-        k1 = k7;
+        x = end.x;
+        v = end.v;
+        k = end.k;
         t += h;
+        if (schedule != nullptr) schedule->add(last ? 1 : t / time);
         if (last) break;
       }
       h *= factor;
@@ -387,7 +511,20 @@ class AimSolver {
     }
     return {x, v};
   }
-  Vec3d at(Vec3d position, Vec3d velocity) const {
+  Arrival follow(Vec3d u, double time, const Schedule& schedule) const {
+    Vec3d x = shooter_.muzzle, v = u, k = at(x, v);
+    double t = 0;
+    for (int i = 0; i < schedule.count; ++i) {
+      const double next = time * double(schedule.ends[i]);
+      const Step end = step(x, v, k, next - t);
+      x = end.x;
+      v = end.v;
+      k = end.k;
+      t = next;
+    }
+    return {x, v};
+  }
+  [[gnu::always_inline]] Vec3d at(Vec3d position, Vec3d velocity) const {
     return point_mass_acceleration(projectile_, conditions_, position, velocity);
   }
 
@@ -477,8 +614,29 @@ core::Result<Aims> aim(const Projectile& projectile, const Conditions& condition
   };
   const detail::AimSolver solver(projectile, conditions, shooter, place, options);
   Aims aims;
-  if (solver.two_arcs(aims)) return aims;
+  const bool steady = target.acceleration == Vec3d{};
+  if (solver.two_arcs(aims, steady)) return aims;
   return solver.scan();
+}
+
+core::Result<std::optional<Shot>> aim_again(const Projectile& projectile, const Conditions& conditions,
+                                            const Shooter& shooter, const Target& target, const Shot& last,
+                                            const AimOptions& options) {
+  const core::Result<void> checked = detail::check(projectile, shooter, options);
+  if (!checked.ok()) return checked.error();
+  const Vec3d sum = target.position + target.velocity + target.acceleration + last.direction;
+  if (!math::is_finite(sum.x + sum.y + sum.z))
+    return core::Error{"aim_again: the target or the last shot is not finite"};
+  if (!(last.time > 0) || !math::is_finite(last.time))
+    return core::Error{core::text("aim_again: ", core::refused("last.time", last.time, "a finite number > 0"))};
+  const auto place = [&](double t) {
+    return target.position + t * (target.velocity + (0.5 * t) * target.acceleration);
+  };
+  const detail::AimSolver solver(projectile, conditions, shooter, place, options);
+  const auto root = solver.refine({shooter.velocity + shooter.muzzle_speed * last.direction, last.time});
+  if (!root.found || root.guess.time > options.longest_time) return std::optional<Shot>{};
+  return std::optional<Shot>{{(root.guess.u - shooter.velocity) / shooter.muzzle_speed, root.guess.time,
+                              root.arrival.position, root.arrival.velocity}};
 }
 
 }  // namespace carom::ballistics
