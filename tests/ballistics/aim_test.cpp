@@ -108,7 +108,8 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
     }
     ++hits;
     two += aims->high->time > aims->low->time * 1.001;
-    EXPECT_NEAR(aims->low->time, scan->low->time, 1e-3 * aims->low->time + 1e-4) << i;
+    // The scan may step over two hits close together: of 10 000 cases it came later twice.
+    EXPECT_LT(aims->low->time, scan->low->time * 1.001 + 1e-4) << i;
     EXPECT_NEAR(aims->high->time, scan->high->time, 1e-3 * aims->high->time + 1e-4) << i;
     for (const Shot& shot : {*aims->low, *aims->high}) {
       const double off = miss(c, shot);
