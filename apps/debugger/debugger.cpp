@@ -46,8 +46,8 @@ class Watched final : public host::DemoOf<D> {
         world_.shapes(actor.body, shapes);
         for (const rigid::ShapeId id : shapes) {
           const auto shape = world_.shape_geometry(id);
-          const auto* plane = shape.ok() ? std::get_if<geometry::Plane>(&*shape) : nullptr;
-          if (plane && plane->normal.y > 0.999f) stage.set_ground(stage.at(actor.body).pose.position.y);
+          if (shape.ok() && shape->type == geometry::ShapeType3::plane && shape->plane.normal.y > 0.999f)
+            stage.set_ground(stage.at(actor.body).pose.position.y);
         }
       }
     }

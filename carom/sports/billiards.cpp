@@ -63,22 +63,22 @@ core::Status validate(const BilliardPhysics& p) {
   return {};
 }
 
-double energy(const BallState& s, const BilliardPhysics& p) {
+double energy(const BilliardState& s, const BilliardPhysics& p) {
   const double m = p.ball.mass, r = p.ball.radius;
   return m * (0.5 * length_squared(s.velocity) + 0.2 * r * r * length_squared(s.angular_velocity) +
               p.gravity * (s.position.y - r));
 }
 
-BallState BallMotion::at(double time) const {
+BilliardState BilliardMotion::at(double time) const {
   const double t = time - start;
-  BallState s{position_at(time), velocity_at(time), angular_velocity + t * angular_acceleration, phase};
+  BilliardState s{position_at(time), velocity_at(time), angular_velocity + t * angular_acceleration, phase};
   if (phase == BallPhase::airborne || !in_play(phase)) return s;
   s.angular_velocity.y = time >= spin_end ? 0 : angular_velocity.y * ((spin_end - time) / (spin_end - start));
   return s;
 }
 
-BallState BallMotion::at_end(const BilliardPhysics& p) const {
-  BallState s = at(end);
+BilliardState BilliardMotion::at_end(const BilliardPhysics& p) const {
+  BilliardState s = at(end);
   if (phase == BallPhase::airborne) {
     s.position.y = p.ball.radius;
     drop_on_bed(s, p);
@@ -93,10 +93,10 @@ BallState BallMotion::at_end(const BilliardPhysics& p) const {
   return s;
 }
 
-BallMotion motion_from(const BallState& s, const BilliardPhysics& p, double time) {
+BilliardMotion motion_from(const BilliardState& s, const BilliardPhysics& p, double time) {
   constexpr double still = 1e-10;  // m/s
   const double r = p.ball.radius, g = p.gravity;
-  BallMotion m;
+  BilliardMotion m;
   m.start = time;
   m.position = s.position;
   m.phase = s.phase;

@@ -78,7 +78,7 @@ enum class BallPhase : std::uint8_t {
 };
 constexpr bool in_play(BallPhase phase) { return phase < BallPhase::pocketed; }
 
-struct BallState {
+struct BilliardState {
   math::Vec3d position{};          ///< m, of the centre
   math::Vec3d velocity{};          ///< m/s
   math::Vec3d angular_velocity{};  ///< rad/s
@@ -86,7 +86,7 @@ struct BallState {
 };
 
 /// Velocity of the ball's lowest point over the cloth.
-inline math::Vec3d bed_slip(const BallState& s, double radius) {
+inline math::Vec3d bed_slip(const BilliardState& s, double radius) {
   return {s.velocity.x + radius * s.angular_velocity.z, 0, s.velocity.z - radius * s.angular_velocity.x};
 }
 /// The horizontal spin with which a ball rolls.
@@ -94,12 +94,12 @@ inline math::Vec3d rolling_spin(math::Vec3d velocity, double radius) {
   return {velocity.z / radius, 0, -velocity.x / radius};
 }
 /// Kinetic and potential (J), zero for a ball that rests on the bed.
-CAROM_API double energy(const BallState& state, const BilliardPhysics& physics);
+CAROM_API double energy(const BilliardState& state, const BilliardPhysics& physics);
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// A stretch of a ball's life between two events, in closed form.
-struct BallMotion {
+struct BilliardMotion {
   double start = 0;    ///< s
   double end = never;  ///< s, when the phase ends by itself (slip ends, comes to rest, drops on the bed)
   math::Vec3d position{}, velocity{}, half_acceleration{};
@@ -113,24 +113,24 @@ struct BallMotion {
   }
   math::Vec3d velocity_at(double time) const { return velocity + (2 * (time - start)) * half_acceleration; }
   /// Exact within [start, end].
-  CAROM_API BallState at(double time) const;
+  CAROM_API BilliardState at(double time) const;
   /// The state in which the next phase begins, where this one ends by itself.
-  CAROM_API BallState at_end(const BilliardPhysics& physics) const;
+  CAROM_API BilliardState at_end(const BilliardPhysics& physics) const;
 };
 
 /// How a ball goes on from a state. What slips less than 1e-10 m/s rolls; what is slower than that rests. A ball is
 /// airborne where its state says so, or where it is above the bed or leaves it.
-CAROM_API BallMotion motion_from(const BallState& state, const BilliardPhysics& physics, double time);
+CAROM_API BilliardMotion motion_from(const BilliardState& state, const BilliardPhysics& physics, double time);
 
 /// Two balls strike each other. `normal` is the unit vector from the centre of a to that of b. On the bed (both balls)
 /// the vertical parts of the impulses are taken up by the bed. Nothing happens where they do not approach.
 /// Returns the approach speed (m/s).
-CAROM_API double strike_balls(BallState& a, BallState& b, math::Vec3d normal, bool on_bed,
+CAROM_API double strike_balls(BilliardState& a, BilliardState& b, math::Vec3d normal, bool on_bed,
                               const BilliardPhysics& physics);
 
 /// A ball reaches the bed with a velocity downward: restitution, and friction that ends at the latest where slip ends.
-CAROM_API void drop_on_bed(BallState& state, const BilliardPhysics& physics);
+CAROM_API void drop_on_bed(BilliardState& state, const BilliardPhysics& physics);
 /// The same where the bed gives nothing back (a ball that the cue holds down).
-CAROM_API void press_on_bed(BallState& state, const BilliardPhysics& physics);
+CAROM_API void press_on_bed(BilliardState& state, const BilliardPhysics& physics);
 
 }  // namespace carom::sports

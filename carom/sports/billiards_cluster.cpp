@@ -76,7 +76,7 @@ void Billiards::meet_balls(int first, int second) {
     solve_pair(which);
   }
   for (const int k : members_) {
-    BallState& s = states_[std::size_t(k)];
+    BilliardState& s = states_[std::size_t(k)];
     if (touched_[std::size_t(k)] == 0) continue;
     touched_[std::size_t(k)] = 0;
     if (s.phase != BallPhase::airborne) {
@@ -90,8 +90,8 @@ void Billiards::meet_balls(int first, int second) {
 
 void Billiards::solve_pair(int index) {
   const Touching& t = pairs_[std::size_t(index)];
-  BallState& a = states_[std::size_t(t.a)];
-  BallState& b = states_[std::size_t(t.b)];
+  BilliardState& a = states_[std::size_t(t.a)];
+  BilliardState& b = states_[std::size_t(t.b)];
   const double speed = strike_balls(a, b, t.normal, t.on_bed, physics_);
   double& last = last_hit(t.a, t.b);
   if (time_ - last < detail::chatter_time && last >= 0 && speed < detail::chatter_speed) {
@@ -110,7 +110,7 @@ void Billiards::solve_pair(int index) {
 double Billiards::motion_energy() const {
   double sum = 0;
   for (const int k : members_) {
-    const BallState& s = states_[std::size_t(k)];
+    const BilliardState& s = states_[std::size_t(k)];
     sum += 0.5 * length_squared(s.velocity) +
            0.2 * math::square(physics_.ball.radius) * length_squared(s.angular_velocity);
   }
@@ -119,7 +119,7 @@ double Billiards::motion_energy() const {
 
 void Billiards::compress(double blow, double depth) {
   const double r = physics_.ball.radius, e = physics_.balls.restitution, spring_back = math::max(e * e, 1e-6);
-  const auto state = [&](int ball) -> BallState& { return states_[std::size_t(ball)]; };
+  const auto state = [&](int ball) -> BilliardState& { return states_[std::size_t(ball)]; };
   start_.clear();
   for (const int k : members_) start_.push_back(state(k));
   const double before = motion_energy();
@@ -131,8 +131,8 @@ void Billiards::compress(double blow, double depth) {
   for (int step = 0; step < 12 * steps_of_a_contact; ++step) {
     bool pressed = false;
     for (Touching& t : pairs_) {
-      const BallState& a = state(t.a);
-      const BallState& b = state(t.b);
+      const BilliardState& a = state(t.a);
+      const BilliardState& b = state(t.b);
       const Vec3d relative = a.velocity - b.velocity;
       const double speed = dot(relative, t.normal);
       t.depth += dt * speed;
@@ -162,8 +162,8 @@ void Billiards::compress(double blow, double depth) {
     if (!pressed) break;
     for (const Touching& t : pairs_) {
       if (!(t.now > 0)) continue;
-      BallState& a = state(t.a);
-      BallState& b = state(t.b);
+      BilliardState& a = state(t.a);
+      BilliardState& b = state(t.b);
       const Vec3d push = t.rub - t.now * t.normal;
       a.velocity += push;
       b.velocity -= push;
@@ -184,14 +184,14 @@ void Billiards::compress(double blow, double depth) {
   if (!(gained > 0)) return;
   double linear = 0, quadratic = 0;
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    const BallState& s = state(members_[i]);
+    const BilliardState& s = state(members_[i]);
     const Vec3d dv = s.velocity - start_[i].velocity, dw = r * (s.angular_velocity - start_[i].angular_velocity);
     linear += dot(start_[i].velocity, dv) + 0.4 * r * dot(start_[i].angular_velocity, dw);
     quadratic += 0.5 * length_squared(dv) + 0.2 * length_squared(dw);
   }
   const double part = -linear / quadratic;
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    BallState& s = state(members_[i]);
+    BilliardState& s = state(members_[i]);
     s.velocity = start_[i].velocity + part * (s.velocity - start_[i].velocity);
     s.angular_velocity = start_[i].angular_velocity + part * (s.angular_velocity - start_[i].angular_velocity);
   }

@@ -50,10 +50,10 @@ core::Status Billiards::check_place(int ball, Vec3d p) const {
 core::Status Billiards::place(std::span<const Vec2d> balls) {
   const std::size_t n = balls.size();
   if (n < 1 || n > 64) return core::Error{core::text("billiards: ", core::refused("number of balls", n, "1 to 64"))};
-  std::vector<BallMotion> before = std::move(motion_);
+  std::vector<BilliardMotion> before = std::move(motion_);
   motion_.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    const BallState s{{balls[i].x, physics_.ball.radius, balls[i].y}};
+    const BilliardState s{{balls[i].x, physics_.ball.radius, balls[i].y}};
     if (core::Status good = check_place(int(i), s.position); !good) {
       motion_ = std::move(before);
       return good;
@@ -83,7 +83,7 @@ core::Status Billiards::place(std::span<const Vec2d> balls) {
   return {};
 }
 
-core::Status Billiards::set_state(int ball, const BallState& state) {
+core::Status Billiards::set_state(int ball, const BilliardState& state) {
   if (ball < 0 || ball >= balls())
     return core::Error{core::text("billiards: ", core::refused("ball", ball, "one that was placed"))};
   if (!is_finite(state.velocity) || !is_finite(state.angular_velocity) || length_squared(state.velocity) > 1e8 ||
@@ -91,7 +91,7 @@ core::Status Billiards::set_state(int ball, const BallState& state) {
     return core::Error{core::text("billiards: the velocity or spin of ball ", ball, " is not finite or too great")};
   if (in_play(state.phase))
     if (const core::Status good = check_place(ball, state.position); !good) return good;
-  BallState s = state;
+  BilliardState s = state;
   if (s.position.y <= physics_.ball.radius && s.velocity.y < 0) drop_on_bed(s, physics_);
   if (s.phase != BallPhase::airborne && s.position.y <= physics_.ball.radius + 1e-9) {
     s.position.y = physics_.ball.radius;
@@ -108,7 +108,7 @@ core::Result<CueImpact> Billiards::strike(int ball, const Stroke& stroke, const 
     return core::Error{core::text("billiards: ", core::refused("ball", ball, "one that rests on the bed"))};
   core::Result<CueImpact> impact = strike_cue(stroke, cue, physics_.ball);
   if (!impact) return impact;
-  BallState s = state(ball);
+  BilliardState s = state(ball);
   s.velocity = impact->velocity;
   s.angular_velocity += impact->angular_velocity;
   s.phase = BallPhase::sliding;
@@ -123,11 +123,11 @@ core::Result<CueImpact> Billiards::strike(int ball, const Stroke& stroke, const 
   return impact;
 }
 
-void Billiards::apply(int ball, const BallState& state) {
+void Billiards::apply(int ball, const BilliardState& state) {
   const std::size_t k = std::size_t(ball);
   motion_[k] = motion_from(state, physics_, time_);
   if (options_.record) {
-    std::vector<BallMotion>& path = history_[k];
+    std::vector<BilliardMotion>& path = history_[k];
     if (!path.empty() && path.back().start == time_)
       path.back() = motion_[k];
     else
@@ -149,21 +149,21 @@ double Billiards::next_event_time() const {
 
 double Billiards::rest_time() const {
   double last = 0;
-  for (const BallMotion& m : motion_) last = math::max(last, math::max(m.start, m.spin_end));
+  for (const BilliardMotion& m : motion_) last = math::max(last, math::max(m.start, m.spin_end));
   return last;
 }
 
-BallState Billiards::state(int ball, double time) const {
-  const std::vector<BallMotion>& path = history_[std::size_t(ball)];
+BilliardState Billiards::state(int ball, double time) const {
+  const std::vector<BilliardMotion>& path = history_[std::size_t(ball)];
   const auto after =
-      std::upper_bound(path.begin(), path.end(), time, [](double t, const BallMotion& m) { return t < m.start; });
+      std::upper_bound(path.begin(), path.end(), time, [](double t, const BilliardMotion& m) { return t < m.start; });
   if (after == path.begin()) return path.empty() ? state(ball) : path.front().at(path.front().start);
   return (after - 1)->at(time);
 }
 
 double Billiards::energy() const {
   double sum = 0;
-  for (const BallMotion& m : motion_)
+  for (const BilliardMotion& m : motion_)
     if (in_play(m.phase)) sum += sports::energy(m.at(time_), physics_);
   return sum;
 }
@@ -211,7 +211,7 @@ void Billiards::process(int ball) {
 }
 
 void Billiards::fall(int ball, int pocket) {
-  BallState s = motion_[std::size_t(ball)].at(time_);
+  BilliardState s = motion_[std::size_t(ball)].at(time_);
   note(pocket < 0 ? BilliardEvent::Kind::leaves : BilliardEvent::Kind::pocket, ball, pocket, length(s.velocity));
   s.phase = pocket < 0 ? BallPhase::off_table : BallPhase::pocketed;
   pocketed_[std::size_t(ball)] = pocket;
@@ -219,10 +219,10 @@ void Billiards::fall(int ball, int pocket) {
 }
 
 void Billiards::end_phase(int ball) {
-  const BallMotion& m = motion_[std::size_t(ball)];
+  const BilliardMotion& m = motion_[std::size_t(ball)];
   if (m.phase != BallPhase::airborne) {
     const bool slid = m.phase == BallPhase::sliding;
-    const BallState s = m.at_end(physics_);
+    const BilliardState s = m.at_end(physics_);
     apply(ball, s);
     note(motion_[std::size_t(ball)].phase == BallPhase::resting || !slid ? BilliardEvent::Kind::rests
                                                                          : BilliardEvent::Kind::rolls,
@@ -241,7 +241,7 @@ void Billiards::end_phase(int ball) {
 
 void Billiards::meet_cushion(int ball, const Next& next) {
   const std::size_t k = std::size_t(ball);
-  BallState s = motion_[k].at(time_);
+  BilliardState s = motion_[k].at(time_);
   const Vec2d seen{s.position.x, s.position.z};
   const bool on_bed = s.phase != BallPhase::airborne, jaw = next.kind == Own::jaw;
   const std::size_t i = std::size_t(next.index);

@@ -50,7 +50,7 @@ class CAROM_API Billiards {
   /// the table or in a pocket, overlapping another ball or a cushion by more than 1e-9 m.
   core::Status place(std::span<const math::Vec2d> balls);
   /// A ball's state from now on, whatever it was. Phase `airborne` or a height above R: it flies. Errors as above.
-  core::Status set_state(int ball, const BallState& state);
+  core::Status set_state(int ball, const BilliardState& state);
   /// The cue strikes a ball that is at rest on the bed. Error: no such ball, one that moves, or a stroke that cannot
   /// be.
   core::Result<CueImpact> strike(int ball, const Stroke& stroke, const Cue& cue = {});
@@ -64,12 +64,12 @@ class CAROM_API Billiards {
   double next_event_time() const;
   /// When the last ball stops and spins no more, as far as has been run.
   double rest_time() const;
-  BallState state(int ball) const { return motion_[std::size_t(ball)].at(time_); }
+  BilliardState state(int ball) const { return motion_[std::size_t(ball)].at(time_); }
   /// At any time since `place` up to `time()`; needs `record` for times before the last event.
-  BallState state(int ball, double time) const;
-  const BallMotion& motion(int ball) const { return motion_[std::size_t(ball)]; }
+  BilliardState state(int ball, double time) const;
+  const BilliardMotion& motion(int ball) const { return motion_[std::size_t(ball)]; }
   /// All motions of a ball since `place`.
-  std::span<const BallMotion> path(int ball) const { return history_[std::size_t(ball)]; }
+  std::span<const BilliardMotion> path(int ball) const { return history_[std::size_t(ball)]; }
   std::span<const BilliardEvent> events() const { return events_; }
   std::int64_t event_count() const { return count_; }
   double energy() const;                                                  ///< J, of the balls in play
@@ -88,7 +88,7 @@ class CAROM_API Billiards {
   };
 
   core::Status check_place(int ball, math::Vec3d position) const;
-  void apply(int ball, const BallState& state);
+  void apply(int ball, const BilliardState& state);
   void predict();
   void predict_own(int ball);
   void predict_flight(int ball, Next& next, double limit) const;
@@ -114,7 +114,7 @@ class CAROM_API Billiards {
   double sine_ = 0;        ///< of the angle of the contact with the nose over the ball's equator
   double time_ = 0;
   std::int64_t count_ = 0;
-  std::vector<BallMotion> motion_;
+  std::vector<BilliardMotion> motion_;
   std::vector<Next> own_;
   std::vector<double> pair_, last_hit_;  ///< by two balls
   std::vector<double> best_;
@@ -122,7 +122,7 @@ class CAROM_API Billiards {
   std::vector<double> cushion_hit_;
   std::vector<int> cushion_piece_, pocketed_;
   std::vector<int> changed_;
-  std::vector<std::vector<BallMotion>> history_;
+  std::vector<std::vector<BilliardMotion>> history_;
   std::vector<BilliardEvent> events_;
   // Of the balls that touch, while they are solved.
   struct Touching {
@@ -135,7 +135,7 @@ class CAROM_API Billiards {
   };
   std::vector<Touching> pairs_;
   std::vector<int> members_;
-  std::vector<BallState> states_, start_;
+  std::vector<BilliardState> states_, start_;
   std::vector<char> touched_;
 };
 

@@ -9,7 +9,7 @@ using math::Vec3d;
 namespace {
 
 /// Mathavan et al. 2014: both balls on the bed, which carries and rubs the one that friction presses down.
-void integrate_balls(BallState& a, BallState& b, Vec3d n, double approach, const BilliardPhysics& p) {
+void integrate_balls(BilliardState& a, BilliardState& b, Vec3d n, double approach, const BilliardPhysics& p) {
   const double r = p.ball.radius, spin = 2.5 / r, bed = p.cloth.sliding_friction;
   const BallContact& c = p.balls;
   Vec3d va = a.velocity, vb = b.velocity, wa = a.angular_velocity, wb = b.angular_velocity;
@@ -59,7 +59,7 @@ void integrate_balls(BallState& a, BallState& b, Vec3d n, double approach, const
   a.angular_velocity = wa, b.angular_velocity = wb;
 }
 
-void meet_bed(BallState& s, const BilliardPhysics& p, double restitution) {
+void meet_bed(BilliardState& s, const BilliardPhysics& p, double restitution) {
   const double r = p.ball.radius, down = -s.velocity.y;
   if (!(down > 0)) return;
   const double up = restitution * down;
@@ -78,7 +78,7 @@ void meet_bed(BallState& s, const BilliardPhysics& p, double restitution) {
 
 }  // namespace
 
-double strike_balls(BallState& a, BallState& b, Vec3d n, bool on_bed, const BilliardPhysics& p) {
+double strike_balls(BilliardState& a, BilliardState& b, Vec3d n, bool on_bed, const BilliardPhysics& p) {
   const double approach = dot(a.velocity - b.velocity, n);
   if (!(approach > 0)) return 0;
   const BallContact& c = p.balls;
@@ -96,7 +96,7 @@ double strike_balls(BallState& a, BallState& b, Vec3d n, bool on_bed, const Bill
   return approach;
 }
 
-void drop_on_bed(BallState& s, const BilliardPhysics& p) { meet_bed(s, p, p.cloth.restitution); }
-void press_on_bed(BallState& s, const BilliardPhysics& p) { meet_bed(s, p, 0); }
+void drop_on_bed(BilliardState& s, const BilliardPhysics& p) { meet_bed(s, p, p.cloth.restitution); }
+void press_on_bed(BilliardState& s, const BilliardPhysics& p) { meet_bed(s, p, 0); }
 
 }  // namespace carom::sports

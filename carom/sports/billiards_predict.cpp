@@ -16,7 +16,7 @@ void Billiards::predict() {
 
 void Billiards::predict_own(int ball) {
   const std::size_t k = std::size_t(ball);
-  const BallMotion& m = motion_[k];
+  const BilliardMotion& m = motion_[k];
   Next& next = own_[k];
   next = {m.end, Own::phase, -1};
   if (!in_play(m.phase) || m.phase == BallPhase::resting) {
@@ -67,7 +67,7 @@ void Billiards::predict_own(int ball) {
 }
 
 void Billiards::predict_flight(int ball, Next& next, double limit) const {
-  const BallMotion& m = motion_[std::size_t(ball)];
+  const BilliardMotion& m = motion_[std::size_t(ball)];
   const Vec3d p = m.position, v = m.velocity, h = m.half_acceleration;
   const double r = physics_.ball.radius;
   const auto take = [&](double t, Own kind, int index) {
@@ -104,8 +104,8 @@ void Billiards::predict_flight(int ball, Next& next, double limit) const {
 }
 
 double Billiards::meeting(int a, int b) const {
-  const BallMotion& one = motion_[std::size_t(a)];
-  const BallMotion& two = motion_[std::size_t(b)];
+  const BilliardMotion& one = motion_[std::size_t(a)];
+  const BilliardMotion& two = motion_[std::size_t(b)];
   const double limit = math::min(own_[std::size_t(a)].time, own_[std::size_t(b)].time) - time_;
   const double s = time_ - one.start, t = time_ - two.start, reach = 2 * physics_.ball.radius;
   if (one.phase != BallPhase::airborne && two.phase != BallPhase::airborne) {
@@ -123,7 +123,7 @@ double Billiards::meeting(int a, int b) const {
 
 void Billiards::predict_pairs(int ball) {
   const std::size_t k = std::size_t(ball);
-  const BallMotion& m = motion_[k];
+  const BilliardMotion& m = motion_[k];
   const bool still = m.phase == BallPhase::resting, gone = !in_play(m.phase);
   best_[k] = own_[k].time;
   partner_[k] = -1;

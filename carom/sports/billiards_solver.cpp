@@ -91,7 +91,7 @@ class ShotTrials {
     leg.start = {p.x, p.z};
   }
   Vec2d last_way() const {
-    const std::span<const BallMotion> path = probe_.path(1);
+    const std::span<const BilliardMotion> path = probe_.path(1);
     for (std::size_t i = path.size(); i-- > 0;)
       if (path[i].phase == BallPhase::rolling) return normalize(Vec2d{path[i].velocity.x, path[i].velocity.z});
     return {};
@@ -197,7 +197,7 @@ Verified verify(Billiards& table, const Billiards& layout, const Stroke& stroke,
     }
     if (e.kind == Kind::pocket && e.ball == goal.object) v.arrival = e.speed;
   }
-  const BallState cue = table.state(options.cue_ball), object = table.state(goal.object);
+  const BilliardState cue = table.state(options.cue_ball), object = table.state(goal.object);
   if (options.keep_cue_ball && !in_play(cue.phase)) return v;
   if (goal.pocket >= 0) {
     v.good = table.pocket_of(goal.object) == goal.pocket && v.arrival >= options.arrival;

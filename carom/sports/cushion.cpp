@@ -10,20 +10,20 @@ using math::Vec3d;
 namespace {
 
 /// Velocity of the contact point across `toward`.
-Vec3d cushion_slip(const BallState& s, Vec3d toward, double radius) {
+Vec3d cushion_slip(const BilliardState& s, Vec3d toward, double radius) {
   const Vec3d u = s.velocity + radius * cross(s.angular_velocity, toward);
   return u - dot(u, toward) * toward;
 }
 
 /// An impulse per mass along −toward and one across it, at the contact.
-void push_off(BallState& s, Vec3d toward, double normal, Vec3d across, bool on_bed, double radius) {
+void push_off(BilliardState& s, Vec3d toward, double normal, Vec3d across, bool on_bed, double radius) {
   s.velocity += across - normal * toward;
   s.angular_velocity += (2.5 / radius) * cross(toward, across);
   if (on_bed) s.velocity.y = 0;
 }
 
 /// Mathavan et al. 2010. Impulses per mass; the work of the normal impulse decides where restitution ends.
-void integrate_cushion(BallState& s, Vec3d toward, const BilliardPhysics& physics) {
+void integrate_cushion(BilliardState& s, Vec3d toward, const BilliardPhysics& physics) {
   const double radius = physics.ball.radius, mu = physics.cushion.friction, bed = physics.cloth.sliding_friction;
   const double spin = 2.5 / radius;
   Vec3d v = s.velocity, w = s.angular_velocity;
@@ -141,7 +141,7 @@ CompliantImpact stronge_impact(double tangential, double normal, double restitut
   return {sign * approach * speed, e * approach};
 }
 
-double strike_cushion(BallState& s, Vec3d toward, bool on_bed, const BilliardPhysics& physics) {
+double strike_cushion(BilliardState& s, Vec3d toward, bool on_bed, const BilliardPhysics& physics) {
   const CushionContact& c = physics.cushion;
   const double radius = physics.ball.radius, approach = dot(s.velocity, toward);
   if (!(approach > 0)) return 0;

@@ -18,7 +18,7 @@
 namespace carom::sports {
 
 struct BilliardPhysics;
-struct BallState;
+struct BilliardState;
 
 enum class CushionModel : std::uint8_t { stronge, mathavan, han };
 
@@ -33,7 +33,7 @@ struct CushionContact {
 /// The ball meets a cushion whose contact lies in the direction `toward` (unit vector from the ball's centre). On the
 /// bed the vertical part of the impulse is taken up by the bed. Nothing happens where it does not approach.
 /// Returns the approach speed along `toward` (m/s).
-CAROM_API double strike_cushion(BallState& state, math::Vec3d toward, bool on_bed, const BilliardPhysics& physics);
+CAROM_API double strike_cushion(BilliardState& state, math::Vec3d toward, bool on_bed, const BilliardPhysics& physics);
 
 struct CompliantImpact {
   double tangential = 0;  ///< m/s after the impact

@@ -24,7 +24,7 @@ Billiards bed(const BilliardPhysics& physics, std::vector<Vec2d> balls) {
   return std::move(*game);
 }
 
-BallState moving(const BilliardPhysics& p, Vec2d at, Vec3d v, Vec3d w) {
+BilliardState moving(const BilliardPhysics& p, Vec2d at, Vec3d v, Vec3d w) {
   return {{at.x, p.ball.radius, at.y}, v, w, BallPhase::sliding};
 }
 
@@ -46,7 +46,7 @@ TEST(Chapter19Billiards, AStunnedBallSlidesThenRolls) {
     Billiards game = bed(p, {{0, 0}});
     ASSERT_TRUE(game.set_state(0, moving(p, {0, 0}, {c.v, 0, 0}, {})).ok());
     ASSERT_TRUE(game.run().ok());
-    const BallMotion& slide = game.path(0)[0];
+    const BilliardMotion& slide = game.path(0)[0];
     const double precise = c.v == 1 ? 1e-9 : 5e-6;  // as printed
     EXPECT_NEAR(slide.end, c.time, precise);
     EXPECT_NEAR(slide.position_at(slide.end).x, c.distance, precise);
@@ -98,9 +98,9 @@ TEST(Chapter19Billiards, HeadOnFullRoll) {
   const double at_impact = game.path(1).back().velocity.x;
   ASSERT_TRUE(game.run().ok());
   double cue = 0, object = 0;
-  for (const BallMotion& m : game.path(0))
+  for (const BilliardMotion& m : game.path(0))
     if (m.phase == BallPhase::rolling) cue = m.velocity.x;
-  for (const BallMotion& m : game.path(1))
+  for (const BilliardMotion& m : game.path(1))
     if (m.phase == BallPhase::rolling) object = m.velocity.x;
   EXPECT_NEAR(cue, at_impact * 2 / 7, 1e-12);
   EXPECT_NEAR(object, at_impact * 5 / 7, 1e-12);
@@ -114,7 +114,7 @@ double deflection(const BilliardPhysics& p, double cut, double roll, double v = 
   Billiards game = bed(p, {{0, 0}, {gap * math::cos(cut), gap * math::sin(cut)}});
   EXPECT_TRUE(game.set_state(0, moving(p, {0, 0}, {v, 0, 0}, {0, 0, -roll * v / p.ball.radius})).ok());
   EXPECT_TRUE(game.run().ok());
-  for (const BallMotion& m : game.path(0))
+  for (const BilliardMotion& m : game.path(0))
     if (m.start > 1e-6 && m.phase == BallPhase::rolling) return math::atan2(-m.velocity.z, m.velocity.x);
   return 0;
 }
@@ -134,9 +134,9 @@ TEST(Chapter19Billiards, DeflectionOfARollingBall) {
 
 /// Angle (rad) by which the object ball leaves the line of centres, toward the cue ball's line of motion.
 double throw_angle(const BilliardPhysics& p, double v, double cut, Vec3d spin) {
-  BallState cue{{0, p.ball.radius, 0}, {v, 0, 0}, spin, BallPhase::sliding};
+  BilliardState cue{{0, p.ball.radius, 0}, {v, 0, 0}, spin, BallPhase::sliding};
   const Vec3d n{math::cos(cut), 0, -math::sin(cut)};
-  BallState object{2 * p.ball.radius * n + Vec3d{0, p.ball.radius, 0}};
+  BilliardState object{2 * p.ball.radius * n + Vec3d{0, p.ball.radius, 0}};
   strike_balls(cue, object, n, true, p);
   const Vec3d across{n.z, 0, -n.x};  // of the cue ball's motion: (sin-ward) to the side it slips to
   return math::atan2(-dot(object.velocity, across), dot(object.velocity, n));
@@ -181,7 +181,7 @@ TEST(Chapter19Billiards, BallOnBallByMathavan) {
     const double expected[2] = {c.v_cue, c.v_object}, angles[2] = {c.angle_cue, c.angle_object};
     for (int ball = 0; ball < 2; ++ball) {
       Vec3d v{};
-      for (const BallMotion& m : game.path(ball))
+      for (const BilliardMotion& m : game.path(ball))
         if (m.start > 1e-6 && m.phase == BallPhase::rolling) v = m.velocity;
       EXPECT_NEAR(length(v), expected[ball], .01 * expected[ball]) << c.v << " ball " << ball;
       EXPECT_NEAR(math::abs(math::atan2(v.z, v.x)) / degree, angles[ball], .01 * angles[ball])
@@ -197,7 +197,7 @@ TEST(Chapter19Billiards, CushionByMathavan) {
   p.cloth.sliding_friction = .212;
   p.cushion = {.model = CushionModel::mathavan, .restitution = .98, .friction = .14, .steps = 100'000};
   const Vec3d toward{math::sqrt(1 - .16), .4, 0};
-  BallState s{{0, p.ball.radius, 0}, {1, 0, 0}, {0, 0, -1 / p.ball.radius}, BallPhase::rolling};
+  BilliardState s{{0, p.ball.radius, 0}, {1, 0, 0}, {0, 0, -1 / p.ball.radius}, BallPhase::rolling};
   strike_cushion(s, toward, true, p);
   // Ours converges to .9106578 (1e6 and 5e6 steps): 1.2e-5 from the reference's number.
   EXPECT_NEAR(s.velocity.x, -.91067, 2e-5);
@@ -214,7 +214,7 @@ TEST(Chapter19Billiards, CushionByHan) {
   p.cushion.model = CushionModel::han;
   const Vec3d toward{math::sqrt(1 - .28 * .28), .28, 0};
   const double r = p.ball.radius;
-  BallState s{{0, r, 0}, {1, 0, 0}, {0, 0, -1 / r}, BallPhase::rolling};
+  BilliardState s{{0, r, 0}, {1, 0, 0}, {0, 0, -1 / r}, BallPhase::rolling};
   strike_cushion(s, toward, true, p);
   EXPECT_NEAR(s.velocity.x, -.80442, 1e-5);
   EXPECT_NEAR(-s.angular_velocity.z, 3.91951, 1e-4);

@@ -17,7 +17,7 @@ void check_all_the_way(Billiards& game, double slack = 1e-12) {
   while (game.next_event_time() < never) {
     ASSERT_TRUE(game.run(game.next_event_time()).ok());
     for (int i = 0; i < game.balls(); ++i) {
-      const BallState s = game.state(i);
+      const BilliardState s = game.state(i);
       if (!in_play(s.phase)) continue;
       ASSERT_TRUE(is_finite(s.position) && is_finite(s.velocity) && is_finite(s.angular_velocity));
       if (s.phase != BallPhase::airborne) {
@@ -62,11 +62,11 @@ TEST(BilliardsEngine, NoTunnellingAtBreakSpeed) {
   const double end = game.time();
   for (double t = 0; t < math::min(end, 3.); t += 1e-3)
     for (int i = 0; i < 16; ++i) {
-      const BallState s = game.state(i, t);
+      const BilliardState s = game.state(i, t);
       if (!in_play(s.phase) || s.phase == BallPhase::airborne) continue;
       ASSERT_TRUE(game.table().inside({s.position.x, s.position.z}));
       for (int k = 0; k < i; ++k) {
-        const BallState o = game.state(k, t);
+        const BilliardState o = game.state(k, t);
         if (in_play(o.phase)) {
           ASSERT_GT(distance(s.position, o.position), 2 * r - 1e-11) << t;
         }
@@ -160,7 +160,7 @@ TEST(BilliardsEngine, MirrorAndRotation) {
     }
     ASSERT_TRUE(b.run(until).ok() && c.run(until).ok());
     for (int i = 0; i < 4; ++i) {
-      const BallState s = a.state(i), m = b.state(i), q = c.state(i);
+      const BilliardState s = a.state(i), m = b.state(i), q = c.state(i);
       EXPECT_LT(length(s.position - Vec3d{m.position.x, m.position.y, -m.position.z}), 1e-9) << shot;
       const Vec2d there = turned({s.position.x, s.position.z});
       EXPECT_LT(distance(there, {q.position.x, q.position.z}), 1e-9) << shot;
@@ -179,7 +179,7 @@ TEST(BilliardsEngine, AStraightBreakIsSymmetric) {
   int first = 1;
   for (int row = 0; row < 5; ++row) {
     for (int i = 0; i <= row; ++i) {
-      const BallState a = game.state(first + i), b = game.state(first + row - i);
+      const BilliardState a = game.state(first + i), b = game.state(first + row - i);
       EXPECT_NEAR(a.velocity.x, b.velocity.x, 1e-9);
       EXPECT_NEAR(a.velocity.z, -b.velocity.z, 1e-9);
       EXPECT_NEAR(a.angular_velocity.y, -b.angular_velocity.y, 1e-7);
@@ -197,11 +197,11 @@ TEST(BilliardsEngine, ExactReplay) {
   ASSERT_TRUE(whole.strike(0, {.speed = 6, .side = .1, .height = .2}).ok());
   Billiards pieces = whole, again = whole;
   ASSERT_TRUE(whole.run().ok());
-  std::vector<std::vector<BallState>> seen;
+  std::vector<std::vector<BilliardState>> seen;
   for (double t = 0; t < whole.time(); t += 1. / 60) {
     ASSERT_TRUE(pieces.run(t).ok());
     for (int i = 0; i < 16; ++i) {
-      const BallState live = pieces.state(i), kept = whole.state(i, t);
+      const BilliardState live = pieces.state(i), kept = whole.state(i, t);
       for (int k = 0; k < 3; ++k) {
         ASSERT_EQ(bits(live.position[k]), bits(kept.position[k])) << i << " " << t;
         ASSERT_EQ(bits(live.velocity[k]), bits(kept.velocity[k]));
@@ -247,7 +247,7 @@ TEST(BilliardsEngine, RandomShotsComeToRest) {
       most = math::max(most, game.event_count());
       EXPECT_LT(game.time(), 60);
       for (int i = 0; i < count; ++i) {
-        const BallState s = game.state(i);
+        const BilliardState s = game.state(i);
         pocketed += s.phase == BallPhase::pocketed;
         gone += s.phase == BallPhase::off_table;
         if (in_play(s.phase)) {

@@ -5,7 +5,7 @@
 namespace billiards_laws_test {
 using namespace billiards_test;
 
-double total(const BallState& a, const BilliardPhysics& p) { return energy(a, p); }
+double total(const BilliardState& a, const BilliardPhysics& p) { return energy(a, p); }
 
 TEST(BilliardsLaws, EnergyNeverRisesInBallImpacts) {
   for (const BallContact::Model model : {BallContact::Model::closed_form, BallContact::Model::mathavan})
@@ -16,8 +16,8 @@ TEST(BilliardsLaws, EnergyNeverRisesInBallImpacts) {
           p.balls.model = model;
           p.balls.restitution = e;
           const double c = math::radians(double(cut)), r = p.ball.radius;
-          BallState a{{0, r, 0}, {1.5, 0, 0}, spin, BallPhase::sliding};
-          BallState b{{2 * r * math::cos(c), r, 2 * r * math::sin(c)}};
+          BilliardState a{{0, r, 0}, {1.5, 0, 0}, spin, BallPhase::sliding};
+          BilliardState b{{2 * r * math::cos(c), r, 2 * r * math::sin(c)}};
           const double before = total(a, p) + total(b, p);
           const Vec3d momentum = a.velocity + b.velocity;
           strike_balls(a, b, {math::cos(c), 0, math::sin(c)}, true, p);
@@ -43,7 +43,7 @@ TEST(BilliardsLaws, EnergyNeverRisesInCushionImpacts) {
         p.cushion.frequency_ratio = random.uniform(1.01, 3.0);
         p.cushion.steps = 200;
         const double r = p.ball.radius, sine = random.uniform(0.0, .6);
-        BallState s{{0, r, 0},
+        BilliardState s{{0, r, 0},
                     random.uniform(.1, 6.0) * Vec3d{random.uniform(.02, 1.0), 0, random.uniform(-1.0, 1.0)},
                     random.uniform(0.0, 200.0) * random.in_sphere(),
                     BallPhase::sliding};
@@ -64,7 +64,7 @@ TEST(BilliardsLaws, EnergyNeverRisesOnTheBed) {
   math::Random random(6);
   for (int i = 0; i < 2000; ++i) {
     BilliardPhysics p;
-    BallState s{{0, p.ball.radius, 0}, 5 * random.in_sphere(), 200 * random.in_sphere(), BallPhase::airborne};
+    BilliardState s{{0, p.ball.radius, 0}, 5 * random.in_sphere(), 200 * random.in_sphere(), BallPhase::airborne};
     const double before = total(s, p);
     drop_on_bed(s, p);
     ASSERT_LE(total(s, p), before * (1 + 1e-12));
@@ -100,8 +100,8 @@ TEST(BilliardsLaws, CushionModelsAgreeRoughly) {
       p.cushion.model = CushionModel(m);
       const double r = p.ball.radius, a = math::radians(angle), c = math::cos(a), s = math::sin(a);
       const Vec3d toward{.96, .28, 0};
-      BallState left{{0, r, 0}, {c, 0, s}, rolling_spin({c, 0, s}, r), BallPhase::rolling};
-      BallState right{{0, r, 0}, {c, 0, -s}, rolling_spin({c, 0, -s}, r), BallPhase::rolling};
+      BilliardState left{{0, r, 0}, {c, 0, s}, rolling_spin({c, 0, s}, r), BallPhase::rolling};
+      BilliardState right{{0, r, 0}, {c, 0, -s}, rolling_spin({c, 0, -s}, r), BallPhase::rolling};
       strike_cushion(left, toward, true, p);
       strike_cushion(right, toward, true, p);
       EXPECT_NEAR(left.velocity.x, right.velocity.x, 1e-14);
@@ -171,7 +171,7 @@ TEST(BilliardsLaws, CueGivesNoMoreThanItHas) {
     const Cue cue{.tip_friction = random.uniform(.3, 1.)};
     const auto hit = strike_cue(stroke, cue, ball);
     ASSERT_TRUE(hit.ok());
-    const BallState s{{0, ball.radius, 0}, hit->velocity, hit->angular_velocity};
+    const BilliardState s{{0, ball.radius, 0}, hit->velocity, hit->angular_velocity};
     ASSERT_LE(energy(s, p), .5 * cue.mass * math::square(stroke.speed) * (1 + 1e-12));
     ASSERT_EQ(hit->miscue, length(tip) > math::sin(math::atan(cue.tip_friction)));
     slipped += hit->miscue;
@@ -194,7 +194,7 @@ TEST(BilliardsLaws, MasseFollowsCoriolis) {
         ASSERT_FALSE(hit->miscue);
         ASSERT_TRUE(game.run().ok());
         Vec3d last{};
-        for (const BallMotion& m : game.path(0))
+        for (const BilliardMotion& m : game.path(0))
           if (m.phase == BallPhase::rolling) last = m.velocity;
         // The cue's line meets the bed at A, seen from the foot of the ball.
         const double c = math::cos(up), s = math::sin(up), depth = math::sqrt(1 - side * side - height * height);

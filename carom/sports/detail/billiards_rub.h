@@ -11,7 +11,7 @@ inline double ball_friction(const BallContact& c, double slip) {
 
 /// The impulse of friction that goes with a normal impulse `push` (per mass), against the slip of a over b before the
 /// impact: Coulomb, and no more than stops the slip, which is u/7 for equal solid spheres.
-inline void rub_balls(BallState& a, BallState& b, math::Vec3d normal, double push, math::Vec3d slip,
+inline void rub_balls(BilliardState& a, BilliardState& b, math::Vec3d normal, double push, math::Vec3d slip,
                       const BilliardPhysics& p) {
   const double speed = math::length(slip);
   if (!(speed > 1e-14)) return;
