@@ -1,5 +1,7 @@
 #include "apps/command/canvas.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -62,7 +64,15 @@ std::string short_number(double value, int digits) {
   return buffer;
 }
 
-std::string temporary_name(const std::string& path) { return path + ".part"; }
+std::string temporary_name(const std::string& path) {
+  // Shards on several machines may write the same file in one folder.
+  static const std::string own = [] {
+    char host[64] = {};
+    if (gethostname(host, sizeof host - 1) != 0) host[0] = 0;
+    return "." + std::string(host) + "-" + std::to_string(getpid()) + ".part";
+  }();
+  return path + own;
+}
 
 core::Status put_in_place(const std::string& temporary, const std::string& path) {
   std::error_code error;

@@ -102,6 +102,32 @@ TEST_F(Cli, ASweepThatWasKilledGoesOnAndShardsMakeTheSameTable) {
     EXPECT_EQ(carom(bad), 2) << bad;
 }
 
+#ifdef CAROM_MPI
+TEST_F(Cli, TwoProcessesOfAnMpiJobShareASweep) {
+  const std::string what = " chain --vary ratio=1:100:6 --steps 20 --quiet --out ";
+  ASSERT_EQ(carom("sweep" + what + "alone"), 0) << err_;
+  const auto mpi = [&](const std::string& arguments) {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && mpirun --allow-run-as-root --oversubscribe -n 2 '" CAROM_MPI "' " + arguments +
+                                " > out.txt 2> err.txt";
+    const int status = std::system(command.c_str());
+    err_ = read(folder_ / "err.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  ASSERT_EQ(mpi(what + "shared"), 0) << err_;
+  EXPECT_TRUE(fs::exists(folder_ / "shared/cases-1-of-2.jsonl"));
+  EXPECT_EQ(read(folder_ / "shared/table.csv"), read(folder_ / "alone/table.csv"));
+  // A job that was killed goes on: half of a shard's file is there.
+  const fs::path lines = folder_ / "shared/cases-0-of-2.jsonl";
+  fs::resize_file(lines, fs::file_size(lines) / 2);
+  fs::remove(folder_ / "shared/table.csv");
+  ASSERT_EQ(mpi(what + "shared"), 0) << err_;
+  EXPECT_EQ(read(folder_ / "shared/table.csv"), read(folder_ / "alone/table.csv"));
+  EXPECT_EQ(mpi("no-such-scene --vary x=1,2"), 3);
+  EXPECT_EQ(mpi("chain --vary ratio=1,2 --shard 0/2"), 2);
+}
+#endif
+
 TEST_F(Cli, RendersRecordingsAndScenes) {
   ASSERT_EQ(carom("run bullets --steps 60 --no-pictures --quiet --out run"), 0) << err_;
   ASSERT_EQ(carom("render run/recording.carom-rec --out frames --rate 5 --size 160x90"), 0) << err_;
