@@ -31,7 +31,7 @@ namespace {
 constexpr const char* security_policy =
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; font-src 'self' data:; connect-src 'self' data: blob:; worker-src 'self' blob:; "
-    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
 
 constexpr const char* no_page =
     "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Carom</title>"

@@ -1,11 +1,12 @@
 // The page: joins a source of simulation to the view, the panel, the plots and the user's hands.
 import {byId} from './dom';
+import {Compare, Follower, isTwin} from './compare';
 import {Editing} from './editing';
 import {Gamepads} from './gamepad';
 import {Hands} from './hands';
 import {Panel} from './panel';
 import {Plots} from './plots';
-import type {DemoSummary, Frame, HostMessage, Mesh, Opened, Points, Surface} from './protocol';
+import type {DemoSummary, Frame, HostMessage, Mesh, Opened, PlotDeclaration, Points, Surface} from './protocol';
 import {playTo, readLink, Share, writeLink, type Link} from './share';
 import {SocketSource, WorkerSource, type Listener, type Source} from './source';
 import {Timeline} from './timeline';
@@ -20,18 +21,23 @@ function engineOfPage(listener: Listener): Source {
   return engine === 'wasm' ? new WorkerSource(listener) : new SocketSource(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`, listener);
 }
 
+/** Every plotted curve once more for the right view; fixed curves stay single. */
+function doubled(plots: PlotDeclaration[]): PlotDeclaration[] {
+  return plots.map((p) => ({...p, series: [...p.series, ...p.series.map((s) => (s.points ? {...s, points: []} : {...s, name: `${s.name} (B)`, color: undefined}))]}));
+}
+
 class Page implements Listener {
   private canvas = byId<HTMLCanvasElement>('view');
   readonly viewer = new Viewer(this.canvas);
   private source: Source = engineOfPage(this);
-  private send = (message: object) => this.source.send(message);
+  private send = (message: object) => { if (!this.compare?.divert(message)) this.source.send(message); };
   private panel = new Panel(this.send);
   private plots = new Plots(byId('plot'), byId('plot-choice'));
   private tools = new Tools(this.viewer, this.send);
   private hands = new Hands(this.canvas, this.viewer, this.tools, this.send);
   private timeline = new Timeline(this.send);
   private timing = new Timing(byId('timing'));
-  private share = new Share(this.viewer, this.source, (text) => this.notice(text, 4000), () => { void this.editing.open(); });
+  private share = new Share(this.viewer, this.source, (text) => this.notice(text, 4000), () => { void this.editing.open(); }, () => this.compare?.toggle());
   private editing = new Editing(this.send, (name, text) => {
     // An edit changes the scene, not where one looks from, nor whether it runs.
     this.share.scene = {name, text};
@@ -40,6 +46,14 @@ class Page implements Listener {
     this.pausedEdit = !this.running && same;
     this.edited = name;
   });
+  private compare: Compare | undefined = isTwin ? undefined : new Compare(() => this.share.link(), (values) => this.panel.setValues(values), (samples) => {
+    const own = this.opened?.plots ?? [];
+    for (const s of samples) this.plots.add(s.plot, (own[s.plot]?.series.length ?? 0) + s.series, s.x, s.y);
+  }, () => {
+    if (this.opened) this.plots.open(doubled(this.opened.plots));
+    this.send({type: 'restart'});
+  });
+  private follower = isTwin ? new Follower((message) => this.source.send(message), (viewpoint) => { this.viewer.viewpoint = viewpoint; }) : undefined;
   private edited?: string;     // the scene that the editor has opened last
   private pausedEdit = false;  // it was paused, and stays so
   private wanted?: Link;  // what the next `opened` is to restore
@@ -62,7 +76,7 @@ class Page implements Listener {
     byId<HTMLInputElement>('search').oninput = (event) => this.search((event.target as HTMLInputElement).value);
     byId('menu').onclick = () => this.toggle('menu', 'no-demos');
     byId('panel-toggle').onclick = () => this.toggle('panel-toggle', 'no-panel');
-    if (matchMedia('(max-width: 800px)').matches) { this.toggle('menu', 'no-demos'); this.toggle('panel-toggle', 'no-panel'); }
+    if (!isTwin && matchMedia('(max-width: 800px)').matches) { this.toggle('menu', 'no-demos'); this.toggle('panel-toggle', 'no-panel'); }
     addEventListener('keydown', (event) => this.key(event, true));
     addEventListener('keyup', (event) => this.key(event, false));
     addEventListener('blur', () => this.letGo());
@@ -94,6 +108,7 @@ class Page implements Listener {
     this.gamepads.poll();
     this.viewer.render(now);
     this.plots.draw();
+    this.compare?.view(this.viewer.viewpoint);
     requestAnimationFrame(this.frameLoop);
   };
 
@@ -147,6 +162,8 @@ class Page implements Listener {
       case 'grabbed': this.hands.grabbed(message.pointer, message.body, message.point); break;
       case 'status':
         this.running = message.running;
+        this.follower?.status(message.step);
+        if (!message.running || message.step === 0) this.compare?.follow(message.step);
         byId('run').textContent = message.running ? 'Pause' : 'Run';
         byId<HTMLButtonElement>('step').disabled = message.running;
         byId('verdict').textContent = message.message ?? '';
@@ -156,7 +173,10 @@ class Page implements Listener {
         this.share.recorded(message.recording);
         byId('clock').textContent = `${message.time.toFixed(2)} s · step ${message.step}`;
         break;
-      case 'values': this.panel.setValues(message.values); break;
+      case 'values':
+        if (this.compare?.side !== 'B') this.panel.setValues(message.values);
+        this.follower?.values(message.values);
+        break;
       case 'error':
         this.timeline.failed();
         if (!this.editing.refused(message.message)) this.notice(this.share.withLine(message.message), 12000);
@@ -173,6 +193,8 @@ class Page implements Listener {
     for (const s of frame.samples) this.plots.add(s.plot, s.series, s.x, s.y);
     byId('clock').textContent = `${frame.time.toFixed(2)} s · step ${frame.step}`;
     this.timeline.frame(frame.step);
+    this.compare?.follow(frame.step);
+    this.follower?.frame(frame.step, frame.samples);
     this.share.step = frame.step;
     if (frame.stats) this.panel.numbers(frame.stats);
   }
@@ -185,6 +207,9 @@ class Page implements Listener {
 
   private show(opened: Opened): void {
     this.opened = opened;
+    this.compare?.close();
+    if (this.compare) this.compare.opened = opened;
+    this.follower?.opened();
     this.share.opened = opened;
     const wanted = this.wanted?.demo === opened.demo ? this.wanted : undefined;
     this.wanted = undefined;
@@ -273,6 +298,7 @@ class Page implements Listener {
       Comma: () => byId('back').click(), KeyF: () => this.viewer.followChosen(), KeyB: () => this.shootAhead(),
       BracketLeft: () => this.choose(this.viewer.neighbour(-1)), BracketRight: () => this.choose(this.viewer.neighbour(1)),
       ...Object.fromEntries(['pull', 'throw', 'ray', 'sphere', 'closest', 'why'].map((tool, i) => [`Digit${i + 1}`, () => this.tools.choose(tool as Tool)])),
+      KeyC: () => this.compare?.toggle(),
       KeyE: () => { if (this.editing.active) this.editing.close(); else void this.editing.open(); },
       KeyD: () => byId('menu').click(), KeyP: () => byId('panel-toggle').click(), Home: () => this.viewer.resetView(),
     };

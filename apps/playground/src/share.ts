@@ -45,7 +45,7 @@ export class Share {
   /** The text of the scene that is open, where it came from a file; for a new connection and for errors. */
   scene?: {name: string; text: string};
 
-  constructor(private viewer: Viewer, private source: Source, private say: (text: string, lasting?: boolean) => void, edit: () => void) {
+  constructor(private viewer: Viewer, private source: Source, private say: (text: string, lasting?: boolean) => void, edit: () => void, compare: () => void) {
     const button = (label: string, title: string, act: () => void) => element('button', {type: 'button', textContent: label, title, onclick: act});
     const chooser = element('input', {type: 'file', hidden: true, accept: '.json,.carom-rec', onchange: () => { for (const file of chooser.files ?? []) void this.openFile(file); }});
     chooser.setAttribute('aria-label', 'A scene or a recording');
@@ -54,7 +54,8 @@ export class Share {
       button('Picture', 'Save what the view shows', () => { void this.picture(); }),
       button('Record', 'Write a recording from now on; again: save it', () => this.source.send({type: 'record', on: !this.recording})),
       button('Open file', 'A scene (JSON) or a recording; it can also be dropped on the page', () => chooser.click()),
-      button('Edit scene', 'The scene as a file beside the view; edits act at once (E)', edit), chooser);
+      button('Edit scene', 'The scene as a file beside the view; edits act at once (E)', edit),
+      button('Compare', 'Two settings side by side, in step (C)', compare), chooser);
     addEventListener('dragover', (event) => { event.preventDefault(); document.body.classList.add('dropping'); });
     addEventListener('dragleave', (event) => { if (!event.relatedTarget) document.body.classList.remove('dropping'); });
     addEventListener('drop', (event) => {
