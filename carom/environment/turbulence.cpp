@@ -48,6 +48,45 @@ TurbulenceScales high_altitude_turbulence(double intensity, TurbulenceSpectrum s
   return {{intensity, intensity, intensity}, {length, length, length}};
 }
 
+double turbulence_intensity(double altitude, double exceedance) {
+  // Figure 7 of MIL-F-8785C: ft/s at altitudes in ft, for probabilities of .2 and 10⁻¹ … 10⁻⁶.
+  constexpr int rows = 12, columns = 7;
+  constexpr double heights[rows] = {500, 1750, 3750, 7500, 15000, 25000, 35000, 45000, 55000, 65000, 75000, 80000};
+  constexpr double exponents[columns] = {0.69897, 1, 2, 3, 4, 5, 6};  // −log₁₀ of the probability
+  constexpr double table[rows][columns] = {{3.2, 4.2, 6.6, 8.6, 11.8, 15.6, 18.7},
+                                           {2.2, 3.6, 6.9, 9.6, 13.0, 17.6, 21.5},
+                                           {1.5, 3.3, 7.4, 10.6, 16.0, 23.0, 28.4},
+                                           {0, 1.6, 6.7, 10.1, 15.1, 23.6, 30.2},
+                                           {0, 0, 4.6, 8.0, 11.6, 22.1, 30.7},
+                                           {0, 0, 2.7, 6.6, 9.7, 20.0, 31.0},
+                                           {0, 0, 0.4, 5.0, 8.1, 16.0, 25.2},
+                                           {0, 0, 0, 4.2, 8.2, 15.1, 23.1},
+                                           {0, 0, 0, 2.7, 7.9, 12.1, 17.5},
+                                           {0, 0, 0, 0, 4.9, 7.9, 10.7},
+                                           {0, 0, 0, 0, 3.2, 6.2, 8.4},
+                                           {0, 0, 0, 0, 2.1, 5.1, 7.2}};
+  const double h = math::clamp(altitude / feet, heights[0], heights[rows - 1]);
+  const double p = math::clamp(-math::log10(math::clamp(exceedance, 1e-6, 1.0)), exponents[0], exponents[columns - 1]);
+  int row = 0, column = 0;
+  while (row + 2 < rows && h >= heights[row + 1]) ++row;
+  while (column + 2 < columns && p >= exponents[column + 1]) ++column;
+  const double t = (h - heights[row]) / (heights[row + 1] - heights[row]);
+  const double u = (p - exponents[column]) / (exponents[column + 1] - exponents[column]);
+  const auto at = [&](int r) { return table[r][column] + u * (table[r][column + 1] - table[r][column]); };
+  return feet * (at(row) + t * (at(row + 1) - at(row)));
+}
+
+TurbulenceScales standard_turbulence(double height, double wind_at_20_feet, double exceedance,
+                                     TurbulenceSpectrum spectrum) {
+  constexpr double low = 1000 * feet, high = 2000 * feet;
+  const TurbulenceScales below = low_altitude_turbulence(math::min(height, low), wind_at_20_feet);
+  if (height <= low) return below;
+  const TurbulenceScales above =
+      high_altitude_turbulence(turbulence_intensity(math::max(height, high), exceedance), spectrum);
+  const double t = math::min((height - low) / (high - low), 1.0);
+  return {below.intensity + t * (above.intensity - below.intensity), below.length + t * (above.length - below.length)};
+}
+
 double longitudinal_spectrum(TurbulenceSpectrum spectrum, double sigma, double length, double k) {
   const double scale = 2 * sigma * sigma * length / math::pi;
   if (spectrum == TurbulenceSpectrum::dryden) return scale / (1 + math::square(length * k));

@@ -29,6 +29,15 @@ CAROM_API TurbulenceScales low_altitude_turbulence(double height, double wind_at
 /// Above 2000 ft: isotropic, L = 1750 ft (Dryden) or 2500 ft (von Kármán); σ as given, m/s. MIL-F-8785C 3.7.2.
 CAROM_API TurbulenceScales high_altitude_turbulence(double intensity, TurbulenceSpectrum spectrum);
 
+/// Intensity (m/s) that is exceeded with the probability `exceedance` (.2 … 1e-6, in turbulence or not) at an altitude
+/// (m): MIL-F-8785C, figure 7. Light turbulence is 1e-1 … 1e-2, moderate 1e-3, severe 1e-5. Linear over altitude and
+/// over the logarithm of the probability; held at the ends (500 and 80 000 ft).
+CAROM_API double turbulence_intensity(double altitude, double exceedance);
+/// At any height: the low-altitude scales to 1000 ft, those of high altitude from 2000 ft, linear between (3.7.3.4).
+/// MIL-HDBK-1797 writes half the lengths L_v and L_w; its spectra over k are the same.
+CAROM_API TurbulenceScales standard_turbulence(double height, double wind_at_20_feet, double exceedance,
+                                               TurbulenceSpectrum spectrum);
+
 /// One-sided spectra over the wave number k (rad/m) along the line of flight, ∫₀^∞ Φ dk = σ², (m/s)²·m/rad.
 /// Dryden: Φ_u = σ² (2L/π)/(1 + (Lk)²), Φ_w = σ² (L/π)(1 + 3(Lk)²)/(1 + (Lk)²)².
 /// von Kármán: Φ_u = σ² (2L/π)/(1 + (1.339 Lk)²)^(5/6), Φ_w = σ² (L/π)(1 + 8/3 (1.339 Lk)²)/(1 + (1.339 Lk)²)^(11/6).

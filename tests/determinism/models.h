@@ -12,5 +12,6 @@ inline void print_model(const char* name, const core::StateHash& hash) {
 }
 
 void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine has
+void environment_models(int width);
 
 }  // namespace carom::determinism

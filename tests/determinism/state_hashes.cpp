@@ -15,6 +15,7 @@ namespace {
 void print_models(int width) {
   using namespace carom::determinism;
   ballistics_models(width);
+  environment_models(width);
 }
 
 bool print_demos(int threads) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "carom/environment/sea.h"
+#include "carom/environment/sea_patch.h"
 
 namespace sea_test {
 using namespace carom;
@@ -280,6 +281,33 @@ TEST(Sea, GridAndPointsAgree) {
   std::vector<double> short_one(10, 5.0);
   sea.grid(0, 0, 1, 80, 40, 0, short_one);
   EXPECT_EQ(short_one[0], 5.0) << "too little room: untouched";
+}
+
+// Lanes of floats round an origin, however far off and late: the surface and its slopes, the same bits at any width.
+TEST(SeaPatch, IsTheSameSea) {
+  const Sea sea =
+      Sea::make({.level = 3, .current = {0.4, 0, 0}}, SeaDef{.spectrum = {4, 9, 3.3}, .components = 64}).value();
+  for (const math::Vec2d origin : {math::Vec2d{0, 0}, math::Vec2d{2e6, -3e6}}) {
+    const double time = origin.x > 0 ? 1e5 : 3;
+    const environment::SeaPatch patch(sea, origin, time);
+    std::vector<float> x, z;
+    for (int i = 0; i < 203; ++i) x.push_back(-80 + 0.79f * float(i)), z.push_back(60 - 0.57f * float(i));
+    std::vector<float> height(x.size()), slope_x(x.size()), slope_z(x.size());
+    patch.heights(x, z, height, slope_x, slope_z);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double px = origin.x + double(x[i]), pz = origin.y + double(z[i]);
+      EXPECT_NEAR(height[i], sea.height(px, pz, time) - 3, 5e-5);
+      const Vec3d n = sea.sample({px, 0, pz}, time).normal;
+      EXPECT_NEAR(slope_x[i], -n.x / n.y, 3e-5);
+      EXPECT_NEAR(slope_z[i], -n.z / n.y, 3e-5);
+    }
+    for (const int lanes : {4, 8, 16}) {
+      std::vector<float> other(x.size());
+      environment::SeaPatch(sea, origin, time, lanes).heights(x, z, other);
+      EXPECT_EQ(other, height) << lanes;
+    }
+  }
+  EXPECT_EQ(environment::SeaPatch(Sea(), {}, 0).lanes() % 4, 0);
 }
 
 // What is wide feels short waves less: the mean over a disc.

@@ -58,6 +58,24 @@ TEST(Turbulence, ScalesOfTheStandard) {
   EXPECT_NEAR(environment::high_altitude_turbulence(2, TurbulenceSpectrum::von_karman).length.x / feet, 2500, 1e-9);
 }
 
+// MIL-F-8785C, figure 7: nodes, between them, and the ends; one model at all heights without steps.
+TEST(Turbulence, IntensityByProbability) {
+  const double feet = 0.3048;
+  EXPECT_NEAR(environment::turbulence_intensity(7500 * feet, 1e-5) / feet, 23.6, 1e-9);
+  EXPECT_NEAR(environment::turbulence_intensity(7500 * feet, 0.2) / feet, 0, 1e-4);
+  EXPECT_NEAR(environment::turbulence_intensity(20000 * feet, 1e-3) / feet, 7.3, 1e-9);
+  EXPECT_NEAR(environment::turbulence_intensity(15000 * feet, std::pow(10, -2.5)) / feet, 6.3, 1e-9);
+  EXPECT_NEAR(environment::turbulence_intensity(0, 1e-9) / feet, 18.7, 1e-9);
+  EXPECT_NEAR(environment::turbulence_intensity(1e6, 1e-6) / feet, 7.2, 1e-9);
+  for (double h = 100; h < 3000; h += 1) {
+    const auto a = environment::standard_turbulence(h * feet, 15, 1e-3, TurbulenceSpectrum::dryden);
+    const auto b = environment::standard_turbulence((h + 1) * feet, 15, 1e-3, TurbulenceSpectrum::dryden);
+    EXPECT_NEAR(b.length.z / a.length.z, 1, 0.011) << h;
+    EXPECT_NEAR(b.intensity.x / a.intensity.x, 1, 0.011) << h;
+  }
+  EXPECT_NEAR(environment::standard_turbulence(5000, 15, 1e-3, TurbulenceSpectrum::dryden).length.x / feet, 1750, 1e-9);
+}
+
 // One-sided spectra add up to σ²; the tails fall with k⁻² and k^(−5/3), and the transverse ones are 2 and 4/3 as high.
 TEST(Turbulence, AnalyticSpectra) {
   for (const auto kind : {TurbulenceSpectrum::dryden, TurbulenceSpectrum::von_karman}) {

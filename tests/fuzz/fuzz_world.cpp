@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "carom/carom.h"
+#include "carom/environment/environment.h"
 
 namespace {
 using namespace carom;
@@ -271,7 +272,7 @@ struct Player {
     }
   }
   EffectorDef<D> any_effector() {
-    switch (in.byte() % 7) {
+    switch (in.byte() % 12) {
       case 0: {
         LinearDrag<D> e;
         e.body = in.flag() ? body() : BodyId{};
@@ -293,6 +294,53 @@ struct Player {
         Buoyancy<D> e;
         e.level = double(in.number());
         e.linear_drag = double(in.number());
+        e.added_mass = vector();
+        return e;
+      }
+      case 7: {
+        Surroundings<D> e;
+        environment::Environment::Definition d;
+        d.wind.mean.velocity = {double(in.number(50)), double(in.number(50)), 0};
+        d.frame.rate = {0, 0, double(in.number(3))};
+        d.gravity.kind = in.flag() ? environment::GravityField::Kind::spherical : environment::GravityField::Kind::none;
+        const environment::WaveComponent wave{double(in.number(2)), 0.1 + double(in.byte()), double(in.number(3))};
+        auto sea = environment::Sea::make({.level = double(in.number(5))}, {&wave, 1});
+        if (sea.ok()) d.water = std::move(sea).value();
+        auto made = environment::Environment::make(std::move(d));
+        if (made.ok()) e.environment = std::make_shared<const environment::Environment>(std::move(made).value());
+        return e;  // null where the numbers were bad: refused
+      }
+      case 8: {
+        BodyDrag<D> e;
+        e.body = in.flag() ? body() : BodyId{};
+        e.law.kind = forces::DragLaw::Kind(in.byte() % 8);
+        e.law.coefficient = double(in.number(3));
+        e.diameter = double(in.number(5));
+        e.area = double(in.number(5));
+        e.point = vector();
+        return e;
+      }
+      case 9: {
+        MagnusLift<D> e;
+        e.radius = double(in.number(2));
+        return e;
+      }
+      case 10: {
+        TurningFrame<D> e;
+        e.center = position();
+        if constexpr (D::dimension == 2)
+          e.rate = in.number(20);
+        else
+          e.rate = vector();
+        e.centrifugal = in.flag();
+        return e;
+      }
+      case 11: {
+        ElectromagneticField<D> e;
+        e.body = in.flag() ? body() : BodyId{};
+        e.charge = double(in.number(100));
+        e.electric = vector();
+        e.magnetic = {in.number(9), in.number(9), in.number(9)};
         return e;
       }
       case 4: {

@@ -20,11 +20,11 @@ TEST(Chapter06, SphereThroughTheDragCrisis) {
   EXPECT_NEAR(forces::sphere_drag(1e3, 0), 0.484, 5e-4);
   EXPECT_NEAR(forces::sphere_drag(3e5, 0), 0.173, 5e-4);
   EXPECT_NEAR(forces::sphere_drag_schiller_naumann(100), 1.092, 5e-4);
-  // Subcritical .44–.5, a minimum of .1 to .2 beyond 3e5.
+  // Subcritical .44–.5; beyond 3e5 measured spheres have .1 to .2, Morrison's curve goes down to .09.
   EXPECT_GT(forces::sphere_drag(5e4, 0), 0.4);
   double least = 1;
   for (double re = 1e5; re < 1e6; re *= 1.02) least = std::min(least, forces::sphere_drag(re, 0));
-  EXPECT_GT(least, 0.1);
+  EXPECT_GT(least, 0.09);
   EXPECT_LT(least, 0.2);
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "carom/environment/environment.h"
 #include "carom/rigid/character.h"
 #include "tests/rigid/scene_pieces.h"
 
@@ -236,6 +237,22 @@ TYPED_TEST(WarmStep, OfEffectorsSensorsAndEvents) {
   RadialField<D> field;
   field.center = at<D>(0, 5);
   world.add_effector(field).value();
+  environment::Environment::Definition around;
+  around.wind.turbulence = environment::Turbulence::make({}).value();
+  around.water = environment::Sea::make({.level = 1}, environment::SeaDef{}).value();
+  around.frame.rate = {0, 0, 0.01};
+  const auto shared =
+      std::make_shared<const environment::Environment>(environment::Environment::make(std::move(around)).value());
+  world.add_effector(Surroundings<D>{shared}).value();
+  Buoyancy<D> carried;
+  carried.added_mass = along<D>(0.5f, 0.5f);
+  world.add_effector(carried).value();
+  world.add_effector(BodyDrag<D>{}).value();
+  world.add_effector(MagnusLift<D>{}).value();
+  ElectromagneticField<D> charged;
+  charged.charge = 0.1;
+  charged.magnetic = {0, 0, 1};
+  world.add_effector(charged).value();
   CustomEffector<D> custom;
   custom.model = [](const EffectorInput<D>& in) {
     Wrench<D> w;

@@ -16,6 +16,7 @@ using namespace math;
 std::span<const DemoFactory> particle_demos();
 std::span<const DemoFactory> fluid_demos();
 std::span<const DemoFactory> rope_demos();
+std::span<const DemoFactory> environment_demos();
 std::span<const DemoFactory> ballistics_demos();
 std::span<const DemoFactory> blast_demos();
 std::span<const DemoFactory> sports_demos();
