@@ -82,7 +82,7 @@ void Sea::heights(std::span<const math::Vec2d> points, double time, std::span<do
   for (std::size_t i = 0; i < points.size() && i < out.size(); ++i) out[i] = height(points[i].x, points[i].y, time);
 }
 
-SeaPoint Sea::sample(Vec3d point, double time, double radius) const {
+SeaPoint Sea::sample(Vec3d point, double time, const Footprint& footprint) const {
   math::SinCos<double> turn[max_components];
   double share[max_components];
   SeaPoint result;
@@ -91,9 +91,10 @@ SeaPoint Sea::sample(Vec3d point, double time, double radius) const {
   for (std::size_t i = 0; i < components_.size(); ++i) {
     const WaveComponent& w = components_[i];
     turn[i] = math::sincos(phase(w, point.x, point.z, time));
-    // The mean over a disc is 2 J₁(kr)/(kr) ≈ exp(−(kr)²/8).
-    const double kr = w.wave_number * radius;
-    share[i] = w.amplitude * (kr > 0.05 ? math::exp(-0.125 * kr * kr) : 1);
+    // Of a disc the mean is 2 J₁(kr)/(kr) = 1 − (kr)²/8 + …, of a length l sin(kl/2)/(kl/2) = 1 − (kl)²/24 + …
+    const double kx = w.wave_number * w.direction_x, kz = w.wave_number * w.direction_z;
+    const double spread = 0.5 * (kx * kx * footprint.xx + 2 * kx * kz * footprint.xz + kz * kz * footprint.zz);
+    share[i] = w.amplitude * (spread > 1e-4 ? math::exp(-spread) : 1);
     result.height += share[i] * turn[i].sin;
     const double slope = share[i] * w.wave_number * turn[i].cos;
     slope_x += slope * w.direction_x;

@@ -35,6 +35,13 @@ struct SeaPoint : WaterPoint {
   double pressure = 0;  ///< Pa over that of the air: 0 at the surface and above it
 };
 
+/// What something covers of the water: the second moments (m²) of its plan about its middle, as shares of its area. A
+/// disc has r²/4 along x and z, a rectangle l²/12 along each of its sides.
+struct Footprint {
+  double xx = 0, xz = 0, zz = 0;
+};
+constexpr Footprint disc_footprint(double radius) { return {0.25 * radius * radius, 0, 0.25 * radius * radius}; }
+
 /// A sum of waves on a body of water. All answers are first order in the steepness. Each costs a sine or two for
 /// every component.
 class CAROM_API Sea {
@@ -55,8 +62,8 @@ class CAROM_API Sea {
   /// y of the surface.
   double height(double x, double z, double time) const;
   /// Height, normal and the motion and pressure of the water at the point; above the surface, of the surface under it.
-  /// `radius` (m) is of what feels it: waves short against it count less, as their mean over a disc of that radius.
-  SeaPoint sample(math::Vec3d point, double time, double radius = 0) const;
+  /// `footprint` is of what feels it: waves short against it count less, nearly as their mean over it, e^(−½ k·M k).
+  SeaPoint sample(math::Vec3d point, double time, const Footprint& footprint = {}) const;
   /// Heights at (x, z) of each point, by the same sum as `height`.
   void heights(std::span<const math::Vec2d> points, double time, std::span<double> out) const;
   /// Heights of a grid of columns × rows points, `spacing` m apart from (x, z), row by row along x. The waves are

@@ -20,12 +20,11 @@ void run_lanes(int lanes, const detail::SeaWaves& waves, std::size_t from, std::
 
 }  // namespace
 
-SeaPatch::SeaPatch(const Sea& sea, math::Vec2d origin, double time, int lanes) {
+void SeaPatch::set(const Sea& sea, math::Vec2d origin, double time, int lanes) {
   const math::InstructionSet set =
       lanes == 0 ? math::detect_instruction_set() : math::choose_instruction_set(math::instruction_set_of_width(lanes));
   lanes_ = math::simd_width(set);
-  count_ = int(sea.components().size());
-  const std::size_t n = std::size_t(count_);
+  const std::size_t n = sea.components().size();
   waves_.resize(4 * n);
   constexpr double per_turn = 1 / (2 * math::pi);
   const math::Vec3d current = sea.water().current;
@@ -44,12 +43,12 @@ SeaPatch::SeaPatch(const Sea& sea, math::Vec2d origin, double time, int lanes) {
 
 void SeaPatch::run(std::span<const float> x, std::span<const float> z, float* out, float* slope_x,
                    float* slope_z) const {
-  const std::size_t n = std::size_t(count_), points = x.size(), lanes = std::size_t(lanes_);
+  const std::size_t n = waves_.size() / 4, points = x.size(), lanes = std::size_t(lanes_);
   detail::SeaWaves waves{waves_.data(),
                          waves_.data() + n,
                          waves_.data() + 2 * n,
                          waves_.data() + 3 * n,
-                         count_,
+                         int(n),
                          x.data(),
                          z.data(),
                          out,

@@ -13,9 +13,11 @@ namespace carom::environment {
 /// a of `Sea::height` at a distance r. The same bits for any number of lanes.
 class CAROM_API SeaPatch {
  public:
-  /// `origin`: (x, z) that points are relative to; the sea must outlive nothing, it is copied. `lanes` 4, 8, 16, or 0:
-  /// what the machine has.
-  SeaPatch(const Sea& sea, math::Vec2d origin, double time, int lanes = 0);
+  /// `origin`: (x, z) that points are relative to. `lanes` 4, 8, 16, or 0: what the machine has.
+  SeaPatch(const Sea& sea, math::Vec2d origin, double time, int lanes = 0) { set(sea, origin, time, lanes); }
+  SeaPatch() = default;  ///< still water
+  /// Another moment or place; allocates only where the sea has more waves than ever before.
+  void set(const Sea& sea, math::Vec2d origin, double time, int lanes = 0);
 
   /// y of the surface less the still level (m), at points (m from the origin). All spans as long as `out`.
   void heights(std::span<const float> x, std::span<const float> z, std::span<float> out) const;
@@ -23,11 +25,13 @@ class CAROM_API SeaPatch {
   void heights(std::span<const float> x, std::span<const float> z, std::span<float> out, std::span<float> slope_x,
                std::span<float> slope_z) const;
   int lanes() const { return lanes_; }
+  const std::vector<float>& memory() const { return waves_; }  ///< for whoever counts it
+  std::vector<float>& memory() { return waves_; }
 
  private:
   void run(std::span<const float> x, std::span<const float> z, float* out, float* slope_x, float* slope_z) const;
-  std::vector<float> waves_;  ///< five arrays one after another
-  int count_ = 0, lanes_ = 4;
+  std::vector<float> waves_;  ///< four arrays one after another
+  int lanes_ = 4;
 };
 
 }  // namespace carom::environment

@@ -13,7 +13,8 @@ void environment_models(int) {
   environment::SeaDef def{.spectrum = environment::fetch_limited_sea(15, 80e3), .direction = 0.4, .seed = 9};
   const environment::Sea sea = environment::Sea::make({.depth = 25, .current = {0.5, 0, -0.2}}, def).value();
   for (int i = 0; i < 100; ++i) {
-    const environment::SeaPoint p = sea.sample({3.1 * i, -0.1 * i, 70.0 - i}, 0.37 * i, 0.02 * i);
+    const environment::SeaPoint p =
+        sea.sample({3.1 * i, -0.1 * i, 70.0 - i}, 0.37 * i, environment::disc_footprint(0.02 * i));
     hash.add(p.height).add(p.pressure);
     hash_vector(p.normal), hash_vector(p.velocity), hash_vector(p.acceleration);
   }

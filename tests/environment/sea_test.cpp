@@ -320,7 +320,7 @@ TEST(Sea, WideBodiesFeelTheMean) {
   for (double x = -radius; x <= radius; x += 0.02)
     for (double z = -radius; z <= radius; z += 0.02)
       if (x * x + z * z <= radius * radius) sum += sea.height(1 + x, z, 0.4), ++n;
-  EXPECT_NEAR(sea.sample({1, 0, 0}, 0.4, radius).height / (sum / n), 1, 0.02);
+  EXPECT_NEAR(sea.sample({1, 0, 0}, 0.4, environment::disc_footprint(radius)).height / (sum / n), 1, 0.02);
 }
 
 TEST(Sea, RefusesBadInput) {

@@ -413,6 +413,47 @@ TEST(Surroundings3, HeaveResponseFallsWithWaveLength) {
   EXPECT_LT(response(4), 0.1);
 }
 
+// A hull's corners have a depth each: one as long as the wave, bow and stern on crests, floats as deep as the integral
+// over its bottom says, and it agrees with a box, which is cut into pieces, of the same form.
+TEST(Surroundings3, HullsFeelTheSurfaceAlongThem) {
+  const environment::WaveComponent wave = environment::regular_wave(1, std::sqrt(2 * math::pi * 40 / 9.80665));
+  Environment::Definition d;
+  d.water = environment::Sea::make({}, {&wave, 1}).value();
+  const auto around = shared(d);
+  const auto heave = [&](bool as_hull) {
+    World3 world({.allow_sleep = false});
+    world.add_effector(Surroundings<Dim3>{around}).value();
+    Buoyancy<Dim3> water;
+    water.linear_drag = 1.5;
+    water.angular_drag = 1.5;
+    world.add_effector(water).value();
+    const BodyId body = world.create_body({}).value();
+    ShapeDef<Dim3> shape;
+    shape.density = 512.5f;
+    std::vector<Vec3f> corners;
+    for (int i = 0; i <= 10; ++i)
+      for (const float y : {-0.75f, 0.75f})
+        for (const float z : {-3.0f, 3.0f}) corners.push_back({-8 + 1.6f * float(i), y * (i % 10 ? 1 : 0.98f), z});
+    if (as_hull)
+      world.add_shape(body, geometry::Shape3(geometry::make_hull(corners).value()), shape).value();
+    else
+      world.add_shape(body, geometry::Shape3(geometry::Box{{8, 0.75f, 3}}), shape).value();
+    double low = 1e9, high = -1e9, lean = 0;
+    for (int i = 0; i < 60 * 60; ++i) {
+      world.step(frame).value();
+      if (i < 60 * 35) continue;
+      const auto s = state_of(world, body);
+      low = std::min(low, s.pose.position.y), high = std::max(high, s.pose.position.y);
+      lean = std::max(lean, std::abs(math::rotate(Quatd(s.pose.rotation), Vec3d{1, 0, 0}).y));
+    }
+    return std::pair{high - low, lean};
+  };
+  const auto box = heave(false), hull = heave(true);
+  EXPECT_GT(box.first, 0.3);
+  EXPECT_NEAR(hull.first / box.first, 1, 0.1);
+  EXPECT_NEAR(hull.second / box.second, 1, 0.1);
+}
+
 // What floats goes with the current, and round with the waves' water.
 TEST(Surroundings3, FloatsGoWithTheCurrent) {
   Environment::Definition d;

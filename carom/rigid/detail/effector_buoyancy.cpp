@@ -14,14 +14,14 @@ struct LocalWater {
   typename D::Position point{}, normal{}, velocity{}, acceleration{};
 };
 
-/// `radius` is of what feels the water: of the surroundings' water, waves short against it count less.
+/// `footprint` is of what feels the surroundings' water: waves short against it count less.
 template <class D>
 LocalWater<D> water_near(const WorldImplementation<D>& world, const Buoyancy<D>& def, const environment::Sea* sea,
-                         typename D::Position p, double time, double radius) {
+                         typename D::Position p, double time, const environment::Footprint& footprint = {}) {
   D* const d = nullptr;
   environment::WaterPoint sample;
   if (sea != nullptr) {
-    sample = sea->sample(place_of(p), time, radius);
+    sample = sea->sample(place_of(p), time, footprint);
   } else {
     environment::Wave waves[4];
     for (int i = 0; i < def.wave_count; ++i)
@@ -68,7 +68,7 @@ forces::Submerged2 wet_part(EffectorStore<Dim2>&, const geometry::Shape2& shape,
   }
 }
 
-forces::Submerged3 wet_hull(EffectorStore<Dim3>& store, const geometry::Hull& hull, const forces::WaterPlane& water) {
+void collect(EffectorStore<Dim3>& store, const geometry::Hull& hull) {
   store.vertices.clear();
   store.indices.clear();
   for (const Vec3f v : hull.vertices) store.vertices.push_back(Vec3d(v));
@@ -83,15 +83,58 @@ forces::Submerged3 wet_hull(EffectorStore<Dim3>& store, const geometry::Hull& hu
       edge = following;
     }
   }
-  return forces::submerged_mesh(store.vertices, store.indices, water);
 }
 
-forces::Submerged3 wet_mesh(EffectorStore<Dim3>& store, const geometry::TriangleMesh& mesh,
-                            const forces::WaterPlane& water) {
+void collect(EffectorStore<Dim3>& store, const geometry::TriangleMesh& mesh) {
   store.vertices.clear();
   for (const Vec3f v : mesh.vertices) store.vertices.push_back(Vec3d(v));
   store.indices.assign(mesh.indices.begin(), mesh.indices.end());
-  return forces::submerged_mesh(store.vertices, store.indices, water);
+}
+
+/// Cuts triangles that are long against the waves: between corners the surface is taken as straight.
+void refine(EffectorStore<Dim3>& store, double piece) {
+  const std::size_t count = store.indices.size();
+  for (std::size_t t = 0; t + 2 < count; t += 3) {
+    const Vec3d a = store.vertices[store.indices[t]], b = store.vertices[store.indices[t + 1]],
+                c = store.vertices[store.indices[t + 2]];
+    const double longest = math::max(math::distance(a, b), math::max(math::distance(b, c), math::distance(c, a)));
+    const int n = int(math::clamp(math::ceil(longest / piece), 1.0, 8.0));
+    if (n == 1) continue;
+    // Rows of corners from a to the side bc, and the triangles between them; the first takes the place of the old one.
+    const std::uint32_t first = std::uint32_t(store.vertices.size());
+    const auto corner = [first](int row, int i) { return first + std::uint32_t(row * (row + 1) / 2 + i); };
+    for (int row = 0; row <= n; ++row)
+      for (int i = 0; i <= row; ++i)
+        store.vertices.push_back(a + (b - a) * (double(row - i) / n) + (c - a) * (double(i) / n));
+    store.indices[t] = corner(0, 0), store.indices[t + 1] = corner(1, 0), store.indices[t + 2] = corner(1, 1);
+    for (int row = 1; row < n; ++row)
+      for (int i = 0; i <= row; ++i) {
+        store.indices.insert(store.indices.end(), {corner(row, i), corner(row + 1, i), corner(row + 1, i + 1)});
+        if (i < row)
+          store.indices.insert(store.indices.end(), {corner(row, i), corner(row + 1, i + 1), corner(row, i + 1)});
+      }
+  }
+}
+
+/// Of the triangles in the store, in the shape's frame, under the real surface: each corner has its own depth.
+forces::Submerged3 wet_in_waves(EffectorStore<Dim3>& store, const environment::Sea& sea, const Pose3& pose,
+                                double time) {
+  const Quatd q(pose.rotation);
+  const std::size_t n = store.vertices.size();
+  store.sea.set(sea, {pose.position.x, pose.position.z}, time);
+  store.sea_x.resize(n);
+  store.sea_z.resize(n);
+  store.sea_height.resize(n);
+  store.depths.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3d corner = rotate(q, store.vertices[i]);
+    store.sea_x[i] = float(corner.x);
+    store.sea_z[i] = float(corner.z);
+    store.depths[i] = sea.water().level - (pose.position.y + corner.y);
+  }
+  store.sea.heights(store.sea_x, store.sea_z, store.sea_height);
+  for (std::size_t i = 0; i < n; ++i) store.depths[i] += double(store.sea_height[i]);
+  return forces::submerged_mesh(store.vertices, store.indices, store.depths, inverse_rotate(q, Vec3d{0, 1, 0}));
 }
 
 forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& shape,
@@ -127,7 +170,8 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
       return part;
     }
     case ShapeType3::hull:
-      return wet_hull(store, *shape.hull, water);
+      collect(store, *shape.hull);
+      return forces::submerged_mesh(store.vertices, store.indices, water);
     case ShapeType3::compound: {
       forces::Submerged3 sum;
       Vec3d moment{};
@@ -143,7 +187,8 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
       return sum;
     }
     case ShapeType3::mesh:
-      return wet_mesh(store, *shape.mesh, water);
+      collect(store, *shape.mesh);
+      return forces::submerged_mesh(store.vertices, store.indices, water);
     default:
       return {};  // planes and height fields do not move
   }
@@ -151,50 +196,80 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
 double volume_of(const forces::Submerged2& part) { return part.area; }
 double volume_of(const forces::Submerged3& part) { return part.volume; }
 
-/// Radius of what a shape feels of the waves: of a disc as wide as it.
-double felt_radius(const geometry::Shape2& shape) {
-  const geometry::Bounds2f b = geometry::bounds(shape, math::Transform2f{});
-  return 0.577 * double(b.high.x - b.low.x);
+/// A shape as it lies in the waves: half its height, and what it covers of the water.
+struct Lie {
+  double half_height = 0;
+  environment::Footprint footprint{};
+};
+Lie lie_of(const geometry::Shape2& shape, const Pose2& pose) {
+  const geometry::Bounds2f b = geometry::bounds(shape, math::Transform2f{{}, pose.rotation});
+  const double width = double(b.high.x - b.low.x);
+  return {0.5 * double(b.high.y - b.low.y), {width * width / 12, 0, 0}};
 }
-double felt_radius(const geometry::Shape3& shape) {
+Lie lie_of(const geometry::Shape3& shape, const Pose3& pose) {
   const geometry::Bounds3f b = geometry::bounds(shape, math::Transform3f{});
-  return 0.577 * double(math::min(b.high.x - b.low.x, b.high.z - b.low.z));
+  const Quatd q(pose.rotation);
+  const Vec3d half = 0.5 * Vec3d(b.high - b.low);
+  Lie lie;
+  for (int i = 0; i < 3; ++i) {
+    Vec3d axis{};
+    axis[i] = half[i];
+    axis = rotate(q, axis);
+    lie.half_height += math::abs(axis.y);
+    lie.footprint.xx += axis.x * axis.x / 3;
+    lie.footprint.xz += axis.x * axis.z / 3;
+    lie.footprint.zz += axis.z * axis.z / 3;
+  }
+  return lie;
 }
 
-/// Half of its height as it lies.
-double half_height(const geometry::Shape2& shape, const Pose2& pose) {
-  const geometry::Bounds2f b = geometry::bounds(shape, math::Transform2f{{}, pose.rotation});
-  return 0.5 * double(b.high.y - b.low.y);
+/// Whether each corner has its own depth in the waves.
+bool by_corners(const geometry::Shape2&) { return false; }
+bool by_corners(const geometry::Shape3& shape) {
+  return shape.type == geometry::ShapeType3::hull || shape.type == geometry::ShapeType3::mesh;
 }
-double half_height(const geometry::Shape3& shape, const Pose3& pose) {
-  const geometry::Bounds3f b = geometry::bounds(shape, math::Transform3f{{}, pose.rotation});
-  return 0.5 * double(b.high.y - b.low.y);
+forces::Submerged2 wet_corners(EffectorStore<Dim2>&, const geometry::Shape2&, const environment::Sea&, const Pose2&,
+                               double) {
+  return {};
+}
+forces::Submerged3 wet_corners(EffectorStore<Dim3>& store, const geometry::Shape3& shape, const environment::Sea& sea,
+                               const Pose3& pose, double time) {
+  if (shape.type == geometry::ShapeType3::hull)
+    collect(store, *shape.hull);
+  else
+    collect(store, *shape.mesh);
+  refine(store, 2 * math::pi / (8 * sea.mean_wave_number()));
+  return wet_in_waves(store, sea, pose, time);
 }
 
 /// The parts of a shape that each have their own plane of water: a box that is long against the waves is cut across.
 template <class Add>
 void for_each_part(const geometry::Shape2& shape, const Pose2& pose, double, const Add& add) {
-  add(pose, shape, felt_radius(shape));
+  add(pose, shape);
 }
 template <class Add>
 void for_each_part(const geometry::Shape3& shape, const Pose3& pose, double piece, const Add& add) {
+  if (shape.type == geometry::ShapeType3::compound) {
+    for (const geometry::CompoundChild& child : shape.compound->children)
+      for_each_part(child.shape, pose * child.local, piece, add);
+    return;
+  }
   constexpr int most = 8;
   const auto cuts = [&](float half) {
     return int(math::clamp(math::ceil(2 * double(half) / piece), 1.0, double(most)));
   };
   const int columns = shape.type == geometry::ShapeType3::box ? cuts(shape.box.half_extents.x) : 1;
   const int rows = shape.type == geometry::ShapeType3::box ? cuts(shape.box.half_extents.z) : 1;
-  if (columns * rows == 1) return add(pose, shape, felt_radius(shape));
+  if (columns * rows == 1) return add(pose, shape);
   geometry::Shape3 part = shape;
   const Vec3f half = shape.box.half_extents;
   part.box.half_extents.x = half.x / float(columns);
   part.box.half_extents.z = half.z / float(rows);
-  const double radius = felt_radius(part);
   for (int i = 0; i < columns; ++i)
     for (int k = 0; k < rows; ++k) {
       const Vec3f center{part.box.half_extents.x * float(2 * i + 1 - columns), 0,
                          part.box.half_extents.z * float(2 * k + 1 - rows)};
-      add(Pose3{pose.position + Vec3d(rotate(pose.rotation, center)), pose.rotation}, part, radius);
+      add(Pose3{pose.position + Vec3d(rotate(pose.rotation, center)), pose.rotation}, part);
     }
 }
 
@@ -209,22 +284,30 @@ void float_body(WorldImplementation<D>& world, const Buoyancy<D>& def, const Eff
   BodyMotion<D>& motion = world.bodies.motion[i];
   const environment::Sea* sea = surroundings != nullptr ? surroundings->water() : nullptr;
   const bool waves = sea != nullptr ? !sea->components().empty() : def.wave_count > 0;
-  const LocalWater<D> here = water_near(world, def, sea, body.center, time, 0);
+  const LocalWater<D> here = water_near(world, def, sea, body.center, time);
   if (dot(body.center - here.point, here.normal) > double(motion.outer_extent)) return;  // all dry
 
   const double piece = sea != nullptr && waves ? 2 * math::pi / (6 * sea->mean_wave_number()) : 0;  // m
   double wet = 0;
   Position moment{}, flow{}, push_of_waves{};
-  const auto add = [&](const typename D::Pose& pose, const typename D::Shape& shape, double radius) {
-    Position asked = pose.position;
-    if (sea != nullptr && waves) {  // the water's motion about half way down what is wet
-      const double high = half_height(shape, pose), bottom = asked.y - high;
-      asked.y = math::min(asked.y, 0.5 * (math::min(sea->water().level, asked.y + high) + bottom));
+  const auto add = [&](const typename D::Pose& pose, const typename D::Shape& shape) {
+    LocalWater<D> surface = here;
+    if (sea != nullptr && waves) {
+      // The water's motion about half way down what is wet.
+      const Lie lie = lie_of(shape, pose);
+      Position asked = pose.position;
+      const double bottom = asked.y - lie.half_height;
+      asked.y = math::min(asked.y, 0.5 * (math::min(sea->water().level, asked.y + lie.half_height) + bottom));
+      surface = water_near(world, def, sea, asked, time, lie.footprint);
+    } else if (waves) {
+      surface = water_near(world, def, sea, pose.position, time);
     }
-    const LocalWater<D> surface = waves ? water_near(world, def, sea, asked, time, radius) : here;
     const RotationD q(pose.rotation);
-    const auto part = wet_part(world.effectors, shape,
-                               {inverse_rotate(q, surface.normal), dot(surface.normal, surface.point - pose.position)});
+    const auto part =
+        sea != nullptr && waves && by_corners(shape)
+            ? wet_corners(world.effectors, shape, *sea, pose, time)
+            : wet_part(world.effectors, shape,
+                       {inverse_rotate(q, surface.normal), dot(surface.normal, surface.point - pose.position)});
     const double volume = volume_of(part);
     wet += volume;
     moment += volume * (pose.position + rotate(q, part.centroid) - body.center);
@@ -238,7 +321,7 @@ void float_body(WorldImplementation<D>& world, const Buoyancy<D>& def, const Eff
     if (sea != nullptr && waves)
       for_each_part(shape.geometry, pose, piece, add);
     else
-      add(pose, shape.geometry, 0);
+      add(pose, shape.geometry);
   }
   if (!(wet > 0)) return;
   const Position arm = moment / wet;  // of the centre of buoyancy, from the centre of mass

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "carom/core/pool.h"
+#include "carom/environment/sea_patch.h"
 #include "carom/rigid/detail/body_store.h"
 #include "carom/rigid/effector.h"
 
@@ -28,9 +29,12 @@ struct EffectorStore {
     typename D::Angular inertia{};  ///< m²
   };
   std::vector<AddedMass> added;
-  // Triangles of a hull while its wet part is measured.
+  // Triangles of a hull while its wet part is measured, and how deep its corners are in waves.
   std::vector<Vec3d> vertices;
   std::vector<std::uint32_t> indices;
+  std::vector<double> depths;
+  std::vector<float> sea_x, sea_z, sea_height;
+  environment::SeaPatch sea;
 
   explicit EffectorStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size(); }

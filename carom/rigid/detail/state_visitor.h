@@ -72,13 +72,18 @@ void visit_joints(Joints& store, Visit& visit) {
 
 template <class Effectors, class Visit>
 void visit_effectors(Effectors& store, Visit& visit) {
-  auto& [slots, data, in_order, added, vertices, indices] = store;
+  auto& [slots, data, in_order, added, vertices, indices, depths, sea_x, sea_z, sea_height, sea] = store;
   visit_slots(slots, visit);
   visit.effectors(data);
   visit.state(in_order);
   visit.scratch(added);
   visit.scratch(vertices);
   visit.scratch(indices);
+  visit.scratch(depths);
+  visit.scratch(sea_x);
+  visit.scratch(sea_z);
+  visit.scratch(sea_height);
+  visit.scratch(sea.memory());
 }
 
 template <class Contacts, class Visit>

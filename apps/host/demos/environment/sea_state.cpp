@@ -101,7 +101,7 @@ class SeaState final : public Repeatable<SeaState, Demo3> {
     const double t = stage.world().time();
     const auto raft = stage.at(raft_);
     // The raft feels the mean over its own size.
-    const double eta = around_->water()->sample(raft.center_of_mass, t, 2.0).height;
+    const double eta = around_->water()->sample(raft.center_of_mass, t, {3.0, 0, 4.0 / 3}).height;
     stage.sample(0, 0, t, eta);
     stage.sample(0, 1, t, raft.center_of_mass.y);
     if (t > 8) {
