@@ -29,6 +29,22 @@ constexpr float bouncing = 0.5f;      // m/s: slower impacts do not bounce
 
 }  // namespace
 
+void ContactSolver::reserve(std::size_t grains) {
+  constexpr std::size_t contacts = 8;  // of a grain: half of its twelve nearest neighbours, and surfaces
+  grains_.reserve(grains);
+  slots_.reserve(grains);
+  index_of_slot_.reserve(grains);
+  cell_of_.reserve(grains);
+  id_.reserve(grains);
+  memory_ids_.reserve(grains);
+  memory_start_.reserve(grains + 1);
+  cell_start_.reserve(8 * grains + 4097);
+  fill_.reserve(8 * grains + 4097);
+  contacts_.reserve(contacts * grains);
+  given_.reserve(contacts * grains);
+  memory_.reserve(contacts * grains);
+}
+
 void ContactSolver::sort_into_cells(const Pile& pile) {
   const std::size_t count = pile.x[0].size();
   float low[3]{}, high[3]{}, largest = 0, fastest = 0;

@@ -49,6 +49,8 @@ class ContactSolver {
     double dt;
   };
 
+  /// Room for so many grains, each with a few contacts, so that a warm step allocates only where there are more.
+  void reserve(std::size_t grains);
   /// Sorts the grains of a pile into a grid and finds those that touch or may within dt.
   void begin(const Pile& pile, const ContactDef& definition);
   /// A surface near grain `index` of the pile.

@@ -53,7 +53,6 @@ void ParticleSystem::step_contacts(double dt, core::TaskScheduler& scheduler, co
   pile.mass = definition_.mass;
   pile.dt = dt;
   solver_.begin(pile, definition_.contacts);
-  gained_.resize(std::size_t(definition_.capacity));
   move_.velocity_only = true;
   move_.keep_path = true;
   scheduler.parallel_for(count_, 4 * detail::block_size, [&](int begin, int end, int) {

@@ -11,6 +11,7 @@ inline void print_model(const char* name, const core::StateHash& hash) {
   std::printf("model %s %016llx\n", name, static_cast<unsigned long long>(hash.digest()));
 }
 
+void particle_models(int width);    ///< lanes of the kernels, 0: what the machine has
 void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine has
 void environment_models(int width);
 

@@ -14,6 +14,7 @@ namespace {
 
 void print_models(int width) {
   using namespace carom::determinism;
+  particle_models(width);
   ballistics_models(width);
   environment_models(width);
 }

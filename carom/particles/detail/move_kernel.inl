@@ -57,8 +57,10 @@ CAROM_SIMD_INLINE void move_all(const MoveData& d, const Arrays& arrays, int fro
   for (int i = from; i < to; i += width) {
     const V p = load(arrays.position, i), v = load(arrays.velocity, i);
     if constexpr (fields) {
-      u = air_at(d, p);
-      a = pull_at(d, p);
+      // Half a step on: with the motion below that is the leapfrog, which keeps orbits.
+      const V middle = p + half_step * v;
+      u = air_at(d, middle);
+      a = pull_at(d, middle);
     }
     const V w = v - u;
     Decay decay{splat(d.decay), splat(d.mean), splat(d.half)};
