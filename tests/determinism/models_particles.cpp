@@ -79,8 +79,9 @@ void particle_models(int width) {
   print_model("particle_heap", core::StateHash().add(heap.state_hash()));
 
   core::StateHash burst;
-  for (const math::Vec3d& w : burst_velocities({.count = 101, .energy = 10, .equal_speeds = false}).value())
-    burst.add(w.x).add(w.y).add(w.z);
+  const std::vector<math::Vec3d> velocities =
+      burst_velocities({.count = 101, .energy = 10, .equal_speeds = false}).value();
+  for (const math::Vec3d& w : velocities) burst.add(w.x).add(w.y).add(w.z);
   print_model("particle_burst", burst);
 }
 
