@@ -120,8 +120,9 @@ class CAROM_API ParticleSystem {
   // Reading; indices are good until the next step.
   math::Vec3d position(int i) const;
   math::Vec3d velocity(int i) const;
-  float age(int i) const;       ///< s
-  float age_part(int i) const;  ///< 0 at birth … 1 at death
+  math::Vec3d spin(int i) const;  ///< rad/s; zero unless contacts are enabled
+  float age(int i) const;         ///< s
+  float age_part(int i) const;    ///< 0 at birth … 1 at death
   float scale(int i) const { return arrays_[8][std::size_t(i)]; }
   std::uint32_t id(int i) const { return ids_[std::size_t(i)]; }  ///< rises with every birth
   /// The arrays themselves, `size()` long: 0 … 2 position about the anchor (m), 3 … 5 velocity (m/s).
@@ -175,6 +176,7 @@ class CAROM_API ParticleSystem {
   bool scaled_ = false, sticky_ = false;
   int lanes_ = 4;
   detail::AlignedFloats arrays_[10];  // position, velocity, birth, death (s after the epoch), scale, held
+  detail::AlignedFloats spin_[3];     // rad/s, where particles touch each other
   std::vector<std::uint32_t> ids_;
   std::vector<Emitter> emitters_;
   Air air_;

@@ -32,7 +32,7 @@ void ParticleSystem::find_surfaces(double dt, const detail::Kernels& kernels) {
         if (s.moves) u = Vec3f{s.velocity[0], s.velocity[1], s.velocity[2]} + math::cross(spin, x - center);
         const float approach = -math::dot(n, solver_.grain(i).v - u);
         if (gap > 0.15f * definition_.radius + math::max(approach, 0.0f) * float(dt) * 1.5f) continue;
-        solver_.add_surface(i, int(c), gap, n, u, s.friction, s.restitution);
+        solver_.add_surface(i, int(c), gap, n, u, spin, s.friction, s.restitution);
         ++contact_touching_[c];
       }
     }
@@ -46,6 +46,7 @@ void ParticleSystem::step_contacts(double dt, core::TaskScheduler& scheduler, co
   for (int k = 0; k < 3; ++k) {
     pile.x[k] = array(k);
     pile.v[k] = array(3 + k);
+    pile.w[k] = {spin_[k].data(), count};
   }
   pile.scale = {arrays_[8].data(), count};
   pile.ids = {ids_.data(), count};
@@ -82,14 +83,16 @@ void ParticleSystem::place_grains(int from, int to, detail::Path& path) {
     path.left[k] = 0;
     if (i >= count_) continue;
     const detail::ContactSolver::Grain& g = solver_.grain(i);
-    // What flies fast may pass a thin surface that was not near at the start: it is swept.
-    const bool fast = move_.dt * math::length(g.v) > 0.5f * definition_.radius;
+    // What flies fast may pass a thin surface that was not near at the start: it is swept. Those that were near are
+    // the solver's.
+    const bool fast = move_.dt * math::length(g.v) > 0.5f * definition_.radius && !solver_.near_surface(i);
     path.left[k] = fast ? move_.dt : 0;
     for (int c = 0; c < 3; ++c) {
       path.start[c][k] = arrays_[c][index];
       arrays_[c][index] = g.x[c];
       path.speed[c][k] = g.v[c];
       arrays_[3 + c][index] = g.v[c];
+      spin_[c][index] = g.w[c];
     }
     if (definition_.planar) arrays_[2][index] = arrays_[5][index] = 0;
   }

@@ -169,6 +169,8 @@ void ParticleSystem::remove_dead() {
       array[i] = array[last];
       array[last] = 0;  // what stands behind the last flies too, and must stay finite
     }
+    if (definition_.contacts.enabled)
+      for (detail::AlignedFloats& array : spin_) array[i] = array[last];
     arrays_[8][last] = 1;
     ids_[i] = ids_[last];
   }
