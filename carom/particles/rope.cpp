@@ -75,6 +75,16 @@ void lay(std::span<const Vec3d> corners, double way, int segments, std::vector<V
 
 using detail::Rope;
 
+namespace detail {
+namespace {
+/// A rope to read from; an empty one for a number that names none.
+const Rope& rope_at(const std::vector<Rope>& ropes, int index) {
+  static const Rope none;
+  return index >= 0 && index < int(ropes.size()) ? ropes[std::size_t(index)] : none;
+}
+}  // namespace
+}  // namespace detail
+
 RopeSet::RopeSet() = default;
 RopeSet::~RopeSet() = default;
 RopeSet::RopeSet(const RopeSet&) = default;
@@ -232,33 +242,33 @@ Status RopeSet::step(rigid::World3& world, double dt) {
 }
 
 int RopeSet::size() const { return int(ropes_.size()); }
-std::span<const Vec3d> RopeSet::positions(int rope) const { return ropes_[std::size_t(rope)].position; }
-std::span<const Vec3d> RopeSet::velocities(int rope) const { return ropes_[std::size_t(rope)].velocity; }
-std::span<const double> RopeSet::tensions(int rope) const { return ropes_[std::size_t(rope)].tension; }
-std::span<const std::uint8_t> RopeSet::broken(int rope) const { return ropes_[std::size_t(rope)].broken; }
-double RopeSet::peak_tension(int rope) const { return ropes_[std::size_t(rope)].peak; }
-double RopeSet::twist(int rope) const { return ropes_[std::size_t(rope)].twist; }
-const RopeMaterial& RopeSet::material(int rope) const { return ropes_[std::size_t(rope)].material; }
+std::span<const Vec3d> RopeSet::positions(int rope) const { return detail::rope_at(ropes_, rope).position; }
+std::span<const Vec3d> RopeSet::velocities(int rope) const { return detail::rope_at(ropes_, rope).velocity; }
+std::span<const double> RopeSet::tensions(int rope) const { return detail::rope_at(ropes_, rope).tension; }
+std::span<const std::uint8_t> RopeSet::broken(int rope) const { return detail::rope_at(ropes_, rope).broken; }
+double RopeSet::peak_tension(int rope) const { return detail::rope_at(ropes_, rope).peak; }
+double RopeSet::twist(int rope) const { return detail::rope_at(ropes_, rope).twist; }
+const RopeMaterial& RopeSet::material(int rope) const { return detail::rope_at(ropes_, rope).material; }
 
 double RopeSet::rest_length(int rope) const {
   double sum = 0;
-  for (const double length : ropes_[std::size_t(rope)].rest) sum += length;
+  for (const double length : detail::rope_at(ropes_, rope).rest) sum += length;
   return sum;
 }
 double RopeSet::length(int index) const {
-  const Rope& rope = ropes_[std::size_t(index)];
+  const Rope& rope = detail::rope_at(ropes_, index);
   double sum = 0;
   for (int i = 0; i + 1 < rope.count(); ++i)
     if (!rope.broken[std::size_t(i)]) sum += distance(rope.position[std::size_t(i)], rope.position[std::size_t(i) + 1]);
   return sum;
 }
 double RopeSet::mass(int index) const {
-  double sum = rest_length(index) * ropes_[std::size_t(index)].material.mass_per_length;
-  for (const double lump : ropes_[std::size_t(index)].lump) sum += lump;
+  double sum = rest_length(index) * detail::rope_at(ropes_, index).material.mass_per_length;
+  for (const double lump : detail::rope_at(ropes_, index).lump) sum += lump;
   return sum;
 }
 Vec3d RopeSet::attachment_force(int index, int node) const {
-  const Rope& rope = ropes_[std::size_t(index)];
+  const Rope& rope = detail::rope_at(ropes_, index);
   if (node == -1) node = rope.count() - 1;
   for (const detail::RopeGrip& grip : rope.grips)
     if (grip.attachment.node == node) return grip.force;
@@ -266,7 +276,7 @@ Vec3d RopeSet::attachment_force(int index, int node) const {
 }
 int RopeSet::contact_count(int index) const {
   int count = 0;
-  for (const detail::RopeContact& contact : ropes_[std::size_t(index)].contacts)
+  for (const detail::RopeContact& contact : detail::rope_at(ropes_, index).contacts)
     count += contact.state != detail::RopeHold::none;
   return count;
 }

@@ -108,7 +108,8 @@ TEST(RopeContact, CapstanRatioOfTensions) {
 
 TEST(RopeContact, SmoothPulleyIsAtwoodsMachine) {
   Bollard atwood(0, 3, 1);
-  const double a = atwood.acceleration(0.4);
+  atwood.run(0.1);  // a polygon round the post has some slack at first
+  const double a = atwood.acceleration(0.3);
   EXPECT_NEAR(a, -2 / (4 + atwood.ropes.mass(0)) * g, 0.005 * g);
 }
 
@@ -145,7 +146,9 @@ TEST(RopeContact, WinchLiftsABody) {
   };
   // In a second up to 1 m/s: the tension is that of the weight and of 1 m/s² to begin with, and some swing.
   run(0, 0, 120);
-  const double start = run(0, 1, 60), even = run(1, 1, 180);
+  const double start = run(0, 1, 60);
+  run(1, 1, 30);
+  const double even = run(1, 1, 150);
   RecordProperty("peak", std::to_string(start));
   EXPECT_NEAR(start, 201 * (g + 1), 0.1 * 201 * g);
   EXPECT_NEAR(even, 201 * g, 0.05 * 201 * g);

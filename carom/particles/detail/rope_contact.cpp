@@ -1,39 +1,13 @@
 // Particles of ropes against the shapes of the world.
 #include "carom/math/elementary.h"
 #include "carom/particles/detail/rope_solver.h"
+#include "carom/particles/detail/soft_obstacles.h"
 
 namespace carom::particles::detail {
 
 namespace {
 
-constexpr double slowest_slip = 0.01;  // m/s: friction grows up to here
-
-/// The nearest plane of a shape to a ball; false where there is none within the margin.
-bool nearest_plane(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
-                   float& separation) {
-  const geometry::Shape3 ball(geometry::Sphere{radius});
-  const math::Transform3f place{center, {}};
-  bool found = false;
-  const auto take = [&](const geometry::Manifold3& manifold) {
-    for (int k = 0; k < manifold.count; ++k)
-      if (manifold.points[k].separation <= margin && (!found || manifold.points[k].separation < separation)) {
-        found = true;
-        separation = manifold.points[k].separation;
-        normal = manifold.normal;
-      }
-  };
-  if (is_convex(shape) || shape.type == geometry::ShapeType3::plane) {
-    geometry::PairCache cache;
-    geometry::Manifold3 manifold;
-    geometry::collide(shape, ball, place, margin, cache, manifold);
-    take(manifold);
-  } else {
-    geometry::Manifold3 manifolds[4];
-    const int count = geometry::collide_many(shape, ball, place, margin, manifolds);
-    for (int k = 0; k < count; ++k) take(manifolds[k]);
-  }
-  return found;
-}
+constexpr double rope_slip = 0.01;  // m/s: friction grows up to here
 
 }  // namespace
 
@@ -128,11 +102,11 @@ void RopeSolver::place_contacts(Rope& rope) {
                   (dot(node.normal, drift) + (end - double(ahead)) / h) * node.normal;
     node.hold = contact.state;
     const double most = h * contact.friction * contact.push;
-    node.resistance = most / slowest_slip;
+    node.resistance = most / rope_slip;
     node.grip = h * (contact.grip - dot(contact.grip, node.normal) * node.normal);
     if (contact.state == RopeHold::slide) {
       const Vec3d against = rope.velocity[i] - node.target;
-      node.resistance = most / math::max(length(against - dot(against, node.normal) * node.normal), slowest_slip);
+      node.resistance = most / math::max(length(against - dot(against, node.normal) * node.normal), rope_slip);
       node.grip = {};
     }
   }
@@ -183,13 +157,13 @@ bool RopeSolver::update_holds(Rope& rope, int iteration) {
     const Vec3d grip = node.grip;
     const double before = node.resistance;
     if (node.hold == RopeHold::stick) {
-      node.resistance = most / slowest_slip;
-    } else if (speed > slowest_slip) {
+      node.resistance = most / rope_slip;
+    } else if (speed > rope_slip) {
       node.resistance = most / speed;
       node.grip = {};
     } else {
       // About to slide: all of the friction that there is, the way it held; a tenth of it gives way with the slip.
-      node.resistance = 0.1 * most / slowest_slip;
+      node.resistance = 0.1 * most / rope_slip;
       node.grip = held > 0 ? (math::max(most - node.resistance * speed, 0.0) / held) * along : Vec3d{};
     }
     changed |= math::abs(node.resistance - before) > 0.004 * (node.resistance + before) ||
@@ -205,7 +179,7 @@ void RopeSolver::keep_contact(RopeContact& contact, const RopeNode& node, bool g
   if (gone) return;
   Vec3d grip = node.reaction / h - (dot(node.normal, node.reaction) / h) * node.normal;
   const double size = length(grip), most = contact.friction * contact.push;
-  contact.state = node.hold == RopeHold::slide && contact.slip > slowest_slip ? RopeHold::slide : RopeHold::stick;
+  contact.state = node.hold == RopeHold::slide && contact.slip > rope_slip ? RopeHold::slide : RopeHold::stick;
   if (size > most) grip = grip * (most / size);
   contact.grip = grip;
 }

@@ -1,0 +1,89 @@
+// What a cloth keeps, and the passes of its step.
+#pragma once
+
+#include "carom/particles/cloth.h"
+#include "carom/particles/detail/soft_matrix.h"
+#include "carom/particles/detail/soft_obstacles.h"
+
+namespace carom::particles::detail {
+
+struct ClothTriangle {
+  float area = 0;          ///< m², at rest
+  float u[3] = {}, v[3] = {};  ///< gradients of the three corners' shares along warp and weft, 1/m
+  int slots[9] = {};
+  // Of this substep:
+  Vec3f along{}, across{};     ///< images of the unit warp and weft
+  float stress[3] = {};        ///< N/m: warp, weft, shear
+  float pull[3] = {};          ///< its part that pulls
+  Vec3f wind{};                ///< N on each corner
+  Mat3f brake = Mat3f::zero(); ///< N·s/m on each corner
+};
+
+/// Two triangles at an edge.
+struct ClothHinge {
+  std::uint32_t corner[4] = {};
+  float weight[4] = {};  ///< curvature · √(area) of the positions; 3/(A₀ + A₁) included
+  int slots[16] = {};
+};
+
+struct ClothTouch {
+  bool near = false, active = false;
+  SoftPlane plane{};
+  float push = 0;  ///< N, in the last substep
+};
+
+struct ClothPair {
+  std::uint32_t vertex = 0, triangle = 0;
+};
+
+struct ClothState {
+  Fabric fabric{};
+  bool collide = true, self_collide = true, torn = false;
+  rigid::Filter filter{};
+  core::TaskScheduler* scheduler = nullptr;
+  int substeps = 2;
+  double air_density = 1.225;
+  environment::Wind wind{};
+
+  std::vector<math::Vec3d> position;
+  std::vector<Vec3f> velocity;
+  std::vector<std::uint32_t> corners;  ///< three a triangle
+  std::vector<ClothTriangle> triangles;
+  std::vector<ClothHinge> hinges;
+  std::vector<float> mass;
+  std::vector<SoftPin> pins;
+  std::vector<int> pin_of;             ///< by vertex, −1: free
+  std::vector<math::Vec3d> pin_impulse;
+  std::vector<int> pinned;             ///< vertex of each pin
+  std::vector<ClothTouch> touches;
+
+  // What follows from the mesh.
+  SoftMatrix matrix;
+  std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
+  std::vector<int> hinge_first, hinge_list;        ///< by vertex: 4·hinge + corner
+  float smallest_edge = 0, mean_edge = 0;
+
+  // Of a step.
+  SoftSolver solver;
+  SoftObstacles obstacles;
+  std::vector<ClothPair> pairs;
+  std::vector<int> cell_first, cell_list;
+  math::Vec3d wind_force{}, wind_impulse{};
+  double greatest_tension = 0;
+  int iterations = 0;
+  double last_step = 0;  ///< s
+
+  core::Status set_mesh(std::span<const math::Vec3d> rest, math::Vec3d warp);
+  void find_hinges(std::span<const math::Vec3d> rest);
+  void connect();  ///< matrix and incidences, after the mesh changed
+
+  void step(rigid::World3& world, double dt);
+  void stretch();                             ///< triangles: strains, stresses, wind
+  void assemble(float h, Vec3f gravity);      ///< vertices: the linear system
+  void hold(float h, Vec3f gravity);
+  bool revise(float h);                       ///< contacts that begin and end; true: solve again
+  void keep_apart(float h);                   ///< folds
+  void tear();
+};
+
+}  // namespace carom::particles::detail

@@ -1,0 +1,308 @@
+// A substep of cloth: strains, the linear system, contacts, folds.
+#include "carom/math/elementary.h"
+#include "carom/particles/detail/cloth_state.h"
+
+namespace carom::particles::detail {
+
+using math::Vec3d;
+
+namespace {
+constexpr int cloth_chunk = 128;
+constexpr float cloth_slip = 0.002f;  // m/s: friction grows up to here
+core::SerialScheduler cloth_serial;
+}  // namespace
+
+void ClothState::stretch() {
+  const float nu = float(fabric.poisson_ratio), warp = float(fabric.warp_stiffness), weft = float(fabric.weft_stiffness);
+  // Plane stress of an orthotropic sheet: ν₂₁ = ν₁₂ E₂/E₁.
+  const float share = 1 / (1 - nu * nu * weft / warp);
+  const float c11 = warp * share, c22 = weft * share, c12 = nu * weft * share, shear = float(fabric.shear_stiffness);
+  const float normal_drag = float(0.5 * air_density * fabric.normal_coefficient);
+  const float skin_drag = float(0.5 * air_density * fabric.tangential_coefficient);
+  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
+  tasks.parallel_for(int(triangles.size()), cloth_chunk, [&](int from, int to, int) {
+    for (int t = from; t < to; ++t) {
+      ClothTriangle& triangle = triangles[std::size_t(t)];
+      const std::uint32_t* c = &corners[3 * std::size_t(t)];
+      const Vec3f d1(position[c[1]] - position[c[0]]), d2(position[c[2]] - position[c[0]]);
+      triangle.along = triangle.u[1] * d1 + triangle.u[2] * d2;
+      triangle.across = triangle.v[1] * d1 + triangle.v[2] * d2;
+      const float e1 = 0.5f * (dot(triangle.along, triangle.along) - 1);
+      const float e2 = 0.5f * (dot(triangle.across, triangle.across) - 1);
+      const float s1 = c11 * e1 + c12 * e2, s2 = c12 * e1 + c22 * e2;
+      const float s3 = shear * dot(triangle.along, triangle.across);
+      triangle.stress[0] = s1;
+      triangle.stress[1] = s2;
+      triangle.stress[2] = s3;
+      // The part of the stress that pulls: only that stiffens, and the system stays positive definite.
+      const float mean = 0.5f * (s1 + s2), spread = math::sqrt(0.25f * (s1 - s2) * (s1 - s2) + s3 * s3);
+      const float high = mean + spread, low = mean - spread;
+      if (low >= 0) {
+        triangle.pull[0] = s1, triangle.pull[1] = s2, triangle.pull[2] = s3;
+      } else if (high <= 0) {
+        triangle.pull[0] = triangle.pull[1] = triangle.pull[2] = 0;
+      } else {
+        const float k = high / (high - low);
+        triangle.pull[0] = k * (s1 - low), triangle.pull[1] = k * (s2 - low), triangle.pull[2] = k * s3;
+      }
+      triangle.wind = {};
+      triangle.brake = Mat3f::zero();
+      if (normal_drag == 0 && skin_drag == 0) continue;
+      const Vec3f cross_ = cross(d1, d2);
+      const float twice = length(cross_);
+      if (!(twice > 1e-12f)) continue;
+      const Vec3f n = cross_ * (1 / twice);
+      const double height = (position[c[0]].y + position[c[1]].y + position[c[2]].y) / 3;
+      const Vec3f air = Vec3f(environment::wind_at(wind, height)) -
+                        (velocity[c[0]] + velocity[c[1]] + velocity[c[2]]) * (1.0f / 3);
+      const float through = dot(air, n), third = twice / 6;
+      const Vec3f along = air - through * n;
+      const float press = normal_drag * math::abs(through) * third, rub = skin_drag * length(along) * third;
+      triangle.wind = press * through * n + rub * along;
+      triangle.brake = (2 * press) * math::outer(n, n) + rub * (Mat3f::identity() + (-1.0f) * math::outer(n, n));
+    }
+  });
+}
+
+void ClothState::assemble(float h, Vec3f gravity) {
+  const float nu = float(fabric.poisson_ratio), warp = float(fabric.warp_stiffness), weft = float(fabric.weft_stiffness);
+  const float inverse_share = 1 / (1 - nu * nu * weft / warp);
+  const float c11 = warp * inverse_share, c22 = weft * inverse_share, c12 = nu * weft * inverse_share;
+  const float shear = float(fabric.shear_stiffness), bending = float(fabric.bending_stiffness);
+  const float weight = h * h + h * float(fabric.damping);
+  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
+  tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
+    for (int row = from; row < to; ++row) {
+      const std::size_t i = std::size_t(row);
+      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = Mat3f::zero();
+      Vec3f force{};
+      Mat3f brake = Mat3f::zero();
+      for (int k = triangle_first[i]; k < triangle_first[i + 1]; ++k) {
+        const int place = triangle_list[std::size_t(k)], a = place % 3;
+        const ClothTriangle& t = triangles[std::size_t(place / 3)];
+        const float ua = t.u[a], va = t.v[a], area = t.area;
+        force -= area * ((t.stress[0] * ua + t.stress[2] * va) * t.along + (t.stress[1] * va + t.stress[2] * ua) * t.across);
+        force += t.wind;
+        brake = brake + t.brake;
+        const Vec3f p = ua * t.along, q = va * t.across, r = ua * t.across + va * t.along;
+        const float s = weight * area;
+        const Vec3f pa = (s * c11) * p + (s * c12) * q, qa = (s * c12) * p + (s * c22) * q, ra = (s * shear) * r;
+        for (int b = 0; b < 3; ++b) {
+          const float ub = t.u[b], vb = t.v[b];
+          const Vec3f pb = ub * t.along, qb = vb * t.across, rb = ub * t.across + vb * t.along;
+          const float turn =
+              s * (t.pull[0] * ua * ub + t.pull[1] * va * vb + t.pull[2] * (ua * vb + va * ub));
+          Mat3f& block = matrix.blocks[std::size_t(t.slots[3 * a + b])];
+          block.cx += pa * pb.x + qa * qb.x + ra * rb.x;
+          block.cy += pa * pb.y + qa * qb.y + ra * rb.y;
+          block.cz += pa * pb.z + qa * qb.z + ra * rb.z;
+          block.cx.x += turn;
+          block.cy.y += turn;
+          block.cz.z += turn;
+        }
+      }
+      if (bending > 0)
+        for (int k = hinge_first[i]; k < hinge_first[i + 1]; ++k) {
+          const int place = hinge_list[std::size_t(k)], a = place % 4;
+          const ClothHinge& hinge = hinges[std::size_t(place / 4)];
+          Vec3f curvature{};
+          for (int b = 0; b < 4; ++b) curvature += hinge.weight[b] * Vec3f(position[hinge.corner[b]] - position[i]);
+          const float wa = bending * hinge.weight[a];
+          force -= wa * curvature;
+          for (int b = 0; b < 4; ++b) {
+            const float entry = weight * wa * hinge.weight[b];
+            Mat3f& block = matrix.blocks[std::size_t(hinge.slots[4 * a + b])];
+            block.cx.x += entry;
+            block.cy.y += entry;
+            block.cz.z += entry;
+          }
+        }
+      solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]}) + h * brake;
+      solver.right[i] = h * force + (h * mass[i]) * gravity;
+    }
+  });
+  // − (h² + h β) K v: the forces at the end of the step. What is common to all velocities drops out of K v exactly.
+  Vec3f common{};
+  for (const Vec3f v : velocity) common += v;
+  common = common * (1 / float(velocity.size()));
+  for (std::size_t i = 0; i < velocity.size(); ++i) solver.change[i] = velocity[i] - common;
+  matrix.multiply(solver.change.data(), solver.reaction.data(), tasks);
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    solver.right[i] -= solver.reaction[i];
+    solver.change[i] = {};
+    solver.holds[i] = {};
+  }
+}
+
+void ClothState::hold(float h, Vec3f gravity) {
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    const std::size_t i = std::size_t(pinned[k]);
+    const SoftPin& pin = pins[k];
+    if (pin.mass > 0) {  // the body's point goes along as a lump
+      solver.diagonal[i] = solver.diagonal[i] + Mat3f::diagonal({pin.mass, pin.mass, pin.mass});
+      solver.right[i] += (h * pin.mass) * gravity;
+      continue;
+    }
+    solver.holds[i].rank = 3;
+    Vec3d target{};
+    if (pin.index >= 0) target = obstacles.bodies[std::size_t(pin.index)].velocity_at(position[i]);
+    solver.change[i] = Vec3f(target) - velocity[i];
+  }
+  if (!collide || obstacles.empty()) {
+    for (ClothTouch& touch : touches) touch = {};
+    return;
+  }
+  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
+  const double radius = fabric.thickness;
+  tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
+    for (int row = from; row < to; ++row) {
+      const std::size_t i = std::size_t(row);
+      ClothTouch& touch = touches[i];
+      touch.near = pin_of[i] < 0 && obstacles.nearest(position[i], radius,
+                                                      radius + 2 * double(h) * (double(length(velocity[i])) + double(h) * 20),
+                                                      touch.plane);
+      if (!touch.near) {
+        touch = {};
+        continue;
+      }
+      const Vec3f n(touch.plane.normal);
+      const auto& body = obstacles.bodies[std::size_t(touch.plane.body)];
+      const Vec3f surface(body.velocity_at(position[i]));
+      const Vec3f against = velocity[i] - surface;
+      if (touch.push > 0) {
+        const float mu = math::sqrt(float(fabric.friction * touch.plane.friction));
+        const Vec3f slide = against - dot(n, against) * n;
+        const float c = h * mu * touch.push / math::max(length(slide), cloth_slip);
+        solver.diagonal[i] = solver.diagonal[i] + c * (Mat3f::identity() + (-1.0f) * math::outer(n, n));
+        solver.right[i] -= c * slide;
+      }
+      touch.active = touch.active || touch.plane.separation < 0;
+      if (!touch.active) continue;
+      solver.holds[i] = {1, n};
+      const float deep = float(touch.plane.separation);
+      const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, 1.0f);
+      solver.change[i] = (target - dot(n, against)) * n;
+    }
+  });
+}
+
+bool ClothState::revise(float h) {
+  bool again = false;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    ClothTouch& touch = touches[i];
+    if (!touch.near) continue;
+    const Vec3f n(touch.plane.normal);
+    if (touch.active) {
+      if (dot(n, solver.reaction[i]) >= 0) continue;
+      touch.active = false;
+      solver.holds[i] = {};
+      again = true;
+      continue;
+    }
+    const Vec3f surface(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
+    const float closing = dot(n, velocity[i] + solver.change[i] - surface);
+    if (float(touch.plane.separation) + h * closing >= -1e-6f) continue;
+    touch.active = again = true;
+    solver.holds[i] = {1, n};
+    const float target = -math::max(float(touch.plane.separation), 0.0f) / h;
+    solver.change[i] += (target - closing) * n;
+  }
+  return again;
+}
+
+void ClothState::step(rigid::World3& world, double dt) {
+  const float h = float(dt / substeps);
+  last_step = dt;
+  const Vec3f gravity = world.definition().gravity;
+  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
+  obstacles.clear();
+  for (std::size_t k = pins.size(); k-- > 0;)
+    if (pins[k].body != rigid::BodyId{} && !world.contains(pins[k].body)) {
+      pin_of[std::size_t(pinned[k])] = -1;
+      pins.erase(pins.begin() + std::ptrdiff_t(k));
+      pinned.erase(pinned.begin() + std::ptrdiff_t(k));
+      for (std::size_t j = k; j < pins.size(); ++j) pin_of[std::size_t(pinned[j])] = int(j);
+    }
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    SoftPin& pin = pins[k];
+    const std::size_t i = std::size_t(pinned[k]);
+    pin.index = pin.body == rigid::BodyId{} ? -1 : obstacles.body_index(world, pin.body);
+    pin.mass = 0;
+    if (pin.index < 0) {
+      position[i] = pin.point;
+      velocity[i] = {};
+      continue;
+    }
+    const auto& body = obstacles.bodies[std::size_t(pin.index)];
+    position[i] = body.place(pin.point);
+    velocity[i] = Vec3f(body.velocity_at(position[i]));
+    if (!body.dynamic || !body.awake) continue;
+    // A body that moves resists at the point as a lump of about its effective mass there, shared among its pins.
+    int sharing = 0;
+    for (const SoftPin& other : pins) sharing += other.body == pin.body;
+    pin.mass = float(body.mass / sharing);
+  }
+  pin_impulse.assign(pins.size(), Vec3d{});
+  if (collide) {
+    geometry::Bounds3d bounds{position[0], position[0]};
+    float fastest = 0;
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      bounds.low = min(bounds.low, position[i]);
+      bounds.high = max(bounds.high, position[i]);
+      fastest = math::max(fastest, length_squared(velocity[i]));
+    }
+    obstacles.gather(world, grow(bounds, 2 * fabric.thickness + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)), filter,
+                     pins);
+  }
+  iterations = 0;
+  greatest_tension = 0;
+  wind_impulse = {};
+  for (int s = 0; s < substeps; ++s) {
+    stretch();
+    assemble(h, gravity);
+    hold(h, gravity);
+    for (int round = 0; round < 3; ++round) {
+      iterations += solver.solve(matrix, 1e-3, 300, tasks);
+      if (round == 2 || !revise(h)) break;
+    }
+    wind_force = {};
+    for (const ClothTriangle& t : triangles) {
+      wind_force += 3.0 * Vec3d(t.wind);
+      const float mean = 0.5f * (t.stress[0] + t.stress[1]);
+      const float spread =
+          math::sqrt(0.25f * (t.stress[0] - t.stress[1]) * (t.stress[0] - t.stress[1]) + t.stress[2] * t.stress[2]);
+      greatest_tension = math::max(greatest_tension, double(mean + spread));
+    }
+    for (std::size_t k = 0; k < pins.size(); ++k) {
+      const std::size_t i = std::size_t(pinned[k]);
+      const SoftPin& pin = pins[k];
+      const Vec3d impulse = pin.mass > 0 ? Vec3d(pin.mass * (solver.change[i] - h * gravity)) : -Vec3d(solver.reaction[i]);
+      pin_impulse[k] += impulse;
+      obstacles.push(pin.index, position[i], impulse);
+    }
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      ClothTouch& touch = touches[i];
+      if (!touch.near) continue;
+      const Vec3f n(touch.plane.normal);
+      const float before = touch.push;
+      touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
+      Vec3d impulse = touch.active ? Vec3d(solver.reaction[i]) : Vec3d{};
+      if (before > 0) {  // what friction did, as the system had it
+        const Vec3f surface(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
+        const Vec3f old = velocity[i] - surface, slide = old - dot(n, old) * n;
+        const float mu = math::sqrt(float(fabric.friction * touch.plane.friction));
+        const float c = h * mu * before / math::max(length(slide), cloth_slip);
+        const Vec3f now = old + solver.change[i];
+        impulse -= Vec3d(c * (now - dot(n, now) * n));
+      }
+      obstacles.push(touch.plane.body, position[i] - fabric.thickness * touch.plane.normal, -impulse);
+    }
+    for (std::size_t i = 0; i < position.size(); ++i) velocity[i] += solver.change[i];
+    if (self_collide) keep_apart(h);
+    for (std::size_t i = 0; i < position.size(); ++i) position[i] += Vec3d(h * velocity[i]);
+  }
+  tear();
+  obstacles.hand_over(world, dt, double(length(gravity)));
+}
+
+}  // namespace carom::particles::detail

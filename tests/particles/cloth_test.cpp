@@ -1,0 +1,273 @@
+// Cloth against closed forms: stretch, bending, wind, momentum, drape, tears.
+#include "carom/particles/cloth.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "carom/core/scheduler.h"
+#include "carom/math/elementary.h"
+
+namespace carom::particles {
+namespace cloth_test {
+
+using namespace math;
+using rigid::Dim3;
+using rigid::World3;
+constexpr double dt = 1.0 / 60, g = 9.80665;
+
+World3 weightless() {
+  rigid::WorldDef<Dim3> def;
+  def.gravity = {};
+  return World3(def);
+}
+
+TEST(Cloth, HangingStripStretchesByItsStiffness) {
+  // A strip of .2 × 1 m with 1 kg at its lower edge: σ = F/(E t w). Poisson's ratio 0, since the held edge would
+  // hinder the contraction. Green's strain: F/w = E t e λ with e = (λ² − 1)/2.
+  World3 world;
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {0.2, 0, 0}, {0, -1, 0}, 5, 21);
+  Fabric fabric{.mass_per_area = 0.01, .warp_stiffness = 3000, .weft_stiffness = 1500, .poisson_ratio = 0};
+  for (const bool along : {true, false}) {
+    Cloth cloth = Cloth::make({.fabric = fabric, .points = sheet.points, .triangles = sheet.triangles,
+                               .warp = along ? Vec3d{0, -1, 0} : Vec3d{1, 0, 0}})
+                      .value();
+    cloth.set_air(0, {}).value();
+    for (int i = 0; i < 5; ++i) cloth.pin(i).value();
+    // The load: a bar of 1 kg to which the lower edge is sewn.
+    rigid::BodyDef<Dim3> def;
+    def.position = {0.1, -1, 0};
+    const auto bar = world.create_body(def).value();
+    world.set_mass_properties(bar, {1, {}, Mat3d::diagonal({0.01, 0.01, 0.01})}).value();
+    for (int i = 0; i < 5; ++i) cloth.pin(100 + i, bar, {0.05 * i - 0.1, 0, 0}, world).value();
+    for (int i = 0; i < 900; ++i) {
+      cloth.step(world, dt).value();
+      world.step(float(dt)).value();
+    }
+    const double stiffness = along ? 3000.0 : 1500.0, force = (1 + 0.001) * g / 0.2;
+    double strain = force / stiffness;
+    for (int i = 0; i < 20; ++i) strain = force / (stiffness * (1 + strain)) * 2 / (2 + strain);
+    const double found = -world.state(bar)->center_of_mass.y - 1;
+    RecordProperty(along ? "warp" : "weft", std::to_string(found / strain));
+    EXPECT_NEAR(found, strain, 0.02 * strain);
+    world.destroy_body(bar).value();
+  }
+}
+
+TEST(Cloth, OverhangingStripBendsAsABeam) {
+  // Peirce's cantilever test: a strip that stands out by L droops by w = q L⁴/8B with q its weight per area.
+  World3 world;
+  const int n = 31;
+  const double length = 0.1, bending = 1e-4, weight = 0.01 * g;
+  const ClothSheet sheet = make_cloth_sheet({-length / (n - 1), 0, 0}, {length * n / (n - 1), 0, 0}, {0, 0, 0.02}, n + 1, 7);
+  Fabric fabric{.mass_per_area = 0.01, .warp_stiffness = 5000, .weft_stiffness = 5000, .poisson_ratio = 0,
+                .shear_stiffness = 1000, .bending_stiffness = bending, .thickness = 0.001};
+  Cloth cloth = Cloth::make({.fabric = fabric, .points = sheet.points, .triangles = sheet.triangles, .self_collide = false}).value();
+  cloth.set_air(0, {}).value();
+  for (int r = 0; r < 7; ++r) {
+    cloth.pin(r * (n + 1)).value();
+    cloth.pin(r * (n + 1) + 1).value();
+  }
+  for (int i = 0; i < 600; ++i) cloth.step(world, dt).value();
+  // The clamp ends between its two rows of pins, as a hinge's curvature is that of the cells about it.
+  const double expected = weight * square(square(length)) / (8 * bending);
+  const double found = -cloth.positions()[std::size_t(3 * (n + 1) + n)].y;
+  RecordProperty("deflection", std::to_string(found));
+  RecordProperty("beam", std::to_string(expected));
+  EXPECT_NEAR(found, expected, 0.1 * expected);
+}
+
+TEST(Cloth, PlateInTheWindHasItsDrag) {
+  // All vertices held: F = ½ ρ v² C A square on, and the component ½ ρ v² C A cos²α along the normal.
+  World3 world = weightless();
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {1, 0, 0}, {0, 2, 0}, 9, 17);
+  Cloth flag = Cloth::make({.fabric = {.tangential_coefficient = 0}, .points = sheet.points, .triangles = sheet.triangles}).value();
+  for (int i = 0; i < flag.vertex_count(); ++i) flag.pin(i).value();
+  for (const double angle : {0.0, 0.5, 1.0}) {
+    flag.set_air(1.225, {.velocity = {12 * sin(angle), 0, 12 * cos(angle)}}).value();
+    flag.step(world, dt).value();
+    Vec3d sum{};
+    for (int i = 0; i < flag.vertex_count(); ++i) sum += flag.pin_force(i);
+    const double expected = 0.5 * 1.225 * 144 * 1.2 * 2 * square(cos(angle));
+    EXPECT_NEAR(sum.z, expected, 1e-3 * expected + 1e-3);
+    EXPECT_NEAR(sum.x, 0, 1e-2);
+    EXPECT_NEAR(flag.wind_force().z, expected, 1e-3 * expected + 1e-3);
+  }
+}
+
+TEST(Cloth, FallsAtItsTerminalSpeed) {
+  // Σ m g = ½ ρ v² C A.
+  World3 world;
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 5, 5);
+  Cloth cloth = Cloth::make({.fabric = {.bending_stiffness = 1}, .points = sheet.points, .triangles = sheet.triangles}).value();
+  for (int i = 0; i < 300; ++i) cloth.step(world, dt).value();
+  const double expected = sqrt(0.2 * g / (0.5 * 1.225 * 1.2));
+  EXPECT_NEAR(-double(cloth.velocities()[12].y), expected, 0.01 * expected);
+}
+
+TEST(Cloth, KeepsItsMomentum) {
+  World3 world = weightless();
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 12, 12);
+  Cloth cloth = Cloth::make({.points = sheet.points, .triangles = sheet.triangles, .velocity = {1, 2, 3}}).value();
+  cloth.set_air(0, {}).value();
+  for (int i = 0; i < 144; ++i) cloth.set_velocity(i, {1 + sin(1.3 * i), 2 + cos(0.7 * i), 3 + sin(2.1 * i)}).value();
+  const Vec3d before = cloth.momentum();
+  for (int i = 0; i < 120; ++i) cloth.step(world, dt).value();
+  EXPECT_LT(length(cloth.momentum() - before), 1e-4);
+}
+
+struct Draped {
+  World3 world;
+  rigid::BodyId ball;
+  Cloth cloth;
+  explicit Draped(core::TaskScheduler* scheduler = nullptr, bool dynamic = false)
+      : cloth([&] {
+          const ClothSheet sheet = make_cloth_sheet({-0.6, 0.45, -0.6}, {1.2, 0, 0}, {0, 0, 1.2}, 33, 33);
+          return Cloth::make({.fabric = {.thickness = 0.01}, .points = sheet.points, .triangles = sheet.triangles, .scheduler = scheduler}).value();
+        }()) {
+    rigid::BodyDef<Dim3> def;
+    def.type = dynamic ? rigid::BodyType::dynamic : rigid::BodyType::fixed;
+    def.allow_sleep = false;
+    ball = world.create_body(def).value();
+    world.add_shape(ball, geometry::Sphere{0.3f}).value();
+    if (dynamic) world.set_gravity({}).value();
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      cloth.step(world, dt).value();
+      world.step(float(dt)).value();
+    }
+  }
+};
+
+TEST(Cloth, DrapesOverABallAtSixtyHertz) {
+  Draped draped;
+  double fastest = 0, deepest = 0;
+  for (int i = 0; i < 240; ++i) {
+    draped.run(1);
+    for (const Vec3d& p : draped.cloth.positions()) deepest = max(deepest, 0.3 - length(p));
+    for (const Vec3f& v : draped.cloth.velocities()) fastest = max(fastest, double(length(v)));
+  }
+  RecordProperty("deepest", std::to_string(deepest));
+  RecordProperty("fastest", std::to_string(fastest));
+  RecordProperty("kinetic_energy", std::to_string(draped.cloth.kinetic_energy()));
+  EXPECT_LT(deepest, 0.003);
+  EXPECT_LT(fastest, 8);
+  EXPECT_LT(draped.cloth.kinetic_energy(), 0.01);
+  EXPECT_NEAR(draped.cloth.area(), 1.44, 0.05);
+  EXPECT_GT(draped.cloth.positions()[16 * 33 + 16].y, 0.29);  // it still lies on it
+}
+
+TEST(Cloth, ThreadsAndCopiesGiveTheSameBits) {
+  const auto pool = core::make_thread_pool(3);
+  Draped serial, threads(pool.get());
+  serial.run(60);
+  threads.run(60);
+  EXPECT_EQ(serial.cloth.state_hash(), threads.cloth.state_hash());
+  Cloth copy = serial.cloth;
+  for (int i = 0; i < 20; ++i) {
+    copy.step(serial.world, dt).value();
+    threads.cloth.step(threads.world, dt).value();
+  }
+  EXPECT_EQ(copy.state_hash(), threads.cloth.state_hash());
+}
+
+TEST(Cloth, ExchangesMomentumWithABody) {
+  // No gravity: a sheet is thrown at a free ball. What the ball gains the cloth loses.
+  World3 world = weightless();
+  rigid::BodyDef<Dim3> def;
+  const auto ball = world.create_body(def).value();
+  world.add_shape(ball, geometry::Sphere{0.3f}, {.density = 20}).value();
+  const ClothSheet sheet = make_cloth_sheet({-0.5, 0.4, -0.5}, {1, 0, 0}, {0, 0, 1}, 21, 21);
+  Cloth cloth = Cloth::make({.fabric = {.thickness = 0.01}, .points = sheet.points, .triangles = sheet.triangles, .velocity = {0.5, -3, 0}}).value();
+  cloth.set_air(0, {}).value();
+  const Vec3d before = cloth.momentum() + world.totals().momentum;
+  for (int i = 0; i < 60; ++i) {
+    cloth.step(world, dt).value();
+    world.step(float(dt)).value();
+  }
+  EXPECT_LT(double(world.state(ball)->linear_velocity.y), -0.05);
+  const Vec3d after = cloth.momentum() + world.totals().momentum;
+  RecordProperty("lost", std::to_string(length(after - before) / length(before)));
+  EXPECT_LT(length(after - before), 1e-3 * length(before));
+}
+
+TEST(Cloth, FoldsDoNotPassThroughEachOther) {
+  // A sheet falls on another that is held: every vertex of it stays above.
+  World3 world;
+  ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 17, 17);
+  const ClothSheet upper = make_cloth_sheet({0.2, 0.1, 0.2}, {0.6, 0.02, 0}, {0, 0.02, 0.6}, 12, 12);
+  const std::uint32_t lower = std::uint32_t(sheet.points.size());
+  sheet.points.insert(sheet.points.end(), upper.points.begin(), upper.points.end());
+  for (const std::uint32_t c : upper.triangles) sheet.triangles.push_back(c + lower);
+  Cloth cloth = Cloth::make({.fabric = {.bending_stiffness = 1e-5, .thickness = 0.01}, .points = sheet.points, .triangles = sheet.triangles}).value();
+  for (const int c : {0, 16, 16 * 17, 16 * 17 + 16}) cloth.pin(c).value();
+  for (int i = 0; i < 180; ++i) cloth.step(world, dt).value();
+  int through = 0;
+  for (std::uint32_t i = lower; i < std::uint32_t(cloth.vertex_count()); ++i) {
+    const Vec3d p = cloth.positions()[i];
+    // The height of the lower sheet there, by its nearest vertex.
+    double best = 1e9, height = 0;
+    for (std::uint32_t k = 0; k < lower; ++k) {
+      const Vec3d q = cloth.positions()[k];
+      const double d = square(p.x - q.x) + square(p.z - q.z);
+      if (d < best) best = d, height = q.y;
+    }
+    through += p.y < height - 0.03;
+  }
+  EXPECT_EQ(through, 0);
+}
+
+TEST(Cloth, TearsAndKeepsItsMass) {
+  World3 world;
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {0.4, 0, 0}, {0, -0.6, 0}, 9, 13);
+  Cloth cloth = Cloth::make({.fabric = {.tear_tension = 60}, .points = sheet.points, .triangles = sheet.triangles}).value();
+  for (int i = 0; i < 9; ++i) cloth.pin(i).value();
+  const double mass = cloth.mass();
+  for (int i = 0; i < 60; ++i) {
+    cloth.step(world, dt).value();
+    ASSERT_FALSE(cloth.torn());
+  }
+  rigid::BodyDef<Dim3> def;
+  def.position = {0.2, -0.62, 0};
+  const auto bar = world.create_body(def).value();
+  world.set_mass_properties(bar, {5, {}, Mat3d::diagonal({0.1, 0.1, 0.1})}).value();
+  for (int i = 0; i < 9; ++i) cloth.pin(12 * 9 + i, bar, {0.05 * i - 0.2, 0, 0}, world).value();
+  bool torn = false;
+  for (int i = 0; i < 120; ++i) {
+    cloth.step(world, dt).value();
+    world.step(float(dt)).value();
+    torn |= cloth.torn();
+  }
+  EXPECT_TRUE(torn);
+  EXPECT_NEAR(cloth.mass(), mass, 1e-6);
+  EXPECT_LT(world.state(bar)->center_of_mass.y, -2);  // it came off
+  for (const Vec3d& p : cloth.positions()) ASSERT_TRUE(is_finite(p.y));
+}
+
+TEST(Cloth, RefusesBadInput) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  World3 world;
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3, 3);
+  const auto message = [&](const ClothDef& def) {
+    const auto result = Cloth::make(def);
+    return result.ok() ? std::string() : result.error().message;
+  };
+  EXPECT_NE(message({.fabric = {.mass_per_area = nan}, .points = sheet.points, .triangles = sheet.triangles}).find("mass_per_area"), std::string::npos);
+  EXPECT_NE(message({.fabric = {.poisson_ratio = 0.7}, .points = sheet.points, .triangles = sheet.triangles}).find("poisson_ratio"), std::string::npos);
+  EXPECT_NE(message({.points = sheet.points}).find("triangles"), std::string::npos);
+  const std::uint32_t beyond[] = {0, 1, 99}, flat[] = {0, 1, 2};
+  EXPECT_NE(message({.points = sheet.points, .triangles = beyond}).find("triangles[2]"), std::string::npos);
+  EXPECT_NE(message({.points = sheet.points, .triangles = flat}).find("area"), std::string::npos);
+  EXPECT_NE(message({.points = sheet.points, .triangles = sheet.triangles, .warp = {}}).find("warp"), std::string::npos);
+  Cloth cloth = Cloth::make({.points = sheet.points, .triangles = sheet.triangles}).value();
+  EXPECT_FALSE(cloth.pin(9).ok());
+  EXPECT_FALSE(cloth.unpin(-1).ok());
+  EXPECT_FALSE(cloth.set_air(-1, {}).ok());
+  EXPECT_FALSE(cloth.set_substeps(0).ok());
+  EXPECT_FALSE(cloth.step(world, nan).ok());
+  EXPECT_FALSE(cloth.set_velocity(0, {nan, 0, 0}).ok());
+}
+
+}  // namespace cloth_test
+}  // namespace carom::particles
