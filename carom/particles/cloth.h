@@ -2,9 +2,10 @@
 //
 // One implicit step of Euler's a substep, stable for any stiffness and step (Baraff and Witkin, "Large steps in cloth
 // simulation", 1998). Stretch and shear are an orthotropic membrane in Green's strain, bending is quadratic in the
-// positions (Bergou, Wardetzky, Harmon, Zorin, Grinspun, "A quadratic bending model for inextensible surfaces", 2006).
-// The linear system is solved by conjugate gradients on 3×3 blocks, contacts and pins are projected out of it and their
-// reactions go to the bodies. Folds that meet are kept apart by impulses between vertices and triangles (Bridson, Fedkiw,
+// positions: the curvature of each triangle by its neighbours' corners (Oñate and Zárate, "Rotation-free triangular
+// plate and shell elements", 2000), with constant weights since cloth hardly stretches (Bergou et al. 2006). The linear
+// system is solved by conjugate gradients on 3×3 blocks, contacts and pins are projected out of it and their reactions
+// go to the bodies. Folds that meet are kept apart by impulses between vertices and triangles (Bridson, Fedkiw,
 // Anderson 2002).
 #pragma once
 
@@ -21,30 +22,30 @@ namespace carom::particles {
 /// A fabric: forces per metre of width, as testers of textiles measure them (Kawabata, "The standardization and
 /// analysis of hand evaluation", 1980: tensile, shear and bending tester).
 struct Fabric {
-  double mass_per_area = 0.2;      ///< kg/m², > 0
-  double warp_stiffness = 1000;    ///< N/m, E t along the warp; > 0
-  double weft_stiffness = 1000;    ///< N/m, > 0
-  double poisson_ratio = 0.2;      ///< weft's contraction when the warp is drawn; 0 … .49
-  double shear_stiffness = 50;     ///< N/m a radian, > 0
-  double bending_stiffness = 5e-6; ///< N·m, moment per metre of width and curvature; ≥ 0
-  double damping = 0.005;          ///< s: stress of the strain's rate, as a share of the stiffness; ≥ 0
-  double thickness = 0.004;        ///< m: folds and bodies keep this apart, > 0
-  double friction = 0.4;           ///< mixed with a shape's as √(ab); ≥ 0
-  double normal_coefficient = 1.2; ///< pressure of a wind that meets it squarely: a plate's drag; ≥ 0
+  double mass_per_area = 0.2;            ///< kg/m², > 0
+  double warp_stiffness = 1000;          ///< N/m, E t along the warp; > 0
+  double weft_stiffness = 1000;          ///< N/m, > 0
+  double poisson_ratio = 0.2;            ///< weft's contraction when the warp is drawn; 0 … .49
+  double shear_stiffness = 50;           ///< N/m a radian, > 0
+  double bending_stiffness = 5e-6;       ///< N·m, moment per metre of width and curvature; ≥ 0
+  double damping = 0.005;                ///< s: stress of the strain's rate, as a share of the stiffness; ≥ 0
+  double thickness = 0.004;              ///< m: folds and bodies keep this apart, > 0
+  double friction = 0.4;                 ///< mixed with a shape's as √(ab); ≥ 0
+  double normal_coefficient = 1.2;       ///< pressure of a wind that meets it squarely: a plate's drag; ≥ 0
   double tangential_coefficient = 0.02;  ///< skin friction of both sides; ≥ 0
-  double tear_tension = 0;         ///< N/m, 0: never
+  double tear_tension = 0;               ///< N/m, 0: never
 };
 
 struct ClothDef {
   Fabric fabric{};
-  std::span<const math::Vec3d> points{};          ///< m, the cloth at rest and where it begins
-  std::span<const std::uint32_t> triangles{};     ///< three indices each
-  math::Vec3d warp{1, 0, 0};                      ///< along the warp; laid into each triangle
-  math::Vec3d velocity{};                         ///< m/s
-  bool collide = true;                            ///< with shapes of the world
+  std::span<const math::Vec3d> points{};       ///< m, the cloth at rest and where it begins
+  std::span<const std::uint32_t> triangles{};  ///< three indices each
+  math::Vec3d warp{1, 0, 0};                   ///< along the warp; laid into each triangle
+  math::Vec3d velocity{};                      ///< m/s
+  bool collide = true;                         ///< with shapes of the world
   bool self_collide = true;
   rigid::Filter filter{};
-  core::TaskScheduler* scheduler = nullptr;       ///< the caller's; outlives the cloth. Any gives the same bits.
+  core::TaskScheduler* scheduler = nullptr;  ///< the caller's; outlives the cloth. Any gives the same bits.
 };
 
 /// A rectangle of columns × rows vertices from `corner` along two edges, for ClothDef.
@@ -92,7 +93,7 @@ class CAROM_API Cloth {
   double elastic_energy() const;  ///< J, membrane and bending
   /// N on what holds the vertex, over the last step.
   math::Vec3d pin_force(int vertex) const;
-  math::Vec3d wind_force() const;  ///< N on the whole cloth, at the last substep
+  math::Vec3d wind_force() const;   ///< N on the whole cloth, at the last substep
   double greatest_tension() const;  ///< N/m, principal, in the last step
   int iterations() const;           ///< of the linear solver in the last step
   std::uint64_t state_hash() const;

@@ -34,7 +34,8 @@ TEST(RopeRod, CantileverBendsAsABeam) {
   ropes.set_air({.density = 2000});  // comes to rest in thick air
   for (int i = 0; i < 240; ++i) ropes.step(world, dt).value();
   const double free = length - 0.5 * length / n, weight = 0.05 * g;
-  const double expected = load * g * free * free * free / (3 * stiffness) + weight * square(square(free)) / (8 * stiffness);
+  const double expected =
+      load * g * free * free * free / (3 * stiffness) + weight * square(square(free)) / (8 * stiffness);
   const double found = -ropes.positions(0).back().y;
   RecordProperty("deflection", std::to_string(found));
   RecordProperty("beam", std::to_string(expected));
@@ -65,7 +66,8 @@ TEST(RopeRod, LargeDeflectionIsTheElastica) {
 
 TEST(RopeRod, TwistedRodWrithesAtGreenhillsMoment) {
   // Greenhill (1883): a clamped rod under no end load leaves the straight line at M = 8.987 EI/L (clamped ends that may
-  // approach); here M = GJ Θ/L, so that Θ_critical = 8.987 EI/GJ. A rod a tenth below stays straight, one above writhes.
+  // approach); here M = GJ Θ/L, so that Θ_critical = 8.987 EI/GJ. A rod a tenth below stays straight, one above
+  // writhes.
   const auto width = [](double share) {
     World3 world = weightless();
     RopeSet ropes;
@@ -73,8 +75,11 @@ TEST(RopeRod, TwistedRodWrithesAtGreenhillsMoment) {
     std::vector<Vec3d> points;
     for (int i = 0; i <= 40; ++i)
       points.push_back({length * i / 40, 1e-4 * sin(pi * i / 40), 1e-4 * sin(2 * pi * i / 40)});
-    RopeMaterial m{.mass_per_length = 0.05, .axial_stiffness = 1e4, .bending_stiffness = stiffness,
-                   .bending_damping = 0.002, .torsional_stiffness = 1e-3};
+    RopeMaterial m{.mass_per_length = 0.05,
+                   .axial_stiffness = 1e4,
+                   .bending_stiffness = stiffness,
+                   .bending_damping = 0.002,
+                   .torsional_stiffness = 1e-3};
     EXPECT_TRUE(ropes.add({.material = m, .points = points, .segments = 40}).ok());
     ropes.attach(0, {.node = 0, .clamped = true}, world).value();
     // The far end may slide along: a heavy body on a slider.
@@ -109,7 +114,8 @@ TEST(RopeRod, PendulumKeepsItsEnergy) {
   RopeSet ropes;
   ropes.set_air({.density = 0});
   const Vec3d points[] = {{0, 0, 0}, {1, 0, 0}};
-  ASSERT_TRUE(ropes.add({.material = {.mass_per_length = 0.01, .axial_stiffness = 1e6}, .points = points, .segments = 1}).ok());
+  ASSERT_TRUE(
+      ropes.add({.material = {.mass_per_length = 0.01, .axial_stiffness = 1e6}, .points = points, .segments = 1}).ok());
   ropes.add_mass(0, 1, 1).value();
   ropes.attach(0, {.node = 0}, world).value();
   double highest = -2;
@@ -145,7 +151,8 @@ TEST(RopeRod, BreaksAboveItsStrengthAndKeepsItsMass) {
   World3 world;
   RopeSet ropes;
   const Vec3d points[] = {{0, 0, 0}, {0, -1, 0}};
-  ASSERT_TRUE(ropes.add({.material = {.axial_damping = 1e4, .break_tension = 500}, .points = points, .segments = 10}).ok());
+  ASSERT_TRUE(
+      ropes.add({.material = {.axial_damping = 1e4, .break_tension = 500}, .points = points, .segments = 10}).ok());
   ropes.attach(0, {.node = 0}, world).value();
   const double mass = ropes.mass(0);
   ropes.add_mass(0, -1, 20).value();
@@ -198,8 +205,10 @@ TEST(RopeRod, RefusesBadInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3d points[] = {{0, 0, 0}, {1, 0, 0}}, bad[] = {{0, 0, 0}, {nan, 0, 0}}, same[] = {{1, 0, 0}, {1, 0, 0}};
   const auto message = [](const auto& result) { return result.ok() ? std::string() : result.error().message; };
-  EXPECT_NE(message(ropes.add({.material = {.mass_per_length = 0}, .points = points})).find("mass_per_length"), std::string::npos);
-  EXPECT_NE(message(ropes.add({.material = {.bending_stiffness = -1}, .points = points})).find("bending_stiffness"), std::string::npos);
+  EXPECT_NE(message(ropes.add({.material = {.mass_per_length = 0}, .points = points})).find("mass_per_length"),
+            std::string::npos);
+  EXPECT_NE(message(ropes.add({.material = {.bending_stiffness = -1}, .points = points})).find("bending_stiffness"),
+            std::string::npos);
   EXPECT_NE(message(ropes.add({.points = bad})).find("points[1]"), std::string::npos);
   EXPECT_FALSE(ropes.add({.points = same}).ok());
   EXPECT_FALSE(ropes.add({}).ok());

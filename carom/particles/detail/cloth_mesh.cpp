@@ -1,6 +1,5 @@
 // From points and triangles to elements, and tears.
 #include <algorithm>
-#include <array>
 
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
@@ -11,8 +10,6 @@ namespace carom::particles::detail {
 using math::Vec3d;
 
 namespace {
-
-double cotangent(Vec3d a, Vec3d b) { return dot(a, b) / math::max(length(cross(a, b)), 1e-30); }
 
 void list_incidences(int vertices, std::span<const std::uint32_t> corners, std::vector<int>& first,
                      std::vector<int>& list) {
@@ -36,7 +33,8 @@ core::Status ClothState::set_mesh(std::span<const Vec3d> rest, Vec3d warp) {
     const double area = 0.5 * length(normal);
     const double longest = math::max(length(b - a), math::max(length(c - b), length(a - c)));
     if (!(area > 1e-6 * longest * longest))
-      return core::Error{core::text("triangle ", t, " of ClothDef has an area of ", area, " m², expected three corners apart")};
+      return core::Error{
+          core::text("triangle ", t, " of ClothDef has an area of ", area, " m², expected three corners apart")};
     const Vec3d n = normal / (2 * area);
     Vec3d u = warp - dot(warp, n) * n;
     u = length(u) > 1e-9 * length(warp) ? normalize(u) : normalize(b - a);
@@ -45,7 +43,10 @@ core::Status ClothState::set_mesh(std::span<const Vec3d> rest, Vec3d warp) {
     triangle.area = float(area);
     // Gradient of a corner's share: the opposite edge, turned by a right angle, over twice the area.
     const Vec3d opposite[3] = {c - b, a - c, b - a};
+    const Vec3d at[3] = {a, b, c};
     for (int k = 0; k < 3; ++k) {
+      triangle.x[k] = float(dot(at[k] - a, u));
+      triangle.y[k] = float(dot(at[k] - a, v));
       const Vec3d gradient = cross(n, opposite[k]) / (2 * area);
       triangle.u[k] = float(dot(gradient, u));
       triangle.v[k] = float(dot(gradient, v));
@@ -54,7 +55,7 @@ core::Status ClothState::set_mesh(std::span<const Vec3d> rest, Vec3d warp) {
     }
   }
   mean_edge = float(sum / double(corners.size()));
-  find_hinges(rest);
+  find_patches();
   mass.assign(rest.size(), 0.0f);
   connect();
   for (std::size_t i = 0; i < rest.size(); ++i)
@@ -62,54 +63,115 @@ core::Status ClothState::set_mesh(std::span<const Vec3d> rest, Vec3d warp) {
   return {};
 }
 
-void ClothState::find_hinges(std::span<const Vec3d> rest) {
-  // Edges with the corner across, sorted: equal edges are neighbours.
+void ClothState::find_patches() {
+  patches.clear();
+  if (!(fabric.bending_stiffness > 0)) return;
+  // Edges with their triangle and the place of the corner across, sorted: equal edges are neighbours.
   struct Edge {
-    std::uint32_t a, b, across;
+    std::uint32_t a, b;
+    int place;
   };
   std::vector<Edge> edges;
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = corners[3 * t + std::size_t(k)], b = corners[3 * t + std::size_t((k + 1) % 3)];
-      edges.push_back({math::min(a, b), math::max(a, b), corners[3 * t + std::size_t((k + 2) % 3)]});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = corners[3 * t + (k + 1) % 3], b = corners[3 * t + (k + 2) % 3];
+      edges.push_back({math::min(a, b), math::max(a, b), int(3 * t + k)});
     }
   std::stable_sort(edges.begin(), edges.end(),
                    [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-  hinges.clear();
-  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
-    if (edges[k].a != edges[k + 1].a || edges[k].b != edges[k + 1].b) continue;
-    ClothHinge hinge;
-    const std::uint32_t corner[4] = {edges[k].a, edges[k].b, edges[k].across, edges[k + 1].across};
-    const Vec3d x0 = rest[corner[0]], x1 = rest[corner[1]], x2 = rest[corner[2]], x3 = rest[corner[3]];
-    const Vec3d e0 = x1 - x0;
-    const double c01 = cotangent(e0, x2 - x0), c02 = cotangent(e0, x3 - x0);
-    const double c03 = cotangent(-e0, x2 - x1), c04 = cotangent(-e0, x3 - x1);
-    const double area = 0.5 * (length(cross(e0, x2 - x0)) + length(cross(e0, x3 - x0)));
-    const double scale = math::sqrt(3 / area);
-    const double weight[4] = {c03 + c04, c01 + c02, -c01 - c03, -c02 - c04};
-    for (int a = 0; a < 4; ++a) {
-      hinge.corner[a] = corner[a];
-      hinge.weight[a] = float(scale * weight[a]);
+  std::vector<int> mate(corners.size(), -1);
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k)
+    if (edges[k].a == edges[k + 1].a && edges[k].b == edges[k + 1].b) {
+      mate[std::size_t(edges[k].place)] = edges[k + 1].place;
+      mate[std::size_t(edges[k + 1].place)] = edges[k].place;
+      ++k;
     }
-    hinges.push_back(hinge);
+  const double warp = math::sqrt(fabric.bending_stiffness), weft = warp;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const ClothTriangle& triangle = triangles[t];
+    ClothPatch patch;
+    double x[6], y[6];
+    int count = 3;
+    const double scale = math::sqrt(2 * double(triangle.area));
+    for (std::size_t k = 0; k < 3; ++k) {
+      patch.corner[k] = corners[3 * t + k];
+      x[k] = double(triangle.x[k]);
+      y[k] = double(triangle.y[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int other = mate[3 * t + k];
+      if (other < 0) continue;
+      // Unfolded into this triangle's plane: by its heights over the shared edge and along it.
+      const ClothTriangle& next = triangles[std::size_t(other) / 3];
+      const std::size_t o = std::size_t(other) % 3, a = (k + 1) % 3, b = (k + 2) % 3;
+      std::size_t na = (o + 1) % 3;
+      if (corners[std::size_t(other) / 3 * 3 + na] != patch.corner[a]) na = (o + 2) % 3;
+      const std::size_t nb = 3 - o - na;
+      const double ex = double(next.x[nb] - next.x[na]), ey = double(next.y[nb] - next.y[na]);
+      const double px = double(next.x[o] - next.x[na]), py = double(next.y[o] - next.y[na]);
+      const double square = ex * ex + ey * ey, along = (px * ex + py * ey) / square;
+      const double height = math::abs(px * ey - py * ex) / math::sqrt(square);
+      const double fx = x[b] - x[a], fy = y[b] - y[a], fl = math::sqrt(fx * fx + fy * fy);
+      double nx = fy / fl, ny = -fx / fl;  // away from this triangle's own corner
+      if (nx * (x[k] - x[a]) + ny * (y[k] - y[a]) > 0) nx = -nx, ny = -ny;
+      patch.corner[count] = corners[std::size_t(other)];
+      x[count] = x[a] + along * fx + height * nx;
+      y[count] = y[a] + along * fy + height * ny;
+      ++count;
+    }
+    // Least squares for 1, x, y, ½x², xy, ½y², with the least curvature where corners are missing.
+    double m[6][12] = {};
+    double row[6][6];
+    for (int p = 0; p < count; ++p) {
+      const double u = (x[p] - x[0]) / scale, v = (y[p] - y[0]) / scale;
+      const double terms[6] = {1, u, v, 0.5 * u * u, u * v, 0.5 * v * v};
+      for (int i = 0; i < 6; ++i) row[p][i] = terms[i];
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) m[i][j] += terms[i] * terms[j];
+    }
+    for (int i = 0; i < 6; ++i) {
+      m[i][6 + i] = 1;
+      if (i >= 3) m[i][i] += 1e-7;
+    }
+    for (int k = 0; k < 6; ++k) {  // positive definite: no pivots
+      const double inverse = 1 / m[k][k];
+      for (int j = 0; j < 12; ++j) m[k][j] *= inverse;
+      for (int i = 0; i < 6; ++i) {
+        if (i == k) continue;
+        const double f = m[i][k];
+        for (int j = 0; j < 12; ++j) m[i][j] -= f * m[k][j];
+      }
+    }
+    const double root = math::sqrt(double(triangle.area)) / (scale * scale);
+    // A plate without Poisson's ratio: ½ B (κ_uu² + κ_vv² + 2 κ_uv²) an area.
+    const double stiff[3] = {warp * root, weft * root, math::sqrt(2 * warp * weft) * root};
+    const int term[3] = {3, 5, 4};
+    for (int c = 0; c < 3; ++c)
+      for (int p = 0; p < count; ++p) {
+        double sum = 0;
+        for (int j = 0; j < 6; ++j) sum += m[term[c]][6 + j] * row[p][j];
+        patch.weight[c][p] = float(stiff[c] * sum);
+      }
+    for (int p = count; p < 6; ++p) patch.corner[p] = patch.corner[0];
+    patches.push_back(patch);
   }
 }
 
 void ClothState::connect() {
   const int n = int(position.size());
   std::vector<std::uint32_t> stencils;
-  for (const ClothHinge& hinge : hinges)
-    for (const std::uint32_t c : hinge.corner) stencils.push_back(c);
-  matrix.build(n, {{corners, 3}, {stencils, 4}});
+  for (const ClothPatch& patch : patches)
+    for (const std::uint32_t c : patch.corner) stencils.push_back(c);
+  matrix.build(n, {{corners, 3}, {stencils, 6}});
   list_incidences(n, corners, triangle_first, triangle_list);
-  list_incidences(n, stencils, hinge_first, hinge_list);
+  list_incidences(n, stencils, patch_first, patch_list);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         triangles[t].slots[3 * a + b] = matrix.slot(corners[3 * t + std::size_t(a)], corners[3 * t + std::size_t(b)]);
-  for (ClothHinge& hinge : hinges)
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b) hinge.slots[4 * a + b] = matrix.slot(hinge.corner[a], hinge.corner[b]);
+  for (ClothPatch& patch : patches)
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b) patch.slots[6 * a + b] = matrix.slot(patch.corner[a], patch.corner[b]);
   mass.assign(std::size_t(n), 0.0f);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int a = 0; a < 3; ++a)
@@ -163,40 +225,7 @@ void ClothState::tear() {
       velocity.push_back(velocity[vertex]);
       touches.push_back(touches[vertex]);
       pin_of.push_back(-1);
-      // Hinges stay where both triangles still share the edge.
-      const auto side = [&](const ClothHinge& hinge, int across) {
-        for (int k = first; k < last; ++k) {
-          const std::size_t t = std::size_t(triangle_list[std::size_t(k)]) / 3;
-          bool has[3] = {};
-          for (int c = 0; c < 3; ++c) {
-            std::uint32_t corner = corners[3 * t + std::size_t(c)];
-            const bool moved = corner == fresh;
-            if (moved) corner = vertex;
-            has[0] |= corner == hinge.corner[0];
-            has[1] |= corner == hinge.corner[1];
-            has[2] |= corner == hinge.corner[across];
-          }
-          if (!has[0] || !has[1] || !has[2]) continue;
-          for (int c = 0; c < 3; ++c)
-            if (corners[3 * t + std::size_t(c)] == fresh) return 1;
-          return 0;
-        }
-        return -1;
-      };
-      std::erase_if(hinges, [&](ClothHinge& hinge) {
-        int place = -1;
-        for (int c = 0; c < 4; ++c)
-          if (hinge.corner[c] == vertex) place = c;
-        if (place < 0) return false;
-        const int one = side(hinge, 2), other = side(hinge, 3);
-        if (place >= 2) {  // the vertex is across the edge: its own triangle says which it is now
-          if ((place == 2 ? one : other) == 1) hinge.corner[place] = fresh;
-          return false;
-        }
-        if (one != other) return true;
-        if (one == 1) hinge.corner[place] = fresh;
-        return false;
-      });
+      find_patches();
       connect();
       torn = split = true;
     }

@@ -8,22 +8,25 @@
 namespace carom::particles::detail {
 
 struct ClothTriangle {
-  float area = 0;          ///< m², at rest
+  float area = 0;              ///< m², at rest
+  float x[3] = {}, y[3] = {};  ///< m, corners at rest along warp and weft
   float u[3] = {}, v[3] = {};  ///< gradients of the three corners' shares along warp and weft, 1/m
   int slots[9] = {};
   // Of this substep:
-  Vec3f along{}, across{};     ///< images of the unit warp and weft
-  float stress[3] = {};        ///< N/m: warp, weft, shear
-  float pull[3] = {};          ///< its part that pulls
-  Vec3f wind{};                ///< N on each corner
-  Mat3f brake = Mat3f::zero(); ///< N·s/m on each corner
+  Vec3f along{}, across{};      ///< images of the unit warp and weft
+  float stress[3] = {};         ///< N/m: warp, weft, shear
+  float pull[3] = {};           ///< its part that pulls
+  Vec3f wind{};                 ///< N on each corner
+  Mat3f brake = Mat3f::zero();  ///< N·s/m on each corner
 };
 
-/// Two triangles at an edge.
-struct ClothHinge {
-  std::uint32_t corner[4] = {};
-  float weight[4] = {};  ///< curvature · √(area) of the positions; 3/(A₀ + A₁) included
-  int slots[16] = {};
+/// A triangle with the corners across its edges: a quadratic through the six gives its curvature (the patch of Oñate
+/// and Zárate's rotation-free shell triangles, 2000).
+struct ClothPatch {
+  std::uint32_t corner[6] = {};  ///< a corner that is missing is the first again, with no weight
+  float weight[3][6] = {};       ///< of the positions: curvatures uu, vv, uv, times the root of area and stiffness
+  int slots[36] = {};
+  Vec3f curvature[3] = {};
 };
 
 struct ClothTouch {
@@ -49,18 +52,18 @@ struct ClothState {
   std::vector<Vec3f> velocity;
   std::vector<std::uint32_t> corners;  ///< three a triangle
   std::vector<ClothTriangle> triangles;
-  std::vector<ClothHinge> hinges;
+  std::vector<ClothPatch> patches;
   std::vector<float> mass;
   std::vector<SoftPin> pins;
-  std::vector<int> pin_of;             ///< by vertex, −1: free
+  std::vector<int> pin_of;  ///< by vertex, −1: free
   std::vector<math::Vec3d> pin_impulse;
-  std::vector<int> pinned;             ///< vertex of each pin
+  std::vector<int> pinned;  ///< vertex of each pin
   std::vector<ClothTouch> touches;
 
   // What follows from the mesh.
   SoftMatrix matrix;
   std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
-  std::vector<int> hinge_first, hinge_list;        ///< by vertex: 4·hinge + corner
+  std::vector<int> patch_first, patch_list;        ///< by vertex: 6·patch + corner
   float smallest_edge = 0, mean_edge = 0;
 
   // Of a step.
@@ -74,15 +77,15 @@ struct ClothState {
   double last_step = 0;  ///< s
 
   core::Status set_mesh(std::span<const math::Vec3d> rest, math::Vec3d warp);
-  void find_hinges(std::span<const math::Vec3d> rest);
+  void find_patches();
   void connect();  ///< matrix and incidences, after the mesh changed
 
   void step(rigid::World3& world, double dt);
-  void stretch();                             ///< triangles: strains, stresses, wind
-  void assemble(float h, Vec3f gravity);      ///< vertices: the linear system
+  void stretch();                         ///< triangles: strains, stresses, wind
+  void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
   void hold(float h, Vec3f gravity);
-  bool revise(float h);                       ///< contacts that begin and end; true: solve again
-  void keep_apart(float h);                   ///< folds
+  bool revise(float h);      ///< contacts that begin and end; true: solve again
+  void keep_apart(float h);  ///< folds
   void tear();
 };
 

@@ -13,7 +13,8 @@ core::SerialScheduler cloth_serial;
 }  // namespace
 
 void ClothState::stretch() {
-  const float nu = float(fabric.poisson_ratio), warp = float(fabric.warp_stiffness), weft = float(fabric.weft_stiffness);
+  const float nu = float(fabric.poisson_ratio), warp = float(fabric.warp_stiffness),
+              weft = float(fabric.weft_stiffness);
   // Plane stress of an orthotropic sheet: ν₂₁ = ν₁₂ E₂/E₁.
   const float share = 1 / (1 - nu * nu * weft / warp);
   const float c11 = warp * share, c22 = weft * share, c12 = nu * weft * share, shear = float(fabric.shear_stiffness);
@@ -53,8 +54,8 @@ void ClothState::stretch() {
       if (!(twice > 1e-12f)) continue;
       const Vec3f n = cross_ * (1 / twice);
       const double height = (position[c[0]].y + position[c[1]].y + position[c[2]].y) / 3;
-      const Vec3f air = Vec3f(environment::wind_at(wind, height)) -
-                        (velocity[c[0]] + velocity[c[1]] + velocity[c[2]]) * (1.0f / 3);
+      const Vec3f air =
+          Vec3f(environment::wind_at(wind, height)) - (velocity[c[0]] + velocity[c[1]] + velocity[c[2]]) * (1.0f / 3);
       const float through = dot(air, n), third = twice / 6;
       const Vec3f along = air - through * n;
       const float press = normal_drag * math::abs(through) * third, rub = skin_drag * length(along) * third;
@@ -62,13 +63,25 @@ void ClothState::stretch() {
       triangle.brake = (2 * press) * math::outer(n, n) + rub * (Mat3f::identity() + (-1.0f) * math::outer(n, n));
     }
   });
+  tasks.parallel_for(int(patches.size()), cloth_chunk, [&](int from, int to, int) {
+    for (int k = from; k < to; ++k) {
+      ClothPatch& patch = patches[std::size_t(k)];
+      const Vec3d origin = position[patch.corner[0]];
+      for (Vec3f& c : patch.curvature) c = {};
+      for (int p = 1; p < 6; ++p) {
+        const Vec3f d(position[patch.corner[p]] - origin);
+        for (int c = 0; c < 3; ++c) patch.curvature[c] += patch.weight[c][p] * d;
+      }
+    }
+  });
 }
 
 void ClothState::assemble(float h, Vec3f gravity) {
-  const float nu = float(fabric.poisson_ratio), warp = float(fabric.warp_stiffness), weft = float(fabric.weft_stiffness);
+  const float nu = float(fabric.poisson_ratio), warp = float(fabric.warp_stiffness),
+              weft = float(fabric.weft_stiffness);
   const float inverse_share = 1 / (1 - nu * nu * weft / warp);
   const float c11 = warp * inverse_share, c22 = weft * inverse_share, c12 = nu * weft * inverse_share;
-  const float shear = float(fabric.shear_stiffness), bending = float(fabric.bending_stiffness);
+  const float shear = float(fabric.shear_stiffness);
   const float weight = h * h + h * float(fabric.damping);
   core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
   tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
@@ -81,7 +94,8 @@ void ClothState::assemble(float h, Vec3f gravity) {
         const int place = triangle_list[std::size_t(k)], a = place % 3;
         const ClothTriangle& t = triangles[std::size_t(place / 3)];
         const float ua = t.u[a], va = t.v[a], area = t.area;
-        force -= area * ((t.stress[0] * ua + t.stress[2] * va) * t.along + (t.stress[1] * va + t.stress[2] * ua) * t.across);
+        force -=
+            area * ((t.stress[0] * ua + t.stress[2] * va) * t.along + (t.stress[1] * va + t.stress[2] * ua) * t.across);
         force += t.wind;
         brake = brake + t.brake;
         const Vec3f p = ua * t.along, q = va * t.across, r = ua * t.across + va * t.along;
@@ -90,8 +104,7 @@ void ClothState::assemble(float h, Vec3f gravity) {
         for (int b = 0; b < 3; ++b) {
           const float ub = t.u[b], vb = t.v[b];
           const Vec3f pb = ub * t.along, qb = vb * t.across, rb = ub * t.across + vb * t.along;
-          const float turn =
-              s * (t.pull[0] * ua * ub + t.pull[1] * va * vb + t.pull[2] * (ua * vb + va * ub));
+          const float turn = s * (t.pull[0] * ua * ub + t.pull[1] * va * vb + t.pull[2] * (ua * vb + va * ub));
           Mat3f& block = matrix.blocks[std::size_t(t.slots[3 * a + b])];
           block.cx += pa * pb.x + qa * qb.x + ra * rb.x;
           block.cy += pa * pb.y + qa * qb.y + ra * rb.y;
@@ -101,22 +114,20 @@ void ClothState::assemble(float h, Vec3f gravity) {
           block.cz.z += turn;
         }
       }
-      if (bending > 0)
-        for (int k = hinge_first[i]; k < hinge_first[i + 1]; ++k) {
-          const int place = hinge_list[std::size_t(k)], a = place % 4;
-          const ClothHinge& hinge = hinges[std::size_t(place / 4)];
-          Vec3f curvature{};
-          for (int b = 0; b < 4; ++b) curvature += hinge.weight[b] * Vec3f(position[hinge.corner[b]] - position[i]);
-          const float wa = bending * hinge.weight[a];
-          force -= wa * curvature;
-          for (int b = 0; b < 4; ++b) {
-            const float entry = weight * wa * hinge.weight[b];
-            Mat3f& block = matrix.blocks[std::size_t(hinge.slots[4 * a + b])];
-            block.cx.x += entry;
-            block.cy.y += entry;
-            block.cz.z += entry;
-          }
+      for (int k = patch_first[i]; k < patch_first[i + 1]; ++k) {
+        const int place = patch_list[std::size_t(k)], a = place % 6;
+        const ClothPatch& patch = patches[std::size_t(place / 6)];
+        const float w0 = patch.weight[0][a], w1 = patch.weight[1][a], w2 = patch.weight[2][a];
+        if (w0 == 0 && w1 == 0 && w2 == 0) continue;
+        force -= w0 * patch.curvature[0] + w1 * patch.curvature[1] + w2 * patch.curvature[2];
+        for (int b = 0; b < 6; ++b) {
+          const float entry = weight * (w0 * patch.weight[0][b] + w1 * patch.weight[1][b] + w2 * patch.weight[2][b]);
+          Mat3f& block = matrix.blocks[std::size_t(patch.slots[6 * a + b])];
+          block.cx.x += entry;
+          block.cy.y += entry;
+          block.cz.z += entry;
         }
+      }
       solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]}) + h * brake;
       solver.right[i] = h * force + (h * mass[i]) * gravity;
     }
@@ -158,9 +169,10 @@ void ClothState::hold(float h, Vec3f gravity) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
       ClothTouch& touch = touches[i];
-      touch.near = pin_of[i] < 0 && obstacles.nearest(position[i], radius,
-                                                      radius + 2 * double(h) * (double(length(velocity[i])) + double(h) * 20),
-                                                      touch.plane);
+      touch.near =
+          pin_of[i] < 0 &&
+          obstacles.nearest(position[i], radius,
+                            radius + 2 * double(h) * (double(length(velocity[i])) + double(h) * 20), touch.plane);
       if (!touch.near) {
         touch = {};
         continue;
@@ -251,8 +263,8 @@ void ClothState::step(rigid::World3& world, double dt) {
       bounds.high = max(bounds.high, position[i]);
       fastest = math::max(fastest, length_squared(velocity[i]));
     }
-    obstacles.gather(world, grow(bounds, 2 * fabric.thickness + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)), filter,
-                     pins);
+    obstacles.gather(world, grow(bounds, 2 * fabric.thickness + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)),
+                     filter, pins);
   }
   iterations = 0;
   greatest_tension = 0;
@@ -262,7 +274,7 @@ void ClothState::step(rigid::World3& world, double dt) {
     assemble(h, gravity);
     hold(h, gravity);
     for (int round = 0; round < 3; ++round) {
-      iterations += solver.solve(matrix, 1e-3, 300, tasks);
+      iterations += solver.solve(matrix, 1e-3, 200, tasks);
       if (round == 2 || !revise(h)) break;
     }
     wind_force = {};
@@ -276,7 +288,8 @@ void ClothState::step(rigid::World3& world, double dt) {
     for (std::size_t k = 0; k < pins.size(); ++k) {
       const std::size_t i = std::size_t(pinned[k]);
       const SoftPin& pin = pins[k];
-      const Vec3d impulse = pin.mass > 0 ? Vec3d(pin.mass * (solver.change[i] - h * gravity)) : -Vec3d(solver.reaction[i]);
+      const Vec3d impulse =
+          pin.mass > 0 ? Vec3d(pin.mass * (solver.change[i] - h * gravity)) : -Vec3d(solver.reaction[i]);
       pin_impulse[k] += impulse;
       obstacles.push(pin.index, position[i], impulse);
     }

@@ -14,8 +14,7 @@ void SoftMatrix::build(int vertices, std::initializer_list<Elements> kinds) {
     const std::size_t size = std::size_t(kind.size);
     for (std::size_t e = 0; e + size <= kind.vertices.size(); e += size)
       for (std::size_t a = 0; a < size; ++a)
-        for (std::size_t b = 0; b < size; ++b)
-          neighbours[kind.vertices[e + a]].push_back(kind.vertices[e + b]);
+        for (std::size_t b = 0; b < size; ++b) neighbours[kind.vertices[e + a]].push_back(kind.vertices[e + b]);
   }
   first_.assign(1, 0);
   column_.clear();
@@ -103,6 +102,23 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, int most, core
     each([&](std::size_t i) { direction_[i] = scaled_[i] + keep * direction_[i]; });
   }
   matrix.multiply(change.data(), image_.data(), scheduler);
+  // What is left of the residual would be momentum out of nothing: where nothing is pinned, all that is free takes it
+  // as a shift of the whole, which the elements do not feel.
+  Vec3f lost{};
+  float all = 0;
+  bool pinned = false;
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    pinned |= holds[i].rank == 3;
+    if (holds[i].rank != 0) continue;
+    lost += right[i] - image_[i] - diagonal[i] * change[i];
+    all += (1.0f / 3) * trace(diagonal[i]);
+  }
+  if (all > 0 && !pinned) {
+    const Vec3f shift = lost * (1 / all);
+    for (std::size_t i = 0; i < right.size(); ++i)
+      if (holds[i].rank == 0) change[i] += shift;
+    matrix.multiply(change.data(), image_.data(), scheduler);
+  }
   each([&](std::size_t i) {
     reaction[i] = holds[i].rank == 0 ? Vec3f{} : image_[i] + diagonal[i] * change[i] - right[i];
     if (holds[i].rank == 1) reaction[i] = dot(holds[i].normal, reaction[i]) * holds[i].normal;

@@ -21,9 +21,7 @@ using math::Vec3f;
 struct SoftHold {
   std::uint8_t rank = 0;  ///< 0 free, 1 along `normal`, 3 all
   Vec3f normal{};
-  Vec3f filter(Vec3f v) const {
-    return rank == 0 ? v : (rank == 1 ? v - dot(normal, v) * normal : Vec3f{});
-  }
+  Vec3f filter(Vec3f v) const { return rank == 0 ? v : (rank == 1 ? v - dot(normal, v) * normal : Vec3f{}); }
 };
 
 class SoftMatrix {
@@ -50,15 +48,16 @@ class SoftMatrix {
   std::vector<std::uint32_t> column_;
 };
 
-/// (D + K) x = b for particles that are free, b + reaction for those that are held, by preconditioned conjugate gradients
-/// with the holds projected out (Baraff and Witkin 1998, "Large steps in cloth simulation"; Ascher and Boxerman 2003).
+/// (D + K) x = b for particles that are free, b + reaction for those that are held, by preconditioned conjugate
+/// gradients with the holds projected out (Baraff and Witkin 1998, "Large steps in cloth simulation"; Ascher and
+/// Boxerman 2003).
 class SoftSolver {
  public:
-  std::vector<Mat3f> diagonal;   ///< D, by particle
-  std::vector<Vec3f> right;      ///< b, N·s
-  std::vector<Vec3f> change;     ///< x, m/s: at the start the held parts and a guess of the free ones
+  std::vector<Mat3f> diagonal;  ///< D, by particle
+  std::vector<Vec3f> right;     ///< b, N·s
+  std::vector<Vec3f> change;    ///< x, m/s: at the start the held parts and a guess of the free ones
   std::vector<SoftHold> holds;
-  std::vector<Vec3f> reaction;   ///< (D + K) x − b
+  std::vector<Vec3f> reaction;  ///< (D + K) x − b
 
   void resize(std::size_t n);
   /// Iterations used.

@@ -1,0 +1,252 @@
+// A substep of a soft body.
+#include "carom/math/elementary.h"
+#include "carom/particles/detail/soft_state.h"
+
+namespace carom::particles::detail {
+
+using math::Vec3d;
+
+namespace {
+constexpr int soft_chunk = 64;
+constexpr float soft_slip = 0.002f;  // m/s: friction grows up to here
+core::SerialScheduler soft_serial;
+
+/// The rotation nearest to f, from a guess: turns that bring the columns together (Müller, Bender, Chentanez, Macklin,
+/// "A robust method to extract the rotational part of deformations", 2016). Works for crushed and inverted elements.
+Mat3f nearest_turn(const Mat3f& f, const Mat3f& guess) {
+  Mat3f r = guess;
+  for (int round = 0; round < 12; ++round) {
+    const Vec3f axis = cross(r.cx, f.cx) + cross(r.cy, f.cy) + cross(r.cz, f.cz);
+    const float scale = math::abs(dot(r.cx, f.cx) + dot(r.cy, f.cy) + dot(r.cz, f.cz)) + 1e-9f;
+    const Vec3f w = axis * (1 / scale);
+    const float size = dot(w, w);
+    if (size < 1e-12f) break;
+    // Cayley's turn by about |w|, rational and so the same everywhere.
+    const Vec3f half = 0.5f * w;
+    const float k = 2 / (1 + 0.25f * size);
+    const auto turn = [&](Vec3f v) {
+      const Vec3f t = cross(half, v);
+      return v + k * (t + cross(half, t));
+    };
+    r = {turn(r.cx), turn(r.cy), turn(r.cz)};
+  }
+  // Rounding must not make it drift away from a rotation.
+  const Vec3f x = normalize(r.cx), y = normalize(r.cy - dot(r.cy, x) * x);
+  return {x, y, cross(x, y)};
+}
+
+}  // namespace
+
+void SoftState::strain() {
+  const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
+  const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
+  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
+  tasks.parallel_for(int(elements.size()), soft_chunk, [&](int from, int to, int) {
+    for (int k = from; k < to; ++k) {
+      SoftElement& element = elements[std::size_t(k)];
+      const std::uint32_t* c = &corners[4 * std::size_t(k)];
+      Mat3f f = Mat3f::zero();
+      for (int a = 1; a < 4; ++a) {
+        const Vec3f d(position[c[a]] - position[c[0]]);
+        f = f + math::outer(d, element.gradient[a]);
+      }
+      element.turn = nearest_turn(f, element.turn);
+      const Mat3f s = transpose(element.turn) * f;
+      const Mat3f strain = 0.5f * (s + transpose(s)) - Mat3f::identity();
+      const Mat3f stress = (2 * mu) * strain + (lambda * trace(strain)) * Mat3f::identity();
+      for (int a = 0; a < 4; ++a)
+        element.force[a] = (-element.volume) * (element.turn * (stress * element.gradient[a]));
+    }
+  });
+}
+
+void SoftState::assemble(float h, Vec3f gravity) {
+  const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
+  const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
+  const float weight = h * h + h * float(material.damping);
+  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
+  tasks.parallel_for(int(position.size()), soft_chunk, [&](int from, int to, int) {
+    for (int row = from; row < to; ++row) {
+      const std::size_t i = std::size_t(row);
+      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = Mat3f::zero();
+      Vec3f force = load[i] + mass[i] * gravity;
+      for (int k = first[i]; k < first[i + 1]; ++k) {
+        const int place = list[std::size_t(k)], a = place % 4;
+        const SoftElement& element = elements[std::size_t(place / 4)];
+        force += element.force[a];
+        // K_ab = V R (λ g_a g_bᵀ + μ (g_b g_aᵀ + g_a·g_b 1)) Rᵀ, with the gradients turned.
+        const Vec3f ga = element.turn * element.gradient[a];
+        const float s = weight * element.volume;
+        for (int b = 0; b < 4; ++b) {
+          const Vec3f gb = element.turn * element.gradient[b];
+          Mat3f& block = matrix.blocks[std::size_t(element.slots[4 * a + b])];
+          block = block + (s * lambda) * math::outer(ga, gb) + (s * mu) * math::outer(gb, ga) +
+                  Mat3f::diagonal(Vec3f{1, 1, 1} * (s * mu * dot(ga, gb)));
+        }
+      }
+      solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]});
+      solver.right[i] = h * force;
+    }
+  });
+  if (pressure != 0)
+    for (std::size_t k = 0; k + 2 < surface.size(); k += 3) {
+      const Vec3d a = position[surface[k]];
+      const Vec3f push =
+          (h * float(pressure) / 6) * cross(Vec3f(position[surface[k + 1]] - a), Vec3f(position[surface[k + 2]] - a));
+      for (std::size_t j = 0; j < 3; ++j) solver.right[surface[k + j]] += push;
+    }
+  Vec3f common{};
+  for (const Vec3f v : velocity) common += v;
+  common = common * (1 / float(velocity.size()));
+  for (std::size_t i = 0; i < velocity.size(); ++i) solver.change[i] = velocity[i] - common;
+  matrix.multiply(solver.change.data(), solver.reaction.data(), tasks);
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    solver.right[i] -= solver.reaction[i];
+    solver.change[i] = {};
+    solver.holds[i] = {};
+  }
+}
+
+void SoftState::hold(float h, Vec3f gravity) {
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    const std::size_t i = std::size_t(pinned[k]);
+    const SoftPin& pin = pins[k];
+    if (pin.mass > 0) {
+      solver.diagonal[i] = solver.diagonal[i] + Mat3f::diagonal({pin.mass, pin.mass, pin.mass});
+      solver.right[i] += (h * pin.mass) * gravity;
+      continue;
+    }
+    solver.holds[i].rank = 3;
+    const Vec3d target = pin.index >= 0 ? obstacles.bodies[std::size_t(pin.index)].velocity_at(position[i]) : Vec3d{};
+    solver.change[i] = Vec3f(target) - velocity[i];
+  }
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    SoftTouch& touch = touches[i];
+    touch.near =
+        collide && !obstacles.empty() && outside[i] != 0 && pin_of[i] < 0 &&
+        obstacles.nearest(position[i], material.skin,
+                          material.skin + 2 * double(h) * (double(length(velocity[i])) + 20 * double(h)), touch.plane);
+    if (!touch.near) {
+      touch = {};
+      continue;
+    }
+    const Vec3f n(touch.plane.normal);
+    const Vec3f against = velocity[i] - Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
+    if (touch.push > 0) {
+      const Vec3f slide = against - dot(n, against) * n;
+      const float c = h * math::sqrt(float(material.friction * touch.plane.friction)) * touch.push /
+                      math::max(length(slide), soft_slip);
+      solver.diagonal[i] = solver.diagonal[i] + c * (Mat3f::identity() - math::outer(n, n));
+      solver.right[i] -= c * slide;
+    }
+    const float deep = float(touch.plane.separation);
+    touch.active = touch.active || deep < 0;
+    if (!touch.active) continue;
+    solver.holds[i] = {1, n};
+    const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, 1.0f);
+    solver.change[i] = (target - dot(n, against)) * n;
+  }
+}
+
+bool SoftState::revise(float h) {
+  bool again = false;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    SoftTouch& touch = touches[i];
+    if (!touch.near) continue;
+    const Vec3f n(touch.plane.normal);
+    if (touch.active) {
+      if (dot(n, solver.reaction[i]) >= 0) continue;
+      touch.active = false;
+      solver.holds[i] = {};
+      again = true;
+      continue;
+    }
+    const Vec3f surface_speed(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
+    const float closing = dot(n, velocity[i] + solver.change[i] - surface_speed);
+    if (float(touch.plane.separation) + h * closing >= -1e-6f) continue;
+    touch.active = again = true;
+    solver.holds[i] = {1, n};
+    solver.change[i] += (-math::max(float(touch.plane.separation), 0.0f) / h - closing) * n;
+  }
+  return again;
+}
+
+void SoftState::finish(float h, Vec3f gravity) {
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    const std::size_t i = std::size_t(pinned[k]);
+    const SoftPin& pin = pins[k];
+    obstacles.push(pin.index, position[i],
+                   pin.mass > 0 ? Vec3d(pin.mass * (solver.change[i] - h * gravity)) : -Vec3d(solver.reaction[i]));
+  }
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    SoftTouch& touch = touches[i];
+    if (touch.near) {
+      const Vec3f n(touch.plane.normal);
+      const float before = touch.push;
+      touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
+      Vec3d impulse = touch.active ? Vec3d(solver.reaction[i]) : Vec3d{};
+      if (before > 0) {
+        const Vec3f old = velocity[i] - Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
+        const float c = h * math::sqrt(float(material.friction * touch.plane.friction)) * before /
+                        math::max(length(old - dot(n, old) * n), soft_slip);
+        const Vec3f now = old + solver.change[i];
+        impulse -= Vec3d(c * (now - dot(n, now) * n));
+      }
+      obstacles.push(touch.plane.body, position[i] - material.skin * touch.plane.normal, -impulse);
+    }
+    velocity[i] += solver.change[i];
+    position[i] += Vec3d(h * velocity[i]);
+  }
+}
+
+void SoftState::step(rigid::World3& world, double dt) {
+  const float h = float(dt / substeps);
+  const Vec3f gravity = world.definition().gravity;
+  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
+  obstacles.clear();
+  for (std::size_t k = pins.size(); k-- > 0;)
+    if (pins[k].body != rigid::BodyId{} && !world.contains(pins[k].body)) {
+      pin_of[std::size_t(pinned[k])] = -1;
+      pins.erase(pins.begin() + std::ptrdiff_t(k));
+      pinned.erase(pinned.begin() + std::ptrdiff_t(k));
+      for (std::size_t j = k; j < pins.size(); ++j) pin_of[std::size_t(pinned[j])] = int(j);
+    }
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    SoftPin& pin = pins[k];
+    const std::size_t i = std::size_t(pinned[k]);
+    pin.index = pin.body == rigid::BodyId{} ? -1 : obstacles.body_index(world, pin.body);
+    pin.mass = 0;
+    const auto* body = pin.index >= 0 ? &obstacles.bodies[std::size_t(pin.index)] : nullptr;
+    position[i] = body ? body->place(pin.point) : pin.point;
+    velocity[i] = body ? Vec3f(body->velocity_at(position[i])) : Vec3f{};
+    if (!body || !body->dynamic || !body->awake) continue;
+    int sharing = 0;
+    for (const SoftPin& other : pins) sharing += other.body == pin.body;
+    pin.mass = float(body->mass / sharing);
+  }
+  if (collide) {
+    geometry::Bounds3d bounds{position[0], position[0]};
+    float fastest = 0;
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      bounds.low = min(bounds.low, position[i]);
+      bounds.high = max(bounds.high, position[i]);
+      fastest = math::max(fastest, length_squared(velocity[i]));
+    }
+    obstacles.gather(world, grow(bounds, 2 * material.skin + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)), filter,
+                     pins);
+  }
+  iterations = 0;
+  for (int s = 0; s < substeps; ++s) {
+    strain();
+    assemble(h, gravity);
+    hold(h, gravity);
+    for (int round = 0; round < 3; ++round) {
+      iterations += solver.solve(matrix, 1e-3, 200, tasks);
+      if (round == 2 || !revise(h)) break;
+    }
+    finish(h, gravity);
+  }
+  obstacles.hand_over(world, dt, double(length(gravity)));
+}
+
+}  // namespace carom::particles::detail
