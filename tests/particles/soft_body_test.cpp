@@ -26,7 +26,7 @@ TEST(SoftBody, BarStretchesByYoungsModulus) {
   // δ = F L/(E A); the ends' cross-sections may contract (ν = 0 here, as one end is held).
   World3 world = weightless();
   const SoftMesh mesh = make_soft_box({0, 0, 0}, {1, 0.2, 0.2}, 10, 2, 2);
-  SoftBody bar = SoftBody::make({.material = {.youngs_modulus = 1e6, .poisson_ratio = 0, .damping = 0.02},
+  SoftBody bar = SoftBody::make({.material = {.youngs_modulus = 1e6, .poisson_ratio = 0, .damping = 0.4},
                                  .points = mesh.points,
                                  .tetrahedra = mesh.tetrahedra})
                      .value();
@@ -52,7 +52,7 @@ TEST(SoftBody, CantileverBendsAsABeam) {
   const double height = 0.2, width = 0.025, modulus = 1e5;
   const SoftMesh mesh = make_soft_box({0, 0, 0}, {1, height, width}, 40, 8, 1);
   SoftBody beam =
-      SoftBody::make({.material = {.density = 200, .youngs_modulus = modulus, .poisson_ratio = 0, .damping = 0.02},
+      SoftBody::make({.material = {.density = 200, .youngs_modulus = modulus, .poisson_ratio = 0, .damping = 0.4},
                       .points = mesh.points,
                       .tetrahedra = mesh.tetrahedra})
           .value();
