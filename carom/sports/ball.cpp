@@ -56,7 +56,7 @@ Vec3d side_coefficient(const Ball& ball, const Air& air, const BallMotion& motio
       const double angle = math::asin(math::clamp(sine, -1.0, 1.0)) / side.best_angle;
       double turn = 1;
       if (side.reverse_reynolds > 0)
-        turn = 2 / (1 + math::pow(reynolds(ball, air, speed) / side.reverse_reynolds, 8.0)) - 1;
+        turn = 2 / (1 + math::pow(reynolds(ball, air, speed) / side.reverse_reynolds, 12.0)) - 1;
       return (side.coefficient * turn * angle * math::exp(0.5 * (1 - angle * angle)) / size) * across;
     }
     case SideForce::Kind::turning_seam: {

@@ -225,6 +225,12 @@ core::Result<Shot> play(const Ball& ball, const Conditions& conditions, const Ba
       rolling = true;
       state.spin = math::cross(n, state.velocity) / ball.radius + math::dot(state.spin, n) * n;
     }
+    const auto holds = [&](const BallState& s) {
+      const Ground at = ground(s.position.x, s.position.z);
+      const double steep = math::length(tangent(Vec3d{0, -g, 0}, at.normal)) / (1 + ball.inertia_factor);
+      return steep <= at.surface.rolling * g * at.normal.y;
+    };
+    if (rolling && math::length(state.velocity) <= limits.rest_speed && holds(state)) break;
     const auto stop = [&](double, const BallState& s) {
       if (rolling) return math::length(s.velocity) - limits.rest_speed;
       return math::length(slip(ball, ground(s.position.x, s.position.z).normal, s)) - 0.5 * slip_end;
@@ -247,13 +253,12 @@ core::Result<Shot> play(const Ball& ball, const Conditions& conditions, const Ba
     shot.legs_.push_back({now, Shot::Phase::roll, BallFlight(std::move(nodes))});
     now += solver.t();
     if (!found) break;
-    const Ground at = ground(state.position.x, state.position.z);
     if (rolling) {
-      const double steep = math::length(tangent(Vec3d{0, -g, 0}, at.normal)) / (1 + ball.inertia_factor);
-      if (steep <= at.surface.rolling * g * at.normal.y) break;  // the slope holds it
+      if (holds(state)) break;  // the slope holds it
     } else {
+      const Vec3d up = ground(state.position.x, state.position.z).normal;
       rolling = true;
-      state.spin = math::cross(at.normal, state.velocity) / ball.radius + math::dot(state.spin, at.normal) * at.normal;
+      state.spin = math::cross(up, state.velocity) / ball.radius + math::dot(state.spin, up) * up;
     }
   }
   shot.end_ = now;

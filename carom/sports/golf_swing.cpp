@@ -263,6 +263,10 @@ core::Status check(const Swing& swing) {
       status =
           core::Error{core::text("head_mass and shaft_mass of a shaft are ", shaft.head_mass, " and ", shaft.shaft_mass,
                                  ", expected together at most the last link's mass ", club.mass)};
+    else if (const Mode mode = mode_of(swing);
+             !(mode.moment * mode.moment < mode.square * (club.inertia + club.mass * club.centre * club.centre)))
+      status = core::Error{
+          "head_mass and shaft_mass of a shaft have more inertia about the hands than the last link itself"};
     else if (!(shaft.damping_ratio >= 0 && shaft.damping_ratio < 10))
       status = core::Error{core::refused("damping_ratio of a shaft", shaft.damping_ratio, "a number in [0, 10)")};
   }
@@ -444,10 +448,10 @@ Swing three_link_swing() {
               .angle = -140 * detail::degree,
               .torque = {{{0, 10}, {0.10, 50}, {0.30, 50}}},
               .hold = {.until = Hold::Until::opens}},
-             {.mass = 0.32,
+             {.mass = 0.30,
               .length = 1.10,
-              .centre = 0.80,
-              .inertia = 0.04,
+              .centre = (0.20 + 0.05) * 1.10 / 0.30,
+              .inertia = (0.20 + 0.10 / 3) * 1.21 - 0.25 * 0.25 * 1.21 / 0.30,
               .angle = -235 * detail::degree,
               .torque = {{{0, 0}, {0.24, 0}, {0.27, 10}}},
               .hold = {.until = Hold::Until::opens}}};
