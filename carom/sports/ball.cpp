@@ -3,7 +3,7 @@
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
-#include "carom/sports/detail/ball_fields.h"
+#include "carom/sports/detail/number_fields.h"
 
 namespace carom::sports {
 namespace {
@@ -146,13 +146,7 @@ double ideal_sphere_lift(double density, double speed, double radius, double spi
 }
 
 core::Status check(const Ball& ball) {
-  core::Status status;
-  detail::visit_fields(ball, [&](const char* name, const char* unit, double value, double low, double high) {
-    if (status.ok() && !(value >= low && value <= high))
-      status = core::Error{core::text(name, " of a ball is ", value, ", expected a number in [", low, ", ", high, "]",
-                                      *unit != 0 ? " " : "", unit)};
-  });
-  if (!status) return status;
+  if (const core::Status fields = detail::check_fields(ball, "a ball"); !fields) return fields;
   const Vec3d n = ball.side.seam_normal;
   if (!(math::abs(math::length(n) - 1) < 1e-6))
     return core::Error{core::refused("length of side.seam_normal of a ball", math::length(n), "1")};

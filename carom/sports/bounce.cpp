@@ -3,6 +3,7 @@
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/ode/dormand_prince.h"
+#include "carom/sports/detail/number_fields.h"
 
 namespace carom::sports {
 namespace {
@@ -31,27 +32,7 @@ Surface penner(double rolling) {
 
 }  // namespace
 
-core::Status check(const Surface& s) {
-  const struct {
-    const char* name;
-    double value, low, high;
-  } rules[] = {{"friction", s.friction, 0, 100},
-               {"restitution", s.restitution, 0, 1},
-               {"restitution_slope", s.restitution_slope, 0, 1e3},
-               {"restitution_curve", s.restitution_curve, 0, 1e3},
-               {"restitution_floor", s.restitution_floor, 0, 1},
-               {"restitution_speed", s.restitution_speed, 0, 1e300},
-               {"tangential_restitution", s.tangential_restitution, -1, 1},
-               {"tilt", s.tilt, 0, 1.5},
-               {"tilt_speed", s.tilt_speed, 1e-3, 1e6},
-               {"tilt_angle", s.tilt_angle, 1e-3, 1.6},
-               {"rolling", s.rolling, 1e-6, 100}};
-  for (const auto& rule : rules)
-    if (!(rule.value >= rule.low && rule.value <= rule.high))
-      return core::Error{core::text(rule.name, " of a surface is ", rule.value, ", expected a number in [", rule.low,
-                                    ", ", rule.high, "]")};
-  return {};
-}
+core::Status check(const Surface& s) { return detail::check_fields(s, "a surface"); }
 
 std::span<const SurfacePreset> surface_presets() {
   static const std::vector<SurfacePreset> list = [] {

@@ -1,14 +1,9 @@
 #include "carom/sports/presets.h"
 
-#include <array>
-
 #include "carom/core/string.h"
-#include "carom/sports/detail/ball_fields.h"
 
 namespace carom::sports {
 namespace {
-
-constexpr std::array<std::string_view, 4> side_names = {"none", "held_seam", "turning_seam", "wandering_wake"};
 
 std::vector<BallPreset> make_presets() {
   using Shape = LiftLaw::Shape;
@@ -178,52 +173,6 @@ core::Result<Ball> ball_preset(std::string_view name) {
     known += core::text(known.empty() ? "" : ", ", preset.name);
   }
   return core::Error{core::text("the ball ", core::quoted(name), " is not known, expected one of ", known)};
-}
-
-std::span<const NumberName> ball_number_names() {
-  static const std::vector<NumberName> names = [] {
-    std::vector<NumberName> list;
-    Ball ball;
-    detail::visit_fields(
-        ball, [&](const char* name, const char* unit, double, double, double) { list.push_back({name, unit}); });
-    return list;
-  }();
-  return names;
-}
-
-std::vector<double> ball_numbers(const Ball& ball) {
-  std::vector<double> values;
-  detail::visit_fields(ball, [&](const char*, const char*, double value, double, double) { values.push_back(value); });
-  return values;
-}
-
-core::Result<Ball> ball_from_numbers(std::span<const Number> numbers, std::string_view side) {
-  Ball ball;
-  std::vector<bool> used(numbers.size(), false);
-  core::Status status;
-  detail::visit_fields(ball, [&](const char* name, const char*, double& value, double, double) {
-    bool seen = false;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (numbers[i].name != name) continue;
-      if (seen && status.ok()) status = core::Error{core::text(name, " of a ball is given twice")};
-      value = numbers[i].value;
-      used[i] = seen = true;
-    }
-  });
-  if (!status) return status.error();
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (!used[i]) return core::Error{core::text("a ball has no number ", core::quoted(numbers[i].name))};
-  bool known = false;
-  for (std::size_t i = 0; i < side_names.size(); ++i)
-    if (side_names[i] == side) {
-      ball.side.kind = SideForce::Kind(i);
-      known = true;
-    }
-  if (!known)
-    return core::Error{core::text("the side force of a ball is ", core::quoted(side),
-                                  ", expected none, held_seam, turning_seam or wandering_wake")};
-  if (const core::Status good = check(ball); !good) return good.error();
-  return ball;
 }
 
 }  // namespace carom::sports

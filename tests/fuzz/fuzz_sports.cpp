@@ -1,0 +1,45 @@
+// Presets of balls, surfaces and clubs from anybody: numbers that can be, or a clear error that names the file.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "carom/math/elementary.h"
+#include "carom/scene/sports_presets.h"
+
+namespace {
+
+void require(bool true_of_all, const char* what) {
+  if (true_of_all) return;
+  std::fprintf(stderr, "%s\n", what);
+  std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace carom;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto ball = scene::parse_ball(text, "f");
+  require(ball.ok() || ball.error().message.starts_with("f"), "an error that does not name the file");
+  if (ball) {
+    require(sports::check(*ball).ok(), "a ball that cannot be");
+    const auto load = sports::air_load(*ball, {}, {.velocity = {30, 5, -3}, .spin = {10, 200, -50}, .turned = 1, .time = 2});
+    require(math::is_finite(math::length(load.force)) && math::is_finite(math::length(load.moment)),
+            "a force that is not finite");
+  }
+  const auto surface = scene::parse_surface(text, "f");
+  require(surface.ok() || surface.error().message.starts_with("f"), "an error that does not name the file");
+  if (surface) {
+    const sports::Ball solid;
+    const auto out = sports::bounce(solid, *surface, {0, 1, 0}, {.velocity = {12, -9, 2}, .spin = {30, 4, 90}});
+    require(math::is_finite(math::length(out.after.velocity)) && out.after.velocity.y >= -1e-9, "a bounce that cannot be");
+  }
+  const auto head = scene::parse_club(text, "f");
+  require(head.ok() || head.error().message.starts_with("f"), "an error that does not name the file");
+  if (head) {
+    const auto hit = sports::strike({}, *head, {});
+    if (hit) require(math::is_finite(math::length(hit->ball.velocity)), "a blow that is not finite");
+  }
+  return 0;
+}
