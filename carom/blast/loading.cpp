@@ -1,0 +1,102 @@
+#include "carom/blast/loading.h"
+
+#include "carom/math/elementary.h"
+
+namespace carom::blast {
+
+namespace {
+
+/// ∫₀^S sᵏ e^{−βs} ds for k = 0 … 3.
+void moments(double beta, double end, double out[4]) {
+  if (beta * end < 0.5) {
+    for (int k = 0; k < 4; ++k) {
+      double power = 1, sum = 0;
+      for (int n = 0; n < 18; ++n) {
+        sum += power / (n + k + 1);
+        power *= -beta * end / (n + 1);
+      }
+      out[k] = sum;
+    }
+    double scale = end;
+    for (int k = 0; k < 4; ++k, scale *= end) out[k] *= scale;
+    return;
+  }
+  const double last = math::exp(-beta * end);
+  out[0] = -math::expm1(-beta * end) / beta;
+  double power = 1;
+  for (int k = 1; k < 4; ++k) {
+    power *= end;
+    out[k] = (k * out[k - 1] - power * last) / beta;
+  }
+}
+
+}  // namespace
+
+void SurfaceLoad::add(double amplitude, double duration, double decay, int power, bool clears) {
+  if (amplitude == 0 || !(duration > 0)) return;
+  terms_[count_++] = {amplitude, duration, decay, power, clears};
+  end_ = math::max(end_, arrival_ + (clears ? math::min(duration, clearing_) : duration));
+}
+
+SurfaceLoad::SurfaceLoad(const Wave& w, double cosine, double clearing_length, double share)
+    : arrival_(w.arrival), end_(w.arrival) {
+  const double c = math::clamp(cosine, -1.0, 1.0);
+  // Where the fits give more impulse than a triangle of P and t_d has, the phase is longer, not the impulse less.
+  const auto phase = [&](double pressure, double impulse, double decay) {
+    return decay > 0 || impulse <= 0.5 * pressure * w.duration ? w.duration : 2 * impulse / pressure;
+  };
+  const double side = phase(w.pressure, w.impulse, w.decay);
+  const double reflected = phase(w.reflected_pressure, w.reflected_impulse, w.reflected_decay);
+  if (share < 1) {
+    add(share * w.pressure, side, w.decay, 1, false);
+    return;
+  }
+  const double wind = dynamic_pressure(w.pressure);
+  if (c <= 0) {
+    add(w.pressure, side, w.decay, 1, false);
+    add(-0.4 * c * c * wind, side, 2 * w.decay, 2, false);
+    return;
+  }
+  const bool clears = clearing_length > 0;
+  clearing_ = clears ? 3 * clearing_length / w.front_speed : 1e30;
+  if (clears) {
+    add(w.pressure, side, w.decay, 1, false);
+    add(c * c * wind, side, 2 * w.decay, 2, false);
+    add(-c * c * wind, side, 2 * w.decay, 2, true);
+  }
+  add(c * c * w.reflected_pressure, reflected, w.reflected_decay, 1, clears);
+  add((clears ? c * c - 2 * c : 1 + c * c - 2 * c) * w.pressure, side, w.decay, 1, clears);
+}
+
+double SurfaceLoad::pressure(double time) const {
+  const double t = time - arrival_;
+  double sum = 0;
+  for (int i = 0; i < count_ && t >= 0; ++i) {
+    const Term& term = terms_[i];
+    if (t > term.duration || (term.clears && t > clearing_)) continue;
+    const double s = t / term.duration;
+    double p = term.amplitude * (1 - s) * math::exp(-term.decay * s);
+    if (term.power == 2) p *= 1 - s;
+    sum += term.clears ? p * (1 - t / clearing_) : p;
+  }
+  return sum;
+}
+
+double SurfaceLoad::impulse(double time) const {
+  double sum = 0;
+  for (int i = 0; i < count_ && time > arrival_; ++i) {
+    const Term& term = terms_[i];
+    double t = math::min(time - arrival_, term.duration);
+    if (term.clears) t = math::min(t, clearing_);
+    double m[4];
+    moments(term.decay, t / term.duration, m);
+    // (1 − s)^power (1 − κ s) by powers of s.
+    const double k = term.clears ? term.duration / clearing_ : 0;
+    const double part =
+        term.power == 1 ? m[0] - (1 + k) * m[1] + k * m[2] : m[0] - (2 + k) * m[1] + (1 + 2 * k) * m[2] - k * m[3];
+    sum += term.amplitude * term.duration * part;
+  }
+  return sum;
+}
+
+}  // namespace carom::blast
