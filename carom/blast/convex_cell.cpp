@@ -1,5 +1,6 @@
 #include "carom/blast/convex_cell.h"
 
+#include "carom/blast/detail/cell_cutter.h"
 #include "carom/blast/detail/solid_sum.h"
 #include "carom/math/elementary.h"
 
@@ -207,6 +208,11 @@ double ConvexCell::volume() const {
       six += triple(a, vertices_[corners[k]] - o, vertices_[corners[k + 1]] - o);
   }
   return six / 6;
+}
+
+void ConvexCell::take(const detail::CellCutter& cutter, double tolerance) {
+  tolerance_ = tolerance;
+  cutter.store(vertices_, faces_, loops_);
 }
 
 double ConvexCell::reach_squared(Vec3d p) const {

@@ -13,6 +13,10 @@
 
 namespace carom::blast {
 
+namespace detail {
+class CellCutter;
+}
+
 /// {x : normal·x ≤ offset}, unit normal, m. `tag` names the face that a cut along it leaves.
 struct HalfSpace {
   math::Vec3d normal{0, 1, 0};
@@ -72,6 +76,9 @@ class CAROM_API ConvexCell {
   geometry::MassProperties3 mass_properties(double density) const;
   /// Square of the greatest distance from p to a vertex.
   double reach_squared(math::Vec3d p) const;
+  double tolerance() const { return tolerance_; }  ///< m: what counts as on a plane
+  /// Becomes what the cutter holds.
+  void take(const detail::CellCutter& cutter, double tolerance);
 
  private:
   void set_tolerance();

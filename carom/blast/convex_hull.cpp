@@ -3,6 +3,7 @@
 #include <array>
 
 #include "carom/blast/convex_cell.h"
+#include "carom/blast/detail/cell_cutter.h"
 #include "carom/math/elementary.h"
 
 namespace carom::blast {
@@ -140,10 +141,21 @@ std::shared_ptr<const geometry::Hull> make_cell_hull(const ConvexCell& cell, Vec
   const ConvexCell* solid = &cell;
   ConvexCell shrunk;
   if (skin > 0) {
-    shrunk = cell;
-    ConvexCell::Scratch scratch;
-    for (const ConvexCell::Face& face : cell.faces())
-      if (shrunk.clip({face.normal, face.offset - skin, face.tag}, scratch) == ConvexCell::Cut::all) return nullptr;
+    detail::CellCutter cutter;
+    bool fits = cutter.load(cell, cell.tolerance());
+    for (std::size_t f = 0; f < cell.faces().size() && fits; ++f) {
+      const ConvexCell::Face& face = cell.faces()[f];
+      if (cutter.clip(face.normal, face.offset - skin, face.tag) == ConvexCell::Cut::all) return nullptr;
+      fits = cutter.fits();
+    }
+    if (fits) {
+      shrunk.take(cutter, cell.tolerance());
+    } else {
+      shrunk = cell;
+      ConvexCell::Scratch scratch;
+      for (const ConvexCell::Face& face : cell.faces())
+        if (shrunk.clip({face.normal, face.offset - skin, face.tag}, scratch) == ConvexCell::Cut::all) return nullptr;
+    }
     solid = &shrunk;
   }
   if (solid->empty()) return nullptr;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "carom/blast/detail/cell_cutter.h"
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
@@ -107,12 +108,19 @@ class SiteGrid {
 struct Reach {
   double squared = 0;
   Vec3d low{}, high{};
-  Reach(const ConvexCell& cell, Vec3d site) {
-    for (const Vec3d& v : cell.vertices()) {
-      const Vec3d d = v - site;
-      squared = math::max(squared, length_squared(d));
-      low = min(low, d), high = max(high, d);
-    }
+  void add(Vec3d d) {
+    squared = math::max(squared, length_squared(d));
+    low = min(low, d), high = max(high, d);
+  }
+  static Reach of(const ConvexCell& cell, Vec3d site) {
+    Reach reach;
+    for (const Vec3d& v : cell.vertices()) reach.add(v - site);
+    return reach;
+  }
+  static Reach of(const detail::CellCutter& cell, Vec3d site) {
+    Reach reach;
+    cell.each_corner([&](const Vec3d& v) { reach.add(v - site); });
+    return reach;
   }
   /// No less than the greatest of `way`·(v − site) over the corners v.
   double along(Vec3d way) const {
@@ -120,6 +128,29 @@ struct Reach {
            math::max(way.z * low.z, way.z * high.z);
   }
 };
+
+/// Cuts the cell of a site by the planes halfway to its neighbours, nearest first, as long as they can reach it.
+template <class Clip, class Measure, class Fits>
+core::Result<ConvexCell::Cut> cut_cell(const SiteGrid& grid, std::span<const Vec3d> sites, std::uint32_t i, Reach reach,
+                                       std::vector<SiteGrid::Near>& near, Clip&& clip, Measure&& measure, Fits&& fits) {
+  const Vec3d site = sites[i];
+  for (int ring = 0; ring < grid.rings(); ++ring) {
+    if (ring > 1 && math::square((ring - 1) * grid.edge()) > 4 * reach.squared) break;
+    grid.ring(i, ring, 4 * reach.squared, near);
+    for (const SiteGrid::Near& n : near) {
+      if (n.distance_squared > 4 * reach.squared) break;
+      if (!(n.distance_squared > 0))
+        return core::Error{core::text("voronoi_pattern: sites ", i, " and ", n.site, " are in one place")};
+      const Vec3d way = sites[n.site] - site;
+      if (reach.along(way) <= 0.5 * n.distance_squared) continue;
+      const Vec3d middle = 0.5 * (site + sites[n.site]), normal = way / math::sqrt(n.distance_squared);
+      const ConvexCell::Cut cut = clip(HalfSpace{normal, dot(normal, middle), int(n.site)});
+      if (cut == ConvexCell::Cut::all || !fits()) return cut;
+      if (cut == ConvexCell::Cut::part) reach = measure();
+    }
+  }
+  return ConvexCell::Cut::part;
+}
 
 core::Status check(const ConvexCell& container) {
   if (container.empty()) return core::Error{"fracture: the container is empty, expected a convex solid"};
@@ -210,31 +241,31 @@ core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<con
   pattern.cells.reserve(sites.size());
   pattern.meetings.reserve(8 * sites.size());
   ConvexCell::Scratch scratch;
+  detail::CellCutter cutter;
   std::vector<SiteGrid::Near> near;
-  ConvexCell cell;
   for (std::uint32_t i = 0; i < sites.size(); ++i) {
-    cell = container;
-    const Vec3d site = sites[i];
-    Reach reach(cell, site);
-    for (int ring = 0; ring < grid.rings() && !cell.empty(); ++ring) {
-      if (ring > 1 && math::square((ring - 1) * grid.edge()) > 4 * reach.squared) break;
-      grid.ring(i, ring, 4 * reach.squared, near);
-      for (const SiteGrid::Near& n : near) {
-        if (n.distance_squared > 4 * reach.squared) break;
-        if (!(n.distance_squared > 0))
-          return core::Error{core::text("voronoi_pattern: sites ", i, " and ", n.site, " are in one place")};
-        const Vec3d way = sites[n.site] - site;
-        if (reach.along(way) <= 0.5 * n.distance_squared) continue;
-        const Vec3d middle = 0.5 * (site + sites[n.site]), normal = way / math::sqrt(n.distance_squared);
-        const ConvexCell::Cut cut = cell.clip({normal, dot(normal, middle), int(n.site)}, scratch);
-        if (cut == ConvexCell::Cut::all) break;
-        if (cut == ConvexCell::Cut::part) reach = Reach(cell, site);
-      }
+    ConvexCell& cell = pattern.cells.emplace_back();
+    bool done = false;
+    if (cutter.load(container, container.tolerance())) {
+      const auto cut = [&](const HalfSpace& h) { return cutter.clip(h.normal, h.offset, h.tag); };
+      const auto found = cut_cell(
+          grid, sites, i, Reach::of(container, sites[i]), near, cut, [&] { return Reach::of(cutter, sites[i]); },
+          [&] { return cutter.fits(); });
+      if (!found.ok()) return found.error();
+      done = cutter.fits();
+      if (done && *found != ConvexCell::Cut::all) cell.take(cutter, container.tolerance());
+    }
+    if (!done) {
+      cell = container;
+      const auto found = cut_cell(
+          grid, sites, i, Reach::of(container, sites[i]), near,
+          [&](const HalfSpace& h) { return cell.clip(h, scratch); }, [&] { return Reach::of(cell, sites[i]); },
+          [] { return true; });
+      if (!found.ok()) return found.error();
     }
     for (const ConvexCell::Face& face : cell.faces())
       if (face.tag >= 0 && std::uint32_t(face.tag) > i)
         pattern.meetings.push_back({i, std::uint32_t(face.tag), face.tag, int(i)});
-    pattern.cells.push_back(cell);
   }
   return pattern;
 }

@@ -230,6 +230,7 @@ template <class D>
 core::Status Structure<D>::after_step(World& world, float dt) {
   events_.clear();
   made_.clear();
+  changed_.clear();
   if (!(dt > 0)) return core::Error{core::refused("Structure::after_step: dt", dt, "s > 0")};
   // Splitting puts new ones at the end, that are looked at in the next step.
   const std::size_t count = clusters_.size();
@@ -428,6 +429,7 @@ core::Status Structure<D>::split(World& world, std::uint32_t index) {
   for (const auto& parts : leaves)
     for (const std::uint32_t p : parts) leaving[p] = 1;
   const rigid::BodyId old = clusters_[index].body;
+  changed_.push_back(old);
   if (stays.empty()) {
     if (auto s = world.destroy_body(old); !s) return s;
     std::erase_if(shapes_, [&](const ShapeOf& s) { return leaving[s.part] != 0; });

@@ -91,6 +91,8 @@ class CAROM_API Structure {
   /// The part that a shape is of, or `ground` (none).
   std::uint32_t part_of(rigid::ShapeId shape) const;
   rigid::BodyId body_of(std::uint32_t part) const { return clusters_[cluster_of_[part]].body; }
+  /// Where the origin of a part's body is, in the structure's frame (whose axes the body keeps).
+  Position origin_of(std::uint32_t part) const { return clusters_[cluster_of_[part]].origin; }
   std::size_t part_count() const { return cluster_of_.size(); }
   std::size_t cluster_count() const { return clusters_.size(); }
   bool holds(std::uint32_t bond) const { return intact_[bond] != 0; }
@@ -98,6 +100,8 @@ class CAROM_API Structure {
   std::span<const BreakEvent<D>> events() const { return events_; }  ///< bonds that broke in the last after_step
   /// Bodies that the last after_step made: for who shows them.
   std::span<const rigid::BodyId> made() const { return made_; }
+  /// Bodies that lost parts in the last after_step, or are gone.
+  std::span<const rigid::BodyId> changed() const { return changed_; }
   const StructureDef<D>& definition() const { return *definition_; }
   /// Greatest stress by strength of each bond when it was last computed.
   std::span<const float> loads() const { return bond_loads_; }
@@ -137,7 +141,7 @@ class CAROM_API Structure {
   std::vector<float> bond_loads_;
   std::vector<Load> loads_;
   std::vector<BreakEvent<D>> events_;
-  std::vector<rigid::BodyId> made_;
+  std::vector<rigid::BodyId> made_, changed_;
   std::size_t broken_ = 0;
 };
 

@@ -14,5 +14,6 @@ inline void print_model(const char* name, const core::StateHash& hash) {
 void particle_models(int width);    ///< lanes of the kernels, 0: what the machine has
 void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine has
 void environment_models(int width);
+void blast_models(int width);       ///< lanes of the world
 
 }  // namespace carom::determinism

@@ -17,6 +17,7 @@ void print_models(int width) {
   particle_models(width);
   ballistics_models(width);
   environment_models(width);
+  blast_models(width);
 }
 
 bool print_demos(int threads) {

@@ -1,0 +1,177 @@
+// A pane of glass that cracks where it is hit, at the moment it is hit (chapter 18.8).
+#include "apps/host/demos/blast/shown.h"
+#include "carom/math/elementary.h"
+
+namespace carom::host::demo {
+namespace {
+
+using rigid::Dim3;
+
+class Pane final : public Repeatable<Pane, Demo3> {
+ public:
+  Declaration declaration() const override {
+    Declaration d;
+    d.id = "glass-pane";
+    d.title = "Glass that cracks where it is hit";
+    d.summary = "A ball meets a pane: cracks run out from that very point, in rays and rings, cut in a millisecond.";
+    d.group = "Explosions and fracture";
+    d.chapter = "18.8";
+    d.text =
+        "The pane is one box until something strikes it. Then sites are set in rings about the point of impact, each "
+        "ring "
+        "wider than the last, and the Voronoi cells of the sites become the pieces: small and many at the impact, long "
+        "splinters farther out. Bonds hold them to each other and to the frame, and the blow decides which stay.\n\n"
+        "  r_{k+1} = growth · r_k";
+    d.duration = 4;
+    d.camera = {{2.6, 1.9, 3.6}, {0, 1.05, 0}};
+    d.ground = 0;
+    d.parameters = {
+        {"sectors", "Rays", "", "", "pieces in a ring", 5, 24, 1, 11, false},
+        {"growth", "Growth of the rings", "", "", "", 1.2, 3, 0.05, 1.55, false},
+        {"thickness", "Thickness", "m", "mm", "", 0.004, 0.03, 0.001, 0.01, false},
+        {"speed", "Speed of the ball", "m/s", "m/s", "", 2, 40, 0.5, 12, true},
+        {"tension", "Strength", "Pa", "MPa", "of the glass in tension", 5e6, 2e8, 0, 4e7, false},
+    };
+    d.plots = {{"Pieces that fell", {"time", "s"}, {"bodies", ""}, {{"bodies"}}},
+               {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}}}};
+    d.inputs = {{"shoot", "Throw", {"Space"}, true, 1}};
+    return d;
+  }
+
+  void build(Stage3& stage) override {
+    stage.start({});
+    stage.looks_in_materials = true;
+    stage.floor(0);
+    const float w = 1.0f, h = 0.75f, bar = 0.05f;
+    rigid::BodyDef<Dim3> frame;
+    frame.type = rigid::BodyType::fixed;
+    frame.name = "frame";
+    frame.position = middle_;
+    const rigid::ShapeDef<Dim3> wood{.material = {.user_id = 0xff000000u | 0x8a6a4a}};
+    const auto at = [&](math::Vec3f p) {
+      rigid::ShapeDef<Dim3> s = wood;
+      s.local.p = p;
+      return s;
+    };
+    stage.add(frame, {{geometry::Box{{w + 2 * bar, bar, bar}}, at({0, h + bar + 0.002f, 0})},
+                      {geometry::Box{{w + 2 * bar, bar, bar}}, at({0, -h - bar - 0.002f, 0})},
+                      {geometry::Box{{bar, h, bar}}, at({w + bar + 0.002f, 0, 0})},
+                      {geometry::Box{{bar, h, bar}}, at({-w - bar - 0.002f, 0, 0})},
+                      {geometry::Box{{bar, 0.14f, bar}}, at({w, -h - 0.24f, 0})},
+                      {geometry::Box{{bar, 0.14f, bar}}, at({-w, -h - 0.24f, 0})}});
+    rigid::BodyDef<Dim3> pane = frame;
+    pane.name = "pane";
+    half_ = {double(w), double(h), 0.5 * stage.value("thickness")};
+    pane_ = stage.add(pane, geometry::Box{math::Vec3f(half_)},
+                      {.material = {.friction = 0.4f, .user_id = glass_}, .hit_events = true});
+  }
+
+  void before_step(Stage3& stage) override {
+    if (stage.presses("shoot") == 0 && !(shots_ == 0 && stage.world().time() >= 0.3)) return;
+    rigid::BodyDef<Dim3> body;
+    body.name = "ball";
+    body.bullet = true;
+    body.position = middle_ + Vec3d{0.25 - 0.45 * (shots_ % 3), 0.1 + 0.15 * (shots_ % 2), 2.2};
+    body.linear_velocity = {0, 0.9f, -stage.valuef("speed")};
+    ball_ = stage.add(body, geometry::Sphere{0.06f}, {.density = 2600, .material = {.user_id = 0xff000000u | red}});
+    ++shots_;
+  }
+
+  void after_step(Stage3& stage) override {
+    const double t = stage.world().time(), dt = stage.declaration().dt;
+    if (stage.world().contains(pane_)) crack(stage);
+    if (!stage.world().contains(pane_)) {
+      stage.check(glass_pieces_.after_step(stage.world(), float(dt)));
+      show_changes(stage, glass_pieces_);
+    }
+    stage.sample(0, 0, t, double(glass_pieces_.cluster_count()));
+    if (shots_ > 0 && stage.world().contains(ball_))
+      stage.sample(1, 0, t, double(length(stage.at(ball_).linear_velocity)));
+  }
+
+  void expectations(Stage3& stage, std::vector<Expectation>& out) override {
+    const double mass = 2500 * 8 * half_.x * half_.y * half_.z;
+    double sum = 0;
+    for (const auto& part : glass_pieces_.definition().parts) sum += part.mass.mass;
+    out.push_back({"mass of the pieces", "kg", "ρ V of the pane", sum, mass, 1e-6 * mass});
+    out.push_back({"pieces that fell", "", "some do", glass_pieces_.cluster_count() > 8 ? 1.0 : 0.0, 1, 0});
+    out.push_back(
+        {"the ball went through", "", "slower than it came", stage.at(ball_).pose.position.z < 0 ? 1.0 : 0.0, 1, 0});
+  }
+
+ private:
+  static constexpr std::uint32_t glass_ = 0x70a8d0e0u;
+
+  void crack(Stage3& stage) {
+    for (const auto& hit : stage.world().events().contact_hit) {
+      const auto a = stage.keep(stage.world().body_of(hit.shape_a)), b = stage.keep(stage.world().body_of(hit.shape_b));
+      if ((!(a == pane_) && !(b == pane_)) || hit.impulse < 0.5f) continue;
+      const rigid::BodyId striker = a == pane_ ? b : a;
+      const double sign = a == pane_ ? -1 : 1;
+      const Vec3d impulse = sign * double(hit.impulse) * Vec3d(hit.normal), point = hit.point;
+      const blast::ConvexCell box(geometry::Bounds3d{-half_, half_});
+      Vec3d impact = point - middle_;
+      impact.z = 0;
+      const auto sites = stage.keep(blast::radial_sites(box,
+                                                        {.impact = impact,
+                                                         .axis = {0, 0, 1},
+                                                         .first_radius = 0.03,
+                                                         .growth = stage.value("growth"),
+                                                         .sectors = stage.count("sectors")},
+                                                        5));
+      auto d = blast::structure_of(stage.keep(blast::fracture_convex(stage.keep(blast::voronoi_pattern(box, sites)),
+                                                                     {.skin = 5e-4, .meshes = false})),
+                                   2500);
+      d.material = blast::bond_material(blast::Substance::glass);
+      d.material.tensile_strength = d.material.shear_strength = stage.value("tension");
+      d.pose.position = middle_;
+      d.shape.material.friction = 0.4f;
+      for (auto& part : d.parts) part.user_id = glass_;
+      hold(d);
+      stage.remove(pane_);
+      glass_pieces_ = stage.keep(blast::Structure3::make(stage.world(), d));
+      stage.adopt_all();
+      // The pane as it was bore the blow; as it is now only a part of it. The ball takes back the rest.
+      std::uint32_t nearest = 0;
+      for (std::uint32_t i = 0; i < d.parts.size(); ++i)
+        if (distance(d.parts[i].mass.center, impact) < distance(d.parts[nearest].mass.center, impact)) nearest = i;
+      glass_pieces_.add_load(nearest, Vec3f(impulse), point, d.material.contact_time);
+      stage.check(stage.world().add_impulse_at(striker, Vec3f(0.97 * impulse), point));
+      stage.say(format("%.0f pieces about the impact", double(d.parts.size())));
+      return;
+    }
+  }
+  /// Pieces at the border are held by putty.
+  void hold(blast::StructureDef<Dim3>& d) const {
+    for (std::uint32_t i = 0; i < d.parts.size(); ++i)
+      for (int side = 0; side < 4; ++side) {
+        const int axis = side / 2;
+        const double sign = side % 2 == 0 ? 1 : -1;
+        double low = 1e30, high = -1e30;
+        bool touches = false;
+        for (const Vec3f& v : d.parts[i].shapes[0].hull->vertices) {
+          const Vec3d p = Vec3d(v) + d.parts[i].mass.center;
+          if (sign * p[axis] < half_[axis] - 0.004) continue;
+          touches = true;
+          low = min(low, p[1 - axis]), high = max(high, p[1 - axis]);
+        }
+        if (!touches || !(high > low + 1e-4)) continue;
+        blast::StructureDef<Dim3>::Joint joint;
+        joint.a = i, joint.b = blast::ground, joint.area = (high - low) * 2 * half_.z, joint.strength = 0.6f;
+        joint.center[axis] = sign * half_[axis], joint.center[1 - axis] = 0.5 * (low + high);
+        joint.normal[axis] = sign;
+        d.bonds.push_back(joint);
+      }
+  }
+
+  blast::Structure3 glass_pieces_;
+  rigid::BodyId pane_, ball_;
+  Vec3d half_{}, middle_{0, 1.05, 0};
+  int shots_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Demo> make_pane() { return std::make_unique<Pane>(); }
+
+}  // namespace carom::host::demo

@@ -1,0 +1,194 @@
+// The cuts of ConvexCell in arrays of a fixed size: corners and faces keep their places, and bit masks say which faces
+// a cut touches. For the many cells of a pattern; what does not fit goes the general way.
+#pragma once
+
+#include <array>
+#include <bit>
+
+#include "carom/blast/convex_cell.h"
+
+namespace carom::blast::detail {
+
+class CellCutter {
+ public:
+  static constexpr int most_corners = 64, most_faces = 64, longest_loop = 24;
+  using Cut = ConvexCell::Cut;
+
+  /// False where it does not fit.
+  bool load(const ConvexCell& cell, double tolerance) {
+    const auto vertices = cell.vertices();
+    if (vertices.size() > most_corners || cell.faces().size() > most_faces) return false;
+    alive_ = vertices.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << vertices.size()) - 1;
+    used_ = 0;
+    face_count_ = 0;
+    tolerance_ = tolerance;
+    fits_ = true;
+    for (std::size_t i = 0; i < vertices.size(); ++i) corners_[i] = vertices[i];
+    for (const ConvexCell::Face& face : cell.faces()) {
+      if (face.count > longest_loop) return false;
+      Face& f = faces_[add_face()];
+      f.normal = face.normal, f.offset = face.offset, f.tag = face.tag;
+      for (const std::uint16_t v : cell.loop(face)) f.push(std::uint8_t(v));
+    }
+    return true;
+  }
+
+  /// What `fits` says after it counts only where it is true.
+  Cut clip(const math::Vec3d& normal, double offset, int tag) {
+    std::uint64_t outside = 0;
+    const int top = 64 - std::countl_zero(alive_);
+    for (int i = 0; i < top; ++i) {
+      distance_[std::size_t(i)] = dot(normal, corners_[std::size_t(i)]) - offset;
+      outside |= std::uint64_t(distance_[std::size_t(i)] > tolerance_) << i;
+    }
+    outside &= alive_;
+    if (outside == 0) return Cut::none;
+    if (outside == alive_) return Cut::all;
+    crossing_count_ = 0;
+    made_ = 0;
+    int kept = 0;
+    for (int k = 0; k < face_count_; ++k) {
+      const std::uint8_t place = order_[std::size_t(k)];
+      Face& face = faces_[place];
+      if ((face.mask & outside) == 0) {
+        order_[std::size_t(kept++)] = place;
+      } else if ((face.mask & ~outside) == 0) {
+        used_ &= ~(std::uint64_t{1} << place);
+      } else {
+        trim(face, outside);
+        if (!fits_) return Cut::none;
+        order_[std::size_t(kept++)] = place;
+      }
+    }
+    face_count_ = kept;
+    for (int start = 0; start < crossing_count_; ++start) {
+      if (crossings_[std::size_t(start)].next < 0) continue;
+      if (used_ == ~std::uint64_t{0}) return fits_ = false, Cut::none;
+      Face& cap = faces_[add_face()];
+      cap.normal = normal, cap.offset = offset, cap.tag = tag;
+      for (int at = start; crossings_[std::size_t(at)].next >= 0;) {
+        if (cap.count == longest_loop) return fits_ = false, Cut::none;
+        Crossing& x = crossings_[std::size_t(at)];
+        cap.push(x.corner);
+        at = x.next;
+        x.next = -1;
+      }
+    }
+    alive_ = (alive_ & ~outside) | made_;
+    return Cut::part;
+  }
+  bool fits() const { return fits_; }
+
+  template <class Function>
+  void each_corner(Function&& f) const {
+    for (std::uint64_t left = alive_; left != 0; left &= left - 1) f(corners_[std::size_t(std::countr_zero(left))]);
+  }
+  /// Into a cell, corners and faces close together.
+  void store(std::vector<math::Vec3d>& vertices, std::vector<ConvexCell::Face>& faces,
+             std::vector<std::uint16_t>& loops) const {
+    vertices.clear(), faces.clear(), loops.clear();
+    std::array<std::uint16_t, 64> place{};
+    vertices.reserve(std::size_t(std::popcount(alive_)));
+    for (std::uint64_t left = alive_; left != 0; left &= left - 1) {
+      const std::size_t i = std::size_t(std::countr_zero(left));
+      place[i] = std::uint16_t(vertices.size());
+      vertices.push_back(corners_[i]);
+    }
+    faces.reserve(std::size_t(face_count_));
+    std::size_t total = 0;
+    for (int k = 0; k < face_count_; ++k) total += faces_[order_[std::size_t(k)]].count;
+    loops.reserve(total);
+    for (int k = 0; k < face_count_; ++k) {
+      const Face& f = faces_[order_[std::size_t(k)]];
+      faces.push_back({f.normal, f.offset, f.tag, std::uint32_t(loops.size()), f.count});
+      for (std::size_t i = 0; i < f.count; ++i) loops.push_back(place[f.loop[i]]);
+    }
+  }
+
+ private:
+  struct Face {
+    math::Vec3d normal;
+    double offset;
+    std::uint64_t mask;
+    int tag;
+    std::uint8_t count;
+    std::array<std::uint8_t, longest_loop> loop;
+    void push(std::uint8_t v) {
+      loop[count++] = v;
+      mask |= std::uint64_t{1} << v;
+    }
+  };
+  struct Crossing {
+    std::uint8_t inside, outside, corner;
+    std::int16_t next;
+  };
+
+  std::uint8_t add_face() {
+    const std::uint8_t place = std::uint8_t(std::countr_zero(~used_));
+    used_ |= std::uint64_t{1} << place;
+    order_[std::size_t(face_count_++)] = place;
+    faces_[place].mask = 0, faces_[place].count = 0;
+    return place;
+  }
+  int crossing(std::uint8_t inside, std::uint8_t outside) {
+    for (int k = crossing_count_; k-- > 0;)
+      if (crossings_[std::size_t(k)].inside == inside && crossings_[std::size_t(k)].outside == outside) return k;
+    const std::uint64_t free = ~(alive_ | made_);
+    if (free == 0 || crossing_count_ == most_corners) {
+      fits_ = false;
+      return 0;
+    }
+    const int slot = std::countr_zero(free);
+    made_ |= std::uint64_t{1} << slot;
+    const double a = distance_[inside], b = distance_[outside], t = math::clamp(a / (a - b), 0.0, 1.0);
+    corners_[std::size_t(slot)] = corners_[inside] + t * (corners_[outside] - corners_[inside]);
+    crossings_[std::size_t(crossing_count_)] = {inside, outside, std::uint8_t(slot), -1};
+    return crossing_count_++;
+  }
+  void trim(Face& face, std::uint64_t outside) {
+    std::array<std::uint8_t, 2 * longest_loop> loop;
+    std::size_t count = 0;
+    std::uint8_t before = face.loop[face.count - 1u];
+    bool out_before = (outside >> before & 1) != 0;
+    int exit = -1, first_entry = -1;
+    for (std::size_t k = 0; k < face.count; ++k) {
+      const std::uint8_t here = face.loop[k];
+      const bool out_here = (outside >> here & 1) != 0;
+      if (out_before != out_here) {
+        const int x = out_here ? crossing(before, here) : crossing(here, before);
+        if (!fits_) return;
+        loop[count++] = crossings_[std::size_t(x)].corner;
+        // The edge of the cut runs from exit to entry on this face, and back on the cap.
+        if (out_here) {
+          exit = x;
+        } else if (exit < 0) {
+          first_entry = x;
+        } else {
+          crossings_[std::size_t(x)].next = std::int16_t(exit);
+          exit = -1;
+        }
+      }
+      if (!out_here) loop[count++] = here;
+      before = here, out_before = out_here;
+    }
+    if (first_entry >= 0) crossings_[std::size_t(first_entry)].next = std::int16_t(exit);
+    if (count > std::size_t(longest_loop)) {
+      fits_ = false;
+      return;
+    }
+    face.count = 0, face.mask = 0;
+    for (std::size_t k = 0; k < count; ++k) face.push(loop[k]);
+  }
+
+  std::array<math::Vec3d, most_corners> corners_;
+  std::array<double, most_corners> distance_;
+  std::array<Face, most_faces> faces_;
+  std::array<std::uint8_t, most_faces> order_;
+  std::array<Crossing, most_corners> crossings_;
+  std::uint64_t alive_ = 0, used_ = 0, made_ = 0;
+  int face_count_ = 0, crossing_count_ = 0;
+  double tolerance_ = 0;
+  bool fits_ = true;
+};
+
+}  // namespace carom::blast::detail
