@@ -1,0 +1,219 @@
+// A model rocket with two motors from a thrust file, fins, wind and a parachute (chapter 6.4).
+#include "apps/host/demos/ballistics/range.h"
+#include "carom/ballistics/rocket.h"
+
+namespace carom::host::demo {
+namespace {
+
+using ballistics::RocketEvent;
+
+class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
+ public:
+  Declaration declaration() const override {
+    Declaration d;
+    d.id = "rocket-launch";
+    d.title = "Rocket launch";
+    d.summary =
+        "Thrust from a motor file, mass that burns away, two stages, fins that turn it into the wind, a parachute.";
+    d.group = "Ballistics";
+    d.chapter = "6.4";
+    d.text =
+        "What a rocket gains without air and gravity depends on masses and the exhaust speed alone, stage by stage:\n\n"
+        "  m dv/dt = F + u dm/dt,   Δv = v_e ln(m₀/m₁)\n\n"
+        "Its motors are read from a file in the RASP format, in which hobby rocketry keeps thrust curves. Fins pull "
+        "the "
+        "nose toward the air that meets it, with the normal force and centre of pressure of Barrowman's equations, so "
+        "that it flies into the wind. At the top the parachute opens; then it sinks at √(2 m g/(ρ C_D A)). The rocket "
+        "is "
+        "drawn twelve times its size.";
+    d.duration = 30;
+    d.camera = {{0, 110, 330}, {0, 110, 0}};
+    d.ground = 0;
+    d.parameters = {
+        {"stages", "Stages", "", "", "1 or 2", 1, 2, 1, 2, false},
+        {"fuel", "Propellant", "", "%", "of what the motors hold", 0.2, 1, 0, 1, false},
+        {"payload", "Payload", "kg", "g", "", 0, 0.15, 0, 0.02, false},
+        {"wind", "Wind", "m/s", "m/s", "from the left", -10, 10, 0.5, 3, false},
+        {"tilt", "Tilt of the rail", "rad", "deg", "to the left", -0.5, 0.5, 0, 0, false},
+        {"fins", "Span of the fins", "m", "mm", "", 0.02, 0.12, 0, 0.06, false},
+        {"parachute", "Diameter of the parachute", "m", "cm", "0: none", 0, 1.2, 0, 0.5, false},
+    };
+    d.plots = {
+        {"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
+        {"Speed", {"time", "s"}, {"speed", "m/s"}, {{"rocket"}, {"sinks at √(2 m g/ρ C_D A)", Series::Style::points}}},
+        {"Thrust", {"time", "s"}, {"thrust", "N"}, {{"motors"}}},
+        {"Mass", {"time", "s"}, {"mass", "g"}, {{"rocket"}}}};
+    return d;
+  }
+
+  void build(Stage3& stage) override {
+    stage.start({});
+    auto motors = ballistics::read_rasp(motor_file, "motors.eng");
+    if (!motors.ok()) return stage.fail(motors.error());
+    const double fuel = stage.value("fuel");
+    rocket_ = {};
+    for (ballistics::Motor& motor : *motors) burn_less(stage, motor, fuel);
+    const int stages = stage.count("stages");
+    if (stages == 2)
+      rocket_.stages.push_back({.motor = (*motors)[0],
+                                .dry_mass = 0.025,
+                                .dry_centre = 0.72,
+                                .motor_centre = 0.74,
+                                .separation_delay = 0.1});
+    rocket_.stages.push_back({.motor = (*motors)[1],
+                              .dry_mass = 0.05 + stage.value("payload"),
+                              .dry_centre = 0.34,
+                              .motor_centre = stages == 2 ? 0.6 : 0.74,
+                              .ignition_delay = stages == 2 ? 0.1 : 0.0});
+    rocket_.diameter = 0.025;
+    rocket_.length = 0.78;
+    rocket_.nose_length = 0.1;
+    const double span = stage.value("fins");
+    rocket_.fins = {.count = 4, .root_chord = 0.08, .tip_chord = 0.05, .span = span, .sweep = 0.03, .position = 0.7};
+    rocket_.drag = rocket_.coasting_drag = ballistics::DragCurve(0.55);
+    const double canopy = stage.value("parachute");
+    rocket_.parachute = {.drag_area = 1.5 * pi / 4 * canopy * canopy, .deploy_delay = 0.5};
+    air_ = {.air = environment::AirColumn::uniform(1.225),
+            .wind = environment::WindColumn(Vec3d{stage.value("wind"), 0, 0})};
+    const double tilt = stage.value("tilt");
+    auto flight =
+        ballistics::fly_rocket(rocket_, air_, {.direction = {-sin(tilt), cos(tilt), 0}, .rail_length = 1.2},
+                               ballistics::RocketModel::six_degrees, {.time = 300, .ground = 0, .tolerance = 1e-7});
+    if (!flight.ok()) return stage.fail(flight.error());
+    flight_ = std::move(flight).value();
+    body_ = add_marker(stage, "rocket", geometry::Capsule3{0.3f * float(scale_), 0.3f + 0.025f * float(scale_)}, {},
+                       orange);
+    canopy_ = add_marker(
+        stage, "parachute",
+        geometry::Ellipsoid{{float(scale_ * canopy / 2), float(scale_ * canopy / 5), float(scale_ * canopy / 2)}},
+        {0, -50, 0}, red);
+    booster_ = add_marker(stage, "lower stage",
+                          geometry::Cylinder{0.07f * float(scale_), 0.3f + 0.025f * float(scale_)}, {0, -50, 0}, blue);
+    add_marker(stage, "pad", geometry::Cylinder{0.4f, 5}, {0, 0.4, 0}, dark);
+    if (const auto* separation = flight_->first(RocketEvent::separation)) {
+      const ballistics::Projectile tumbling{ballistics::DragCurve(1.0), 0.08 * 0.03 / 0.035};
+      auto fall =
+          ballistics::fly(tumbling, air_, {separation->position, separation->velocity}, {.time = 100, .ground = 0});
+      if (!fall.ok()) return stage.fail(fall.error());
+      fall_ = std::move(fall).value();
+      dropped_ = separation->time;
+    }
+    const double top = flight_->path.apex().position.y;
+    const Vec3d end = flight_->path.end().position;
+    const double wide = max(0.62 * top, 0.45 * abs(end.x) + 20);
+    stage.set_camera({{0.5 * end.x, 0.5 * top, 2.6 * wide}, {0.5 * end.x, 0.47 * top, 0}});
+  }
+
+  void after_step(Stage3& stage) override {
+    if (!flight_) return;
+    const double t = stage.world().time(), end = flight_->path.duration();
+    const auto point = flight_->path.at(t);
+    const RocketMoment* parachute = flight_->first(RocketEvent::parachute);
+    const bool open = parachute != nullptr && t >= parachute->time;
+    const Vec3d through = point.velocity - air_.wind.at(0);
+    const Vec3d nose = open || length(through) < 1 ? Vec3d{0, 1, 0} : normalize(through);
+    const Vec3d middle = point.position + Vec3d{0, 0.35 * scale_, 0};
+    stage.check(stage.world().set_pose(body_, middle, turn_of_y(nose)));
+    if (open && t < end) {
+      const Vec3d canopy = middle + Vec3d{0, 1.2 * scale_, 0};
+      stage.check(stage.world().set_pose(canopy_, canopy, {}));
+      for (const double side : {-1.0, 1.0})
+        stage.line(middle + Vec3d{0, 0.3 * scale_, 0}, canopy + Vec3d{side * 0.25 * scale_, 0, 0}, pen(dark));
+    } else {
+      stage.check(stage.world().set_pose(canopy_, {0, -50, 0}, {}));
+    }
+    draw_flight(stage, flight_->path, t, pen(orange, 0xc0), 150);
+    if (fall_ && t >= dropped_) {
+      const auto fallen = fall_->at(t - dropped_);
+      stage.check(
+          stage.world().set_pose(booster_, fallen.position + Vec3d{0, 0.5, 0}, turn_of_y({sin(4 * t), cos(4 * t), 0})));
+      draw_flight(stage, *fall_, t - dropped_, pen(blue, 0xa0), 60);
+      if (t - dropped_ < fall_->duration()) stage.sample(0, 1, t, fallen.position.y);
+    } else if (fall_ || rocket_.stages.size() == 2) {
+      stage.check(stage.world().set_pose(booster_, middle - 0.4 * scale_ * nose, turn_of_y(nose)));
+    }
+    const char* name = "on the pad";
+    for (const RocketMoment& moment : flight_->events)
+      if (moment.time <= t) name = ballistics::to_string(moment.event);
+    const double mass = mass_at(t);
+    if (t <= end) {
+      stage.sample(0, 0, t, point.position.y);
+      stage.sample(1, 0, t, length(point.velocity));
+      stage.sample(2, 0, t, thrust(t));
+      stage.sample(3, 0, t, 1000 * mass);
+      if (open) stage.sample(1, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
+    }
+    stage.say(std::string(name) + format(": %.1f s, %.0f m high, %.1f m/s, %.0f g", min(t, end), point.position.y,
+                                         length(point.velocity), 1000 * mass));
+  }
+
+  void expectations(Stage3& stage, std::vector<Expectation>& out) override {
+    auto motors = ballistics::read_rasp(motor_file, "motors.eng");
+    if (!motors.ok() || !flight_) return stage.fail(core::Error{"no flight"});
+    out.push_back({"total impulse of the motor file", "N s", "the certified class C: 5 to 10 N s",
+                   (*motors)[1].curve.total_impulse(), 8.8, 0.3});
+    out.push_back({"sinking speed", "m/s", "√(2 m g/(ρ C_D A))", -flight_->path.end().velocity.y, sink_speed(), 0.02});
+    const RocketMoment *separation = flight_->first(RocketEvent::separation), *apex = flight_->first(RocketEvent::apex);
+    const double first = separation != nullptr ? separation->position.y : 0;
+    out.push_back({"the upper stage goes on", "", "higher at the top than at the separation",
+                   separation != nullptr && apex != nullptr && apex->position.y > 2 * first ? 1.0 : 0.0, 1, 0});
+    out.push_back({"into the wind", "", "the top lies to the left of the pad",
+                   apex != nullptr && apex->position.x < 0 ? 1.0 : 0.0, 1, 0});
+  }
+
+ private:
+  using RocketMoment = ballistics::RocketMoment;
+  static constexpr double scale_ = 12;
+  // Two motors of the 18 mm C class with the shape that black powder gives: a peak as the hollow grain lights, then an
+  // even burn. The impulse (8.8 N s), the peak (14 N), the burn time (1.9 s) and the masses are those of the class as
+  // manufacturers print them.
+  static constexpr std::string_view motor_file =
+      "; two 18 mm motors of class C\n"
+      "C6 18 70 0 0.0108 0.0236 Demo\n"
+      " 0.03 1.0\n 0.08 3.5\n 0.14 8.0\n 0.19 14.0\n 0.23 11.0\n 0.30 6.5\n 0.40 5.0\n 0.55 4.55\n 0.90 4.3\n"
+      " 1.40 4.2\n 1.78 4.2\n 1.84 2.0\n 1.90 0.0\n"
+      "C6 18 70 5 0.0108 0.0240 Demo\n"
+      " 0.03 1.0\n 0.08 3.5\n 0.14 8.0\n 0.19 14.0\n 0.23 11.0\n 0.30 6.5\n 0.40 5.0\n 0.55 4.55\n 0.90 4.3\n"
+      " 1.40 4.2\n 1.78 4.2\n 1.84 2.0\n 1.90 0.0\n";
+
+  /// The grain is shorter: it burns as hard, but not as long.
+  static void burn_less(Stage3& stage, ballistics::Motor& motor, double share) {
+    std::vector<ballistics::ThrustPoint> points = motor.curve.points();
+    for (ballistics::ThrustPoint& point : points) point.time *= share;
+    motor.curve = stage.keep(ballistics::ThrustCurve::from_points(points));
+    motor.mass -= (1 - share) * motor.propellant_mass;
+    motor.propellant_mass *= share;
+  }
+  double mass_at(double t) const {
+    const auto nodes = flight_->path.nodes();
+    std::size_t i = 0;
+    while (i + 1 < nodes.size() && nodes[i + 1].time <= t) ++i;
+    return flight_->masses[i];
+  }
+  double thrust(double t) const {
+    double sum = 0;
+    for (const RocketMoment& moment : flight_->events)
+      if (moment.event == RocketEvent::ignition && moment.time <= t)
+        sum += rocket_.stages[std::size_t(min(moment.stage, int(rocket_.stages.size()) - 1))].motor.curve.thrust(
+            t - moment.time);
+    return sum;
+  }
+  double sink_speed() const {
+    return rocket_.parachute.drag_area > 0
+               ? sqrt(2 * flight_->masses.back() * 9.80665 / (1.225 * rocket_.parachute.drag_area))
+               : 0;
+  }
+
+  ballistics::Rocket rocket_{};
+  ballistics::Conditions air_{};
+  std::optional<ballistics::RocketFlight> flight_;
+  std::optional<ballistics::Trajectory> fall_;
+  double dropped_ = 0;
+  rigid::BodyId body_, canopy_, booster_;
+};
+
+}  // namespace
+
+std::unique_ptr<Demo> make_rocket_launch() { return std::make_unique<RocketLaunch>(); }
+
+}  // namespace carom::host::demo

@@ -1,0 +1,187 @@
+// One throw by six laws: vacuum, linear and quadratic drag, a measured drag curve, spin and wind (chapters 4.4, 6).
+#include "apps/host/demos/ballistics/range.h"
+#include "carom/forces/projectile.h"
+
+namespace carom::host::demo {
+namespace {
+
+class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
+ public:
+  Declaration declaration() const override {
+    Declaration d;
+    d.id = "trajectory-lab";
+    d.title = "Trajectory lab";
+    d.summary =
+        "The same ball thrown by six laws at once: no air, linear drag, quadratic drag, drag by Mach number, spin, "
+        "wind.";
+    d.group = "Ballistics";
+    d.chapter = "6.1 to 6.3, 4.4";
+    d.text =
+        "All six leave alike. What differs is the law of the air.\n\n"
+        "  vacuum  a = g      linear  a = g − (g/v_t) v      quadratic  a = g − (g/v_t²) |v| v\n\n"
+        "v_t is the terminal speed, at which drag carries the weight. The drag coefficient of the fourth ball is that "
+        "of "
+        "the standard projectile G1, which grows threefold at the speed of sound: throw faster than 250 m/s to see "
+        "it part from the third. Spin deflects the fifth by the Magnus force,\n\n"
+        "  F = ½ ρ A C_L v² (ω × v)/|ω × v|,   C_L = 1/(2.32 + 0.4/S),   S = r ω/v\n\n"
+        "and the sixth flies in wind. For v = v_t and 45° the ranges are v_t²/g times 1, .490986 (linear) and .589012 "
+        "(quadratic).";
+    d.duration = 9;
+    d.loop = true;
+    d.camera = {{175, 70, 330}, {175, 42, 0}};
+    d.ground = 0;
+    d.parameters = {
+        {"speed", "Speed v", "m/s", "m/s", "", 10, 500, 1, 60, false},
+        {"elevation", "Elevation", "rad", "deg", "above the horizon", 0.02, 1.55, 0, radians(45), false},
+        {"terminal", "Terminal speed v_t", "m/s", "m/s", "in still air; a baseball has 40, a shell 300", 5, 400, 1, 60,
+         false},
+        {"spin", "Backspin", "rad/s", "rpm", "of a ball with 37 mm radius", -400, 400, 0, 190, false},
+        {"wind", "Wind along", "m/s", "m/s", "positive: from behind", -30, 30, 0.5, -8, false},
+        {"cross", "Wind across", "m/s", "m/s", "positive: toward the viewer", -30, 30, 0.5, 6, false},
+    };
+    d.plots = {
+        {"Side view",
+         {"distance", "m"},
+         {"height", "m"},
+         {{"vacuum"}, {"linear"}, {"quadratic"}, {"G1"}, {"spin"}, {"wind"}, {"closed forms", Series::Style::points}}},
+        {"Speed",
+         {"time", "s"},
+         {"speed", "m/s"},
+         {{"vacuum"}, {"linear"}, {"quadratic"}, {"G1"}, {"spin"}, {"wind"}}}};
+    return d;
+  }
+
+  void build(Stage3& stage) override {
+    stage.start({});
+    speed_ = stage.value("speed");
+    terminal_ = stage.value("terminal");
+    spin_ = stage.value("spin");
+    wind_ = {stage.value("wind"), 0, stage.value("cross")};
+    direction_ = ballistics::direction(stage.value("elevation"));
+    // As much drag as the others where C_D is that of slow balls.
+    g1_ = ballistics::projectile_from_terminal_speed(terminal_, 1.225, g_);
+    const ballistics::DragCurve curve(ballistics::DragFunction::g1);
+    g1_.area_per_mass *= g1_.drag(0.3) / curve(0.3);
+    g1_.drag = curve;
+    double farthest = 1, highest = 1;
+    for (int k = 0; k < laws; ++k) {
+      fly(k);
+      for (const Node& node : paths_[k]) {
+        farthest = max(farthest, node.x.x);
+        highest = max(highest, node.x.y);
+      }
+      const float radius = float(max(0.006 * speed_ * speed_ / g_, 0.5));
+      balls_[k] = add_marker(stage, names[k], geometry::Sphere{min(radius, 6.0f)}, {}, colors[k]);
+    }
+    const double wide = max(0.55 * farthest, 0.9 * highest);
+    stage.set_camera({{0.5 * farthest, 0.55 * highest, 1.75 * wide}, {0.5 * farthest, 0.42 * highest, 0}});
+    closed_forms(stage);
+  }
+
+  void after_step(Stage3& stage) override {
+    const double t = stage.world().time();
+    for (int k = 0; k < laws; ++k) {
+      const std::vector<Node>& path = paths_[k];
+      const std::size_t now = min(std::size_t(t / dt_), path.size() - 1);
+      stage.check(stage.world().set_pose(balls_[k], path[now].x, {}));
+      const std::size_t stride = max<std::size_t>(path.size() / 160, 1);
+      for (std::size_t i = stride; i <= now; i += stride) stage.line(path[i - stride].x, path[i].x, pen(colors[k]));
+      if (now + 1 < path.size()) {
+        stage.sample(0, k, path[now].x.x, path[now].x.y);
+        stage.sample(1, k, t, length(path[now].v));
+      }
+    }
+    stage.say(format("ranges: vacuum %.0f, linear %.0f, quadratic %.0f, G1 %.0f, spin %.0f, wind %.0f m", range(0),
+                     range(1), range(2), range(3), range(4), range(5)));
+  }
+
+  void expectations(Stage3&, std::vector<Expectation>& out) override {
+    const double unit = terminal_ * terminal_ / g_;
+    out.push_back({"range in vacuum", "v²/g", "ch. 6.1: R = v² sin 2θ/g", range(0) / unit, 1, 1e-5});
+    out.push_back(
+        {"range with linear drag", "v²/g", "closed form with Lambert's W", range(1) / unit, .490986359, 1e-5});
+    out.push_back({"range with quadratic drag", "v²/g", "integrated to 18 digits", range(2) / unit, .589011800, 1e-5});
+    out.push_back(
+        {"time with quadratic drag", "v/g", "integrated to 18 digits", flown_[2] * g_ / terminal_, 1.204724756, 1e-5});
+  }
+
+ private:
+  static constexpr int laws = 6;
+  static constexpr const char* names[laws] = {"vacuum", "linear", "quadratic", "G1", "spin", "wind"};
+  static constexpr std::uint32_t colors[laws] = {blue, teal, orange, violet, gold, red};
+  static constexpr double g_ = 9.80665, dt_ = 1.0 / 240, radius_ = 0.0366, slow_drag_ = 0.35;
+  struct Node {
+    Vec3d x, v;
+  };
+
+  Vec3d acceleration(int law, Vec3d x, Vec3d v) const {
+    Vec3d a{0, -g_, 0};
+    const double k = g_ / (terminal_ * terminal_);
+    const Vec3d w = law == 5 ? v - wind_ : v;
+    if (law == 1) a -= (g_ / terminal_) * v;
+    if (law == 2 || law >= 4) a -= (k * length(w)) * w;
+    if (law == 3) {
+      const ballistics::Conditions still{.air = environment::AirColumn::uniform(1.225)};
+      a = ballistics::acceleration(g1_, still, {x, v});
+    }
+    if (law == 4 && spin_ != 0) {
+      // Backspin turns about +z; the force is along ω × v.
+      const double s = radius_ * abs(spin_) / length(v), lift = 1 / (2.32 + 0.4 / s);
+      const Vec3d across = cross(Vec3d{0, 0, spin_ > 0 ? 1.0 : -1.0}, v) / length(v);
+      a += (k * lift / slow_drag_ * dot(v, v)) * across;
+    }
+    return a;
+  }
+
+  void fly(int law) {
+    std::vector<Node>& path = paths_[law];
+    path.clear();
+    Node n{{}, speed_ * direction_};
+    path.push_back(n);
+    for (int i = 0; i < 240 * 110; ++i) {
+      const Vec3d k1 = acceleration(law, n.x, n.v), v2 = n.v + (dt_ / 2) * k1;
+      const Vec3d k2 = acceleration(law, n.x, v2), v3 = n.v + (dt_ / 2) * k2;
+      const Vec3d k3 = acceleration(law, n.x, v3), v4 = n.v + dt_ * k3;
+      const Vec3d k4 = acceleration(law, n.x, v4);
+      const Node before = n;
+      n.x += (dt_ / 6) * (before.v + 2.0 * (v2 + v3) + v4);
+      n.v += (dt_ / 6) * (k1 + 2.0 * (k2 + k3) + k4);
+      if (n.x.y < 0) {  // where it met the ground: the parabola through this step
+        const double vy = before.v.y, ay = (n.v.y - vy) / dt_;
+        const double s = (-vy - sqrt(max(vy * vy - 2 * ay * before.x.y, 0.0))) / ay;
+        n.x = before.x + s * before.v + (0.5 * s * s / dt_) * (n.v - before.v);
+        n.v = before.v + (s / dt_) * (n.v - before.v);
+        flown_[law] = i * dt_ + s;
+        path.push_back(n);
+        return;
+      }
+      path.push_back(n);
+    }
+    flown_[law] = 110;
+  }
+  double range(int law) const { return paths_[law].empty() ? 0 : paths_[law].back().x.x; }
+
+  void closed_forms(Stage3& stage) const {
+    const forces::FlightPoint start{{}, speed_ * direction_};
+    const forces::LinearDragFlight linear{.mass = 1, .coefficient = g_ / terminal_, .gravity = {0, -g_, 0}};
+    for (int i = 0; i <= 24; ++i) {
+      const Vec3d a = forces::parabola(start, {0, -g_, 0}, flown_[0] * i / 24).position;
+      const Vec3d b = forces::linear_drag_flight(linear, start, flown_[1] * i / 24).position;
+      stage.sample(0, 6, a.x, a.y);
+      stage.sample(0, 6, b.x, b.y);
+    }
+  }
+
+  rigid::BodyId balls_[laws];
+  std::vector<Node> paths_[laws];
+  double flown_[laws] = {};
+  double speed_ = 60, terminal_ = 60, spin_ = 0;
+  Vec3d wind_{}, direction_{};
+  ballistics::Projectile g1_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Demo> make_trajectory_lab() { return std::make_unique<TrajectoryLab>(); }
+
+}  // namespace carom::host::demo
