@@ -54,14 +54,11 @@ class BallisticPendulum final : public Repeatable<BallisticPendulum, Demo3> {
     frame.type = rigid::BodyType::fixed;
     frame.name = "frame";
     frame.position = {0, top + 0.05, 0};
-    rigid::ShapeDef<Dim3> beam, post_near, post_far;
-    post_near.local.p = {0, -float(top) / 2, 0.5f};
+    rigid::ShapeDef<Dim3> beam, post_far;
+    beam.local.p = {0, 0, -0.22f};
     post_far.local.p = {0, -float(top) / 2, -0.5f};
     const float half = float(top) / 2;
-    stage.add(frame,
-              {{geometry::Box{{0.06f, 0.05f, 0.56f}}, beam},
-               {geometry::Box{{0.05f, half, 0.05f}}, post_near},
-               {geometry::Box{{0.05f, half, 0.05f}}, post_far}},
+    stage.add(frame, {{geometry::Box{{0.06f, 0.05f, 0.33f}}, beam}, {geometry::Box{{0.05f, half, 0.05f}}, post_far}},
               dark);
     rigid::BodyDef<Dim3> body;
     body.name = "block";
@@ -89,7 +86,7 @@ class BallisticPendulum final : public Repeatable<BallisticPendulum, Demo3> {
       const double m = stage.value("bullet");
       mass_ = m;
       speed_ = stage.value("speed");
-      batch_.add({{-2.25, rest_.y, 0}, {speed_, 0, 0}}, {.mass = m, .frontal_area = 5e-5});
+      batch_.add({{-2.25, rest_.y, 0}, {speed_, 0, 0}}, {.area_per_mass = 0, .mass = m, .frontal_area = 5e-5});
       shot_time_ = stage.world().time();
       highest_ = 0;
       struck_ = false;
@@ -110,7 +107,6 @@ class BallisticPendulum final : public Repeatable<BallisticPendulum, Demo3> {
   void after_step(Stage3& stage) override {
     const rigid::BodyState<Dim3> block = stage.at(block_);
     const double t = stage.world().time() - shot_time_, height = block.center_of_mass.y - rest_.y;
-    stage.line(Vec3d{0, 2.2, 0}, block.center_of_mass, pen(steel));
     for (const ballistics::BatchHit& hit : hits_.hits()) {
       if (struck_) break;
       struck_ = true;

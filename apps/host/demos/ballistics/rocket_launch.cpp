@@ -25,7 +25,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
         "nose toward the air that meets it, with the normal force and centre of pressure of Barrowman's equations, so "
         "that it flies into the wind. At the top the parachute opens; then it sinks at √(2 m g/(ρ C_D A)). The rocket "
         "is "
-        "drawn twelve times its size.";
+        "drawn thirty times its size.";
     d.duration = 30;
     d.camera = {{0, 110, 330}, {0, 110, 0}};
     d.ground = 0;
@@ -36,7 +36,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
         {"wind", "Wind", "m/s", "m/s", "from the left", -10, 10, 0.5, 3, false},
         {"tilt", "Tilt of the rail", "rad", "deg", "to the left", -0.5, 0.5, 0, 0, false},
         {"fins", "Span of the fins", "m", "mm", "", 0.02, 0.12, 0, 0.06, false},
-        {"parachute", "Diameter of the parachute", "m", "cm", "0: none", 0, 1.2, 0, 0.5, false},
+        {"parachute", "Diameter of the parachute", "m", "cm", "0: none", 0, 1.2, 0, 0.4, false},
     };
     d.plots = {
         {"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
@@ -98,10 +98,11 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       fall_ = std::move(fall).value();
       dropped_ = separation->time;
     }
-    const double top = flight_->path.apex().position.y;
-    const Vec3d end = flight_->path.end().position;
-    const double wide = max(0.62 * top, 0.45 * abs(end.x) + 20);
-    stage.set_camera({{0.5 * end.x, 0.5 * top, 2.6 * wide}, {0.5 * end.x, 0.47 * top, 0}});
+    const RocketMoment* apex = flight_->first(RocketEvent::apex);
+    const double top = apex != nullptr ? apex->position.y : 50;
+    // Where it drifts in half a minute is seen.
+    const double middle = 0.5 * flight_->path.at(30).position.x, wide = max(0.62 * top, 0.6 * abs(middle) + 20);
+    stage.set_camera({{middle, 0.5 * top, 2.5 * wide}, {middle, 0.47 * top, 0}});
   }
 
   void after_step(Stage3& stage) override {
@@ -163,7 +164,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
 
  private:
   using RocketMoment = ballistics::RocketMoment;
-  static constexpr double scale_ = 12;
+  static constexpr double scale_ = 30;
   // Two motors of the 18 mm C class with the shape that black powder gives: a peak as the hollow grain lights, then an
   // even burn. The impulse (8.8 N s), the peak (14 N), the burn time (1.9 s) and the masses are those of the class as
   // manufacturers print them.

@@ -32,7 +32,7 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
     d.ground = 0;
     d.parameters = {
         {"speed", "Speed v", "m/s", "m/s", "", 10, 500, 1, 60, false},
-        {"elevation", "Elevation", "rad", "deg", "above the horizon", 0.02, 1.55, 0, radians(45), false},
+        {"elevation", "Elevation", "rad", "deg", "above the horizon", 0.02, 1.55, 0, radians(45.0), false},
         {"terminal", "Terminal speed v_t", "m/s", "m/s", "in still air; a baseball has 40, a shell 300", 5, 400, 1, 60,
          false},
         {"spin", "Backspin", "rad/s", "rpm", "of a ball with 37 mm radius", -400, 400, 0, 190, false},

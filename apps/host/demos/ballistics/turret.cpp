@@ -29,11 +29,11 @@ class Turret final : public Repeatable<Turret, Demo3> {
         "lets "
         "fly by the same drag curve. Double the range, or let the muzzle speed fall, to see the arcs meet and vanish.";
     d.duration = 24;
-    d.camera = {{-150, 170, 620}, {330, 90, -60}};
+    d.camera = {{-60, 230, 640}, {250, 150, -40}};
     d.ground = 0;
     d.parameters = {
-        {"speed", "Muzzle speed", "m/s", "m/s", "", 40, 400, 5, 150, true},
-        {"terminal", "Terminal speed of the shell", "m/s", "m/s", "small: much drag", 40, 400, 5, 140, false},
+        {"speed", "Muzzle speed", "m/s", "m/s", "", 40, 400, 5, 110, true},
+        {"terminal", "Terminal speed of the shell", "m/s", "m/s", "small: much drag", 40, 400, 5, 110, false},
         {"wind", "Wind across", "m/s", "m/s", "", -20, 20, 0.5, 8, false},
         {"range", "Distance of the target", "m", "m", "of the middle of its path", 100, 1500, 10, 420, true},
         {"pace", "Speed of the target", "m/s", "m/s", "at most", 0, 60, 1, 30, false},
