@@ -481,6 +481,7 @@ bool build_world(Reader& reader, const Scene& scene, const InstantiateOptions& o
   out.kind = Kind::rigid;
   out.dimension = scene.dimension;
   out.dt = reader.number(o, "step", 1.0 / 60);
+  reader.step = out.dt;
   out.duration = reader.number(o, "duration", 10);
   return scene.dimension == 2 ? build<Dim2>(reader, scene, o, options, out)
                               : build<Dim3>(reader, scene, o, options, out);
@@ -489,6 +490,7 @@ bool build_world(Reader& reader, const Scene& scene, const InstantiateOptions& o
 bool update_world(Reader& reader, const Scene& scene, SceneWorld& world) {
   Object o;
   if (!reader.open(scene.document->main(), "", *tables().scene, o)) return false;
+  reader.step = world.dt;
   return scene.dimension == 2 ? update<Dim2>(reader, scene, o, world) : update<Dim3>(reader, scene, o, world);
 }
 

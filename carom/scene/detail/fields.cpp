@@ -17,11 +17,12 @@ constexpr std::string_view joint_types[] = {"distance",    "ball",    "hinge",  
                                             "cylindrical", "planar",  "universal", "wheel",  "path"};
 constexpr std::string_view joint_solvers[] = {"automatic", "iterative", "direct"};
 constexpr std::string_view effector_types[] = {
-    "spherical_gravity", "linear_drag",   "quadratic_drag",       "wind",         "spring",
-    "buoyancy",          "thrust",        "radial_field",         "vortex_field", "body_drag",
-    "magnus_lift",       "turning_frame", "electromagnetic_field"};
+    "spherical_gravity", "linear_drag",   "quadratic_drag",        "wind",         "spring",
+    "buoyancy",          "thrust",        "radial_field",          "vortex_field", "body_drag",
+    "magnus_lift",       "turning_frame", "electromagnetic_field", "projectile"};
 constexpr std::string_view drag_laws[] = {"constant", "sphere", "cylinder", "disc", "by_reynolds", "by_mach"};
 constexpr std::string_view lift_balls[] = {"rough_ball", "baseball", "tennis_ball"};
+constexpr std::string_view drag_functions[] = {"g1", "g2", "g5", "g6", "g7", "g8", "gi", "gs", "ra4"};
 constexpr std::string_view series_styles[] = {"line", "points"};
 constexpr std::string_view earth_models[] = {"flat", "round", "wgs84"};
 constexpr std::string_view gravity_models[] = {"uniform", "inverse_square"};
@@ -331,8 +332,8 @@ constexpr Field effector_fields[] = {
     {"minimum_radius", T::quantity, M::length, "spherical gravity"},
     {"coefficient", T::quantity, M::damping, "linear drag"},
     {"angular_coefficient", T::quantity, M::count_, "linear drag: N*m*s; quadratic drag: N*m*s^2"},
-    {"density", T::quantity, M::density, "of the medium"},
-    {"drag_coefficient", T::quantity, M::plain, "quadratic drag; body drag whose law is constant"},
+    {"density", T::quantity, M::density, "of the medium; projectile: the standard atmosphere where absent"},
+    {"drag_coefficient", T::quantity, M::plain, "quadratic drag, projectile; body drag whose law is constant"},
     {"area", T::quantity, M::area, "quadratic drag; body drag, that of a disc of its diameter unless given"},
     {"point", T::vector, M::length, "quadratic and body drag and thrust, in the body"},
     {"law", T::choice, M::plain, "body drag, sphere unless given", nullptr, drag_laws},
@@ -353,7 +354,7 @@ constexpr Field effector_fields[] = {
     {"magnetic", T::vector, M::flux_density, "electromagnetic field; a number in the plane"},
     {"added_mass", T::vector, M::plain, "buoyancy: shares of the displaced mass along the body's axes"},
     {"added_inertia", T::vector, M::area, "buoyancy: the same for turning; a number in the plane"},
-    {"velocity", T::vector, M::speed, "wind"},
+    {"velocity", T::vector, M::speed, "wind; projectile: of the air"},
     {"body_a", T::name, M::plain, "spring"},
     {"body_b", T::name, M::plain, "spring; the world where absent"},
     {"point_a", T::vector, M::length, "spring, in body A"},
@@ -375,6 +376,13 @@ constexpr Field effector_fields[] = {
     {"circulation", T::quantity, M::circulation, "vortex field"},
     {"core_radius", T::quantity, M::length, "vortex field"},
     {"rate", T::quantity, M::rate, "vortex field"},
+    {"drag_function", T::choice, M::plain, "projectile", nullptr, drag_functions},
+    {"ballistic_coefficient", T::quantity, M::plain, "projectile, lb/in^2; or its diameter and mass"},
+    {"diameter", T::quantity, M::length, "projectile: of its frontal area"},
+    {"mass", T::quantity, M::mass, "projectile"},
+    {"form_factor", T::quantity, M::plain, "projectile: multiplies the drag"},
+    {"latitude", T::quantity, M::angle, "projectile: where the Earth turns below it; none where absent"},
+    {"bearing", T::quantity, M::angle, "projectile: where x points, from north over east"},
 };
 const ObjectKind effector_kind{"effector", "A force that acts on its own every step.", effector_fields};
 

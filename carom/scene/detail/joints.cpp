@@ -1,6 +1,7 @@
 #include "carom/scene/detail/joints.h"
 
 #include "carom/environment/frame.h"
+#include "carom/scene/detail/projectile.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -492,6 +493,8 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       e.magnetic = math::Vec3f(reader.angular(o, "magnetic"));
       return e;
     }
+    case 13:
+      return read_projectile<D>(reader, o, target.body);
     default: {
       VortexField<D> e{target};
       e.center = position_of(reader.vector(o, "center"), d);

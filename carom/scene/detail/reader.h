@@ -37,6 +37,7 @@ class Reader {
   explicit Reader(const SceneDocument& document) : document_(document) {}
 
   int dimension = 3;
+  double step = 1.0 / 60;  ///< s, the scene's
   struct Variable {
     std::string name;
     double value = 0;
