@@ -1,0 +1,5 @@
+#include "carom/particles/detail/fluid_face.inl"
+
+namespace carom::particles {
+template class Fluid<rigid::Dim3>;
+}  // namespace carom::particles
