@@ -1,9 +1,10 @@
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/fluids/fluids.h"
 
 namespace carom::host::demo {
 
 std::span<const DemoFactory> fluid_demos() {
-  return {};  // static constexpr DemoFactory list[] = {make_…}; return list;
+  static constexpr DemoFactory list[] = {make_fluid_tank, make_dam_break, make_fountain};
+  return list;
 }
 
 }  // namespace carom::host::demo
