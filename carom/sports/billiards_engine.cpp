@@ -39,27 +39,21 @@ core::Status Billiards::check_place(int ball, Vec3d p) const {
     return core::Error{core::text("billiards: ball ", ball, " at (", p.x, ", ", p.z, ") m is not on the bed")};
   if (low && table_.clearance(seen) < nose_reach_ - 1e-9)
     return core::Error{core::text("billiards: ball ", ball, " at (", p.x, ", ", p.z, ") m lies in a cushion")};
-  for (int k = 0; k < balls(); ++k) {
-    if (k == ball || !in_play(motion_[std::size_t(k)].phase)) continue;
-    if (distance(motion_[std::size_t(k)].position_at(time_), p) < 2 * r - 1e-9)
-      return core::Error{core::text("billiards: balls ", math::min(k, ball), " and ", math::max(k, ball), " overlap")};
-  }
   return {};
 }
 
 core::Status Billiards::place(std::span<const Vec2d> balls) {
   const std::size_t n = balls.size();
   if (n < 1 || n > 64) return core::Error{core::text("billiards: ", core::refused("number of balls", n, "1 to 64"))};
-  std::vector<BilliardMotion> before = std::move(motion_);
-  motion_.clear();
+  const double r = physics_.ball.radius;
   for (std::size_t i = 0; i < n; ++i) {
-    const BilliardState s{{balls[i].x, physics_.ball.radius, balls[i].y}};
-    if (core::Status good = check_place(int(i), s.position); !good) {
-      motion_ = std::move(before);
-      return good;
-    }
-    motion_.push_back(motion_from(s, physics_, 0));
+    if (core::Status good = check_place(int(i), {balls[i].x, r, balls[i].y}); !good) return good;
+    for (std::size_t k = 0; k < i; ++k)
+      if (distance(balls[i], balls[k]) < 2 * r - 1e-9)
+        return core::Error{core::text("billiards: balls ", k, " and ", i, " overlap")};
   }
+  motion_.clear();
+  for (const Vec2d ball : balls) motion_.push_back(motion_from({{ball.x, r, ball.y}}, physics_, 0));
   time_ = 0;
   count_ = 0;
   events_.clear();
@@ -89,8 +83,14 @@ core::Status Billiards::set_state(int ball, const BilliardState& state) {
   if (!is_finite(state.velocity) || !is_finite(state.angular_velocity) || length_squared(state.velocity) > 1e8 ||
       length_squared(state.angular_velocity) > 1e12)
     return core::Error{core::text("billiards: the velocity or spin of ball ", ball, " is not finite or too great")};
-  if (in_play(state.phase))
+  if (in_play(state.phase)) {
     if (const core::Status good = check_place(ball, state.position); !good) return good;
+    for (int k = 0; k < balls(); ++k)
+      if (k != ball && in_play(motion_[std::size_t(k)].phase) &&
+          distance(motion_[std::size_t(k)].position_at(time_), state.position) < 2 * physics_.ball.radius - 1e-9)
+        return core::Error{
+            core::text("billiards: balls ", math::min(k, ball), " and ", math::max(k, ball), " overlap")};
+  }
   BilliardState s = state;
   if (s.position.y <= physics_.ball.radius && s.velocity.y < 0) drop_on_bed(s, physics_);
   if (s.phase != BallPhase::airborne && s.position.y <= physics_.ball.radius + 1e-9) {
@@ -139,6 +139,14 @@ void Billiards::apply(int ball, const BilliardState& state) {
 void Billiards::note(BilliardEvent::Kind kind, int ball, int other, double speed) {
   ++count_;
   if (options_.record) events_.push_back({time_, kind, ball, other, speed});
+}
+
+void Billiards::forget() {
+  events_.clear();
+  for (std::size_t i = 0; i < history_.size(); ++i) {
+    history_[i].clear();
+    if (options_.record) history_[i].push_back(motion_[i]);
+  }
 }
 
 double Billiards::next_event_time() const {

@@ -58,6 +58,9 @@ class CAROM_API Billiards {
   /// On to `until` (s), or to where everything rests. Error: more events than the options allow.
   core::Status run(double until = never);
 
+  /// Drops the record of what has been: states are then known from now on.
+  void forget();
+
   int balls() const { return int(motion_.size()); }
   double time() const { return time_; }
   /// The next thing that happens; `never`: all is at rest.
