@@ -13,6 +13,8 @@ core::Status check(const ContactDef& d) {
     return detail::bad("contacts", "restitution", d.restitution, "0 to 1");
   if (!(d.friction >= 0 && math::is_finite(d.friction)))
     return detail::bad("contacts", "friction", d.friction, "a finite number of at least 0");
+  if (!(d.rolling >= 0 && math::is_finite(d.rolling)))
+    return detail::bad("contacts", "rolling", d.rolling, "a finite number of at least 0");
   if (d.iterations < 1 || d.iterations > 64) return detail::bad("contacts", "iterations", d.iterations, "1 to 64");
   if (d.substeps < 1 || d.substeps > 64) return detail::bad("contacts", "substeps", d.substeps, "1 to 64");
   return {};
@@ -36,6 +38,7 @@ void ContactSolver::reserve(std::size_t grains) {
   index_of_slot_.reserve(grains);
   cell_of_.reserve(grains);
   id_.reserve(grains);
+  near_surface_.reserve(grains);
   memory_ids_.reserve(grains);
   memory_start_.reserve(grains + 1);
   cell_start_.reserve(8 * grains + 4097);
@@ -101,11 +104,14 @@ void ContactSolver::begin(const Pile& pile, const ContactDef& definition) {
     const float scale = pile.scale[i];
     grains_[s] = {{pile.x[0][i], pile.x[1][i], pile.x[2][i]},
                   {pile.v[0][i], pile.v[1][i], pile.v[2][i]},
+                  {pile.w[0][i], pile.w[1][i], pile.w[2][i]},
                   1 / (pile.mass * scale * scale * scale),
-                  pile.radius * scale};
+                  pile.radius * scale,
+                  2.5f / (pile.mass * scale * scale * scale * math::square(pile.radius * scale))};
     id_[s] = pile.ids[i];
   }
   contacts_.clear();
+  near_surface_.assign(count, 0);
   find_pairs(pile, definition);
   pairs_ = contacts_.size();
 }
@@ -130,6 +136,7 @@ void ContactSolver::find_pairs(const Pile& pile, const ContactDef& definition) {
                            .normal = n,
                            .offset = 0,
                            .u = {},
+                           .turn = {},
                            .inverse = 1 / (ga.inverse_mass + gb.inverse_mass),
                            .friction = definition.friction,
                            .restitution = definition.restitution,
@@ -163,16 +170,18 @@ void ContactSolver::find_pairs(const Pile& pile, const ContactDef& definition) {
       }
 }
 
-void ContactSolver::add_surface(int index, int surface, float gap, Vec3f normal, Vec3f u, float friction,
+void ContactSolver::add_surface(int index, int surface, float gap, Vec3f normal, Vec3f u, Vec3f turn, float friction,
                                 float restitution) {
   const std::int32_t slot = slots_[std::size_t(index)];
   const Grain& g = grains_[std::size_t(slot)];
   const Vec3f toward = -normal;
+  near_surface_[std::size_t(slot)] = 1;
   contacts_.push_back({.a = slot,
                        .b = -1 - surface,
                        .normal = toward,
                        .offset = gap + math::dot(toward, g.x),
                        .u = u,
+                       .turn = turn,
                        .inverse = 1 / g.inverse_mass,
                        .friction = friction,
                        .restitution = restitution,
@@ -196,9 +205,14 @@ void ContactSolver::solve_contact(std::size_t i, float h, float t, bool push_out
   Contact& c = contacts_[i];
   Vec3f n{};
   const float gap = gap_of(c, t, n);
-  Grain& a = grains_[std::size_t(c.a)];
-  Grain* const b = c.b >= 0 ? &grains_[std::size_t(c.b)] : nullptr;
-  const Vec3f v = (b != nullptr ? b->v : c.u) - a.v;
+  const Grain& a = grains_[std::size_t(c.a)];
+  const Grain* const b = c.b >= 0 ? &grains_[std::size_t(c.b)] : nullptr;
+  const Vec3f apart = (b != nullptr ? b->v : c.u) - a.v;
+  const float along = math::dot(n, apart);
+  if (gap > 0 && c.push == 0 && along + gap / h >= 0) return;  // most of them: near, but not closing
+  // Of what touches: the spins carry the surfaces along.
+  const Vec3f carried = a.radius * a.w + (b != nullptr ? b->radius * b->w : Vec3f{});
+  const Vec3f v = apart - math::cross(carried, n);
   float bias = 0, stiff = 1, leak = 0;
   if (gap > 0) {
     bias = gap / h;
@@ -207,24 +221,40 @@ void ContactSolver::solve_contact(std::size_t i, float h, float t, bool push_out
     stiff = soft_.mass;
     leak = soft_.leak;
   }
-  const float along = math::dot(n, v), before = c.push;
+  const float before = c.push;
   c.push = math::max(c.push - (along + bias) * c.inverse * stiff - leak * c.push, 0.0f);
   c.most = math::max(c.most, c.push);
-  Vec3f impulse = (c.push - before) * n;
-  const Vec3f grip_before = c.grip;
+  const Vec3f grip_before = c.grip, roll_before = c.roll;
   if (c.push > 0) {
-    c.grip -= c.inverse * (v - along * n);
+    // A ball gives way to a force on its rim 7/2 times as easily as to one on its middle.
+    c.grip -= (c.inverse * (2.0f / 7)) * (v - along * n);
     const float length = math::length(c.grip), limit = c.friction * c.push;
     if (length > limit) c.grip *= limit / length;
+    if (rolling_ > 0) {
+      const Vec3f turning = (b != nullptr ? b->w : c.turn) - a.w;
+      c.roll -= turning / (a.inverse_inertia + (b != nullptr ? b->inverse_inertia : 0.0f));
+      const float size = math::length(c.roll), most = rolling_ * a.radius * c.push;
+      if (size > most) c.roll *= most / size;
+    }
   } else {
     c.grip = {};
+    c.roll = {};
   }
-  impulse += c.grip - grip_before;
+  give(c, n, (c.push - before) * n, c.grip - grip_before, c.roll - roll_before, i);
+}
+
+void ContactSolver::give(const Contact& c, Vec3f n, Vec3f push, Vec3f grip, Vec3f roll, std::size_t i) {
+  Grain& a = grains_[std::size_t(c.a)];
+  const Vec3f impulse = push + grip, about = math::cross(n, grip);
   a.v -= a.inverse_mass * impulse;
-  if (b != nullptr)
-    b->v += b->inverse_mass * impulse;
-  else
+  a.w -= a.inverse_inertia * (a.radius * about + roll);
+  if (c.b < 0) {
     given_[i] += impulse;
+    return;
+  }
+  Grain& b = grains_[std::size_t(c.b)];
+  b.v += b.inverse_mass * impulse;
+  b.w -= b.inverse_inertia * (b.radius * about - roll);
 }
 
 void ContactSolver::solve_up(float h, float t, bool push_out) {
@@ -264,6 +294,7 @@ void ContactSolver::solve(const ContactDef& definition, std::span<const Vec3f> g
   // A stiff, overdamped spring, as fast as the substep allows (E. Catto, Soft constraints, GDC 2011).
   const float turn = 1.9634954f, a1 = 2 * damping + turn, a2 = turn * a1;
   soft_ = {turn / (h * a1), a2 / (1 + a2), 1 / (1 + a2)};
+  rolling_ = definition.rolling;
   float t = 0;
   for (int sub = 0; sub < definition.substeps; ++sub) {
     for (std::size_t s = 0; s < grains_.size(); ++s) grains_[s].v += part * gained[std::size_t(index_of_slot_[s])];
@@ -273,12 +304,7 @@ void ContactSolver::solve(const ContactDef& definition, std::span<const Vec3f> g
       Vec3f n{};
       gap_of(c, t, n);
       c.grip -= math::dot(c.grip, n) * n;
-      const Vec3f impulse = c.push * n + c.grip;
-      grains_[std::size_t(c.a)].v -= grains_[std::size_t(c.a)].inverse_mass * impulse;
-      if (c.b >= 0)
-        grains_[std::size_t(c.b)].v += grains_[std::size_t(c.b)].inverse_mass * impulse;
-      else
-        given_[i] += impulse;
+      give(c, n, c.push * n, c.grip, c.roll, i);
     }
     for (int k = 0; k < definition.iterations; ++k) {
       solve_down(h, t, true);
@@ -306,6 +332,7 @@ void ContactSolver::recall() {
       if (m.other != other || m.surface != (c.b < 0)) continue;
       c.push = m.push;
       c.grip = swapped ? -m.grip : m.grip;
+      c.roll = swapped ? -m.roll : m.roll;
       break;
     }
   }
@@ -332,7 +359,8 @@ void ContactSolver::finish() {
     if (!(c.push > 0)) continue;
     const std::size_t owner = owner_of(c, swapped);
     const std::uint32_t other = c.b < 0 ? std::uint32_t(-1 - c.b) : id_[std::size_t(swapped ? c.a : c.b)];
-    memory_[std::size_t(fill_[owner]++)] = {other, c.b < 0, c.push, swapped ? -c.grip : c.grip};
+    memory_[std::size_t(fill_[owner]++)] = {other, c.b < 0, c.push, swapped ? -c.grip : c.grip,
+                                            swapped ? -c.roll : c.roll};
   }
 }
 

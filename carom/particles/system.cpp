@@ -68,6 +68,7 @@ ParticleSystem::ParticleSystem(const SystemDef& definition) : definition_(defini
   dead_.resize(room);
   if (definition.report_deaths) deaths_.reserve(std::size_t(definition.capacity));
   if (definition.contacts.enabled) {
+    for (detail::AlignedFloats& array : spin_) array = detail::AlignedFloats(room);
     solver_.reserve(std::size_t(definition.capacity));
     gained_.resize(std::size_t(definition.capacity));
   }
@@ -93,6 +94,8 @@ bool ParticleSystem::push(Vec3d position, Vec3d velocity, float birth, float lif
   arrays_[7][i] = birth + lifetime;
   arrays_[8][i] = scale;
   arrays_[9][i] = 0;
+  if (definition_.contacts.enabled)
+    for (detail::AlignedFloats& array : spin_) array[i] = 0;
   scaled_ = scaled_ || scale != 1;
   ids_[i] = next_id_++;
   return true;
@@ -143,6 +146,11 @@ Vec3d ParticleSystem::velocity(int i) const {
   const std::size_t k = std::size_t(i);
   return {arrays_[3][k], arrays_[4][k], arrays_[5][k]};
 }
+Vec3d ParticleSystem::spin(int i) const {
+  if (!definition_.contacts.enabled) return {};
+  const std::size_t k = std::size_t(i);
+  return {spin_[0][k], spin_[1][k], spin_[2][k]};
+}
 float ParticleSystem::age(int i) const { return float(time_ - epoch_) - arrays_[6][std::size_t(i)]; }
 float ParticleSystem::age_part(int i) const {
   const std::size_t k = std::size_t(i);
@@ -184,6 +192,8 @@ std::uint64_t ParticleSystem::state_hash() const {
   hash.add(count_).add(time_);
   for (int k = 0; k < 9; ++k)
     for (int i = 0; i < count_; ++i) hash.add(arrays_[k][std::size_t(i)]);
+  for (const detail::AlignedFloats& array : spin_)
+    for (std::size_t i = 0; i < math::min(array.size(), std::size_t(count_)); ++i) hash.add(array[i]);
   for (int i = 0; i < count_; ++i) hash.add(ids_[std::size_t(i)]);
   return hash.digest();
 }
