@@ -27,7 +27,7 @@ class SparkBurst final : public Repeatable<SparkBurst, Demo3> {
     d.ground = 0;
     d.parameters = {
         {"count", "Sparks", "", "", "", 50, 3000, 50, 1200, false},
-        {"speed", "Speed of the sparks w", "m/s", "m/s", "", 2, 30, 0, 14, false},
+        {"speed", "Speed of the sparks w", "m/s", "m/s", "", 2, 30, 0, 10, false},
         {"climb", "Speed of the rocket", "m/s", "m/s", "upward when it bursts", -10, 30, 0, 8, false},
         {"drag", "Drag", "", "", "a factor: 0 is a vacuum", 0, 3, 0, 0, false},
         {"wind", "Wind", "m/s", "m/s", "felt with drag only", 0, 20, 0, 5, false},
@@ -36,7 +36,7 @@ class SparkBurst final : public Repeatable<SparkBurst, Demo3> {
         {"Distance from the falling centre",
          {"time", "s"},
          {"distance", "m"},
-         {{"farthest spark"}, {"nearest spark"}, {"w t", Series::Style::points}}},
+         {{"farthest spark"}, {"nearest spark"}, {"w t"}}},
         {"Momentum of the burst beside gravity's", {"time", "s"}, {"momentum", "kg·m/s"}, {{"up"}, {"to the right"}}}};
     return d;
   }
@@ -51,7 +51,7 @@ class SparkBurst final : public Repeatable<SparkBurst, Demo3> {
     d.slowest_hit = 3;
     d.drag = {.coefficient = 0.02f * stage.valuef("drag")};
     d.color_over_age = stage.keep(particles::Gradient::make({{0, 0xfff4c0}, {0.3f, gold}, {0.7f, orange}, {1, red}}));
-    d.size_over_age = stage.keep(particles::Curve::make({{0, 1}, {0.7f, 1}, {1, 0.3f}}));
+    d.size_over_age = stage.keep(particles::Curve::make({{0, 2.4f}, {0.7f, 2.2f}, {1, 0.8f}}));
     sparks_ = make_system(stage, d);
     d.capacity = 4000;
     d.radius = 0.05f;
@@ -74,7 +74,6 @@ class SparkBurst final : public Repeatable<SparkBurst, Demo3> {
     burst_.speed = stage.value("speed");
     burst_.seed = 7;
     stage.keep(sparks_->burst(burst_, {1.9f, 2.4f}));
-    for (int k = 1; k <= 22; ++k) stage.sample(0, 2, 0.1 * k, burst_.speed * 0.1 * k);
   }
 
   core::Status step(Stage3& stage) override {
@@ -106,6 +105,7 @@ class SparkBurst final : public Repeatable<SparkBurst, Demo3> {
       nearest = min(nearest, r);
       farthest = max(farthest, r);
     }
+    stage.sample(0, 2, t, burst_.speed * t);
     if (sparks_->size() > 0) {
       stage.sample(0, 0, t, farthest);
       stage.sample(0, 1, t, nearest);

@@ -38,10 +38,7 @@ class Snow final : public Repeatable<Snow, Demo3> {
         {"sinks", "Speed of fall v_t", "m/s", "m/s", "of a flake in still air", 0.3, 4, 0, 1.4, false},
         {"rate", "Flakes a second", "1/s", "1/s", "", 50, 1200, 50, 500, true},
     };
-    d.plots = {{"Mean velocity of the flakes",
-                {"time", "s"},
-                {"speed", "m/s"},
-                {{"down"}, {"with the wind"}, {"v_t", Series::Style::points}}},
+    d.plots = {{"Mean velocity of the flakes", {"time", "s"}, {"speed", "m/s"}, {{"down"}, {"with the wind"}, {"v_t"}}},
                {"Flakes", {"time", "s"}, {"number", ""}, {{"in the air"}, {"lying"}}}};
     return d;
   }
@@ -83,7 +80,6 @@ class Snow final : public Repeatable<Snow, Demo3> {
     coupling.answer = particles::CollisionAnswer::stick;
     coupling_ = particles::Coupling3(coupling);
     blow(stage);
-    for (int k = 1; k <= 15; ++k) stage.sample(0, 2, k, stage.value("sinks"));
   }
 
   void changed(Stage3& stage, std::string_view) override { blow(stage); }
@@ -106,6 +102,7 @@ class Snow final : public Repeatable<Snow, Demo3> {
       along += v.x;
       ++flying;
     }
+    stage.sample(0, 2, t, stage.value("sinks"));
     if (flying > 20) {
       stage.sample(0, 0, t, down / flying);
       stage.sample(0, 1, t, along / flying);
@@ -176,7 +173,7 @@ class Fountain final : public Repeatable<Fountain, Demo3> {
         {"wind", "Wind", "m/s", "m/s", "", 0, 12, 0, 1, true},
         {"rate", "Drops a second", "1/s", "1/s", "", 50, 2000, 50, 900, true},
     };
-    d.plots = {{"Highest drop", {"time", "s"}, {"height", "m"}, {{"drops"}, {"v²/2g, no air", Series::Style::points}}},
+    d.plots = {{"Highest drop", {"time", "s"}, {"height", "m"}, {{"drops"}, {"v²/2g, no air"}}},
                {"Particles", {"time", "s"}, {"number", ""}, {{"drops"}, {"splashes"}}}};
     return d;
   }
@@ -227,7 +224,6 @@ class Fountain final : public Repeatable<Fountain, Demo3> {
     coupling.answer = particles::CollisionAnswer::kill;
     coupling_ = particles::Coupling3(coupling);
     turn_on(stage);
-    for (int k = 1; k <= 8; ++k) stage.sample(0, 1, k, 0.52 + square(stage.value("speed")) / 2 / 9.80665);
   }
 
   void changed(Stage3& stage, std::string_view) override { turn_on(stage); }
@@ -254,6 +250,7 @@ class Fountain final : public Repeatable<Fountain, Demo3> {
     double top = 0;
     for (int i = 0; i < drops_->size(); ++i) top = max(top, drops_->position(i).y);
     stage.sample(0, 0, t, top);
+    stage.sample(0, 1, t, 0.52 + square(stage.value("speed")) / 2 / 9.80665);
     stage.sample(1, 0, t, drops_->size());
     stage.sample(1, 1, t, splashes_->size());
     top_ = max(top_, top);
