@@ -8,8 +8,8 @@ int main() {
   using namespace carom::sports;
   constexpr double yard = 0.9144, degree = 3.14159265358979 / 180;
   const Surface fairway = *surface_preset("fairway");
-  std::printf("%-8s %9s %9s %7s %9s %9s %8s %9s\n", "club", "head m/s", "ball m/s", "rpm", "carry yd", "apex yd", "lands",
-              "total yd");
+  std::printf("%-8s %9s %9s %7s %9s %9s %8s %9s\n", "club", "head m/s", "ball m/s", "rpm", "carry yd", "apex yd",
+              "lands", "total yd");
   for (const ClubPreset& club : club_presets()) {
     const auto shot = tour_shot(club.name);
     if (!shot) return std::fprintf(stderr, "%s\n", shot.error().message.c_str()), 1;

@@ -53,10 +53,10 @@ core::Result<PresetValues> read_preset(std::string_view text, std::string_view f
       quantity = math::parse_quantity(node.text, known->unit.empty() ? math::Dimension{} : unit.dimension);
       if (!quantity.ok) return preset_error(file, node, where, quantity.error);
     } else {
-      return preset_error(file, node, where,
-                          "found " + detail::show(node) + ", expected " +
-                              (known->unit.empty() ? std::string("a number")
-                                                   : "a quantity in " + std::string(known->unit)));
+      return preset_error(
+          file, node, where,
+          "found " + detail::show(node) + ", expected " +
+              (known->unit.empty() ? std::string("a number") : "a quantity in " + std::string(known->unit)));
     }
     out.numbers.push_back({key, quantity.si});
   }

@@ -1,4 +1,5 @@
-// Balls, surfaces and club heads of carom/sports from preset files: {"description", "source", "values": {name: quantity}}.
+// Balls, surfaces and club heads of carom/sports from preset files: {"description", "source", "values": {name:
+// quantity}}.
 #pragma once
 
 #include <string_view>

@@ -28,12 +28,9 @@ core::Status check(const ClubHead& h, const ClubDelivery& d) {
   const struct {
     const char* name;
     double value, low, high;
-  } rules[] = {{"speed of a delivery", d.speed, 0, 1000},
-               {"attack of a delivery", d.attack, -1.5, 1.5},
-               {"path of a delivery", d.path, -1.5, 1.5},
-               {"face of a delivery", d.face, -1.5, 1.5},
-               {"lean of a delivery", d.lean, -1.5, 1.5},
-               {"toe of a delivery", d.toe, -0.2, 0.2},
+  } rules[] = {{"speed of a delivery", d.speed, 0, 1000}, {"attack of a delivery", d.attack, -1.5, 1.5},
+               {"path of a delivery", d.path, -1.5, 1.5}, {"face of a delivery", d.face, -1.5, 1.5},
+               {"lean of a delivery", d.lean, -1.5, 1.5}, {"toe of a delivery", d.toe, -0.2, 0.2},
                {"high of a delivery", d.high, -0.2, 0.2}};
   for (const auto& rule : rules)
     if (!(rule.value >= rule.low && rule.value <= rule.high))

@@ -16,5 +16,6 @@ void billiards_models(int width);
 void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine has
 void environment_models(int width);
 void blast_models(int width);       ///< lanes of the world
+void sports_models();
 
 }  // namespace carom::determinism

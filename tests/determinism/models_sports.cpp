@@ -41,8 +41,8 @@ void sports_models() {
   print_model("golf_shots", hash);
 
   hash = {};
-  const auto sheet = sports::trajectory_calculator({.launch_angle = 31, .spray_angle = 12},
-                                                   sports::CalculatorMode::sheet);
+  const auto sheet =
+      sports::trajectory_calculator({.launch_angle = 31, .spray_angle = 12}, sports::CalculatorMode::sheet);
   const auto path = sports::bowl({}, {}, {.spin = 28, .axis_rotation = 0.9, .start = -0.3});
   hash.add(sheet->distance).add(path->end().y).add(path->entry_angle());
   const auto pitch = sports::pitch(*sports::ball_preset("knuckleball"), windy, {.spin = 6, .tilt = 1});

@@ -19,6 +19,7 @@ void print_models(int width) {
   billiards_models(width);
   environment_models(width);
   blast_models(width);
+  sports_models();
 }
 
 bool print_demos(int threads) {

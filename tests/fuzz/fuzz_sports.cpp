@@ -24,7 +24,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(ball.ok() || ball.error().message.starts_with("f"), "an error that does not name the file");
   if (ball) {
     require(sports::check(*ball).ok(), "a ball that cannot be");
-    const auto load = sports::air_load(*ball, {}, {.velocity = {30, 5, -3}, .spin = {10, 200, -50}, .turned = 1, .time = 2});
+    const auto load =
+        sports::air_load(*ball, {}, {.velocity = {30, 5, -3}, .spin = {10, 200, -50}, .turned = 1, .time = 2});
     require(math::is_finite(math::length(load.force)) && math::is_finite(math::length(load.moment)),
             "a force that is not finite");
   }
@@ -33,7 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (surface) {
     const sports::Ball solid;
     const auto out = sports::bounce(solid, *surface, {0, 1, 0}, {.velocity = {12, -9, 2}, .spin = {30, 4, 90}});
-    require(math::is_finite(math::length(out.after.velocity)) && out.after.velocity.y >= -1e-9, "a bounce that cannot be");
+    require(math::is_finite(math::length(out.after.velocity)) && out.after.velocity.y >= -1e-9,
+            "a bounce that cannot be");
   }
   const auto head = scene::parse_club(text, "f");
   require(head.ok() || head.error().message.starts_with("f"), "an error that does not name the file");

@@ -90,9 +90,8 @@ std::span<const NumberName> number_names_of() {
   static const std::vector<NumberName> names = [] {
     std::vector<NumberName> list;
     const T thing{};
-    visit_fields(thing, [&](const char* name, const char* unit, double, double, double) {
-      list.push_back({name, unit});
-    });
+    visit_fields(thing,
+                 [&](const char* name, const char* unit, double, double, double) { list.push_back({name, unit}); });
     return list;
   }();
   return names;

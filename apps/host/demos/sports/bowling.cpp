@@ -168,7 +168,7 @@ class Bowling final : public Repeatable<Bowling, Demo3> {
     for (int i = 0; i <= 60 && !path_.points.empty(); ++i) {
       const sports::LanePoint f = path_.at(path_.end().time * i / 60);
       const Vec3d at{f.x, 0.006, -f.y};
-      if (i > 0 && i % 2 == 0) stage.line(last, at, pen(0xffffff, 0xb0));
+      if (i > 0 && i % 2 == 0) stage.line(last, at, pen(dark, 0xb0));
       last = at;
     }
     int standing = 0;

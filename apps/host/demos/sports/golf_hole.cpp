@@ -34,7 +34,7 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
         "and see the ball curve: it starts near where the face looks and bends away from the path.";
     d.duration = 15;
     d.camera = {{-11, 2.7, 2.2}, {60, 4, 0}, 0.62};
-    d.ground = -0.02;
+    d.ground = -0.5;
     d.parameters = {
         {"club", "Club", "", "", "0 driver, 1 3-wood, 2 5-wood, 3 hybrid, 4 to 10 3-iron to 9-iron, 11 wedge", 0, 11, 1,
          0, false},
@@ -59,7 +59,7 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
     d.plots = {{"Side view",
                 {"distance", "m"},
                 {"height", "m"},
-                {{"this shot"}, {"tour average: apex and carry", Series::Style::points}}},
+                {{"this shot"}, {"tour average: carry, and height over this apex", Series::Style::points}}},
                {"From above", {"distance", "m"}, {"to the left", "m"}, {{"this shot"}}},
                {"Carry of twelve clubs",
                 speed,
@@ -111,7 +111,8 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
     const sports::Landing& landing = result_.landing;
     const double speed = result_.impact.launch.speed;
     stage.sample(0, 1, preset.carry * golf_yard, 0);
-    stage.sample(0, 1, 0.58 * preset.carry * golf_yard, preset.apex * golf_yard);
+    // Where along the way it is highest is not published: drawn over this shot's own apex.
+    stage.sample(0, 1, result_.shot.first_flight().apex().position.x, preset.apex * golf_yard);
     for (const sports::ClubPreset& c : sports::club_presets()) {
       const auto flight = sports::fly(
           shot_.ball, {},
@@ -144,7 +145,7 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
         stage.sample(1, 0, at.x, -at.z);
       }
     }
-    trail_.draw(stage, pen(0xffffff, 0xd0));
+    trail_.draw(stage, pen(red, 0xe0));
     // Large enough to be seen from the tee, and never smaller than it is.
     const float size = float(max(0.0214, 0.0042 * math::distance(at, Vec3d{-11, 2.7, 2.2})));
     const Vec3f where(at + Vec3d{0, double(size), 0});
@@ -223,7 +224,7 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
       body.position = at;
       stage.add(body, shape, look, color);
     };
-    add("rough", {150, -0.06, 0}, geometry::Box{{190, 0.05f, 70}}, 0x55803f);
+    add("rough", {150, -0.26, 0}, geometry::Box{{190, 0.25f, 70}}, 0x55803f);
     for (int i = 0; i < 24; ++i)
       add("fairway", {15 + 12.0 * i, -0.04 + 0.001 * (i % 2), bend(15 + 12.0 * i)}, geometry::Box{{6.05f, 0.045f, 17}},
           i % 2 ? 0x74a84f : 0x6b9f49);

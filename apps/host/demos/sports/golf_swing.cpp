@@ -107,9 +107,9 @@ class GolfSwing final : public Repeatable<GolfSwing, Demo2> {
     const double end = result_.time, now = min(end, stage.world().time() / slowness);
     for (int i = 0; i <= 12; ++i) {
       const double t = end * i / 12;
-      if (t <= now) figure(stage, t, 0x38);
+      if (t <= now) figure(stage, t, true);
     }
-    figure(stage, now, 0xff);
+    figure(stage, now, false);
     Vec2d head = at(0, 1), hands = at(0, 0);
     for (int i = 1; i <= 90; ++i) {
       const double t = end * i / 90;
@@ -136,14 +136,18 @@ class GolfSwing final : public Repeatable<GolfSwing, Demo2> {
  private:
   Vec2d at(double t, std::size_t joint) const { return sports::swing_point(swing_, result_.at(t), joint); }
 
-  void figure(Stage2& stage, double t, std::uint32_t alpha) const {
+  /// A shadow is drawn paler: a page draws lines without transparency.
+  void figure(Stage2& stage, double t, bool shadow) const {
     const sports::SwingState s = result_.at(t);
     const Vec2d hands = at(t, 0), head = at(t, 1);
     const auto thick = [&](Vec2d a, Vec2d b, std::uint32_t color) {
       const Vec2d along = b - a, across = Vec2d{-along.y, along.x} * (0.008 / max(1e-9, length(along)));
-      for (int i = -1; i <= 1; ++i) stage.line(a + double(i) * across, b + double(i) * across, pen(color, alpha));
+      for (int i = -1; i <= 1; ++i) stage.line(a + double(i) * across, b + double(i) * across, pen(color));
     };
-    thick({}, hands, blue);
+    if (shadow)
+      stage.line(Vec2d{}, hands, pen(0xa9c4e8));
+    else
+      thick({}, hands, blue);
     // The bent shaft: its first mode.
     const double angle = s.angle[1], span = swing_.links[1].length;
     const Vec2d along{sin(angle), -cos(angle)}, across{cos(angle), sin(angle)};
@@ -151,13 +155,13 @@ class GolfSwing final : public Repeatable<GolfSwing, Demo2> {
     for (int i = 1; i <= 10; ++i) {
       const double x = i / 10.0;
       const Vec2d p = hands + (x * span) * along + (s.bend * 0.5 * x * x * (3 - x)) * across;
-      if (alpha == 0xff)
-        thick(last, p, 0x2b3138);
+      if (shadow)
+        stage.line(last, p, pen(0xb4bcc6));
       else
-        stage.line(last, p, pen(0x2b3138, alpha));
+        thick(last, p, 0x2b3138);
       last = p;
     }
-    if (alpha == 0xff) thick(head - 0.06 * across, head + 0.03 * across, orange);
+    if (!shadow) thick(head - 0.06 * across, head + 0.03 * across, orange);
   }
 
   static void circle(Stage2& stage, Vec2d center, double radius, std::uint32_t color) {

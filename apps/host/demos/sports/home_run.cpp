@@ -147,7 +147,7 @@ class HomeRun final : public Repeatable<HomeRun, Demo3> {
         at = stopped_;
       else
         stopped_ = at;
-      if (t < hit_.duration()) {
+      if (t < (over_ ? landing_.time : hit_.duration())) {
         stage.sample(0, 0, hypot(at.x, at.z), at.y);
         stage.sample(1, 0, at.x, -at.z);
       }
@@ -168,7 +168,7 @@ class HomeRun final : public Repeatable<HomeRun, Demo3> {
       }
     }
     pitch_trail_.draw(stage, pen(gold, 0xd0));
-    trail_.draw(stage, pen(0xffffff, 0xe0));
+    trail_.draw(stage, pen(red, 0xe0));
     const float size = float(max(0.0369, 0.004 * math::distance(at, Vec3d{-20, 10, 6})));
     const Vec3f where(at);
     stage.points({&where, 1}, size, pen(0xffffff));

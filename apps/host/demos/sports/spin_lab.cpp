@@ -118,7 +118,8 @@ class SpinLab final : public Repeatable<SpinLab, Demo3> {
       const double inertia = sports::inertia(ball);
       mass.inertia = {{inertia, 0, 0}, {0, inertia, 0}, {0, 0, inertia}};
       stage.check(stage.world().set_mass_properties(balls_[i], mass));
-      stage.keep(stage.world().add_effector(sports::flight_effector(ball, conditions, balls_[i], stage.declaration().dt)));
+      stage.keep(
+          stage.world().add_effector(sports::flight_effector(ball, conditions, balls_[i], stage.declaration().dt)));
       radius_ = ball.radius;
     }
     if (flight_[0].nodes().empty() || flight_[1].nodes().empty()) return;
@@ -143,8 +144,14 @@ class SpinLab final : public Repeatable<SpinLab, Demo3> {
       Vec3d last = flight.start().position;
       for (int k = 1; k <= 60; ++k) {
         const Vec3d q = flight.at(flight.duration() * k / 60).position;
-        if (k % 2 == 0) stage.line(last, q, pen(0xffffff, 0xa0));
+        if (k % 2 == 0) stage.line(last, q, pen(0x2b3138, 0xa0));
         last = q;
+      }
+      // Where it comes through the goal, over the plate, past the stumps.
+      if (const auto there = flight.at_x(scene_.distance)) {
+        const double size = 0.8 * radius_ + 0.02;
+        for (const Vec3d arm : {Vec3d{0, size, size}, Vec3d{0, size, -size}})
+          stage.line(there->position - arm, there->position + arm, pen(i == 0 ? red : dark));
       }
       if (t > flight.duration()) continue;
       stage.sample(0, i, p.x, p.y);
