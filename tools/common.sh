@@ -73,7 +73,7 @@ build_native() {
 }
 
 # What building for WebAssembly needs, given the version that newest_clang names.
-wasm_packages() { echo "clang-$1" "lld-$1" wasi-libc "libc++-$1-dev-wasm32" "libclang-rt-$1-dev-wasm32"; }
+wasm_packages() { echo "clang-$1" "lld-$1" wasi-libc "libc++-$1-dev-wasm32" "libclang-rt-$1-dev-wasm32" binaryen; }
 
 # build_wasm TARGET…: in build/wasm.
 build_wasm() {

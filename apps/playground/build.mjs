@@ -38,6 +38,23 @@ function dataFiles() {
     if (name.endsWith('.json')) files[relative(root, join(root, 'presets', name))] = readFileSync(join(root, 'presets', name), 'utf8');
   return files;
 }
+/**
+ * Demo id → the C++ that makes it, from the sources that are compiled: without what the page shows anyway (the
+ * declaration) and without includes. A file may hold several demos; each then shows all of it.
+ */
+function demoSources() {
+  const sources = {};
+  for (const name of readdirSync(join(root, 'apps/host/demos'), {recursive: true}).sort()) {
+    if (!name.endsWith('.cpp')) continue;
+    const text = readFileSync(join(root, 'apps/host/demos', name), 'utf8');
+    const ids = [...text.matchAll(/\bd\.id = "([^"]+)"/g)].map((m) => m[1]);
+    const code = text.replace(/^#include.*\n/gm, '').replace(/^  Declaration declaration\(\) const override \{\n[^]*?\n  \}\n\n?/gm, '').replace(/^namespace [^\n]*\{\n+|^\}  \/\/ namespace.*\n*/gm, '').replace(/\n{3,}/g, '\n\n').trim();
+    for (const id of ids) sources[id] = {file: `apps/host/demos/${name}`, code};
+  }
+  return sources;
+}
+writeFileSync(join(out, 'sources.json'), JSON.stringify(demoSources()));
+
 if (web) {
   cpSync(module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), join(out, 'carom.wasm'));
   writeFileSync(join(out, 'files.json'), JSON.stringify(dataFiles()));

@@ -19,12 +19,26 @@ export class Panel {
       }
       about.append(element('details', {open: false}, element('summary', {textContent: 'What this shows'}), text));
     }
+    about.append(this.source(demo.demo));
     const list = document.getElementById('parameters')!;
     this.shown.clear();
     list.replaceChildren(...demo.parameters.map((p) => this.slider(p)));
     list.parentElement!.hidden = demo.parameters.length === 0;
     document.getElementById('plot-heading')!.parentElement!.hidden = demo.plots.length === 0;
     this.inputs(demo);
+  }
+
+  /** The C++ that makes the demo, as it was compiled; fetched when somebody wants to see it. */
+  private source(demo: string): HTMLElement {
+    const code = element('pre', {className: 'source', tabIndex: 0, textContent: '…'});
+    const details = element('details', {open: false, hidden: demo.startsWith('scene:') || demo.endsWith('.json')}, element('summary', {textContent: 'The C++ that makes it'}), code);
+    details.addEventListener('toggle', () => {
+      void fetch('sources.json').then((answer) => answer.json() as Promise<Record<string, {file: string; code: string} | undefined>>).then((all) => {
+        const found = all[demo];
+        code.textContent = found ? `// ${found.file}\n${found.code}` : 'This one is a benchmark scene: benchmarks/scenes_*.cpp builds it.';
+      }, () => { code.textContent = 'The source cannot be loaded from here.'; });
+    }, {once: true});
+    return details;
   }
 
   setValues(values: Record<string, number>): void {

@@ -136,3 +136,11 @@ test('a lost connection is said, and mended when the server is back', async () =
   assert.equal((await page.evaluate(() => window.caromPage.share.link())).parameters.angle, 0.5, 'as it was');
   again.close();
 });
+
+test('a demo shows the C++ that makes it', async () => {
+  const page = await open('rolling');
+  await page.click('text=The C++ that makes it');
+  await page.waitForFunction(() => document.querySelector('.source').textContent.includes('void build(Stage3& stage)'));
+  assert.ok(!(await page.textContent('.source')).includes('#include'));
+  await page.done();
+});
