@@ -1,11 +1,12 @@
 #include "carom/environment/environment.h"
+#include "carom/environment/sea_patch.h"
 #include "carom/forces/added_mass.h"
 #include "carom/forces/drag_law.h"
 #include "tests/determinism/models.h"
 
 namespace carom::determinism {
 
-void environment_models(int) {
+void environment_models(int width) {
   using math::Vec3d;
   core::StateHash hash;
   const auto hash_vector = [&](Vec3d v) { hash.add(v.x).add(v.y).add(v.z); };
@@ -21,6 +22,11 @@ void environment_models(int) {
   std::vector<double> grid(40 * 30);
   sea.grid(-50, 20, 2.5, 40, 30, 123.4, grid);
   for (const double y : grid) hash.add(y);
+  std::vector<float> x, z;
+  for (int i = 0; i < 101; ++i) x.push_back(1.7f * float(i) - 80), z.push_back(40 - 0.9f * float(i));
+  std::vector<float> height(x.size()), slope_x(x.size()), slope_z(x.size());
+  environment::SeaPatch(sea, {1e5, -2e5}, 7000, width).heights(x, z, height, slope_x, slope_z);
+  for (std::size_t i = 0; i < x.size(); ++i) hash.add(height[i]).add(slope_x[i]).add(slope_z[i]);
   print_model("sea", hash);
 
   hash = {};

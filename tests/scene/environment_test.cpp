@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "carom/environment/environment.h"
+#include "carom/math/random.h"
 #include "carom/scene/scene.h"
 #include "carom/scene/write_scene.h"
 
@@ -161,6 +162,29 @@ TEST(SceneEnvironment, ErrorsNameThePlace) {
     EXPECT_NE(e.find(c.part), std::string::npos) << c.text << "\n" << e;
     EXPECT_EQ(e.rfind("scenes/sea.json:1: ", 0), 0u) << e;
   }
+}
+
+// Whatever is damaged in the file: it is read or refused, with a message that names the file.
+TEST(SceneEnvironment, SurvivesDamage) {
+  const std::string whole = everything;
+  const std::string_view pieces[] = {"-1", "0", "1e300", "\"\"", "{}", "[]", "null", "=1/0", "-", ",", "}"};
+  math::Random random(5);
+  int refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string text = whole;
+    for (int k = 0; k <= i % 3; ++k) {
+      const std::size_t at = random.below(std::uint32_t(text.size()));
+      if (random.chance(0.5))
+        text.erase(at, 1 + random.below(6));
+      else
+        text.insert(at, pieces[random.below(11)]);
+    }
+    const std::string e = error_of(text);
+    if (e == "accepted") continue;
+    ++refused;
+    EXPECT_EQ(e.rfind("scenes/sea.json", 0), 0u) << e;
+  }
+  EXPECT_GT(refused, 200);
 }
 
 }  // namespace environment_scene_test

@@ -44,6 +44,7 @@ class WindyField final : public Repeatable<WindyField, Demo3> {
         {"dryden", "Dryden instead of von Kármán", "", "", "1: Dryden", 0, 1, 1, 0, true},
         {"thermal", "Rise in the thermal", "m/s", "m/s", "", 0, 8, 0, 3, true},
         {"gust", "Strength of a gust", "m/s", "m/s", "", 0, 20, 0, 8, true},
+        {"seed", "Seed", "", "", "of the eddies", 1, 99, 1, 3, true},
         {"house", "Height of the house", "m", "m", "", 2, 14, 0, 8, false},
     };
     d.inputs = {{"gust", "Gust", {"Space"}, true, 1}};
@@ -174,7 +175,7 @@ class WindyField final : public Repeatable<WindyField, Demo3> {
     eddies.mean_wind = {stage.value("wind"), 0, 0};
     eddies.shells = 7;
     eddies.smallest = 0.1 * length;
-    eddies.seed = 5;
+    eddies.seed = std::uint64_t(stage.count("seed"));
     wind.turbulence = stage.keep(environment::Turbulence::make(eddies));
     wind.thermals.push_back({.base = {20, 0, -8}, .strength = stage.value("thermal"), .radius = 11, .depth = 60});
     const double house = stage.value("house");
