@@ -75,11 +75,11 @@ void batch_hits(benchmark::State& state) {
 }
 BENCHMARK(batch_hits)->Args({8, 0})->Args({8, 1})->Args({16, 1})->Unit(benchmark::kMillisecond)->Iterations(96);
 
-enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar };
+enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again };
 void take_aim(benchmark::State& state) {
   const AimCase which = AimCase(state.range(0));
   Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
-  Shooter shooter{.muzzle_speed = 400, .velocity = {5, 0, 3}};
+  Shooter shooter{.muzzle_speed = 400, .muzzle = {0, 2, 0}, .velocity = {5, 0, 3}};
   Target target{{900, 30, 200}, {0, 0, 0}};
   AimOptions options;
   options.high_arc = which != low_arc;
@@ -90,10 +90,29 @@ void take_aim(benchmark::State& state) {
     shooter.muzzle_speed = 250;
     target.position = {3500, 50, 300};
   }
-  static const char* names[] = {"low arc", "both arcs", "out of reach", "moving, both", "mortar, both"};
+  static const char* names[] = {"low arc", "both arcs", "out of reach", "moving, both", "mortar, both", "again, low"};
+  if (which == again) {  // a frame later
+    const Shot last = *aim(shot, windy, shooter, target, options)->low;
+    target.position += Vec3d{0.5, 0, 0.3};
+    for (auto _ : state) benchmark::DoNotOptimize(aim_again(shot, windy, shooter, target, last, options));
+    return state.SetLabel(names[which]);
+  }
   for (auto _ : state) benchmark::DoNotOptimize(aim(shot, windy, shooter, target, options));
   state.SetLabel(names[which]);
 }
-BENCHMARK(take_aim)->DenseRange(low_arc, mortar)->Unit(benchmark::kMicrosecond);
+BENCHMARK(take_aim)->DenseRange(low_arc, again)->Unit(benchmark::kMicrosecond);
+
+/// The table of a weapon: made once, then asked.
+void aim_table(benchmark::State& state) {
+  const auto table = AimTable::make(projectile_from_coefficient(DragFunction::g7, .3), {},
+                                    {.muzzle_speed = 400, .longest_range = 3000});
+  if (!table.ok()) return state.SkipWithError("the table");
+  double range = 100;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(table->at(range, 20));
+    range = range > 2000 ? 100 : range + 7;
+  }
+}
+BENCHMARK(aim_table);
 
 }  // namespace
