@@ -164,6 +164,7 @@ core::Status Explosion<D>::apply(World& world, double dt) {
     const auto definition = world.shape_definition(id);
     const auto state = world.state(*body);
     if (!definition.ok() || !state.ok() || definition->sensor || !state->enabled) continue;
+    if (state->type != rigid::BodyType::dynamic && !definition->hit_events) continue;
     const auto pose = state->pose * definition->local;
     const auto box = geometry::bounds(*geometry, {});
     const double size = 0.5 * double(math::length(box.high - box.low));

@@ -33,7 +33,7 @@ struct FrontEvent {
   bool sheltered = false;
   Damage damage = Damage::none;  ///< by damage_of: glass, structure, eardrums, …
 };
-/// What a shape got in a step.
+/// What a shape got in a step: those of bodies that move, and of fixed ones that want hit events (as structures do).
 template <class D>
 struct ShapeLoad {
   rigid::ShapeId shape{};
@@ -75,7 +75,7 @@ class CAROM_API Explosion {
                       double area_per_mass, double world_time, double dt) const;
 
   std::span<const FrontEvent<D>> events() const { return events_; }  ///< of the last apply
-  std::span<const ShapeLoad<D>> loads() const { return loads_; }     ///< of the last apply, fixed bodies too
+  std::span<const ShapeLoad<D>> loads() const { return loads_; }     ///< of the last apply
   /// What has been given to bodies that move so far: N·s, and its moment about the charge.
   Position impulse_given() const { return given_; }
   const Charge<D>& charge() const { return charge_; }

@@ -86,13 +86,20 @@ double friedlander_decay(double peak, double duration, double impulse) {
     if (b < 1e-2) return 0.5 - b / 6 + b * b / 24 - b * b * b / 120;
     return 1 / b + math::expm1(-b) / (b * b);
   };
-  double low = 0, high = 200;
-  if (share(high) > wanted) return high;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (share(middle) > wanted ? low : high) = middle;
+  constexpr double most = 200;
+  if (share(most) > wanted) return most;
+  // The share falls and is convex, so that Newton's method from the left never passes the root. On its left are the
+  // roots of ½ − b/6 and of 1/b − 1/b², which are both below it.
+  double b = 3 - 6 * wanted;
+  if (wanted < 0.25) b = math::max(b, (1 + math::sqrt(1 - 4 * wanted)) / (2 * wanted));
+  for (int i = 0; i < 40; ++i) {
+    const double slope =
+        b < 1e-2 ? -1.0 / 6 + b / 12 - b * b / 40 : (-1 - math::exp(-b)) / (b * b) - 2 * math::expm1(-b) / (b * b * b);
+    const double step = (share(b) - wanted) / slope;
+    b -= step;
+    if (math::abs(step) <= 1e-14 * b) break;
   }
-  return 0.5 * (low + high);
+  return b;
 }
 
 Damage damage_of(double side_on_pressure) {

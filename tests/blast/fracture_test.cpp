@@ -80,7 +80,7 @@ TEST(Fracture, VoronoiPiecesAreTheWhole) {
 // "Interface area, edge length, and number of vertices in crystal aggregates with random nucleation", 1953); the
 // variance of volumes is .179 (E. N. Gilbert, "Random subdivisions of space into crystals", 1962). A periodic box.
 TEST(Fracture, StatisticsOfPoissonVoronoiCells) {
-  constexpr int n = 4000;
+  constexpr int n = 2500;
   std::vector<Vec3d> sites = uniform_sites(unit_box(), n, 17);
   const double margin = 0.2;
   for (int copy = 0; copy < 27; ++copy) {
@@ -105,13 +105,13 @@ TEST(Fracture, StatisticsOfPoissonVoronoiCells) {
     squares += v * v * n;
   }
   const double pi2 = math::pi * math::pi;
-  // A cell's number of faces scatters by 3.3, so that the mean of 4000 does by .053: three of that.
-  EXPECT_NEAR(faces, 2 + 48 * pi2 / 35, 0.16);
-  EXPECT_NEAR(vertices, 96 * pi2 / 35, 0.32);
-  EXPECT_NEAR(edges, 144 * pi2 / 35, 0.48);
+  // A cell's number of faces scatters by 3.3, so that the mean of 2500 does by .066: three of that.
+  EXPECT_NEAR(faces, 2 + 48 * pi2 / 35, 0.2);
+  EXPECT_NEAR(vertices, 96 * pi2 / 35, 0.4);
+  EXPECT_NEAR(edges, 144 * pi2 / 35, 0.6);
   EXPECT_NEAR(vertices, 2 * (faces - 2), 1e-9) << "three faces at every corner, and Euler's formula";
   EXPECT_NEAR(volume, 1, 1e-11) << "periodic cells tile the box";
-  EXPECT_NEAR(squares - 1, 0.179, 0.015);
+  EXPECT_NEAR(squares - 1, 0.179, 0.02);
 }
 
 TEST(Fracture, EveryPointIsInExactlyOneCell) {
@@ -234,7 +234,7 @@ TEST(FractureMesh, HullsStandApartAndBondsCoverTheCuts) {
     const std::vector<Vec3d> vertices(m.mesh.positions.begin(), m.mesh.positions.end());
     const ConvexCell box = container_of(vertices);
     const auto f =
-        fracture_mesh(vertices, m.mesh.indices, voronoi_pattern(box, uniform_sites(box, m.count, 2)).value());
+        fracture_mesh(vertices, m.mesh.indices, voronoi_pattern(box, uniform_sites(box, m.count / 2, 2)).value());
     ASSERT_TRUE(f);
     double cut = 0, bonded = 0;
     for (const Piece& p : f->pieces) {

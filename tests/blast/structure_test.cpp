@@ -250,6 +250,27 @@ TEST(Structure, CopiesFollowASnapshot) {
   EXPECT_EQ(copy.cluster_count(), structure.cluster_count());
 }
 
+TEST(Structure, SplintersOfAPaneStayNumbers) {
+  // Small pieces jammed between large ones are spun past half a turn a substep when the pane lands on its edge.
+  for (const std::uint64_t seed : {7u, 9u, 10u}) {
+    rigid::World3 world;
+    floor_of(world);
+    const ConvexCell pane(geometry::Bounds3d{{-1, -0.75, -0.005}, {1, 0.75, 0.005}});
+    const auto sites =
+        radial_sites(pane, {.impact = {0.2, 0.1, 0}, .first_radius = 0.03, .growth = 1.55, .sectors = 11}, seed)
+            .value();
+    auto d = structure_of(
+        fracture_convex(voronoi_pattern(pane, sites).value(), {.skin = 5e-4, .meshes = false}).value(), 2500);
+    d.pose.position = {0, 1.05, 0};
+    d.bonds.clear();
+    ASSERT_TRUE(Structure3::make(world, d));
+    for (int i = 0; i < 40; ++i) {
+      ASSERT_TRUE(world.step(1 / 60.f));
+      EXPECT_TRUE(world.events().quarantined.empty());
+    }
+  }
+}
+
 TEST(Structure, BadInputIsNamed) {
   rigid::World3 world;
   StructureDef<Dim3> d;

@@ -9,6 +9,8 @@ namespace carom::rigid::detail {
 /// tan(y)/y by the continued fraction of the tangent, as a function of y²: error below 10⁻⁵ for |y| ≤ 1.25.
 inline float tangent_over_angle(float yy) { return (105 - 10 * yy) / (105 - 45 * yy + yy * yy); }
 inline constexpr float max_turn = 2.5f;  ///< rad in a substep; faster bodies are slowed to this
+/// rad: a torque-free turn beyond it is none, Newton's method went astray (or to infinity).
+inline constexpr float greatest_free_turn = 3.0f;
 
 inline Rot2f turn(float angle) {
   const float y = 0.5f * angle, t = y * tangent_over_angle(y * y);
@@ -85,6 +87,7 @@ Quatf torque_free_turn(const Mat3f& inertia, const Quatf& q, float h, math::Vec3
     const M slope{column({1, 0, 0}, tensor.cx), column({0, 1, 0}, tensor.cy), column({0, 0, 1}, tensor.cz)};
     angle -= inverse(slope) * error;
   }
+  if (!(dot(angle, angle) < T(greatest_free_turn * greatest_free_turn))) return Quatf(turned(T(h) * w));
   angular_velocity = rotate(attitude * r, inverse(tensor) * turned_m);
   return Quatf(r);
 }

@@ -67,8 +67,14 @@ void turn_bodies(SolverBody<Dim3>* bodies, const void* lanes, float h) {
     for (int k = 0; k < 3; ++k) angle.v[k] = select(open, angle.v[k] - step.v[k], angle.v[k]);
     r = turn_by(angle);
   }
+  // Where the method found nothing (a thin piece that a blow spins past half a turn a substep), it turns as it spins.
+  const auto found = F::splat(9) > dot(angle, angle);  // greatest_free_turn², rotation_step.h
+  const Turn<W> plain = turn_by(multiply(w, F::splat(h)));
+  r.w = select(found, r.w, plain.w);
+  for (int k = 0; k < 3; ++k) r.u.v[k] = select(found, r.u.v[k], plain.u.v[k]);
   const Turn<W> now = product(q, r), total = normalized(product(now, conjugated(start)));
-  const Lanes<3, W> spin = turned(now, solve_factor(factorise(tensor), turned(conjugated(r), m)));
+  Lanes<3, W> spin = turned(now, solve_factor(factorise(tensor), turned(conjugated(r), m)));
+  for (int k = 0; k < 3; ++k) spin.v[k] = select(found, spin.v[k], motion.w.v[k]);
   const F velocity[4] = {spin.v[0], spin.v[1], spin.v[2], F::zero()};
   const F rotation[4] = {total.w, total.u.v[0], total.u.v[1], total.u.v[2]};
   float* const floats = reinterpret_cast<float*>(bodies);

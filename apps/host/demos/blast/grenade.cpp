@@ -30,8 +30,8 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
         "Fragments are thrown in pairs of equal mass to opposite sides: their momentum is zero, as before. Air slows "
         "the "
         "small ones first. Boards show where they hit; their number thins out with the square of the distance.";
-    d.duration = 0.12;
-    d.camera = {{9, 5.5, 12}, {0, 1.4, 0}};
+    d.duration = 3;
+    d.camera = {{5.5, 4.2, 8.5}, {0, 1.2, 0}};
     d.ground = 0;
     d.parameters = {
         {"case", "Mass of the case", "kg", "g", "of steel", 0.05, 2, 0.01, 0.24, false},
@@ -67,7 +67,8 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
   }
 
   core::Status step(Stage3& stage) override {
-    const double dt = stage.declaration().dt / max(stage.value("slow"), 1.0);
+    const bool flight = stage.world().time() - start_ < 0.05;
+    const double dt = stage.declaration().dt / (flight ? max(stage.value("slow"), 1.0) : 1.0);
     if (auto s = blast_.apply(stage.world(), dt); !s) return s;
     fly(stage, dt);
     return stage.world().step(float(dt));
@@ -93,7 +94,7 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
     }
     stage.points(places, radii, colors);
     const double since = stage.world().time() - start_;
-    if (since <= 0.1) {
+    if (since <= 0.03) {
       stage.sample(2, 0, 1e3 * since, fastest);
       stage.sample(2, 1, 1e3 * since, mean);
     }
@@ -108,7 +109,7 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
     for (int k = 0; k < boards_; ++k) hits += hits_[k];
     stage.say(format("%.0f m/s at first; %.0f hits in the boards, %.0f still fly", first_speed_, double(hits),
                      double(std::count_if(flying_.begin(), flying_.end(), [](const Flying& f) { return !f.rests; }))));
-    if (!told_ && since > 0.05) {
+    if (!told_ && since > 0.02) {
       told_ = true;
       for (int k = 0; k < boards_; ++k) {
         stage.sample(1, 0, distance_[k], hits_[k] / 2.4);

@@ -31,8 +31,9 @@ class Solid final : public Repeatable<Solid, Demo3> {
         "For collisions each piece has hulls that stay within its cell, a millimetre back from the cut, so that "
         "nothing "
         "overlaps at the start. Pieces fly off with v + ω × r of the whole.";
+    d.dt = 1.0 / 120;
     d.duration = vase_ ? 3 : 4;
-    d.camera = vase_ ? Camera{{1.1, 0.9, 1.7}, {0, 0.4, 0}} : Camera{{2.6, 2.2, 3.6}, {0, 0.8, 0}};
+    d.camera = vase_ ? Camera{{1.3, 1.15, 2.0}, {0, 0.62, 0}} : Camera{{2.6, 2.2, 3.6}, {0, 0.8, 0}};
     d.ground = 0;
     d.parameters = {
         {"pieces", "Cells", "", "", "", 5, 150, 1, vase_ ? 70.0 : 60.0, false},
@@ -56,7 +57,7 @@ class Solid final : public Repeatable<Solid, Demo3> {
   }
 
   void build(Stage3& stage) override {
-    stage.start({});
+    stage.start({.contact_push_speed = 1.0f});  // thin shards that met deeply part without a jump
     stage.looks_in_materials = true;
     stage.floor(0, {.friction = 0.6f});
     const geometry::Triangles mesh = vase_ ? vase(stage) : form(stage);
@@ -125,15 +126,14 @@ class Solid final : public Repeatable<Solid, Demo3> {
                    lip = up > 0.85 ? 0.25 * neck * square((up - 0.85) / 0.15) : 0;
       return foot + (belly - foot) * bulge + lip;
     };
-    constexpr int n = 16;
+    constexpr int n = 14;
     for (int i = 0; i <= n; ++i) profile.push_back({float(radius(0.5 * i / n)), float(0.5 * i / n)});
     for (int i = n; i >= 1; --i) profile.push_back({float(radius(0.5 * i / n) - wall), float(0.5 * i / n)});
     profile.push_back({float(radius(0) - wall), float(wall)});
-    return geometry::make_lathe_mesh(profile, 36);
+    return geometry::make_lathe_mesh(profile, 30);
   }
   geometry::Triangles form(Stage3& stage) {
     const int kind = stage.count("form");
-    sharp_ = kind == 0;
     if (kind == 1) return geometry::make_torus_mesh(0.6f, 0.22f, 36, 16);
     if (kind == 2) return geometry::make_sphere_mesh(0.6f, 32, 16);
     // A star with a thickness: an outline, twice, and the sides between.
@@ -161,24 +161,17 @@ class Solid final : public Repeatable<Solid, Demo3> {
     return found;
   }
 
-  /// Corners of a piece: those of its skin shared where it is smooth, those of its cuts once a triangle.
+  /// Three corners a triangle, so that edges stay sharp.
   void surfaces(Stage3& stage, const blast::Fracture& fracture) {
     std::vector<std::uint32_t> triangles[2];
     std::uint32_t part = 0;
     for (const blast::Piece& piece : fracture.pieces) {
       if (piece.hulls.empty()) continue;
-      std::vector<std::uint32_t> known(piece.vertices.size(), blast::ground);
       for (std::size_t t = 0; t < piece.sources.size(); ++t) {
         const int side = piece.sources[t] >= 0 ? 0 : 1;
         for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t v = piece.triangles[3 * t + k];
-          std::uint32_t index = known[v];
-          if (side == 1 || sharp_ || index == blast::ground) {
-            index = std::uint32_t(corners_[side].size());
-            corners_[side].push_back({part, Vec3f(piece.vertices[v] - piece.mass.center)});
-            if (side == 0) known[v] = index;
-          }
-          triangles[side].push_back(index);
+          triangles[side].push_back(std::uint32_t(corners_[side].size()));
+          corners_[side].push_back({part, Vec3f(piece.vertices[piece.triangles[3 * t + k]] - piece.mass.center)});
         }
       }
       ++part;
@@ -215,7 +208,7 @@ class Solid final : public Repeatable<Solid, Demo3> {
     Vec3f place;  // from the part's centre
   };
   static constexpr double hold_ = 1.6;
-  bool vase_, sharp_ = false;  // a star has edges; a vase, a ring and a ball have none
+  bool vase_;
   blast::Structure3 solid_;
   std::vector<Corner> corners_[2];
   int surface_[2] = {0, 0};

@@ -1,0 +1,72 @@
+// Unit costs of fracture and of blasts: a Voronoi cell, a hull of it, a whole run-time fracture, a mesh, a wave over a
+// yard.
+#include <benchmark/benchmark.h>
+
+#include "carom/blast/explosion.h"
+#include "carom/blast/structure.h"
+#include "carom/geometry/mesh_builders.h"
+
+namespace {
+using namespace carom;
+using namespace carom::blast;
+using math::Vec3d;
+
+const ConvexCell unit_cube(geometry::Bounds3d{{0, 0, 0}, {1, 1, 1}});
+
+void VoronoiCell(benchmark::State& state) {
+  const auto sites = uniform_sites(unit_cube, int(state.range(0)), 1);
+  for (auto _ : state) benchmark::DoNotOptimize(voronoi_pattern(unit_cube, sites));
+  state.counters["µs per cell"] = benchmark::Counter(
+      double(state.range(0)) * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(VoronoiCell)->Arg(200)->Arg(10000);
+
+void CellHull(benchmark::State& state) {
+  const Pattern pattern = voronoi_pattern(unit_cube, uniform_sites(unit_cube, 200, 1)).value();
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(make_cell_hull(pattern.cells[i++ % 200], {}, 1e-3));
+}
+BENCHMARK(CellHull);
+
+/// From a body to two hundred in the world.
+void FractureAtRunTime(benchmark::State& state) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    rigid::World3 world;
+    world.reserve({.bodies = 300, .shapes = 300, .contacts = 4000}).value();
+    state.ResumeTiming();
+    auto definition = structure_of(
+        fracture_convex(voronoi_pattern(unit_cube, uniform_sites(unit_cube, 200, 1)).value(), {.meshes = false})
+            .value(),
+        2400);
+    definition.bonds.clear();
+    benchmark::DoNotOptimize(Structure3::make(world, definition));
+  }
+}
+BENCHMARK(FractureAtRunTime)->Unit(benchmark::kMillisecond);
+
+void FractureMesh(benchmark::State& state) {
+  const geometry::Triangles ring = geometry::make_torus_mesh(0.7f, 0.25f, 24, 12);
+  const std::vector<Vec3d> vertices(ring.positions.begin(), ring.positions.end());
+  const ConvexCell box = container_of(vertices);
+  const Pattern pattern = voronoi_pattern(box, uniform_sites(box, 40, 2)).value();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(fracture_mesh(vertices, ring.indices, pattern, {.hulls = state.range(0) != 0}));
+}
+BENCHMARK(FractureMesh)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+void BlastOverAHundredBoxes(benchmark::State& state) {
+  rigid::World3 world;
+  for (int i = 0; i < 100; ++i) {
+    rigid::BodyDef<rigid::Dim3> body;
+    body.position = {1.5 * (i % 10) - 6.7, 0.5, 1.5 * (i / 10) - 6.7};
+    (void)world.add_shape(world.create_body(body).value(), geometry::Box{{0.4f, 0.4f, 0.4f}});
+  }
+  for (auto _ : state) {
+    auto charge = Explosion3::make({.mass = 5}).value();
+    benchmark::DoNotOptimize(charge.apply(world, 0.03));
+  }
+}
+BENCHMARK(BlastOverAHundredBoxes)->Unit(benchmark::kMillisecond);
+
+}  // namespace
