@@ -25,7 +25,7 @@ void Rope::resize(std::size_t n) {
 
 namespace {
 
-bool finite(Vec3d v) { return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z); }
+bool finite_point(Vec3d v) { return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z); }
 
 Status check_number(const char* field, double value, bool zero_allowed) {
   if (math::is_finite(value) && (value > 0 || (zero_allowed && value == 0))) return {};
@@ -98,7 +98,7 @@ Result<int> RopeSet::add(const RopeDef& def) {
     return core::Error{core::refused("RopeDef::points", def.points.size(), "two points or more")};
   double way = 0;
   for (std::size_t i = 0; i < def.points.size(); ++i) {
-    if (!detail::all_finite(def.points[i]))
+    if (!detail::finite_point(def.points[i]))
       return core::Error{core::text("RopeDef::points[", i, "] is not finite, expected metres")};
     if (i > 0) way += distance(def.points[i - 1], def.points[i]);
   }
@@ -140,7 +140,7 @@ Status check_node(const std::vector<Rope>& ropes, int rope, int& node) {
 Status RopeSet::attach(int index, const RopeAttachment& given, const rigid::World3& world) {
   RopeAttachment attachment = given;
   if (Status status = detail::check_node(ropes_, index, attachment.node); !status.ok()) return status;
-  if (!detail::all_finite(attachment.point)) return core::Error{"RopeAttachment::point is not finite, expected metres"};
+  if (!detail::finite_point(attachment.point)) return core::Error{"RopeAttachment::point is not finite, expected metres"};
   Rope& rope = ropes_[std::size_t(index)];
   const int last = rope.count() - 1;
   if (attachment.clamped && attachment.node != 0 && attachment.node != last)
@@ -214,7 +214,7 @@ Status RopeSet::set_twist(int index, double angle) {
 
 Status RopeSet::set_velocity(int index, int node, Vec3d velocity) {
   if (Status status = detail::check_node(ropes_, index, node); !status.ok()) return status;
-  if (!detail::all_finite(velocity)) return core::Error{"velocity of a particle is not finite, expected m/s"};
+  if (!detail::finite_point(velocity)) return core::Error{"velocity of a particle is not finite, expected m/s"};
   ropes_[std::size_t(index)].velocity[std::size_t(node)] = velocity;
   return {};
 }

@@ -87,7 +87,7 @@ void ClothState::assemble(float h, Vec3f gravity) {
   tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
-      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = Mat3f::zero();
+      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = SoftBlock{};
       Vec3f force{};
       Mat3f brake = Mat3f::zero();
       for (int k = triangle_first[i]; k < triangle_first[i + 1]; ++k) {
@@ -105,13 +105,10 @@ void ClothState::assemble(float h, Vec3f gravity) {
           const float ub = t.u[b], vb = t.v[b];
           const Vec3f pb = ub * t.along, qb = vb * t.across, rb = ub * t.across + vb * t.along;
           const float turn = s * (t.pull[0] * ua * ub + t.pull[1] * va * vb + t.pull[2] * (ua * vb + va * ub));
-          Mat3f& block = matrix.blocks[std::size_t(t.slots[3 * a + b])];
-          block.cx += pa * pb.x + qa * qb.x + ra * rb.x;
-          block.cy += pa * pb.y + qa * qb.y + ra * rb.y;
-          block.cz += pa * pb.z + qa * qb.z + ra * rb.z;
-          block.cx.x += turn;
-          block.cy.y += turn;
-          block.cz.z += turn;
+          SoftBlock& block = matrix.blocks[std::size_t(t.slots[3 * a + b])];
+          block.add(pa * pb.x + qa * qb.x + ra * rb.x, pa * pb.y + qa * qb.y + ra * rb.y,
+                    pa * pb.z + qa * qb.z + ra * rb.z);
+          block.add_diagonal(turn);
         }
       }
       for (int k = patch_first[i]; k < patch_first[i + 1]; ++k) {
@@ -122,10 +119,8 @@ void ClothState::assemble(float h, Vec3f gravity) {
         force -= w0 * patch.curvature[0] + w1 * patch.curvature[1] + w2 * patch.curvature[2];
         for (int b = 0; b < 6; ++b) {
           const float entry = weight * (w0 * patch.weight[0][b] + w1 * patch.weight[1][b] + w2 * patch.weight[2][b]);
-          Mat3f& block = matrix.blocks[std::size_t(patch.slots[6 * a + b])];
-          block.cx.x += entry;
-          block.cy.y += entry;
-          block.cz.z += entry;
+          SoftBlock& block = matrix.blocks[std::size_t(patch.slots[6 * a + b])];
+          block.add_diagonal(entry);
         }
       }
       solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]}) + h * brake;
@@ -274,7 +269,7 @@ void ClothState::step(rigid::World3& world, double dt) {
     assemble(h, gravity);
     hold(h, gravity);
     for (int round = 0; round < 3; ++round) {
-      iterations += solver.solve(matrix, 1e-3, 200, tasks);
+      iterations += solver.solve(matrix, 2e-3, h * 2, 200, tasks);
       if (round == 2 || !revise(h)) break;
     }
     wind_force = {};

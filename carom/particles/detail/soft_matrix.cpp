@@ -26,7 +26,7 @@ void SoftMatrix::build(int vertices, std::initializer_list<Elements> kinds) {
     column_.insert(column_.end(), row.begin(), row.end());
     first_.push_back(int(column_.size()));
   }
-  blocks.assign(column_.size(), Mat3f::zero());
+  blocks.assign(column_.size(), SoftBlock{});
 }
 
 int SoftMatrix::slot(std::uint32_t i, std::uint32_t j) const {
@@ -37,10 +37,13 @@ int SoftMatrix::slot(std::uint32_t i, std::uint32_t j) const {
 void SoftMatrix::multiply(const Vec3f* x, Vec3f* y, core::TaskScheduler& scheduler) const {
   scheduler.parallel_for(rows(), rows_at_once, [&](int from, int to, int) {
     for (int i = from; i < to; ++i) {
-      Vec3f sum{};
-      for (int k = first_[std::size_t(i)]; k < first_[std::size_t(i) + 1]; ++k)
-        sum += blocks[std::size_t(k)] * x[column_[std::size_t(k)]];
-      y[i] = sum;
+      SoftBlock::Lanes sum{};
+      for (int k = first_[std::size_t(i)]; k < first_[std::size_t(i) + 1]; ++k) {
+        const SoftBlock& block = blocks[std::size_t(k)];
+        const Vec3f v = x[column_[std::size_t(k)]];
+        sum += block.x * v.x + block.y * v.y + block.z * v.z;
+      }
+      y[i] = {sum[0], sum[1], sum[2]};
     }
   });
 }
@@ -64,7 +67,8 @@ double SoftSolver::product(const std::vector<Vec3f>& a, const std::vector<Vec3f>
   return sum;
 }
 
-int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, int most, core::TaskScheduler& scheduler) {
+int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, int most,
+                      core::TaskScheduler& scheduler) {
   const int n = int(right.size());
   const auto each = [&](auto&& body) {
     scheduler.parallel_for(n, rows_at_once, [&](int from, int to, int) {
@@ -74,14 +78,20 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, int most, core
   matrix.multiply(change.data(), image_.data(), scheduler);
   each([&](std::size_t i) {
     // Of a particle on a plane only what acts along it is preconditioned.
-    inverse_[i] = inverse(diagonal[i] + matrix.blocks[std::size_t(matrix.slot(std::uint32_t(i), std::uint32_t(i)))]);
+    inverse_[i] = inverse(diagonal[i] + matrix.blocks[std::size_t(matrix.slot(std::uint32_t(i), std::uint32_t(i)))].matrix());
     residual_[i] = holds[i].filter(right[i] - image_[i] - diagonal[i] * change[i]);
     scaled_[i] = holds[i].filter(inverse_[i] * holds[i].filter(right[i]));
     direction_[i] = holds[i].filter(inverse_[i] * residual_[i]);
   });
   // Against the right-hand side, not the first residual: a good guess needs fewer iterations.
   for (std::size_t i = 0; i < right.size(); ++i) image_[i] = holds[i].filter(right[i]);
-  const double scale = product(image_, scaled_, scheduler);
+  double scale = product(image_, scaled_, scheduler);
+  // At rest nothing is left to be relative to: a change of `least` for every particle is what does not matter.
+  each([&](std::size_t i) {
+    image_[i] = holds[i].filter(diagonal[i] * Vec3f{least, least, least});
+    scaled_[i] = holds[i].filter(inverse_[i] * image_[i]);
+  });
+  scale = math::max(scale, product(image_, scaled_, scheduler));
   double size = product(residual_, direction_, scheduler);
   int iterations = 0;
   while (iterations < most && size > tolerance * tolerance * scale && size > 1e-30) {
@@ -104,20 +114,19 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, int most, core
   matrix.multiply(change.data(), image_.data(), scheduler);
   // What is left of the residual would be momentum out of nothing: where nothing is pinned, all that is free takes it
   // as a shift of the whole, which the elements do not feel.
-  Vec3f lost{};
-  float all = 0;
-  bool pinned = false;
-  for (std::size_t i = 0; i < right.size(); ++i) {
-    pinned |= holds[i].rank == 3;
-    if (holds[i].rank != 0) continue;
-    lost += right[i] - image_[i] - diagonal[i] * change[i];
-    all += (1.0f / 3) * trace(diagonal[i]);
-  }
-  if (all > 0 && !pinned) {
+  for (int pass = 0; pass < 3; ++pass) {
+    Vec3f lost{};
+    float all = 0;
+    bool pinned = false;
+    for (std::size_t i = 0; i < right.size(); ++i) {
+      pinned |= holds[i].rank == 3;
+      lost += holds[i].filter(right[i] - image_[i] - diagonal[i] * change[i]);
+      all += (1.0f / 3) * trace(diagonal[i]);
+    }
+    if (pinned || !(all > 0)) break;
     const Vec3f shift = lost * (1 / all);
-    for (std::size_t i = 0; i < right.size(); ++i)
-      if (holds[i].rank == 0) change[i] += shift;
-    matrix.multiply(change.data(), image_.data(), scheduler);
+    for (Vec3f& x : change) x += shift;
+    if (pass == 0) matrix.multiply(change.data(), image_.data(), scheduler);
   }
   each([&](std::size_t i) {
     reaction[i] = holds[i].rank == 0 ? Vec3f{} : image_[i] + diagonal[i] * change[i] - right[i];

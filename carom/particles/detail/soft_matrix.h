@@ -17,6 +17,24 @@ namespace carom::particles::detail {
 using math::Mat3f;
 using math::Vec3f;
 
+/// A 3×3 block by columns, each padded to four lanes.
+struct SoftBlock {
+  typedef float Lanes __attribute__((vector_size(16)));
+  Lanes x{}, y{}, z{};
+
+  void add(Vec3f a, Vec3f b, Vec3f c) {
+    x += Lanes{a.x, a.y, a.z, 0};
+    y += Lanes{b.x, b.y, b.z, 0};
+    z += Lanes{c.x, c.y, c.z, 0};
+  }
+  void add_diagonal(float d) {
+    x[0] += d;
+    y[1] += d;
+    z[2] += d;
+  }
+  Mat3f matrix() const { return {{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}; }
+};
+
 /// What of a particle's change of velocity is given: nothing, its part along a normal, or all.
 struct SoftHold {
   std::uint8_t rank = 0;  ///< 0 free, 1 along `normal`, 3 all
@@ -37,7 +55,7 @@ class SoftMatrix {
   /// Place of block (i, j); the pair must share an element.
   int slot(std::uint32_t i, std::uint32_t j) const;
   int first(int row) const { return first_[std::size_t(row)]; }
-  std::vector<Mat3f> blocks;
+  std::vector<SoftBlock> blocks;
 
   /// y = blocks·x
   void multiply(const Vec3f* x, Vec3f* y, core::TaskScheduler& scheduler) const;
@@ -60,8 +78,8 @@ class SoftSolver {
   std::vector<Vec3f> reaction;  ///< (D + K) x − b
 
   void resize(std::size_t n);
-  /// Iterations used.
-  int solve(const SoftMatrix& matrix, double tolerance, int most, core::TaskScheduler& scheduler);
+  /// Iterations used. `tolerance` is relative to the right-hand side, or to that of changes of `least` m/s if it is less.
+  int solve(const SoftMatrix& matrix, double tolerance, float least, int most, core::TaskScheduler& scheduler);
 
  private:
   double product(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b, core::TaskScheduler& scheduler);

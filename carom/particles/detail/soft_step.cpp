@@ -68,7 +68,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
   tasks.parallel_for(int(position.size()), soft_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
-      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = Mat3f::zero();
+      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = SoftBlock{};
       Vec3f force = load[i] + mass[i] * gravity;
       for (int k = first[i]; k < first[i + 1]; ++k) {
         const int place = list[std::size_t(k)], a = place % 4;
@@ -79,9 +79,10 @@ void SoftState::assemble(float h, Vec3f gravity) {
         const float s = weight * element.volume;
         for (int b = 0; b < 4; ++b) {
           const Vec3f gb = element.turn * element.gradient[b];
-          Mat3f& block = matrix.blocks[std::size_t(element.slots[4 * a + b])];
-          block = block + (s * lambda) * math::outer(ga, gb) + (s * mu) * math::outer(gb, ga) +
-                  Mat3f::diagonal(Vec3f{1, 1, 1} * (s * mu * dot(ga, gb)));
+          SoftBlock& block = matrix.blocks[std::size_t(element.slots[4 * a + b])];
+          const Vec3f l = (s * lambda) * ga, m = (s * mu) * gb;
+          block.add(l * gb.x + m * ga.x, l * gb.y + m * ga.y, l * gb.z + m * ga.z);
+          block.add_diagonal(s * mu * dot(ga, gb));
         }
       }
       solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]});
@@ -241,7 +242,7 @@ void SoftState::step(rigid::World3& world, double dt) {
     assemble(h, gravity);
     hold(h, gravity);
     for (int round = 0; round < 3; ++round) {
-      iterations += solver.solve(matrix, 1e-3, 200, tasks);
+      iterations += solver.solve(matrix, 2e-3, h * 2, 200, tasks);
       if (round == 2 || !revise(h)) break;
     }
     finish(h, gravity);
