@@ -21,6 +21,7 @@ void print_models(int width) {
   blast_models(width);
   sports_models();
   environment_models(width);
+  sports_models();
 }
 
 bool print_demos(int threads) {
