@@ -12,9 +12,8 @@ using carom::math::Vec2d;
 /// 0: a frozen rack, 1: gaps of .05 mm, 2: a frozen rack without the record.
 void break_of_fifteen(benchmark::State& state) {
   const RectangularTable shape = nine_foot_pool();
-  Billiards game = Billiards::create(BilliardTable::create(shape).value(), pool_physics(),
-                                     {.record = state.range(0) != 2})
-                       .value();
+  Billiards game =
+      Billiards::create(BilliardTable::create(shape).value(), pool_physics(), {.record = state.range(0) != 2}).value();
   std::vector<Vec2d> balls =
       eight_ball_rack(shape, game.physics().ball.radius, {.gap = state.range(0) == 1 ? 5e-5 : 0, .jitter = 1});
   balls[0].y = 0.05;

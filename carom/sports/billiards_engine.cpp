@@ -169,6 +169,20 @@ BilliardState Billiards::state(int ball, double time) const {
   return (after - 1)->at(time);
 }
 
+void Billiards::trace(int ball, double from, double until, double spacing, std::vector<Vec3d>& points) const {
+  const std::span<const BilliardMotion> motions = path(ball);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const BilliardMotion& m = motions[i];
+    const double next = i + 1 < motions.size() ? motions[i + 1].start : until;
+    const double start = math::max(m.start, from), end = math::min(math::min(m.end, next), until);
+    if (!(end > start) || m.phase == BallPhase::resting || !in_play(m.phase)) continue;
+    if (points.empty() || !(points.back() == m.position_at(start))) points.push_back(m.position_at(start));
+    const bool curved = m.phase != BallPhase::rolling && spacing > 0;
+    const int parts = curved ? int(math::min(math::ceil((end - start) / spacing), 1e4)) : 1;
+    for (int k = 1; k <= parts; ++k) points.push_back(m.position_at(start + (end - start) * k / parts));
+  }
+}
+
 double Billiards::energy() const {
   double sum = 0;
   for (const BilliardMotion& m : motion_)

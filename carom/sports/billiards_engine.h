@@ -73,6 +73,9 @@ class CAROM_API Billiards {
   const BilliardMotion& motion(int ball) const { return motion_[std::size_t(ball)]; }
   /// All motions of a ball since `place`.
   std::span<const BilliardMotion> path(int ball) const { return history_[std::size_t(ball)]; }
+  /// Appends points of a ball's way for drawing: the ends of every motion between the two times, and where it curves a
+  /// point every `spacing` s between them.
+  void trace(int ball, double from, double until, double spacing, std::vector<math::Vec3d>& points) const;
   std::span<const BilliardEvent> events() const { return events_; }
   std::int64_t event_count() const { return count_; }
   double energy() const;                                                  ///< J, of the balls in play

@@ -208,6 +208,33 @@ Verified verify(Billiards& table, const Billiards& layout, const Stroke& stroke,
   return v;
 }
 
+/// Puts the aim of a shot that pots into the middle of those that do, found by playing; `about` is how far they reach
+/// by geometry.
+void center_aim(Billiards& table, const Billiards& layout, ShotSolution& shot, double about, const ShotGoal& goal,
+                const ShotOptions& options) {
+  double reach[2] = {};
+  for (int side = 0; side < 2; ++side) {
+    double good = 0, bad = 4 * about;
+    for (int i = 0; i < 10; ++i) {
+      const double middle = 0.5 * (good + bad);
+      Stroke off = shot.stroke;
+      off.direction += side == 0 ? -middle : middle;
+      (verify(table, layout, off, goal, options).good ? good : bad) = middle;
+    }
+    reach[side] = good;
+  }
+  Stroke middle = shot.stroke;
+  middle.direction += 0.5 * (reach[1] - reach[0]);
+  const Verified v = verify(table, layout, middle, goal, options);
+  if (v.good) {
+    shot.stroke = middle;
+    shot.arrival = v.arrival;
+    shot.window = 0.5 * (reach[0] + reach[1]);
+  } else {
+    shot.window = math::min(reach[0], reach[1]);
+  }
+}
+
 }  // namespace
 
 core::Result<std::optional<ShotSolution>> solve_shot(const Billiards& layout, const ShotGoal& goal,
@@ -273,11 +300,12 @@ core::Result<std::optional<ShotSolution>> solve_shot(const Billiards& layout, co
         roots.clear();
         find_roots(trials, way, speed, goals, samples, roots);
         for (const auto& [root, aim] : roots) {
-          const double window = mouth / math::max(math::abs(root.slope), 1e-9);
-          if (best && best->window >= window) continue;
           const Stroke stroke = trials.stroke(root.direction, speed);
           const Verified v = verify(table, layout, stroke, goal, options);
-          if (v.good) best = ShotSolution{stroke, math::abs(root.side), window, v.arrival};
+          if (!v.good) continue;
+          ShotSolution shot{stroke, 0, 0, v.arrival};
+          center_aim(table, layout, shot, mouth / math::max(math::abs(root.slope), 1e-9), goal, options);
+          if (!best || shot.window > best->window) best = shot;
         }
       }
       if (best) return best;

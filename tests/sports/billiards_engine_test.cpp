@@ -216,6 +216,29 @@ TEST(BilliardsEngine, ExactReplay) {
   EXPECT_EQ(whole.next_event_time(), never);
 }
 
+// The points of a way lie on it, and its straight parts have no more than their ends.
+TEST(BilliardsEngine, TracesForDrawing) {
+  Billiards game = make_game(nine_foot_pool(), pool_physics());
+  ASSERT_TRUE(game.place(std::vector<Vec2d>{{0, 0}}).ok());
+  ASSERT_TRUE(game.strike(0, {.direction = .6, .speed = 2, .side = .3}).ok());
+  ASSERT_TRUE(game.run().ok());
+  std::vector<Vec3d> points;
+  game.trace(0, 0, game.time(), .01, points);
+  ASSERT_GT(points.size(), game.path(0).size());
+  EXPECT_LT(points.size(), 200u);
+  EXPECT_EQ(points.front(), (Vec3d{0, game.physics().ball.radius, 0}));
+  EXPECT_LT(length(points.back() - game.state(0).position), 1e-12);
+  double way = 0, fine = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) way += length(points[i] - points[i - 1]);
+  for (double t = 0; t < game.time(); t += 1e-3)
+    fine += length(game.state(0, t + 1e-3).position - game.state(0, t).position);
+  EXPECT_NEAR(way, fine, 2e-3);
+  points.clear();
+  game.trace(0, .1, .3, .01, points);
+  EXPECT_LT(length(points.front() - game.state(0, .1).position), 1e-12);
+  EXPECT_LT(length(points.back() - game.state(0, .3).position), 1e-12);
+}
+
 // Thousands of random shots on every table, jumps and massés among them: all come to rest.
 TEST(BilliardsEngine, RandomShotsComeToRest) {
   struct Setting {

@@ -44,9 +44,9 @@ TEST(BilliardsLaws, EnergyNeverRisesInCushionImpacts) {
         p.cushion.steps = 200;
         const double r = p.ball.radius, sine = random.uniform(0.0, .6);
         BilliardState s{{0, r, 0},
-                    random.uniform(.1, 6.0) * Vec3d{random.uniform(.02, 1.0), 0, random.uniform(-1.0, 1.0)},
-                    random.uniform(0.0, 200.0) * random.in_sphere(),
-                    BallPhase::sliding};
+                        random.uniform(.1, 6.0) * Vec3d{random.uniform(.02, 1.0), 0, random.uniform(-1.0, 1.0)},
+                        random.uniform(0.0, 200.0) * random.in_sphere(),
+                        BallPhase::sliding};
         if (!on_bed) s.phase = BallPhase::airborne, s.velocity.y = random.uniform(-1.0, 1.0);
         const Vec3d toward{math::sqrt(1 - sine * sine), sine, 0};
         const double before = total(s, p), approach = dot(s.velocity, toward);

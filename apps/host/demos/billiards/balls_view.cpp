@@ -8,8 +8,8 @@ namespace carom::host::demo {
 
 using rigid::Dim3;
 using sports::BallPhase;
-using sports::BilliardState;
 using sports::Billiards;
+using sports::BilliardState;
 
 namespace {
 

@@ -4,11 +4,11 @@
 namespace carom::host::demo {
 namespace {
 
-using sports::BilliardMotion;
 using sports::BallPhase;
-using sports::BilliardState;
+using sports::BilliardMotion;
 using sports::BilliardPhysics;
 using sports::Billiards;
+using sports::BilliardState;
 using sports::BilliardTable;
 
 class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
@@ -35,7 +35,7 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
     d.dt = 1.0 / 60;
     d.duration = 6;
     d.loop = true;
-    d.camera = {{-0.1, 1.9, 1.9}, {-0.1, 0, 0.05}, 0.8};
+    d.camera = {{0, 2.5, 2.6}, {0, 0, 0.05}, 0.8};
     d.ground = -0.8;
     d.parameters = {
         {"speed", "Speed at the start", "m/s", "m/s", "", 0.5, 3, 0, 1.6, false},
@@ -46,7 +46,12 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
         {"Cue balls after the impact",
          {"time", "s"},
          {"x", "m"},
-         {{"follow"}, {"stun"}, {"draw"}, {"formula", Series::Style::points}}},
+         {{"follow"},
+          {"stun"},
+          {"draw"},
+          {"formula for follow", Series::Style::points},
+          {"for stun", Series::Style::points},
+          {"for draw", Series::Style::points}}},
         {"Speed of the object balls",
          {"time", "s"},
          {"speed", "m/s"},
@@ -103,7 +108,7 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
                 {0xf2c21b, BallBodies::Kind::solid},
                 {0xf6f1e3, BallBodies::Kind::solid},
                 {0x1f4fa8, BallBodies::Kind::solid}});
-    formulas(stage);
+    formulas();
     angles(stage);
   }
 
@@ -118,7 +123,11 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
       draw_path(stage, *game_, 2 * lane + 1, 0, t, pen(gold, 0xa0));
     }
     if (t < limit_) stage.sample(1, 0, t, game_->state(3, t).velocity.x);
-    stage.say(t < impact_[0] ? "front: follow, middle: stun, back: draw" : "");
+    if (stage.world().time() >= 0.2 && !told_) {
+      told_ = true;
+      for (const Sample& point : points_) stage.sample(point.plot, point.series, point.x, point.y);
+    }
+    stage.say(t < impact_[0] ? "back: follow, middle: stun, front: draw" : "");
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
@@ -151,7 +160,7 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
   }
 
   /// The curves from the state at the impact.
-  void formulas(Stage3& stage) {
+  void formulas() {
     const double r = game_->physics().ball.radius,
                  a = game_->physics().cloth.sliding_friction * game_->physics().gravity,
                  slow = game_->physics().cloth.rolling_friction * game_->physics().gravity;
@@ -175,12 +184,13 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
         const double sign = spin_[lane] < 0 ? -1 : 1, slip = abs(r * spin_[lane]), grip = 2 * slip / (7 * a);
         const double sliding = min(t, grip), rolling = clamp(t - grip, 0.0, 2 * slip / (7 * slow));
         const double x = 0.5 * a * sliding * sliding + 2 * slip / 7 * rolling - 0.5 * slow * rolling * rolling;
-        if (impact_[lane] + t < limit_) stage.sample(0, 3, impact_[lane] + t, from_ + way_ + sign * x);
+        if (impact_[lane] + t < limit_)
+          points_.push_back({0, 3 + int(lane), impact_[lane] + t, from_ + way_ + sign * x});
       }
     const double v = at_[1], grip = 2 * v / (7 * a);
     for (double t = 0.02; t < 2; t += 0.06)
       if (impact_[1] + t < limit_)
-        stage.sample(1, 1, impact_[1] + t, t < grip ? v - a * t : 5 * v / 7 - slow * (t - grip));
+        points_.push_back({1, 1, impact_[1] + t, t < grip ? v - a * t : 5 * v / 7 - slow * (t - grip)});
   }
 
   void angles(Stage3& stage) {
@@ -199,7 +209,7 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
       for (const BilliardMotion& m : game->path(0))
         if (m.start > 1e-6 && m.phase == BallPhase::rolling) {
           const double angle = degrees(atan2(-m.velocity.z, m.velocity.x));
-          stage.sample(2, 1, i, angle);
+          points_.push_back({2, 1, i, angle});
           greatest_ = max(greatest_, angle);
           break;
         }
@@ -211,12 +221,15 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
       const Vec3d n{cos(cut), 0, -sin(cut)};
       BilliardState cue{{0, r, 0}, {1.341, 0, 0}, {}, BallPhase::sliding}, object{2 * r * n + Vec3d{0, r, 0}};
       sports::strike_balls(cue, object, n, true, rough);
-      stage.sample(3, 0, i, degrees(abs(atan2(dot(object.velocity, Vec3d{n.z, 0, -n.x}), dot(object.velocity, n)))));
+      points_.push_back(
+          {3, 0, i, degrees(abs(atan2(dot(object.velocity, Vec3d{n.z, 0, -n.x}), dot(object.velocity, n))))});
     }
   }
 
   std::optional<Billiards> game_;
   BallBodies balls_;
+  std::vector<Sample> points_;  ///< of formulas and single impacts: told once, early in the run
+  bool told_ = false;
   double impact_[3] = {}, spin_[3] = {}, at_[3] = {}, limit_ = 1e9, greatest_ = 0;
 };
 

@@ -5,8 +5,8 @@
 namespace carom::host::demo {
 namespace {
 
-using sports::BilliardMotion;
 using sports::BallPhase;
+using sports::BilliardMotion;
 using sports::Billiards;
 using sports::BilliardTable;
 using sports::Stroke;

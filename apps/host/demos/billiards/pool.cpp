@@ -9,8 +9,8 @@ namespace carom::host::demo {
 namespace {
 
 using sports::BallPhase;
-using sports::BilliardState;
 using sports::Billiards;
+using sports::BilliardState;
 using sports::BilliardTable;
 using sports::Stroke;
 
@@ -37,11 +37,11 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         "the sliders, R racks anew.";
     d.dt = 1.0 / 60;
     d.duration = 12;
-    d.camera = {{-2.5, 1.75, 1.55}, {-0.02, -0.05, 0.04}, 0.74};
+    d.camera = {{-3.0, 1.85, 0.62}, {-0.15, -0.05, 0.02}, 0.72};
     d.ground = -0.8;
     d.parameters = {
         {"direction", "Direction", "rad", "deg", "of the aim, counterclockwise from the table's length", -pi, pi, 0,
-         0.018, true},
+         -0.015, true},
         {"speed", "Cue speed", "m/s", "m/s", "", 0.2, 9, 0, 6.5, true},
         {"side", "English (side)", "", "", "tip offset in ball radii, right is positive", -0.6, 0.6, 0, 0, true},
         {"height", "Follow and draw", "", "", "tip offset in ball radii, up is follow", -0.6, 0.6, 0, 0.1, true},
@@ -201,6 +201,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     }
     ++shots_;
     struck_ = true;
+    struck_at_ = game_->time();
     if (shots_ == 1) started_ = length(hit->velocity);
     stage.say(hit->miscue ? std::string("miscue: the tip slipped off")
                           : format("%.1f m/s, squirt %.1f°", length(hit->velocity), degrees(hit->squirt)));
@@ -241,7 +242,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     }
     stage.say(scratch ? "the cue ball fell: it is in hand on the head spot"
                       : format("%.0f of %.0f balls are down; the shot took %.1f s", down, game_->balls() - 1,
-                               game_->rest_time() - game_->path(0).front().start));
+                               game_->rest_time() - struck_at_));
   }
 
   /// The easiest pot that the solver finds.
@@ -296,7 +297,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
   rigid::BodyId handle_;
   Vec3d handle_place_{};
   double handle_away_ = 0.4;
-  double clock_ = 0, stroke_clock_ = -1, energy_ = 0, rise_ = 0, started_ = 0;
+  double clock_ = 0, stroke_clock_ = -1, energy_ = 0, rise_ = 0, started_ = 0, struck_at_ = 0;
   int shots_ = 0;
   bool struck_ = false, reported_ = true;
 };

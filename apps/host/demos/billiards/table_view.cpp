@@ -52,7 +52,9 @@ struct TableMesh {
 
 void add_mesh(Stage3& stage, const char* name, const TableMesh& mesh, std::uint32_t color) {
   rigid::BodyDef<Dim3> body;
-  body.type = rigid::BodyType::fixed;
+  // A fixed body would be shown in the grey of what sleeps.
+  body.type = rigid::BodyType::kinematic;
+  body.allow_sleep = false;
   body.name = name;
   rigid::ShapeDef<Dim3> shape;
   shape.filter.mask = 0;
@@ -61,7 +63,8 @@ void add_mesh(Stage3& stage, const char* name, const TableMesh& mesh, std::uint3
 
 void add_box(Stage3& stage, const char* name, Vec3d middle, Vec3d half, std::uint32_t color) {
   rigid::BodyDef<Dim3> body;
-  body.type = rigid::BodyType::fixed;
+  body.type = rigid::BodyType::kinematic;
+  body.allow_sleep = false;
   body.name = name;
   body.position = middle;
   rigid::ShapeDef<Dim3> shape;
@@ -233,21 +236,9 @@ void draw_circle(Stage3& stage, const Vec3d& middle, double radius, std::uint32_
 }
 
 void draw_path(Stage3& stage, const sports::Billiards& game, int ball, double from, double until, std::uint32_t rgba) {
-  for (const sports::BilliardMotion& m : game.path(ball)) {
-    const double end = min(m.end, until);
-    double next = until;
-    for (const sports::BilliardMotion& after : game.path(ball))
-      if (after.start > m.start) {
-        next = min(next, after.start);
-        break;
-      }
-    const double start = max(m.start, from), stop = min(end, next);
-    if (stop <= start || m.phase == sports::BallPhase::resting || !sports::in_play(m.phase)) continue;
-    const int parts = m.phase == sports::BallPhase::rolling ? 1 : 12;
-    for (int i = 0; i < parts; ++i)
-      stage.line(m.position_at(start + (stop - start) * i / parts),
-                 m.position_at(start + (stop - start) * (i + 1) / parts), rgba);
-  }
+  std::vector<Vec3d> points;
+  game.trace(ball, from, until, 0.02, points);
+  for (std::size_t i = 1; i < points.size(); ++i) stage.line(points[i - 1], points[i], rgba);
 }
 
 void draw_preview(Stage3& stage, const sports::Billiards& game, int cue_ball, const sports::Stroke& stroke,
