@@ -20,8 +20,6 @@ void print_models(int width) {
   environment_models(width);
   blast_models(width);
   sports_models();
-  environment_models(width);
-  sports_models();
 }
 
 bool print_demos(int threads) {

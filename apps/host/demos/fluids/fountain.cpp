@@ -11,7 +11,7 @@ class Fountain final : public Repeatable<Fountain, Demo3> {
  public:
   Declaration declaration() const override {
     Declaration d;
-    d.id = "fountain";
+    d.id = "water-jet";
     d.title = "Fountain";
     d.summary = "A jet fills a basin; what floats rises with the level, what is heavy stays on the ground.";
     d.group = "Fluids";
@@ -132,6 +132,6 @@ class Fountain final : public Repeatable<Fountain, Demo3> {
 
 }  // namespace
 
-std::unique_ptr<Demo> make_fountain() { return std::make_unique<Fountain>(); }
+std::unique_ptr<Demo> make_water_jet() { return std::make_unique<Fountain>(); }
 
 }  // namespace carom::host::demo
