@@ -1,7 +1,10 @@
 #include "apps/host/scene_demo.h"
 
 #include <cstdio>
+#include <memory>
 #include <utility>
+
+#include "carom/environment/environment.h"
 
 namespace carom::host {
 
@@ -75,6 +78,7 @@ class SceneDemo final : public DemoOf<D> {
       taken_.push_back(false);
     }
     sample(stage);
+    start_water(stage);
   }
 
   core::Status step(Stage<D>& stage) override {
@@ -85,6 +89,7 @@ class SceneDemo final : public DemoOf<D> {
   }
   void after_step(Stage<D>& stage) override {
     sample(stage);
+    show_water(stage);
     if constexpr (D::dimension == 3)
       if (const auto place = world_.flight_place()) fly(stage, *place);
     for (Followed& f : trails_) {
@@ -196,6 +201,55 @@ class SceneDemo final : public DemoOf<D> {
     }
   }
 
+  /// The environment of the scene as it is now; null where it has none.
+  std::shared_ptr<const environment::Environment> around(Stage<D>& stage) const {
+    if (world_.environment.is_null()) return nullptr;
+    const auto definition = stage.world().effector_definition(world_.environment);
+    const auto* found = definition.ok() ? std::get_if<rigid::Surroundings<D>>(&*definition) : nullptr;
+    return found != nullptr ? found->environment : nullptr;
+  }
+  void start_water(Stage<D>& stage) {
+    const auto here = around(stage);
+    if (here == nullptr || here->water() == nullptr) return;
+    water_ = 0;
+    if constexpr (D::dimension == 3) {
+      std::vector<std::uint32_t> triangles;
+      for (std::uint32_t row = 0; row + 1 < water_cells; ++row)
+        for (std::uint32_t column = 0; column + 1 < water_cells; ++column) {
+          const std::uint32_t a = row * water_cells + column, b = a + 1, c = a + water_cells, e = c + 1;
+          triangles.insert(triangles.end(), {a, c, b, b, c, e});
+        }
+      water_ = stage.add_surface(std::move(triangles), 0x2f7faec8);
+    }
+    show_water(stage);
+  }
+  /// The water round what the camera looks at: the surface that the bodies float on.
+  void show_water(Stage<D>& stage) {
+    if (water_ < 0) return;
+    const auto here = around(stage);
+    if (here == nullptr || here->water() == nullptr) return;
+    const Camera& camera = stage.declaration().camera;
+    const double t = world_.time(), wide = D::dimension == 3 ? 5 * math::distance(camera.position, camera.target)
+                                                             : 2 * math::max(camera.width, 2 * camera.height);
+    const double spacing = wide / double(water_cells - 1), left = camera.target.x - 0.5 * wide;
+    if constexpr (D::dimension == 3) {
+      const double near = camera.target.z - 0.5 * wide;
+      std::vector<double> heights(water_cells * water_cells);
+      here->water()->grid(left, near, spacing, int(water_cells), int(water_cells), t, heights);
+      std::vector<math::Vec3f> corners(heights.size());
+      for (std::size_t i = 0; i < heights.size(); ++i)
+        corners[i] = {float(left + spacing * double(i % water_cells)), float(heights[i]),
+                      float(near + spacing * double(i / water_cells))};
+      stage.set_surface(water_, corners);
+    } else {
+      for (std::uint32_t i = 0; i + 1 < water_cells; ++i) {
+        const double x = left + spacing * i;
+        stage.line(math::Vec2d{x, here->water()->height(x, 0, t)},
+                   math::Vec2d{x + spacing, here->water()->height(x + spacing, 0, t)}, 0x2f7faeff);
+      }
+    }
+  }
+
   struct Followed {
     rigid::BodyId body;
     std::uint32_t color;
@@ -215,6 +269,8 @@ class SceneDemo final : public DemoOf<D> {
   math::Vec3d start_{};
   double extent_ = 1;
   std::vector<math::Vec3d> rungs_;
+  static constexpr std::uint32_t water_cells = 80;
+  int water_ = -1;  ///< its surface; negative: no water
 };
 
 }  // namespace
