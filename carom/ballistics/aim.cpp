@@ -39,15 +39,15 @@ class AimSolver {
     Guess guess{};
     Arrival arrival{};
   };
-  /// `eager`: gives up where the first steps do not lead there.
-  Root refine(Guess guess, int most = 40, bool eager = false) const {
+  /// `eager`: gives up where the first steps do not lead there; `near`: the guess is as good as there.
+  Root refine(Guess guess, int most = 40, bool eager = false, bool near = false) const {
     Root root;
     Inverse inverse;
     // Paths are integrated a good deal better than they still miss; the last ones as well as they must be.
     // What they err adds up: bends of drag curves and layers of wind, met on the way, pass the estimate unseen.
     const double fine = 0.1 * options_.tolerance / (1 + 0.25 * guess.time);
     Schedule schedule;  // of the first path that is as good as it must be
-    double accuracy = math::max(0.02 * math::length(target_(guess.time) - shooter_.muzzle), fine);
+    double accuracy = near ? fine : math::max(0.02 * math::length(target_(guess.time) - shooter_.muzzle), fine);
     double last_accuracy = accuracy, last_missed = 1e300, first_missed = 1e300;
     Vec3d last_u{}, last_x{};
     double last_time = 0;
@@ -633,7 +633,8 @@ core::Result<std::optional<Shot>> aim_again(const Projectile& projectile, const 
     return target.position + t * (target.velocity + (0.5 * t) * target.acceleration);
   };
   const detail::AimSolver solver(projectile, conditions, shooter, place, options);
-  const auto root = solver.refine({shooter.velocity + shooter.muzzle_speed * last.direction, last.time});
+  const auto root =
+      solver.refine({shooter.velocity + shooter.muzzle_speed * last.direction, last.time}, 40, false, true);
   if (!root.found || root.guess.time > options.longest_time) return std::optional<Shot>{};
   return std::optional<Shot>{{(root.guess.u - shooter.velocity) / shooter.muzzle_speed, root.guess.time,
                               root.arrival.position, root.arrival.velocity}};

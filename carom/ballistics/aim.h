@@ -46,8 +46,8 @@ struct AimOptions {
   bool high_arc = true;       ///< false: only the earliest hit is looked for, in a fraction of the time
 };
 
-/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 10 to 20 µs, both
-/// 50 to 120 µs, a target clearly out of reach 60 to 90 µs; a target that is only just in or out of reach, or has
+/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 10 to 25 µs, both
+/// 50 to 200 µs, a target clearly out of reach 60 to 120 µs; a target that is only just in or out of reach, or has
 /// several arcs, a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
@@ -57,8 +57,8 @@ CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions&
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  core::FunctionRef<math::Vec3d(double)> target, const AimOptions& options = {});
 
-/// The way to hit that lies close to `last`, the shot of the frame before or one of a table (AimTable): 5 to 20 µs on a
-/// low arc. Empty where Newton's method does not lead there: ask `aim`.
+/// The way to hit that lies close to `last`, the shot of the frame before or one of a table (AimTable): about 10 µs on
+/// a low arc. Empty where Newton's method does not lead there: ask `aim`.
 CAROM_API core::Result<std::optional<Shot>> aim_again(const Projectile& projectile, const Conditions& conditions,
                                                       const Shooter& shooter, const Target& target, const Shot& last,
                                                       const AimOptions& options = {});
