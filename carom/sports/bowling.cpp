@@ -2,6 +2,7 @@
 
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
+#include "carom/math/vec.h"
 
 namespace carom::sports {
 namespace {

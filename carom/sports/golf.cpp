@@ -19,7 +19,7 @@ core::Result<GolfShotResult> play_golf(const GolfShot& def, GroundAt ground) {
                   .high = def.high};
   auto impact = strike(def.ball, def.club, out.delivery, def.tee);
   if (!impact) return impact.error();
-  out.impact = std::move(*impact);
+  out.impact = *impact;
   auto shot = play(def.ball, def.conditions, out.impact.ball, ground);
   if (!shot) return shot.error();
   out.shot = std::move(*shot);
