@@ -28,8 +28,8 @@ Vec3d any_normal(Vec3d d) { return math::abs(d.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d
 }  // namespace
 
 core::Status check(const EmitterDef& d) {
-  if (!detail::all_finite(d.position)) return bad_field("position", "not finite", "metres");
-  if (!detail::all_finite(d.velocity)) return bad_field("velocity", "not finite", "metres a second");
+  if (!detail::finite_vector(d.position)) return bad_field("position", "not finite", "metres");
+  if (!detail::finite_vector(d.velocity)) return bad_field("velocity", "not finite", "metres a second");
   if (!math::is_finite(d.rotation) || !(math::abs(math::length(d.rotation) - 1) < 1e-3))
     return bad_field("rotation", "not of length 1", "a unit quaternion");
   for (int k = 0; k < 3; ++k)

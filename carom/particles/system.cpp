@@ -34,8 +34,8 @@ core::Status check(const Drag& d) {
 core::Status ParticleSystem::check(const SystemDef& d) {
   const char* what = "particle system";
   if (d.capacity < 1 || d.capacity > max_capacity) return detail::bad(what, "capacity", d.capacity, "1 to 2^24");
-  if (!detail::all_finite(d.anchor)) return core::Error{"particle system: anchor is not finite"};
-  if (!detail::all_finite(d.gravity)) return core::Error{"particle system: gravity is not finite"};
+  if (!detail::finite_vector(d.anchor)) return core::Error{"particle system: anchor is not finite"};
+  if (!detail::finite_vector(d.gravity)) return core::Error{"particle system: gravity is not finite"};
   if (d.planar && (d.gravity.z != 0 || d.anchor.z != 0))
     return core::Error{"particle system: gravity and anchor of a planar system must have z = 0"};
   if (!math::is_finite(d.gravity_scale)) return detail::bad(what, "gravity_scale", d.gravity_scale, "a finite number");
@@ -102,15 +102,15 @@ bool ParticleSystem::push(Vec3d position, Vec3d velocity, float birth, float lif
 }
 
 core::Result<bool> ParticleSystem::add(const NewParticle& p) {
-  if (!detail::all_finite(p.position)) return core::Error{"new particle: position is not finite"};
-  if (!detail::all_finite(p.velocity)) return core::Error{"new particle: velocity is not finite"};
+  if (!detail::finite_vector(p.position)) return core::Error{"new particle: position is not finite"};
+  if (!detail::finite_vector(p.velocity)) return core::Error{"new particle: velocity is not finite"};
   if (!(p.lifetime > 0)) return detail::bad("new particle", "lifetime", p.lifetime, "above 0 s");
   if (!(p.scale >= 1e-3f && p.scale <= 1e3f)) return detail::bad("new particle", "scale", p.scale, "0.001 to 1000");
   return push(p.position, p.velocity, float(time_ - epoch_), p.lifetime, p.scale);
 }
 
 core::Result<int> ParticleSystem::burst(const BurstDef& definition, Range lifetime) {
-  if (!detail::all_finite(definition.center) || !detail::all_finite(definition.velocity))
+  if (!detail::finite_vector(definition.center) || !detail::finite_vector(definition.velocity))
     return core::Error{"burst: center or velocity is not finite"};
   if (!(lifetime.low > 0 && lifetime.high >= lifetime.low))
     return detail::bad("burst", "lifetime", lifetime.low, "two numbers, rising, above 0 s");
@@ -132,7 +132,7 @@ core::Result<int> ParticleSystem::burst(const BurstDef& definition, Range lifeti
 }
 
 core::Status ParticleSystem::set_gravity(Vec3d gravity) {
-  if (!detail::all_finite(gravity)) return core::Error{"particle system: gravity is not finite"};
+  if (!detail::finite_vector(gravity)) return core::Error{"particle system: gravity is not finite"};
   if (definition_.planar && gravity.z != 0) return core::Error{"particle system: gravity of a planar system has z = 0"};
   definition_.gravity = gravity;
   return {};

@@ -80,7 +80,7 @@ void ParticleSystem::step_contacts(double dt, core::TaskScheduler& scheduler, co
 void ParticleSystem::place_grains(int from, int to, detail::Path& path) {
   for (int i = from; i < to; ++i) {
     const std::size_t k = std::size_t(i - from), index = std::size_t(i);
-    path.left[k] = 0;
+    path.left[k] = path.reach[k] = 0;
     if (i >= count_) continue;
     const detail::ContactSolver::Grain& g = solver_.grain(i);
     // What flies fast may pass a thin surface that was not near at the start: it is swept. Those that were near are
@@ -94,6 +94,9 @@ void ParticleSystem::place_grains(int from, int to, detail::Path& path) {
       arrays_[3 + c][index] = g.v[c];
       spin_[c][index] = g.w[c];
     }
+    const Vec3f way{arrays_[0][index] - path.start[0][k], arrays_[1][index] - path.start[1][k],
+                    arrays_[2][index] - path.start[2][k]};
+    path.reach[k] = g.radius + math::length(way);
     if (definition_.planar) arrays_[2][index] = arrays_[5][index] = 0;
   }
 }

@@ -21,7 +21,7 @@ float part_turn(double turns) { return float(turns - math::floor(turns + 0.5)); 
 
 core::Status check(const Air& air) {
   const environment::Wind& w = air.wind;
-  if (!detail::all_finite(w.velocity)) return core::Error{"wind: velocity is not finite"};
+  if (!detail::finite_vector(w.velocity)) return core::Error{"wind: velocity is not finite"};
   if (!math::is_finite(air.ground)) return core::Error{"air: ground is not finite"};
   if (!(w.reference_height > 0 && math::is_finite(w.reference_height)))
     return detail::bad("wind", "reference_height", w.reference_height, "above 0 m");
@@ -35,7 +35,7 @@ core::Status check(const Air& air) {
   if (air.whirls.size() > max_fields)
     return detail::bad("air", "number of whirls", double(air.whirls.size()), "at most 256");
   for (const Whirl& whirl : air.whirls) {
-    if (!detail::all_finite(whirl.center)) return core::Error{"whirl: center is not finite"};
+    if (!detail::finite_vector(whirl.center)) return core::Error{"whirl: center is not finite"};
     if (!(math::abs(math::length(whirl.axis) - 1) < 1e-6)) return core::Error{"whirl: axis is not a unit vector"};
     if (!math::is_finite(whirl.vortex.circulation)) return core::Error{"whirl: circulation is not finite"};
     if (!(whirl.vortex.core_radius > 0 && math::is_finite(whirl.vortex.core_radius)))
@@ -46,7 +46,7 @@ core::Status check(const Air& air) {
 
 core::Status check(const Attractor& a) {
   const forces::Radial& r = a.radial;
-  if (!detail::all_finite(a.center)) return core::Error{"attractor: center is not finite"};
+  if (!detail::finite_vector(a.center)) return core::Error{"attractor: center is not finite"};
   if (!math::is_finite(r.strength)) return core::Error{"attractor: strength is not finite"};
   if (!(r.reference > 0 && math::is_finite(r.reference)))
     return detail::bad("attractor", "reference", r.reference, "above 0 m");
@@ -128,6 +128,7 @@ void ParticleSystem::prepare_move(double dt) {
   m = {};
   m.dt = float(dt);
   m.now = float(time_ - epoch_);
+  m.radius = d.radius;
   const Vec3d gravity = d.gravity * double(d.gravity_scale);
   for (int k = 0; k < 3; ++k) {
     m.gravity[k] = float(gravity[k]);

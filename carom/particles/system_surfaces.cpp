@@ -36,10 +36,10 @@ float reach_of(const geometry::Shape3& shape) {
 
 core::Status check(const Collider& c) {
   if (const core::Status status = geometry::validate(c.shape); !status) return status;
-  if (!detail::all_finite(c.pose.position) || !math::is_finite(c.pose.rotation))
+  if (!detail::finite_vector(c.pose.position) || !math::is_finite(c.pose.rotation))
     return core::Error{"collider: pose is not finite"};
-  if (!detail::all_finite(Vec3d(c.velocity)) || !detail::all_finite(Vec3d(c.angular_velocity)) ||
-      !detail::all_finite(c.center_of_mass))
+  if (!detail::finite_vector(Vec3d(c.velocity)) || !detail::finite_vector(Vec3d(c.angular_velocity)) ||
+      !detail::finite_vector(c.center_of_mass))
     return core::Error{"collider: velocity, angular_velocity or center_of_mass is not finite"};
   if (!(c.restitution >= 0 && c.restitution <= 1))
     return core::Error{"collider: restitution is " + std::to_string(c.restitution) + ", expected 0 to 1"};
@@ -49,7 +49,7 @@ core::Status check(const Collider& c) {
   if (!(c.inverse_mass >= 0 && math::is_finite(c.inverse_mass)))
     return core::Error{"collider: inverse_mass is " + std::to_string(c.inverse_mass) + ", expected at least 0 1/kg"};
   for (int column = 0; column < 3; ++column)
-    if (!detail::all_finite(Vec3d(c.inverse_inertia.column(column))))
+    if (!detail::finite_vector(Vec3d(c.inverse_inertia.column(column))))
       return core::Error{"collider: inverse_inertia is not finite"};
   return {};
 }

@@ -8,8 +8,12 @@
 
 namespace carom::particles::detail {
 
-inline bool all_finite(math::Vec3d v) { return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z); }
-inline bool all_finite(math::Vec3f v) { return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z); }
+inline bool finite_vector(math::Vec3d v) {
+  return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z);
+}
+inline bool finite_vector(math::Vec3f v) {
+  return math::is_finite(v.x) && math::is_finite(v.y) && math::is_finite(v.z);
+}
 inline core::Error bad(const char* what, const char* field, const std::string& found, const char* expected) {
   return core::Error{std::string(what) + ": " + field + " is " + found + ", expected " + expected};
 }

@@ -142,18 +142,20 @@ CAROM_SIMD_INLINE int collide_form(const CollideData& d, const SurfaceData& s, c
   const V center0 = splat(s.place0), center1 = splat(s.place1);
   for (int i = from; i < to; i += width) {
     const int k = i - from;
-    const V p0 = load(path.start, k), p1 = load(arrays.position, i);
-    const F scale = arrays.scale != nullptr ? F::load(arrays.scale + i) : splat(1);
-    const F radius = splat(d.radius) * scale;
+    // Most are nowhere near: that is found out with as little as possible.
+    const V p1 = load(arrays.position, i);
     const F left = F::load(path.left + k);
     M near = left > F::zero();
     if (s.reach < far_gap) {
-      const V off = p1 - center1, way = p1 - p0;
-      const F reach = splat(s.reach) + radius + math::sqrt(dot(way, way));
+      const V off = p1 - center1;
+      const F reach = splat(s.reach) + F::load(path.reach + k);
       near = near & (dot(off, off) < reach * reach);
     }
-    if (arrays.held != nullptr) near = near & (F::load(arrays.held + i) == F::zero());
     if (!math::any(near)) continue;
+    if (arrays.held != nullptr) near = near & (F::load(arrays.held + i) == F::zero());
+    const V p0 = load(path.start, k);
+    const F scale = arrays.scale != nullptr ? F::load(arrays.scale + i) : splat(1);
+    const F radius = splat(d.radius) * scale;
 
     const V q0 = turn_back(s.turn0, p0 - center0), q1 = turn_back(s.turn1, p1 - center1);
     Meeting m = meet<form>(s, q0, q1, radius, near, path, k);
@@ -220,9 +222,12 @@ CAROM_SIMD_INLINE int collide_form(const CollideData& d, const SurfaceData& s, c
     }
 
     const V new_v = select(m.hit, turn(s.turn1, end_w) + u, v1);
-    store(select(m.hit, turn(s.turn1, end_q) + center1, p1), arrays.position, i);
+    const V new_p = select(m.hit, turn(s.turn1, end_q) + center1, p1);
+    store(new_p, arrays.position, i);
     store(new_v, arrays.velocity, i);
-    store(select(m.hit, turn(s.turn1, qh) + center1, p0), path.start, k);
+    const V new_start = select(m.hit, turn(s.turn1, qh) + center1, p0), new_way = new_p - new_start;
+    store(new_start, path.start, k);
+    (radius + math::sqrt(dot(new_way, new_way))).store(path.reach + k);
     store(select(m.hit, turn(s.turn1, after) + u, v0), path.speed, k);
     math::select(m.hit, rest, left).store(path.left + k);
     if (s.answer == Answer::kill) math::select(m.hit, splat(d.now), F::load(arrays.death + i)).store(arrays.death + i);

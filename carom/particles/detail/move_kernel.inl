@@ -100,6 +100,9 @@ CAROM_SIMD_INLINE void move_all(const MoveData& d, const Arrays& arrays, int fro
       store(p, path.start, i - from);
       store(v, path.speed, i - from);
       dt.store(path.left + (i - from));
+      const V way = p1 - p;
+      const F radius = splat(d.radius) * (arrays.scale != nullptr ? F::load(arrays.scale + i) : splat(1));
+      (radius + math::sqrt(dot(way, way))).store(path.reach + (i - from));
     }
     if (!d.velocity_only) store(p1, arrays.position, i);
     store(v1, arrays.velocity, i);

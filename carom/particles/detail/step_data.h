@@ -24,6 +24,7 @@ struct alignas(64) Path {
   float start[3][block_size];  ///< m, where the rest of the step begins
   float speed[3][block_size];  ///< m/s, with which velocity
   float left[block_size];      ///< s of it
+  float reach[block_size];     ///< m, radius and length of that way
   float gap[block_size];       ///< for surfaces that are cast one by one: as the kernels' own, and its normal
   float normal[3][block_size];
 };
@@ -45,6 +46,7 @@ enum class Rate : int { uniform, own, quadratic, schiller_naumann };
 
 struct MoveData {
   float dt, now;
+  float radius;
   float gravity[3];
   float wind[3];
   const float* wind_table;  ///< null: the same everywhere; else factors by the root of the height, and differences

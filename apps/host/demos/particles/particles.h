@@ -10,7 +10,7 @@ namespace carom::host::demo {
 std::unique_ptr<Demo> make_wind_on_obstacles();
 std::unique_ptr<Demo> make_spark_burst();
 std::unique_ptr<Demo> make_snow();
-std::unique_ptr<Demo> make_fountain();
+std::unique_ptr<Demo> make_drop_fountain();
 std::unique_ptr<Demo> make_hail();
 std::unique_ptr<Demo> make_fire();
 std::unique_ptr<Demo> make_fireball();

@@ -148,12 +148,12 @@ class Snow final : public Repeatable<Snow, Demo3> {
   int counted_ = 0;
 };
 
-class Fountain final : public Repeatable<Fountain, Demo3> {
+class DropFountain final : public Repeatable<DropFountain, Demo3> {
  public:
   Declaration declaration() const override {
     Declaration d;
-    d.id = "fountain";
-    d.title = "A fountain";
+    d.id = "drop-fountain";
+    d.title = "A fountain of drops";
     d.summary = "Drops rise and fall with the drag of spheres, the wind drifts them, and each one splashes.";
     d.group = "Particles";
     d.chapter = "8";
@@ -467,7 +467,7 @@ class Hail final : public Repeatable<Hail, Demo2> {
 }  // namespace
 
 std::unique_ptr<Demo> make_snow() { return std::make_unique<Snow>(); }
-std::unique_ptr<Demo> make_fountain() { return std::make_unique<Fountain>(); }
+std::unique_ptr<Demo> make_drop_fountain() { return std::make_unique<DropFountain>(); }
 std::unique_ptr<Demo> make_hail() { return std::make_unique<Hail>(); }
 
 }  // namespace carom::host::demo
