@@ -140,7 +140,8 @@ Status check_node(const std::vector<Rope>& ropes, int rope, int& node) {
 Status RopeSet::attach(int index, const RopeAttachment& given, const rigid::World3& world) {
   RopeAttachment attachment = given;
   if (Status status = detail::check_node(ropes_, index, attachment.node); !status.ok()) return status;
-  if (!detail::finite_point(attachment.point)) return core::Error{"RopeAttachment::point is not finite, expected metres"};
+  if (!detail::finite_point(attachment.point))
+    return core::Error{"RopeAttachment::point is not finite, expected metres"};
   Rope& rope = ropes_[std::size_t(index)];
   const int last = rope.count() - 1;
   if (attachment.clamped && attachment.node != 0 && attachment.node != last)

@@ -17,5 +17,7 @@ void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine
 void environment_models(int width);
 void blast_models(int width);       ///< lanes of the world
 void sports_models();
+void ballistics_models(int width);
+void rope_models(int width);  ///< lanes of the batch, 0: what the machine has
 
 }  // namespace carom::determinism

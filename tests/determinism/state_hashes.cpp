@@ -20,6 +20,7 @@ void print_models(int width) {
   environment_models(width);
   blast_models(width);
   sports_models();
+  rope_models(width);
 }
 
 bool print_demos(int threads) {

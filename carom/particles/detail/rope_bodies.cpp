@@ -230,13 +230,15 @@ void RopeSolver::couple() {
       const std::size_t row = std::size_t(body.column) * 6;
       add(row, set.right_.data(), 1, node.arm, node.reaction);
       for (std::size_t t = 0; t < rope.touched.size(); ++t) {
+        const int low = rope.reach[2 * t], high = rope.reach[2 * t + 1];
+        if (i < low || i > high) continue;
         const int other = set.bodies_[std::size_t(rope.touched[t])].column;
         bool near = false;
         for (int c = 0; c < 6; ++c) {
           const Vec3d* column = &rope.columns[(t * 6 + std::size_t(c)) * std::size_t(n)];
           Vec3d answer = rope.diagonal[std::size_t(i)] * column[i];
-          if (i > 0) answer += rope.lower[std::size_t(i)] * column[i - 1];
-          if (i + 1 < n) answer += rope.upper[std::size_t(i)] * column[i + 1];
+          if (i > low) answer += rope.lower[std::size_t(i)] * column[i - 1];
+          if (i < high) answer += rope.upper[std::size_t(i)] * column[i + 1];
           if (length_squared(answer) == 0) continue;
           near = true;
           add(row, set.matrix_.data() + std::size_t(other) * 6 + std::size_t(c), size, node.arm, answer);
@@ -272,11 +274,18 @@ void RopeSolver::couple() {
   for (std::size_t k = 0; k < size; ++k) {
     const double inverse = 1 / m[k * size + k];
     for (std::size_t i = k + 1; i < size; ++i) {
-      if (std::size_t(set.first_block_[i / 6]) > k / 6) continue;
+      if (std::size_t(set.first_block_[i / 6]) > k / 6) {
+        i += 5 - i % 6;  // the whole block
+        continue;
+      }
       const double factor = m[i * size + k] * inverse;
       if (factor == 0) continue;
-      for (std::size_t j = k + 1; j < size; ++j)
-        if (std::size_t(set.first_block_[j / 6]) <= k / 6) m[i * size + j] -= factor * m[k * size + j];
+      for (std::size_t j = k + 1; j < size; ++j) {
+        if (std::size_t(set.first_block_[j / 6]) > k / 6)
+          j += 5 - j % 6;
+        else
+          m[i * size + j] -= factor * m[k * size + j];
+      }
       set.right_[i] -= factor * set.right_[k];
     }
   }
@@ -292,7 +301,8 @@ void RopeSolver::couple() {
       const double* change = &set.right_[std::size_t(set.bodies_[std::size_t(rope.touched[t])].column) * 6];
       for (int c = 0; c < 6; ++c) {
         const Vec3d* column = &rope.columns[(t * 6 + std::size_t(c)) * std::size_t(n)];
-        for (int i = 0; i < n; ++i) rope.solution[std::size_t(i)] += change[c] * column[i];
+        for (int i = rope.reach[2 * t]; i <= rope.reach[2 * t + 1]; ++i)
+          rope.solution[std::size_t(i)] += change[c] * column[i];
       }
     }
   }

@@ -110,6 +110,7 @@ struct Rope {
   std::vector<Mat3d> lower, diagonal, upper, factor, held;  ///< momentum rows, and Thomas' eliminated ones
   std::vector<Vec3d> right, solution, momentum;
   std::vector<int> touched;    ///< bodies that move, in this rope's order
+  std::vector<int> reach;      ///< two a body: particles from … to that its motion moves
   std::vector<Vec3d> columns;  ///< 6 a body, as many as particles
   std::vector<double> theta, pull;
 

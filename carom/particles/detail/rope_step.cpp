@@ -255,20 +255,37 @@ void RopeSolver::solve(Rope& rope) {
   rope.solution[n - 1] = rope.right[n - 1];
   for (std::size_t i = n - 1; i-- > 0;) rope.solution[i] = rope.right[i] - rope.held[i] * rope.solution[i + 1];
 
-  for (std::size_t t = 0; t < rope.touched.size(); ++t)
-    for (int k = 0; k < 6; ++k) {
+  rope.reach.resize(2 * rope.touched.size());
+  for (std::size_t t = 0; t < rope.touched.size(); ++t) {
+    // What a body moves ends at the next particles that others hold.
+    const auto ends = [&](std::size_t i) {
+      return rope.nodes[i].hold == RopeHold::attached && rope.nodes[i].body != rope.touched[t];
+    };
+    std::size_t low = n, high = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (rope.nodes[i].hold != RopeHold::none && rope.nodes[i].body == rope.touched[t]) {
+        low = math::min(low, i);
+        high = i;
+      }
+    while (low > 0 && low < n && !ends(low)) --low;
+    while (low < n && high + 1 < n && !ends(high)) ++high;
+    if (low == n) low = 1, high = 0;
+    rope.reach[2 * t] = int(low);
+    rope.reach[2 * t + 1] = int(high);
+    for (int k = 0; k < 6 && low <= high; ++k) {
       Vec3d* column = &rope.columns[(t * 6 + std::size_t(k)) * n];
       const Vec3d unit{double(k % 3 == 0), double(k % 3 == 1), double(k % 3 == 2)};
-      for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t i = low; i <= high; ++i) {
         const RopeNode& node = rope.nodes[i];
         Vec3d r{};
         if (node.hold != RopeHold::none && node.body == rope.touched[t])
           r = held_part(node, rope.mass[i], k < 3 ? unit : cross(unit, node.arm));
-        if (i > 0) r -= project(node, rope.lower[i] * column[i - 1]);
+        if (i > low) r -= project(node, rope.lower[i] * column[i - 1]);
         column[i] = rope.factor[i] * r;
       }
-      for (std::size_t i = n - 1; i-- > 0;) column[i] -= rope.held[i] * column[i + 1];
+      for (std::size_t i = high; i-- > low;) column[i] -= rope.held[i] * column[i + 1];
     }
+  }
 }
 
 void RopeSolver::react(Rope& rope) {
@@ -293,7 +310,9 @@ double RopeSolver::change(Rope& rope) {
     const Vec3d off = (rope.solution[i + 1] - rope.guess[i + 1]) - (rope.solution[i] - rope.guess[i]);
     worst = math::max(worst, h * h * length_squared(off) / (rope.rest[i] * rope.rest[i]));
     const double stretch = l - rope.rest[i] + rope.theta[2 * i] * h * dot(reach, off) / math::max(l, 1e-9);
-    rope.pull[i] = math::max(rope.material.axial_stiffness / rope.rest[i] * stretch, 0.0);
+    const double rate = dot(reach, closing + off) / math::max(l, 1e-9);
+    rope.pull[i] =
+        math::max((rope.material.axial_stiffness * stretch + rope.material.axial_damping * rate) / rope.rest[i], 0.0);
   }
   return worst;
 }

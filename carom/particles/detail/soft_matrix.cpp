@@ -78,7 +78,8 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
   matrix.multiply(change.data(), image_.data(), scheduler);
   each([&](std::size_t i) {
     // Of a particle on a plane only what acts along it is preconditioned.
-    inverse_[i] = inverse(diagonal[i] + matrix.blocks[std::size_t(matrix.slot(std::uint32_t(i), std::uint32_t(i)))].matrix());
+    inverse_[i] =
+        inverse(diagonal[i] + matrix.blocks[std::size_t(matrix.slot(std::uint32_t(i), std::uint32_t(i)))].matrix());
     residual_[i] = holds[i].filter(right[i] - image_[i] - diagonal[i] * change[i]);
     scaled_[i] = holds[i].filter(inverse_[i] * holds[i].filter(right[i]));
     direction_[i] = holds[i].filter(inverse_[i] * residual_[i]);

@@ -78,7 +78,8 @@ class SoftSolver {
   std::vector<Vec3f> reaction;  ///< (D + K) x − b
 
   void resize(std::size_t n);
-  /// Iterations used. `tolerance` is relative to the right-hand side, or to that of changes of `least` m/s if it is less.
+  /// Iterations used. `tolerance` is relative to the right-hand side, or to that of changes of `least` m/s if it is
+  /// less.
   int solve(const SoftMatrix& matrix, double tolerance, float least, int most, core::TaskScheduler& scheduler);
 
  private:

@@ -15,7 +15,8 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
     Declaration d;
     d.id = "rope-bridge";
     d.title = "A rope bridge and a wrecking ball";
-    d.summary = "Planks on two ropes sag into their chain line; a ball of half a ton on a light rope comes down on them.";
+    d.summary =
+        "Planks on two ropes sag into their chain line; a ball of half a ton on a light rope comes down on them.";
     d.group = "Ropes and cloth";
     d.chapter = "13";
     d.text =
@@ -29,7 +30,7 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
     d.camera = {{0, 4.5, 15}, {0, 1.2, 0}, 0.7};
     d.ground = -1.5;
     d.parameters = {
-        {"slack", "Slack of the ropes", "", "", "length over span, less one", 0.02, 0.2, 0, 0.06, false},
+        {"slack", "Slack of the ropes", "", "", "length over span, less one", 0.01, 0.1, 0, 0.03, false},
         {"ball", "Mass of the ball", "kg", "kg", "", 50, 2000, 0, 500, false},
         {"strength", "Strength of a rope", "N", "kN", "tension above which it breaks", 2000, 2e5, 0, 60000, false},
     };
@@ -46,30 +47,38 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
       def.position = {side * 7, 0, 0};
       stage.add(def, geometry::Box{{1, 1.5f, 1.2f}}, {}, dark);
     }
-    particles::RopeMaterial rope{.mass_per_length = 0.8, .radius = 0.03, .axial_stiffness = 2e6, .axial_damping = 4e3,
-                                 .drag_coefficient = 1.2, .break_tension = stage.value("strength")};
+    particles::RopeMaterial rope{.mass_per_length = 0.8,
+                                 .radius = 0.03,
+                                 .axial_stiffness = 2e6,
+                                 .axial_damping = 4e3,
+                                 .drag_coefficient = 1.2,
+                                 .break_tension = stage.value("strength")};
     const double span = 12, length = span * (1 + stage.value("slack"));
     const int segments = 2 * planks_ + 2;
     for (int k = 0; k < 2; ++k) {
       const double z = k == 0 ? -0.7 : 0.7;
-      const Vec3d points[] = {{-6, 1.6, z}, {6, 1.6, z}};
-      stage.keep(ropes_.add({.material = rope, .points = points, .segments = segments, .length = length, .collide = false}));
+      std::vector<Vec3d> points;
+      for (int i = 0; i <= 60; ++i) points.push_back(deck(stage, i / 60.0) + Vec3d{0, 0, z});
+      stage.keep(
+          ropes_.add({.material = rope, .points = points, .segments = segments, .length = length, .collide = false}));
       stage.check(ropes_.attach(k, {.node = 0, .point = points[0]}, stage.world()));
-      stage.check(ropes_.attach(k, {.node = -1, .point = points[1]}, stage.world()));
+      stage.check(ropes_.attach(k, {.node = -1, .point = points.back()}, stage.world()));
     }
     def.type = rigid::BodyType::dynamic;
     def.name = "plank";
     for (int i = 0; i < planks_; ++i) {
       const int node = 2 * i + 2;
-      def.position = {-6 + span * node / segments, 1.6, 0};
+      const auto at = ropes_.positions(0)[std::size_t(node)];
+      def.position = {at.x, at.y, 0};
       rigid::ShapeDef<Dim3> shape;
       shape.density = 500;
       const BodyId plank = stage.add(def, geometry::Box{{0.2f, 0.04f, 0.75f}}, shape, sand);
       for (int k = 0; k < 2; ++k)
-        stage.check(ropes_.attach(k, {.node = node, .body = plank, .point = {0, 0, k == 0 ? -0.7 : 0.7}}, stage.world()));
+        stage.check(
+            ropes_.attach(k, {.node = node, .body = plank, .point = {0, 0, k == 0 ? -0.7 : 0.7}}, stage.world()));
     }
     // The ball hangs from a gallows, drawn aside.
-    const double reach = 5;
+    const double reach = 6.7;
     ball_at_ = Vec3d{0, 7.4, 0} + reach * Vec3d{0, -0.5, -0.866};
     def.name = "ball";
     def.position = ball_at_;
@@ -78,8 +87,11 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
     heavy.density = float(stage.value("ball") / (4.0 / 3 * math::pi * radius * radius * radius));
     ball_ = stage.add(def, geometry::Sphere{float(radius)}, heavy, red);
     const Vec3d points[] = {{0, 7.4, 0}, ball_at_};
-    stage.keep(ropes_.add({.material = {.mass_per_length = 2, .radius = 0.025, .axial_stiffness = 5e6, .axial_damping = 2e4},
-                           .points = points, .segments = 24, .collide = false}));
+    stage.keep(
+        ropes_.add({.material = {.mass_per_length = 2, .radius = 0.025, .axial_stiffness = 5e6, .axial_damping = 2e4},
+                    .points = points,
+                    .segments = 24,
+                    .collide = false}));
     stage.check(ropes_.attach(2, {.node = 0, .point = points[0]}, stage.world()));
     stage.check(ropes_.attach(2, {.node = -1, .body = ball_}, stage.world()));
   }
@@ -88,15 +100,14 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
 
   void after_step(Stage3& stage) override {
     const double t = stage.world().time();
-    for (int k = 0; k < 3; ++k) draw_rope(stage, ropes_, k, k == 2 ? 0xff40404a : 0xff6b5537);
+    for (int k = 0; k < 3; ++k) draw_rope(stage, ropes_, k, k == 2 ? 0x40404aff : 0x6b5537ff);
     double bridge = 0;
     for (int k = 0; k < 2; ++k)
       for (const double tension : ropes_.tensions(k)) bridge = max(bridge, tension);
     stage.sample(0, 0, t, 1e-3 * bridge);
     stage.sample(0, 1, t, 1e-3 * ropes_.peak_tension(2));
     broken_ += int(ropes_.breaks().size());
-    for (const auto& event : ropes_.breaks())
-      stage.say(format("a rope broke at %.1f kN", 1e-3 * event.tension));
+    for (const auto& event : ropes_.breaks()) stage.say(format("a rope broke at %.1f kN", 1e-3 * event.tension));
     stretch_ = max(stretch_, ropes_.length(2) / ropes_.rest_length(2) - 1);
   }
 
@@ -107,6 +118,11 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
   std::uint64_t state_hash(std::uint64_t world) const override { return world ^ ropes_.state_hash(); }
 
  private:
+  /// The line of the deck: a parabola as long as the ropes, length/span = 1 + 8/3 (f/L)².
+  Vec3d deck(Stage3& stage, double t) {
+    const double sag = 12 * math::sqrt(0.375 * stage.value("slack")), u = 2 * t - 1;
+    return {6 * u, 1.6 - sag * (1 - u * u), 0};
+  }
   static constexpr int planks_ = 19;
   RopeSet ropes_;
   BodyId ball_{};
