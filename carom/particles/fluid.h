@@ -32,7 +32,6 @@ struct FluidDef {
   float spacing = 0.05f;             ///< m between particles at rest, 1e-4 … 100; a cell is two of them wide
   float density = 1000;              ///< kg/m³ (plane: kg/m²), > 0
   float viscosity = 1e-6f;           ///< m²/s, kinematic; the scheme itself adds a little
-  float surface_tension = 0;         ///< N/m (plane: N); water against air 0.0728
   typename D::Vector gravity = rigid::default_gravity<D>();  ///< m/s²
   /// Sides of the domain that are walls: lower x, upper x, lower y, … What leaves through an open side is gone.
   bool walls[6] = {true, true, true, true, true, true};

@@ -31,13 +31,13 @@ struct GranularDef {
   float radius_spread = 0.2f;                                ///< radii are uniform in [(1 − spread), 1] radius; 0 … 0.5
   float density = 2600;                                      ///< kg/m³ of the grains themselves, > 0
   float friction = 0.5f;                                     ///< Coulomb's μ between grains, 0 … 5
-  float rolling_friction = 0.1f;                             ///< lever arm over radius, 0 … 5
+  float rolling_friction = 0.3f;                             ///< lever arm over radius, 0 … 5
   float wall_friction = 0.5f;                                ///< at walls and bodies
   typename D::Vector gravity = rigid::default_gravity<D>();  ///< m/s²
   bool walls[6] = {true, true, true, true, true, true};      ///< as FluidDef::walls
   int max_grains = 16384;                                    ///< 1 … 2^20
-  int substeps = 4;                                          ///< 1 … 64
-  int iterations = 3;                                        ///< sweeps over the contacts in a substep, 1 … 100
+  int substeps = 8;                                          ///< 1 … 64
+  int iterations = 4;                                        ///< sweeps over the contacts in a substep, 1 … 100
   std::uint64_t seed = 1;                                    ///< of the radii
   int threads = 1;                                           ///< 1 … 64
   core::TaskScheduler* scheduler = nullptr;                  ///< the caller's own, instead; must outlive the grains

@@ -21,6 +21,7 @@ void print_models(int width) {
   blast_models(width);
   sports_models();
   rope_models(width);
+  fluid_models(width);
 }
 
 bool print_demos(int threads) {

@@ -27,22 +27,22 @@ BodyId put(World<D>& world, const typename D::Shape& shape, typename D::Position
   return id;
 }
 
-/// Water to a height of 0.6 m with room left for a box that hangs `draft` into it, between x = 0.8 and 1.2.
+/// Water to a height of 0.6 m with room left for a box that hangs `draft` into it, between x = 0.6 and 1.4.
 Fluid2 harbour(double draft, float spacing) {
   Fluid2 f = Fluid2::create({.upper = {2, 1.2}, .spacing = spacing}).value();
   f.add_box({0, 0}, {2, 0.6 - draft}).value();
-  f.add_box({0, 0.6 - draft}, {0.8, 0.6}).value();
-  f.add_box({1.2, 0.6 - draft}, {2, 0.6}).value();
+  f.add_box({0, 0.6 - draft}, {0.6, 0.6}).value();
+  f.add_box({1.4, 0.6 - draft}, {2, 0.6}).value();
   return f;
 }
 
-// Archimedes: a box of relative density 0.6 floats at 60 % of its height, one of 0.3 at 30 %: to 2 % of the height in
-// the mean over five seconds, and never further than half a cell from it; it stays upright.
+// Archimedes: a box of relative density 0.6 floats at 60 % of its height, one of 0.3 at 30 %: to 1 % of the height at
+// every moment of five seconds, and upright.
 TEST(FluidBody, BoxFloatsAtItsDraft) {
   for (const float ratio : {0.3f, 0.6f, 0.85f}) {
     World2 world;
     const double draft = 0.4 * double(ratio);
-    const BodyId box = put<Dim2>(world, geometry::make_box2({0.2f, 0.2f}), {1, 0.6 - draft + 0.2}, 1000 * ratio);
+    const BodyId box = put<Dim2>(world, geometry::make_box2({0.4f, 0.2f}), {1, 0.6 - draft + 0.2}, 1000 * ratio);
     Fluid2 f = harbour(draft, 0.02f);
     double mean = 0;
     for (int i = 0; i < 300; ++i) {
@@ -51,12 +51,33 @@ TEST(FluidBody, BoxFloatsAtItsDraft) {
       const auto s = world.state(box).value();
       const double found = (0.6 - (s.pose.position.y - 0.2)) / 0.4;
       mean += found / 300;
-      ASSERT_NEAR(found, double(ratio), 0.05) << "step " << i;
+      ASSERT_NEAR(found, double(ratio), 0.01) << ratio << " step " << i;
     }
     const auto s = world.state(box).value();
-    EXPECT_NEAR(mean, double(ratio), 0.02);
+    EXPECT_NEAR(mean, double(ratio), 0.005);
     EXPECT_NEAR(math::angle_of(s.pose.rotation), 0, 0.05);
   }
+}
+
+// Hydrostatics of a square log (E. N. Gilbert, "How things float", Am. Math. Monthly 98 (1991) 201): upright it is
+// unstable for relative densities from 0.211 to 0.789, and at one half it floats with a diagonal in the water line.
+TEST(FluidBody, SquareLogTurnsOnItsCorner) {
+  World2 world;
+  const BodyId log = put<Dim2>(world, geometry::make_box2({0.2f, 0.2f}), {1, 0.6}, 500);
+  Fluid2 f = Fluid2::create({.upper = {2, 1.2}, .spacing = 0.025f, .viscosity = 2e-3f}).value();
+  f.add_box({0, 0}, {2, 0.4}).value();
+  f.add_box({0, 0.4}, {0.8, 0.6}).value();
+  f.add_box({1.2, 0.4}, {2, 0.6}).value();
+  world.set_velocity(log, {}, 0.3f).value();
+  double mean = 0;
+  for (int i = 0; i < 480; ++i) {
+    f.step(world, dt).value();
+    world.step(dt).value();
+    if (i >= 240) mean += math::angle_of(world.state(log)->pose.rotation) / 240;
+  }
+  const double quarter = 1.5707963;
+  mean = std::abs(mean - quarter * std::floor(mean / quarter));
+  EXPECT_NEAR(mean, 0.5 * quarter, 0.12);
 }
 
 // Dropped from above it comes to the same draft, as the mean over what is left of its dance. A narrow box thrown in on
@@ -67,13 +88,13 @@ TEST(FluidBody, DroppedBoxComesToItsDraft) {
   Fluid2 f = Fluid2::create({.upper = {2, 1.4}, .spacing = 0.025f, .viscosity = 2e-3f}).value();
   f.add_box({0, 0}, {2, 0.6}).value();
   double mean = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 480; ++i) {
     f.step(world, dt).value();
     world.step(dt).value();
-    if (i < 300) continue;
+    if (i < 240) continue;
     // The level follows from the volume: V = 2 H − 0.4 draft with H = bottom + draft.
     const double bottom = world.state(box)->pose.position.y - 0.15;
-    mean += (f.volume() - 2 * bottom) / 1.6 / 0.3 / 300;
+    mean += (f.volume() - 2 * bottom) / 1.6 / 0.3 / 240;
   }
   EXPECT_NEAR(mean, 0.6, 0.03);
 }
@@ -96,12 +117,12 @@ TEST(FluidBody, HeavyBodiesSinkAndRest) {
 // A radius of five particles, walls four radii away: 3 % of g in equilibrium, 5 % for what is heavier, 12 % for what is
 // lighter (which the water that it carries with it outweighs).
 TEST(FluidBody, AddedMassOfABall) {
-  for (const float ratio : {0.5f, 1.0f, 2.0f, 5.0f}) {
+  for (const float ratio : {0.5f, 1.0f, 3.0f}) {
     World3 world;
     const BodyId ball = put<Dim3>(world, geometry::Sphere{0.2f}, {0.51, 0.45, 0.5}, 1000 * ratio, BodyType::kinematic);
     Fluid3 f = Fluid3::create({.upper = {1, 1, 1}, .spacing = 0.04f}).value();
     f.add_box({0, 0, 0}, {1, 0.92, 1}).value();
-    for (int i = 0; i < 25; ++i) {
+    for (int i = 0; i < 15; ++i) {
       f.step(world, dt).value();
       world.step(dt).value();
     }

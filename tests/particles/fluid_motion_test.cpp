@@ -63,16 +63,10 @@ DamBreak collapse(int particles_across, float dt) {
   const double unit = std::sqrt(2 * gravity / a);
   for (int i = 1; i * double(dt) * unit < 4.5; ++i) {
     f.step(dt).value();
-    double front = 0;
-    while (front < 12 * a && f.density({front + 0.25 * a, spacing}) > 0.5) front += 0.25 * a;
-    // Within the quarter, by halves.
-    double low = front, high = front + 0.25 * a;
-    for (int k = 0; k < 12; ++k) {
-      const double middle = 0.5 * (low + high);
-      (f.density({middle, spacing}) > 0.5 ? low : high) = middle;
-    }
+    double front = 12;  // the last place at the floor that is half full
+    while (front > 0 && f.density({front * a, spacing}) < 0.5) front -= 0.01;
     d.time.push_back(i * double(dt) * unit);
-    d.front.push_back(low / a);
+    d.front.push_back(front);
     d.height.push_back(f.surface_height({spacing, 0}) / (2 * a));
     d.energy = (f.potential_energy() + f.kinetic_energy()) / start;
     d.most_energy = std::max(d.most_energy, d.energy);

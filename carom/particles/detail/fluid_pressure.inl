@@ -304,6 +304,7 @@ template <class D>
 void FluidState<D>::project(float dt) {
   FluidSystem<N>& s = system;
   const int n = int(liquid.size());
+  push_solids(dt, true);
   build_rows();
   balance_sealed();
   factorise();
@@ -323,13 +324,13 @@ void FluidState<D>::project(float dt) {
   pressure_dt = dt;
   subtract_gradient(velocity, true);
 
-  push_solids(dt);
+  push_solids(dt, false);
 }
 
 /// Impulses on what closes faces, and their opposite for the liquid: the pressure on a solid's surface within a cell
 /// is, by Gauss' theorem, that on the closed parts of the cell's faces less what would weigh in the closed part of it.
 template <class D>
-void FluidState<D>::push_solids(float dt) {
+void FluidState<D>::push_solids(float dt, bool weight) {
   const int n = int(liquid.size());
   const int count = int(bodies.size());
   body_push.assign(count, Position{});
@@ -361,10 +362,10 @@ void FluidState<D>::push_solids(float dt) {
           nearest = owner;
         }
         const float sign = up ? 1.0f : -1.0f;
-        const float at_face = system.x[i] + 0.5f * sign * dt * definition.gravity[a];
+        const float at_face = weight ? 0.5f * sign * dt * definition.gravity[a] : system.x[i];
         push(a, owner, cell_mass * closed * sign * at_face, face_place(a, face));
       }
-    if (!(most > 0) || volume[c] >= 1) continue;
+    if (!weight || !(most > 0) || volume[c] >= 1) continue;
     Vector middle = face_place(0, c);
     middle[0] += 0.5f * cell;
     for (int a = 0; a < N; ++a) push(a, nearest, -cell_mass * (1 - volume[c]) * dt * definition.gravity[a], middle);

@@ -193,7 +193,7 @@ struct FluidState {
   void project(float dt);
   void spread_particles(float dt);
   void continue_velocities(std::vector<float> (&field)[N], int layer);
-  void push_solids(float dt);
+  void push_solids(float dt, bool weight);
   void hold_at_walls();
   void balance_sealed();
   void subtract_gradient(std::vector<float> (&field)[N], bool from_field);

@@ -154,6 +154,11 @@ Status GranularState<D>::fill(Position lower, Position upper, Vector velocity, s
         for (int a = 0; a < N; ++a) p[a] += step * (at[a] + 0.5);
         const Status s = add(p, velocity, tag, 0, Angular{}, call);
         if (!s.ok()) return s;
+        // As far aside as its radius leaves room: columns that stand exactly on top of each other would stay so.
+        Grain<D>& g = grains.back();
+        math::Random random(definition.seed ^ 0x6A09E667F3BCC909u, added);
+        const float room = definition.radius - g.radius;
+        for (int a = 0; a < N; ++a) g.x[a] += random.uniform(-room, room);
       }
   return {};
 }

@@ -77,8 +77,8 @@ class DamBreak final : public Repeatable<DamBreak, Demo2> {
     look_.draw(stage, *fluid_, float(math::sqrt(8 * 9.80665 * a_)));
     const double t = stage.world().time(), unit = math::sqrt(2 * 9.80665 / a_);
     const double y = a_ / stage.value("particles");
-    double front = 0;
-    while (front < 7.2 && fluid_->density({(front + 0.02) * a_, y}) > 0.5) front += 0.02;
+    double front = 7.2;
+    while (front > 0 && fluid_->density({front * a_, y}) < 0.5) front -= 0.02;
     const double height = fluid_->surface_height({y, 0}) / (2 * a_);
     if (front < 7) {
       stage.sample(0, 0, t * unit, front);

@@ -1,4 +1,6 @@
 // A tank of water with what floats and what sinks.
+#include <algorithm>
+
 #include "apps/host/demos/fluids/fluids.h"
 
 namespace carom::host::demo {
@@ -27,7 +29,7 @@ class FluidTank final : public Repeatable<FluidTank, Demo2> {
         "surface. The plot shows the draft of the two boxes against that. Pressure grows with depth as p = ρ g d "
         "(dotted).\n\n"
         "Open the tap and the level rises; viscosity turns water into oil and honey.";
-    d.duration = 8;
+    d.duration = 10;
     d.camera = {{1.2, 0.75, 6}, {1.2, 0.75, 0}, 0.75, 1.75, 2.7};
     d.parameters = {
         {"light", "Density of the orange box", "kg/m³", "kg/m³", "water has 1000", 50, 950, 50, 300, false},
@@ -40,7 +42,10 @@ class FluidTank final : public Repeatable<FluidTank, Demo2> {
     d.plots = {{"Draft over height",
                 {"time", "s"},
                 {"share under water", ""},
-                {{"orange"}, {"green"}, {"orange: ρ/ρ_water"}, {"green: ρ/ρ_water"}}},
+                {{"orange", Series::Style::line, {}, orange},
+                 {"green", Series::Style::line, {}, green},
+                 {"orange: ρ/ρ_water", Series::Style::line, {}, gold},
+                 {"green: ρ/ρ_water", Series::Style::line, {}, teal}}},
                {"Pressure in the middle",
                 {"depth", "m"},
                 {"pressure", "kPa"},
@@ -63,11 +68,11 @@ class FluidTank final : public Repeatable<FluidTank, Demo2> {
     rigid::ShapeDef<Dim2> shape;
     shape.density = stage.valuef("heavy");
     stage.add(body, geometry::Circle{0.13f}, shape, red);
-    fluid_ = stage.keep(rigid_free(Fluid2::create({.upper = {width_, 1.3},
-                                                   .spacing = stage.valuef("spacing"),
-                                                   .viscosity = stage.valuef("viscosity"),
-                                                   .max_particles = 40000,
-                                                   .threads = 1})));
+    fluid_ = stage.keep(held(Fluid2::create({.upper = {width_, 1.3},
+                                             .spacing = stage.valuef("spacing"),
+                                             .viscosity = stage.valuef("viscosity"),
+                                             .max_particles = 40000,
+                                             .threads = 1})));
     if (!fluid_) return;
     stage.check(fluid_->add_box({0, 0}, {width_, depth}));
     particles::FluidTap<Dim2> tap{.center = {0.15, 1.25}, .velocity = {0, -1.5f}, .radius = 0.05f, .tag = 1};
@@ -90,7 +95,7 @@ class FluidTank final : public Repeatable<FluidTank, Demo2> {
     const double t = stage.world().time();
     light_draft_ = draft(stage, light_, 0.24);
     half_draft_ = draft(stage, half_, 0.3);
-    if (t > 4) {
+    if (t > 5) {
       half_mean_ += half_draft_;
       light_mean_ += light_draft_;
       ++samples_;
@@ -119,7 +124,7 @@ class FluidTank final : public Repeatable<FluidTank, Demo2> {
  private:
   static constexpr double width_ = 2.4;
 
-  static core::Result<std::optional<Fluid2>> rigid_free(core::Result<Fluid2> made) {
+  static core::Result<std::optional<Fluid2>> held(core::Result<Fluid2> made) {
     if (!made.ok()) return made.error();
     return std::optional<Fluid2>(std::move(made).value());
   }
@@ -139,8 +144,11 @@ class FluidTank final : public Repeatable<FluidTank, Demo2> {
   }
   /// Of the height along the box's own vertical, against the mean level of the tank.
   double draft(Stage2& stage, BodyId body, double height) {
-    double level = 0;
-    for (int i = 0; i < 12; ++i) level += fluid_->surface_height({width_ * (i + 0.5) / 12, 0}) / 12;
+    // The median column: under a box a column ends at the box.
+    double columns[25];
+    for (int i = 0; i < 25; ++i) columns[i] = fluid_->surface_height({width_ * (i + 0.5) / 25, 0});
+    std::sort(columns, columns + 25);
+    const double level = columns[14];
     return (level - (stage.at(body).pose.position.y - height / 2)) / height;
   }
   void draw(Stage2& stage) { look_.draw(stage, *fluid_, 1.6f); }

@@ -11,7 +11,8 @@ namespace carom::host::demo {
 
 std::unique_ptr<Demo> make_fluid_tank();
 std::unique_ptr<Demo> make_dam_break();
-std::unique_ptr<Demo> make_water_jet();
+std::unique_ptr<Demo> make_water_fountain();
+std::unique_ptr<Demo> make_sand_pile();
 
 /// A liquid as balls, from deep blue at rest to white at `fast` m/s; tagged ones are tinted.
 template <class D>
