@@ -20,5 +20,7 @@ void sports_models();
 void ballistics_models(int width);
 void rope_models(int width);  ///< lanes of the batch, 0: what the machine has
 void fluid_models(int width);       ///< lanes of the worlds that the liquids are in
+void ballistics_models(int width);
+void rope_models(int width);  ///< lanes of the batch, 0: what the machine has
 
 }  // namespace carom::determinism

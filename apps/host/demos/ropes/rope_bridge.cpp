@@ -54,7 +54,7 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
                                  .drag_coefficient = 1.2,
                                  .break_tension = stage.value("strength")};
     const double span = 12, length = span * (1 + stage.value("slack"));
-    const int segments = 2 * planks_ + 2;
+    const int segments = 2 * planks_ + 1;
     for (int k = 0; k < 2; ++k) {
       const double z = k == 0 ? -0.7 : 0.7;
       std::vector<Vec3d> points;
@@ -67,19 +67,27 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
     def.type = rigid::BodyType::dynamic;
     def.name = "plank";
     for (int i = 0; i < planks_; ++i) {
-      const int node = 2 * i + 2;
-      const auto at = ropes_.positions(0)[std::size_t(node)];
+      // Two particles of each rope are lashed to it, so that it does not turn over.
+      const int node = 2 * i + 1;
+      const auto line = ropes_.positions(0);
+      const Vec3d before = line[std::size_t(node)], after = line[std::size_t(node) + 1];
+      const Vec3d at = 0.5 * (before + after);
+      const double half = 0.5 * distance(before, after),
+                   tilt = 0.5 * math::atan2(after.y - before.y, after.x - before.x);
+      def.rotation = {float(math::cos(tilt)), 0, 0, float(math::sin(tilt))};
       def.position = {at.x, at.y, 0};
       rigid::ShapeDef<Dim3> shape;
       shape.density = 500;
       const BodyId plank = stage.add(def, geometry::Box{{0.2f, 0.04f, 0.75f}}, shape, sand);
-      for (int k = 0; k < 2; ++k)
-        stage.check(
-            ropes_.attach(k, {.node = node, .body = plank, .point = {0, 0, k == 0 ? -0.7 : 0.7}}, stage.world()));
+      for (int k = 0; k < 4; ++k)
+        stage.check(ropes_.attach(
+            k % 2, {.node = node + k / 2, .body = plank, .point = {k < 2 ? -half : half, 0, k % 2 == 0 ? -0.7 : 0.7}},
+            stage.world()));
     }
     // The ball hangs from a gallows, drawn aside.
     const double reach = 6.7;
     ball_at_ = Vec3d{0, 7.4, 0} + reach * Vec3d{0, -0.5, -0.866};
+    def.rotation = {};
     def.name = "ball";
     def.position = ball_at_;
     rigid::ShapeDef<Dim3> heavy;
