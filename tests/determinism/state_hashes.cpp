@@ -22,7 +22,6 @@ void print_models(int width) {
   sports_models();
   rope_models(width);
   fluid_models(width);
-  rope_models(width);
 }
 
 bool print_demos(int threads) {
