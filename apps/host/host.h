@@ -103,7 +103,7 @@ class SimulationHost {
   HostOptions options_;
   std::unique_ptr<Simulation> simulation_;
   std::string source_name_, source_text_;  ///< of the open scene; empty where a program made it
-  std::vector<std::uint8_t> upload_;  ///< parts of a recording that have come
+  std::vector<std::uint8_t> upload_;       ///< parts of a recording that have come
   std::unique_ptr<scene::Recorder> recorder_;
   std::string recorded_;
   scene::RecordedFrame record_frame_;

@@ -23,7 +23,7 @@ struct ServerOptions {
   std::function<host::HostOptions()> host_options;  ///< for every new simulation
   /// Where simulations touch what is not theirs alone: every use of one runs within it. Empty: at once.
   std::function<void(const std::function<void()>&)> guard;
-  std::function<void(const std::string&)> log;      ///< one line a connection; called from any thread
+  std::function<void(const std::string&)> log;  ///< one line a connection; called from any thread
 };
 
 class Server {
