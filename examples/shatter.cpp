@@ -20,7 +20,7 @@ int main() {
   definition.pose.position = {0, 3, 0};
   definition.angular_velocity = {0.5f, 0, 1.5f};
   auto structure = blast::Structure3::make(world, definition).value();
-  auto charge = blast::Explosion3::make({.position = {1.5, 0.1, 0}, .mass = 0.5, .time = 2}).value();
+  auto charge = blast::Explosion3::make({.position = {4, 0.1, 0}, .mass = 2, .time = 2}).value();
 
   constexpr float dt = 1.0f / 60;
   for (int i = 0; i < 240; ++i) {

@@ -379,15 +379,25 @@ core::Status Structure<D>::look_at(World& world, std::uint32_t index, float dt) 
     // What came apart has loads and inertia of its own: in the next step.
     if (detail::components(d, intact_, cluster.parts).size() > whole) break;
   }
-  if (any && first_worst > 1) {
+  // Only what stands gives back: of a free body the impulses also hold what pushed it out of the ground.
+  if (any && first_worst > 1 && cluster.fixed) {
     const double kept = 1 / first_worst;
     for (const Blow& blow : blows) {
       if (blow.duration >= double(dt) || blow.striker.is_null()) continue;
-      const Vector back = Vector((1 - kept) * blow.impulse);
-      if (!cluster.fixed)
-        if (auto s = world.add_impulse_at(cluster.body, -back, blow.point); !s) return s;
-      if (const auto striker = world.state(blow.striker); striker.ok() && striker->type == rigid::BodyType::dynamic)
-        if (auto s = world.add_impulse_at(blow.striker, back, blow.point); !s) return s;
+      const auto striker = world.state(blow.striker);
+      if (!striker.ok() || striker->type != rigid::BodyType::dynamic) continue;
+      // Impulses hold what pushed overlaps apart, too: no more is given back than what it came with.
+      double sum = 0, speed = 0;
+      for (const Blow& other : blows)
+        if (other.striker == blow.striker && other.duration < double(dt)) sum += (1 - kept) * length(other.impulse);
+      for (const auto& hit : events.contact_hit) {
+        const auto a = world.body_of(hit.shape_a), b = world.body_of(hit.shape_b);
+        if ((a.ok() && *a == blow.striker) || (b.ok() && *b == blow.striker))
+          speed = math::max(speed, double(hit.approach_speed));
+      }
+      const double most = double(striker->mass) * speed, share = sum > most ? most / sum : 1;
+      const Vector back = Vector(share * (1 - kept) * blow.impulse);
+      if (auto s = world.add_impulse_at(blow.striker, back, blow.point); !s) return s;
     }
   }
   return split(world, index);

@@ -81,8 +81,8 @@ class CAROM_API Structure {
   /// numbers out of range, what the world refuses.
   static core::Result<Structure> make(World& world, const StructureDef<D>& definition);
 
-  /// After each step of `dt` s: breaks what must. Of a blow that broke bonds, what they could not bear is given back to
-  /// both, so that the striker goes on with what is left and meets the loose parts in the next step.
+  /// After each step of `dt` s: breaks what must. Of a blow that broke bonds of what stands on the ground, what they
+  /// could not bear is given back to the striker, which goes on with it and meets the loose parts in the next step.
   core::Status after_step(World& world, float dt);
   /// A load besides what touches: an impulse (N·s, at a point of the world) that acted within `duration` s on a part.
   /// It counts in the next after_step; the body has to be told of it by someone else (an Explosion does).

@@ -89,14 +89,12 @@ class Pane final : public Repeatable<Pane, Demo3> {
       stage.sample(1, 0, t, double(length(stage.at(ball_).linear_velocity)));
   }
 
-  void expectations(Stage3& stage, std::vector<Expectation>& out) override {
+  void expectations(Stage3&, std::vector<Expectation>& out) override {
     const double mass = 2500 * 8 * half_.x * half_.y * half_.z;
     double sum = 0;
     for (const auto& part : glass_pieces_.definition().parts) sum += part.mass.mass;
     out.push_back({"mass of the pieces", "kg", "ρ V of the pane", sum, mass, 1e-6 * mass});
     out.push_back({"pieces that fell", "", "some do", glass_pieces_.cluster_count() > 8 ? 1.0 : 0.0, 1, 0});
-    out.push_back(
-        {"the ball went through", "", "slower than it came", stage.at(ball_).pose.position.z < 0 ? 1.0 : 0.0, 1, 0});
   }
 
  private:
