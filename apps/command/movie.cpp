@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <vector>
 
-extern char** environ;
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to programs
 
 namespace carom::command {
 

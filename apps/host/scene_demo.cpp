@@ -239,7 +239,7 @@ class SceneDemo final : public DemoOf<D> {
       std::vector<math::Vec3f> corners(heights.size());
       for (std::size_t i = 0; i < heights.size(); ++i)
         corners[i] = {float(left + spacing * double(i % water_cells)), float(heights[i]),
-                      float(near + spacing * double(i / water_cells))};
+                      float(near + spacing * double((i - i % water_cells) / water_cells))};
       stage.set_surface(water_, corners);
     } else {
       for (std::uint32_t i = 0; i + 1 < water_cells; ++i) {

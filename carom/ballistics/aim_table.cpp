@@ -25,7 +25,7 @@ core::Result<AimTable> AimTable::make(const Projectile& projectile, const Condit
   still.wind = {};
   AimTable table;
   table.definition_ = definition;
-  table.nodes_.resize(std::size_t(definition.ranges * definition.elevations));
+  table.nodes_.resize(std::size_t(definition.ranges) * std::size_t(definition.elevations));
   const double reach = definition.longest_range;
   for (int k = 0; k < definition.elevations; ++k) {
     const double elevation = definition.least_elevation +
@@ -35,7 +35,7 @@ core::Result<AimTable> AimTable::make(const Projectile& projectile, const Condit
     if (!flight.ok()) return flight.error();
     const double farthest = flight->end().position.x;
     for (int i = 0; i < definition.ranges; ++i) {
-      Node& node = table.nodes_[std::size_t(i * definition.elevations + k)];
+      Node& node = table.nodes_[std::size_t(i) * std::size_t(definition.elevations) + std::size_t(k)];
       const double range = reach * i / (definition.ranges - 1);
       if (i == 0) {
         node = {0, float(math::tan(elevation)), 0};

@@ -35,7 +35,7 @@ struct HullMaker {
   /// False where what is left is not a polyhedron.
   bool collect(const ConvexCell& cell, double limit) {
     const auto points = cell.vertices();
-    for (std::uint16_t i = 0; i < points.size(); ++i) parent[i] = i;
+    for (std::size_t i = 0; i < points.size(); ++i) parent[i] = std::uint16_t(i);
     bool merged = false;
     for (const ConvexCell::Face& face : cell.faces()) {
       const auto loop = cell.loop(face);
@@ -98,7 +98,8 @@ bool link(geometry::Hull& hull, const HullMaker& maker) {
   hull.edges.resize(count);
   hull.faces.reserve(maker.loops.size());
   std::uint16_t made = 0;
-  for (std::uint16_t f = 0; f < maker.loops.size(); ++f) {
+  const auto loops = std::uint16_t(maker.loops.size());
+  for (std::uint16_t f = 0; f < loops; ++f) {
     const HullMaker::Loop& loop = maker.loops[f];
     std::uint16_t first = nowhere, last = nowhere;
     for (std::size_t k = 0; k < loop.count; ++k) {

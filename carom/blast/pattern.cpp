@@ -79,7 +79,8 @@ class SiteGrid {
             x = math::max(x, c[0] + ring - 1);  // across the inside
             continue;
           }
-          const std::size_t cube = std::size_t((z * count_[1] + y) * count_[0] + x);
+          const std::size_t cube =
+              (std::size_t(z) * std::size_t(count_[1]) + std::size_t(y)) * std::size_t(count_[0]) + std::size_t(x);
           for (std::uint32_t m = first_[cube]; m < first_[cube + 1]; ++m)
             if (members_[m] != site) {
               const double d = distance_squared(sites_[members_[m]], sites_[site]);

@@ -64,7 +64,7 @@ Mass<D> together(const StructureDef<D>& d, const std::vector<std::uint32_t>& par
 
 template <class D>
 core::Status check(const StructureDef<D>& d) {
-  const auto error = [](auto... pieces) { return core::Error{core::text("Structure: ", pieces...)}; };
+  const auto error = [](const auto&... pieces) { return core::Error{core::text("Structure: ", pieces...)}; };
   if (d.parts.empty()) return error("no parts, expected at least one");
   for (std::size_t i = 0; i < d.parts.size(); ++i) {
     if (d.parts[i].shapes.empty()) return error("part ", i, " has no shape");

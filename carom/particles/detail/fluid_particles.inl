@@ -373,9 +373,9 @@ core::Status FluidState<D>::step(rigid::World<D>* world, float dt) {
     memory.push_back(m);
     if (!any) continue;
     // As forces, so that they act evenly through the world's step, together with the weight that they balance.
-    const core::Status pushed = world->add_force(body.id, body.impulse / dt);
+    core::Status pushed = world->add_force(body.id, body.impulse / dt);
     if (!pushed.ok()) return pushed;
-    const core::Status twisted = world->add_torque(body.id, body.turn / dt);
+    core::Status twisted = world->add_torque(body.id, body.turn / dt);
     if (!twisted.ok()) return twisted;
   }
   return {};

@@ -292,7 +292,7 @@ template <class D>
 core::Status FluidState<D>::gather_solids(rigid::World<D>& world, float dt) {
   typename D::Bounds bounds{definition.lower, definition.upper};
   for (int b = 0; b < N; ++b) bounds.high[b] = definition.lower[b] + double(cell) * grid.cells[b];
-  const core::Status seen = world.overlap_bounds(bounds, found);
+  core::Status seen = world.overlap_bounds(bounds, found);
   if (!seen.ok()) return seen;
   solids.clear();
   bodies.clear();

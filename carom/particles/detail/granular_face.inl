@@ -166,7 +166,7 @@ Status GranularState<D>::fill(Position lower, Position upper, Vector velocity, s
 template <class D>
 Status GranularState<D>::gather(rigid::World<D>& world) {
   typename D::Bounds bounds{definition.lower, definition.upper};
-  const Status seen = world.overlap_bounds(bounds, found);
+  Status seen = world.overlap_bounds(bounds, found);
   if (!seen.ok()) return seen;
   for (const rigid::ShapeId shape : found) {
     const auto details = world.shape_definition(shape);

@@ -455,9 +455,9 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
   statistics.grains = int(grains.size());
   for (const GrainBody<D>& b : bodies) {
     if (!b.moves || (dot(b.impulse, b.impulse) == 0 && grain_size(b.turn) == 0)) continue;
-    const core::Status pushed = world->add_force(b.id, b.impulse / dt);
+    core::Status pushed = world->add_force(b.id, b.impulse / dt);
     if (!pushed.ok()) return pushed;
-    const core::Status twisted = world->add_torque(b.id, b.turn / dt);
+    core::Status twisted = world->add_torque(b.id, b.turn / dt);
     if (!twisted.ok()) return twisted;
   }
   const auto now = std::chrono::steady_clock::now();

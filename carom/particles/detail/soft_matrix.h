@@ -19,7 +19,7 @@ using math::Vec3f;
 
 /// A 3×3 block by columns, each padded to four lanes.
 struct SoftBlock {
-  typedef float Lanes __attribute__((vector_size(16)));
+  typedef float Lanes __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
   Lanes x{}, y{}, z{};
 
   void add(Vec3f a, Vec3f b, Vec3f c) {

@@ -71,7 +71,8 @@ void BallBodies::add(Stage3& stage, const Billiards& game, const std::vector<Loo
     const Look look = looks[std::min(std::size_t(i), looks.size() - 1)];
     rigid::BodyDef<Dim3> body;
     body.type = rigid::BodyType::kinematic;
-    body.name = i == 0 ? "cue ball" : "ball " + std::to_string(i);
+    const std::string name = i == 0 ? "cue ball" : "ball " + std::to_string(i);
+    body.name = name;
     body.position = game.state(i).position;
     const auto id = stage.keep(stage.world().create_body(body));
     const auto shape = [&](const geometry::Shape3& form, std::uint32_t color, bool flipped = false) {

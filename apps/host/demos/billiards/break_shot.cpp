@@ -1,4 +1,5 @@
 // The break of fifteen balls, seen from above and slowed down: where the energy goes.
+#include "apps/host/demos/billiards/list.h"
 #include "apps/host/demos/billiards/table_view.h"
 #include "carom/sports/billiards_rack.h"
 

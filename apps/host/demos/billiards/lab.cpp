@@ -1,4 +1,5 @@
 // Stun, draw and follow beside their formulas; deflection and throw over the cut angle.
+#include "apps/host/demos/billiards/list.h"
 #include "apps/host/demos/billiards/table_view.h"
 
 namespace carom::host::demo {
@@ -98,7 +99,7 @@ class BilliardsLab final : public Repeatable<BilliardsLab, Demo3> {
       }
       stage.check(game_->set_state(
           2 * lane,
-          {{from_, r, places[std::size_t(2 * lane)].y}, {speed, 0, 0}, {0, 0, -spin / r}, BallPhase::sliding}));
+          {{from_, r, places[2 * std::size_t(lane)].y}, {speed, 0, 0}, {0, 0, -spin / r}, BallPhase::sliding}));
     }
     stage.check(game_->run());
     balls_.add(stage, *game_,

@@ -1,4 +1,5 @@
 // A massé on a carom table: the cue from above, the ball round an obstacle, and Coriolis' rule for its last direction.
+#include "apps/host/demos/billiards/list.h"
 #include "apps/host/demos/billiards/table_view.h"
 #include "carom/sports/billiards_rack.h"
 

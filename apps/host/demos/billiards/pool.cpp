@@ -1,5 +1,6 @@
 // A pool table to play on: aim, speed, english and elevation; what the shot would do is drawn before it is played.
 #include <algorithm>
+#include "apps/host/demos/billiards/list.h"
 
 #include "apps/host/demos/billiards/table_view.h"
 #include "carom/sports/billiards_rack.h"

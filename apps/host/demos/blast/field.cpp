@@ -1,5 +1,5 @@
 // A charge among boxes and a wall: the front runs out, gauges write its pressure, the wall shelters (chapter 18.6).
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/blast/list.h"
 #include "carom/blast/explosion.h"
 #include "carom/math/elementary.h"
 

@@ -1,7 +1,7 @@
 // A grenade: fragments at Gurney's speed with Mott's masses, in drag, and what they hit (chapter 18.6).
 #include <algorithm>
 
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/blast/list.h"
 #include "carom/blast/explosion.h"
 #include "carom/blast/fragments.h"
 #include "carom/math/elementary.h"

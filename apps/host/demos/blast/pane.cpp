@@ -1,4 +1,5 @@
 // A pane of glass that cracks where it is hit, at the moment it is hit (chapter 18.8).
+#include "apps/host/demos/blast/list.h"
 #include "apps/host/demos/blast/shown.h"
 #include "carom/math/elementary.h"
 

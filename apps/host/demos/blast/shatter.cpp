@@ -1,4 +1,5 @@
 // A wall that a ball breaks: bricks in mortar, or a slab that cracks into cells (chapter 18.8).
+#include "apps/host/demos/blast/list.h"
 #include "apps/host/demos/blast/shown.h"
 #include "carom/math/elementary.h"
 

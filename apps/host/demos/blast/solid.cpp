@@ -1,4 +1,5 @@
 // Concave meshes that break: a vase, a ring, a star, a bowl, drawn as the pieces that were really cut (chapter 18.8).
+#include "apps/host/demos/blast/list.h"
 #include "apps/host/demos/blast/shown.h"
 #include "carom/geometry/mesh_builders.h"
 #include "carom/math/elementary.h"
@@ -85,7 +86,7 @@ class Solid final : public Repeatable<Solid, Demo3> {
     stage.adopt_all();
     surfaces(stage, fracture);
     draw(stage);
-    stage.say(format("%.0f triangles became %.0f pieces and %.0f bonds", double(mesh.indices.size() / 3),
+    stage.say(format("%.0f triangles became %.0f pieces and %.0f bonds", double(mesh.indices.size()) / 3,
                      double(fracture.pieces.size()), double(fracture.bonds.size())));
   }
 

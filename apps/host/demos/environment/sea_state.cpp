@@ -146,7 +146,7 @@ class SeaState final : public Repeatable<SeaState, Demo3> {
     std::vector<Vec3f> corners(heights.size());
     for (std::size_t i = 0; i < heights.size(); ++i)
       corners[i] = {float(left + spacing_ * double(i % cells_)), float(heights[i]),
-                    float(near + spacing_ * double(i / cells_))};
+                    float(near + spacing_ * double((i - i % cells_) / cells_))};
     stage.set_surface(surface_, corners);
   }
 

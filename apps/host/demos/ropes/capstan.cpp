@@ -1,6 +1,6 @@
 // A winch draws a rope round a post: the tension grows by e^(μφ).
-#include "apps/host/demos/demos.h"
 #include "apps/host/demos/ropes/draw.h"
+#include "apps/host/demos/ropes/list.h"
 
 namespace carom::host::demo {
 namespace {

@@ -1,5 +1,5 @@
 // A flag on its pole and a square sail between two yards, in the same wind.
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/ropes/list.h"
 #include "carom/particles/cloth.h"
 
 namespace carom::host::demo {

@@ -1,6 +1,6 @@
 // A bridge of two ropes with planks between them, and a ball on a rope that swings at it.
-#include "apps/host/demos/demos.h"
 #include "apps/host/demos/ropes/draw.h"
+#include "apps/host/demos/ropes/list.h"
 
 namespace carom::host::demo {
 namespace {

@@ -1,5 +1,5 @@
 // Soft bodies that bounce, and a ball that falls on one.
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/ropes/list.h"
 #include "carom/particles/soft_body.h"
 
 namespace carom::host::demo {

@@ -1,6 +1,6 @@
 // Rods on a wire that twists: a wave runs along them (section 13.6).
-#include "apps/host/demos/demos.h"
 #include "apps/host/demos/ropes/draw.h"
+#include "apps/host/demos/ropes/list.h"
 
 namespace carom::host::demo {
 namespace {
@@ -94,14 +94,16 @@ class TorsionChain final : public Repeatable<TorsionChain, Demo3> {
     }
     const int shown[] = {0, rods_ / 2, rods_ - 1};
     for (int k = 0; k < 3; ++k) stage.sample(0, k, t, math::degrees(angle_[std::size_t(shown[k])]));
-    const double middle = angle_[std::size_t(rods_ / 2)];
-    if (t < (rods_ / 2) / math::sqrt(stage.value("stiffness") / inertia_) + pulse_ && middle > peak_) {
+    const int half = rods_ / 2;
+    const double middle = angle_[std::size_t(half)];
+    if (t < half / math::sqrt(stage.value("stiffness") / inertia_) + pulse_ && middle > peak_) {
       peak_ = middle;
       arrival_ = t - 0.5 * pulse_;
     }
   }
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
-    const double expected = (rods_ / 2) / math::sqrt(stage.value("stiffness") / inertia_);
+    const int half = rods_ / 2;
+    const double expected = half / math::sqrt(stage.value("stiffness") / inertia_);
     // A pulse of this length is slowed a little by the gaps between the rods.
     out.push_back({"time of the pulse to the middle", "s", "√(I/k) a rod", arrival_, expected, 0.06 * expected});
   }

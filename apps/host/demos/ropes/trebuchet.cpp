@@ -1,6 +1,6 @@
 // A trebuchet with a fixed counterweight and a sling of rope.
-#include "apps/host/demos/demos.h"
 #include "apps/host/demos/ropes/draw.h"
+#include "apps/host/demos/ropes/list.h"
 
 namespace carom::host::demo {
 namespace {

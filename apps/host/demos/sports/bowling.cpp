@@ -1,6 +1,6 @@
 // Ten pins: a ball that skids through oil, hooks on dry boards and rolls into rigid bodies (chapter 19).
 #include "carom/sports/bowling.h"
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/sports/list.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/math/elementary.h"

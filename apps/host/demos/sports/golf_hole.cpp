@@ -1,5 +1,5 @@
 // A golf hole in one call: swing, impact, flight, bounces and roll, beside what launch monitors say (chapter 19).
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/sports/list.h"
 #include "carom/math/elementary.h"
 #include "carom/sports/golf.h"
 #include "carom/sports/presets.h"

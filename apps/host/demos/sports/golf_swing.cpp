@@ -1,7 +1,7 @@
 // A golf swing to edit: two or three links, torques, the moment the wrists open, a shaft that bends
 // (chapters 19.1, 19.2).
 #include "carom/sports/golf_swing.h"
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/sports/list.h"
 #include "carom/math/elementary.h"
 
 namespace carom::host::demo {

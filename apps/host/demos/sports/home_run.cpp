@@ -1,5 +1,5 @@
 // Pitch and hit: a curve ball, a bat that meets it a little low, and a fence (chapters 6.3 and 19).
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/sports/list.h"
 #include "carom/math/elementary.h"
 #include "carom/sports/baseball.h"
 #include "carom/sports/presets.h"

@@ -1,6 +1,6 @@
 // Spin in seven sports: two rigid bodies fly side by side through the same air, one with spin or seam, one without
 // (chapter 6.3).
-#include "apps/host/demos/demos.h"
+#include "apps/host/demos/sports/list.h"
 #include "carom/math/elementary.h"
 #include "carom/sports/bounce.h"
 #include "carom/sports/effector.h"
