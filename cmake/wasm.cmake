@@ -11,7 +11,8 @@ set(CMAKE_CXX_COMPILER ${CAROM_WASM_CXX})
 set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fno-exceptions -fno-rtti -D_WASI_EMULATED_PROCESS_CLOCKS")
-set(CMAKE_EXE_LINKER_FLAGS_INIT "-lwasi-emulated-process-clocks")
+# A megabyte of stack: blocks of a thousand particles lie on it; the default of 64 KiB is overrun without a word.
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-lwasi-emulated-process-clocks -Wl,-z,stack-size=1048576")
 # Optimised when it is linked, so the archives hold clang's own form of code, which an older llvm-ar cannot read: the
 # plain ar does not look, and the linker needs no index.
 find_program(CAROM_WASM_AR NAMES ar REQUIRED)

@@ -29,5 +29,6 @@ grep -qw avx2 /proc/cpuinfo && compare "gcc, SIMD width 8 (AVX2)" "scene|model" 
 grep -qw avx512bw /proc/cpuinfo && compare "gcc, SIMD width 16 (AVX-512), 2 threads" "scene|model" "$gcc" --scenes --models --width 16 --threads 2
 compare "clang, 1 thread" all "$clang"
 compare "clang, SIMD width 4, 2 threads" "scene|model" "$clang" --scenes --models --width 4 --threads 2
-compare "WebAssembly under Node" all node --no-warnings "$here/tests/determinism/run_wasm.mjs" "$wasm"
+# V8 of Node 20 now and then crashes in its optimising compiler on the largest functions; its other one does not.
+compare "WebAssembly under Node" all node --no-warnings --liftoff-only "$here/tests/determinism/run_wasm.mjs" "$wasm"
 [ $failures = 0 ] || exit 1
