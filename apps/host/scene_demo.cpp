@@ -237,9 +237,10 @@ class SceneDemo final : public DemoOf<D> {
       std::vector<double> heights(water_cells * water_cells);
       here->water()->grid(left, near, spacing, int(water_cells), int(water_cells), t, heights);
       std::vector<math::Vec3f> corners(heights.size());
-      for (std::size_t i = 0; i < heights.size(); ++i)
-        corners[i] = {float(left + spacing * double(i % water_cells)), float(heights[i]),
-                      float(near + spacing * double((i - i % water_cells) / water_cells))};
+      for (std::size_t i = 0; i < heights.size(); ++i) {
+        const std::size_t row = i / water_cells, column = i % water_cells;
+        corners[i] = {float(left + spacing * double(column)), float(heights[i]), float(near + spacing * double(row))};
+      }
       stage.set_surface(water_, corners);
     } else {
       for (std::uint32_t i = 0; i + 1 < water_cells; ++i) {

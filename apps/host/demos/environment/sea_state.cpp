@@ -144,9 +144,10 @@ class SeaState final : public Repeatable<SeaState, Demo3> {
     std::vector<double> heights(cells_ * cells_);
     around_->water()->grid(left, near, spacing_, int(cells_), int(cells_), stage.world().time(), heights);
     std::vector<Vec3f> corners(heights.size());
-    for (std::size_t i = 0; i < heights.size(); ++i)
-      corners[i] = {float(left + spacing_ * double(i % cells_)), float(heights[i]),
-                    float(near + spacing_ * double((i - i % cells_) / cells_))};
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const std::size_t row = i / cells_, column = i % cells_;
+      corners[i] = {float(left + spacing_ * double(column)), float(heights[i]), float(near + spacing_ * double(row))};
+    }
     stage.set_surface(surface_, corners);
   }
 
