@@ -2,8 +2,7 @@
 #pragma once
 
 #include "carom/particles/cloth.h"
-#include "carom/particles/detail/soft_matrix.h"
-#include "carom/particles/detail/soft_obstacles.h"
+#include "carom/particles/detail/soft_touch.h"
 
 namespace carom::particles::detail {
 
@@ -29,12 +28,6 @@ struct ClothPatch {
   Vec3f curvature[3] = {};
 };
 
-struct ClothTouch {
-  bool near = false, active = false;
-  SoftPlane plane{};
-  float push = 0;  ///< N, in the last substep
-};
-
 struct ClothPair {
   std::uint32_t vertex = 0, triangle = 0;
 };
@@ -58,7 +51,7 @@ struct ClothState {
   std::vector<int> pin_of;  ///< by vertex, −1: free
   std::vector<math::Vec3d> pin_impulse;
   std::vector<int> pinned;  ///< vertex of each pin
-  std::vector<ClothTouch> touches;
+  std::vector<SoftTouch> touches;
 
   // What follows from the mesh.
   SoftMatrix matrix;

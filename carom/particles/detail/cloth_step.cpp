@@ -8,7 +8,6 @@ using math::Vec3d;
 
 namespace {
 constexpr int cloth_chunk = 128;
-constexpr float cloth_slip = 0.002f;  // m/s: friction grows up to here
 core::SerialScheduler cloth_serial;
 }  // namespace
 
@@ -155,7 +154,7 @@ void ClothState::hold(float h, Vec3f gravity) {
     solver.change[i] = Vec3f(target) - velocity[i];
   }
   if (!collide || obstacles.empty()) {
-    for (ClothTouch& touch : touches) touch = {};
+    for (SoftTouch& touch : touches) touch = {};
     return;
   }
   core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
@@ -163,7 +162,7 @@ void ClothState::hold(float h, Vec3f gravity) {
   tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
-      ClothTouch& touch = touches[i];
+      SoftTouch& touch = touches[i];
       touch.near =
           pin_of[i] < 0 &&
           obstacles.nearest(position[i], radius,
@@ -172,50 +171,12 @@ void ClothState::hold(float h, Vec3f gravity) {
         touch = {};
         continue;
       }
-      const Vec3f n(touch.plane.normal);
-      const auto& body = obstacles.bodies[std::size_t(touch.plane.body)];
-      const Vec3f surface(body.velocity_at(position[i]));
-      const Vec3f against = velocity[i] - surface;
-      if (touch.push > 0) {
-        const float mu = math::sqrt(float(fabric.friction * touch.plane.friction));
-        const Vec3f slide = against - dot(n, against) * n;
-        const float c = h * mu * touch.push / math::max(length(slide), cloth_slip);
-        solver.diagonal[i] = solver.diagonal[i] + c * (Mat3f::identity() + (-1.0f) * math::outer(n, n));
-        solver.right[i] -= c * slide;
-      }
-      touch.active = touch.active || touch.plane.separation < 0;
-      if (!touch.active) continue;
-      solver.holds[i] = {1, n};
-      const float deep = float(touch.plane.separation);
-      const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, 1.0f);
-      solver.change[i] = (target - dot(n, against)) * n;
+      hold_touch(touch, i, position[i], velocity[i], fabric.friction, h, obstacles, solver);
     }
   });
 }
 
-bool ClothState::revise(float h) {
-  bool again = false;
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    ClothTouch& touch = touches[i];
-    if (!touch.near) continue;
-    const Vec3f n(touch.plane.normal);
-    if (touch.active) {
-      if (dot(n, solver.reaction[i]) >= 0) continue;
-      touch.active = false;
-      solver.holds[i] = {};
-      again = true;
-      continue;
-    }
-    const Vec3f surface(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
-    const float closing = dot(n, velocity[i] + solver.change[i] - surface);
-    if (float(touch.plane.separation) + h * closing >= -1e-6f) continue;
-    touch.active = again = true;
-    solver.holds[i] = {1, n};
-    const float target = -math::max(float(touch.plane.separation), 0.0f) / h;
-    solver.change[i] += (target - closing) * n;
-  }
-  return again;
-}
+bool ClothState::revise(float h) { return revise_touches(touches, position, velocity, h, obstacles, solver); }
 
 void ClothState::step(rigid::World3& world, double dt) {
   const float h = float(dt / substeps);
@@ -289,7 +250,7 @@ void ClothState::step(rigid::World3& world, double dt) {
       obstacles.push(pin.index, position[i], impulse);
     }
     for (std::size_t i = 0; i < position.size(); ++i) {
-      ClothTouch& touch = touches[i];
+      SoftTouch& touch = touches[i];
       if (!touch.near) continue;
       const Vec3f n(touch.plane.normal);
       const float before = touch.push;
@@ -299,7 +260,7 @@ void ClothState::step(rigid::World3& world, double dt) {
         const Vec3f surface(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
         const Vec3f old = velocity[i] - surface, slide = old - dot(n, old) * n;
         const float mu = math::sqrt(float(fabric.friction * touch.plane.friction));
-        const float c = h * mu * before / math::max(length(slide), cloth_slip);
+        const float c = h * mu * before / math::max(length(slide), soft_slip);
         const Vec3f now = old + solver.change[i];
         impulse -= Vec3d(c * (now - dot(n, now) * n));
       }

@@ -1,8 +1,7 @@
 // What a soft body keeps, and the passes of its step.
 #pragma once
 
-#include "carom/particles/detail/soft_matrix.h"
-#include "carom/particles/detail/soft_obstacles.h"
+#include "carom/particles/detail/soft_touch.h"
 #include "carom/particles/soft_body.h"
 
 namespace carom::particles::detail {
@@ -14,12 +13,6 @@ struct SoftElement {
   int slots[16] = {};
   Mat3f turn{};         ///< of this substep; kept as the next one's first guess
   Vec3f force[4] = {};  ///< N on the corners
-};
-
-struct SoftTouch {
-  bool near = false, active = false;
-  SoftPlane plane{};
-  float push = 0;  ///< N, in the last substep
 };
 
 struct SoftState {

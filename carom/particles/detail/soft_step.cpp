@@ -8,7 +8,6 @@ using math::Vec3d;
 
 namespace {
 constexpr int soft_chunk = 64;
-constexpr float soft_slip = 0.002f;  // m/s: friction grows up to here
 core::SerialScheduler soft_serial;
 
 /// The rotation nearest to f, from a guess: turns that bring the columns together (Müller, Bender, Chentanez, Macklin,
@@ -131,46 +130,11 @@ void SoftState::hold(float h, Vec3f gravity) {
       touch = {};
       continue;
     }
-    const Vec3f n(touch.plane.normal);
-    const Vec3f against = velocity[i] - Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
-    if (touch.push > 0) {
-      const Vec3f slide = against - dot(n, against) * n;
-      const float c = h * math::sqrt(float(material.friction * touch.plane.friction)) * touch.push /
-                      math::max(length(slide), soft_slip);
-      solver.diagonal[i] = solver.diagonal[i] + c * (Mat3f::identity() - math::outer(n, n));
-      solver.right[i] -= c * slide;
-    }
-    const float deep = float(touch.plane.separation);
-    touch.active = touch.active || deep < 0;
-    if (!touch.active) continue;
-    solver.holds[i] = {1, n};
-    const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, 1.0f);
-    solver.change[i] = (target - dot(n, against)) * n;
+    hold_touch(touch, i, position[i], velocity[i], material.friction, h, obstacles, solver);
   }
 }
 
-bool SoftState::revise(float h) {
-  bool again = false;
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    SoftTouch& touch = touches[i];
-    if (!touch.near) continue;
-    const Vec3f n(touch.plane.normal);
-    if (touch.active) {
-      if (dot(n, solver.reaction[i]) >= 0) continue;
-      touch.active = false;
-      solver.holds[i] = {};
-      again = true;
-      continue;
-    }
-    const Vec3f surface_speed(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
-    const float closing = dot(n, velocity[i] + solver.change[i] - surface_speed);
-    if (float(touch.plane.separation) + h * closing >= -1e-6f) continue;
-    touch.active = again = true;
-    solver.holds[i] = {1, n};
-    solver.change[i] += (-math::max(float(touch.plane.separation), 0.0f) / h - closing) * n;
-  }
-  return again;
-}
+bool SoftState::revise(float h) { return revise_touches(touches, position, velocity, h, obstacles, solver); }
 
 void SoftState::finish(float h, Vec3f gravity) {
   for (std::size_t k = 0; k < pins.size(); ++k) {

@@ -1,0 +1,28 @@
+// Contacts of particles of cloth and soft bodies with what they meet: held along the normal while they press, slowed
+// across it by friction of the last substep's push.
+#pragma once
+
+#include <vector>
+
+#include "carom/particles/detail/soft_matrix.h"
+#include "carom/particles/detail/soft_obstacles.h"
+
+namespace carom::particles::detail {
+
+inline constexpr float soft_slip = 0.002f;  ///< m/s: friction grows up to here
+
+struct SoftTouch {
+  bool near = false, active = false;
+  SoftPlane plane{};
+  float push = 0;  ///< N, in the last substep
+};
+
+/// Enters the touch of particle i, which is near, into the system. `friction`: of the particles' material.
+void hold_touch(SoftTouch& touch, std::size_t i, math::Vec3d position, Vec3f velocity, double friction, float h,
+                const SoftObstacles& obstacles, SoftSolver& solver);
+
+/// After a solve: lets go of what is pulled, holds what would pass through. True: solve again.
+bool revise_touches(std::vector<SoftTouch>& touches, const std::vector<math::Vec3d>& position,
+                    const std::vector<Vec3f>& velocity, float h, const SoftObstacles& obstacles, SoftSolver& solver);
+
+}  // namespace carom::particles::detail
