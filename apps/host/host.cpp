@@ -196,6 +196,7 @@ struct SimulationHost::Handlers {
   }
   core::Status step() {
     const std::int64_t count = field.integer(m, "count", 1, 1000);
+    const std::int64_t to = m.contains("to") ? field.integer(m, "to", 0, 9e15) : std::int64_t(9e15);
     if (!field.status.ok()) return field.status;
     if (host.running_) return core::Error{"step: the simulation runs; pause it first"};
     if (host.options_.game) {
@@ -203,7 +204,7 @@ struct SimulationHost::Handlers {
       return {};
     }
     if (host.restart_wanted_) host.restart();
-    for (std::int64_t i = 0; i < count && host.step_once(); ++i) {
+    for (std::int64_t i = 0; i < count && std::int64_t(host.simulation_->step_count()) < to && host.step_once(); ++i) {
     }
     host.send_changes();
     host.frame_wanted_ = true;

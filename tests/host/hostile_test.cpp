@@ -32,6 +32,7 @@ TEST(Hostile, MalformedMessagesEachGetOneError) {
       "{\"type\":\"step\",\"count\":0}",
       "{\"type\":\"step\",\"count\":1001}",
       "{\"type\":\"step\",\"count\":1.5}",
+      "{\"type\":\"step\",\"count\":1,\"to\":-1}",
       "{\"type\":\"step\",\"count\":-1e300}",
       "{\"type\":\"grab\",\"pointer\":1}",
       "{\"type\":\"grab\",\"pointer\":1e40,\"origin\":[0,0,0],\"direction\":[0,0,1]}",

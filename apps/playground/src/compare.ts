@@ -129,10 +129,10 @@ export class Follower {
   }
   frame(step: number, samples: Sample[]): void { if (step >= this.own) this.tell({type: 'samples', samples, step}); }
 
-  /** One request at a time, and never past where the left one is. */
+  /** One request at a time, and never past where the left one is, even where an answer of before a restart comes late. */
   private go(): void {
     if (this.restarting || this.own < this.asked || this.own >= this.wanted) return;
     this.asked = Math.min(this.wanted, this.own + 100);
-    this.send({type: 'step', count: this.asked - this.own});
+    this.send({type: 'step', count: this.asked - this.own, to: this.asked});
   }
 }
