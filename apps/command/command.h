@@ -79,6 +79,7 @@ struct RenderOptions {
   std::string size = "1280x720";
   double rate = 30, from = 0, to = 0;  ///< to 0: all of it
   int threads = 1;
+  bool bare = false;  ///< no lettering
   bool quiet = false;
 };
 int render(const RenderOptions& options);

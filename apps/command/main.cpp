@@ -125,6 +125,7 @@ int main(int count, char** arguments) {
   render_command->add_option("--to", render_options.to, "s; the last picture (the end)")->check(CLI::Range(0.0, 1e7));
   render_command->add_option("--threads,-t", render_options.threads, "worker threads; 0: all processors")
       ->check(CLI::Range(0, 64));
+  render_command->add_flag("--bare", render_options.bare, "no lettering: as a thumbnail");
   render_command->add_flag("--quiet,-q", render_options.quiet, "say nothing");
   render_command->footer(
       with_examples("  carom render out/wrecking-ball/recording.carom-rec --out wall.gif --size 640x360 --rate 20\n"

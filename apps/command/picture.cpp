@@ -233,7 +233,7 @@ void scale_bar(cairo_t* c, double metres, double pixels, int width, int height) 
 }
 
 Surface plane_picture(host::Simulation& simulation, const std::vector<host::BodyView>& bodies,
-                      const std::vector<host::BodyPlace>& places, int width, int height) {
+                      const std::vector<host::BodyPlace>& places, int width, int height, bool lettering) {
   Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
   const Context context(cairo_create(surface.get()));
   cairo_t* c = context.get();
@@ -265,6 +265,7 @@ Surface plane_picture(host::Simulation& simulation, const std::vector<host::Body
     cairo_line_to(c, view.x(line.b.x), view.y(line.b.y));
     cairo_stroke(c);
   }
+  if (!lettering) return surface;
   grid_labels2(c, view, width, height, spacing);
   scale_bar(c, spacing, spacing * scale, width, height);
   caption(c, simulation, width, height, "grid " + length_text(spacing));
@@ -273,7 +274,8 @@ Surface plane_picture(host::Simulation& simulation, const std::vector<host::Body
 
 // --- space ---------------------------------------------------------------------------------------------------------
 
-Surface space_picture(host::Simulation& simulation, const std::vector<host::BodyView>& bodies, int width, int height) {
+Surface space_picture(host::Simulation& simulation, const std::vector<host::BodyView>& bodies, int width, int height,
+                      bool lettering) {
   RasterScene scene;
   scene.camera = simulation.declaration().camera;
   scene.ground = simulation.declaration().ground;
@@ -306,6 +308,7 @@ Surface space_picture(host::Simulation& simulation, const std::vector<host::Body
     std::memcpy(data + std::ptrdiff_t(y) * stride, image.pixels.data() + std::size_t(y) * width,
                 std::size_t(width) * 4);
   cairo_surface_mark_dirty(surface.get());
+  if (!lettering) return surface;
   const Context context(cairo_create(surface.get()));
   caption(context.get(), simulation, width, height,
           scene.ground ? "grid " + length_text(scene.grid) : std::string("no ground"));
@@ -321,13 +324,13 @@ Surface space_picture(host::Simulation& simulation, const std::vector<host::Body
 
 }  // namespace
 
-Surface picture_of(host::Simulation& simulation, int width, int height) {
+Surface picture_of(host::Simulation& simulation, int width, int height, bool lettering) {
   std::vector<host::BodyView> bodies;
   std::vector<host::BodyPlace> places;
   simulation.describe(nullptr, bodies);
   simulation.places(places);
-  return simulation.declaration().dimension == 2 ? plane_picture(simulation, bodies, places, width, height)
-                                                 : space_picture(simulation, bodies, width, height);
+  return simulation.declaration().dimension == 2 ? plane_picture(simulation, bodies, places, width, height, lettering)
+                                                 : space_picture(simulation, bodies, width, height, lettering);
 }
 
 core::Status write_picture(host::Simulation& simulation, const std::string& path, int width, int height) {

@@ -75,7 +75,8 @@ int render(const RenderOptions& options) {
       }
     }
     if (ended && pictures > 0) break;
-    if (const core::Status status = (*movie)->add(picture_of(simulation, width, height).get()); !status.ok())
+    if (const core::Status status = (*movie)->add(picture_of(simulation, width, height, !options.bare).get());
+        !status.ok())
       return fail(exit_system, status.error().message);
     if (to < 1e300) progress.update((due - options.from) / std::max(to - options.from, 1e-9));
   }

@@ -49,7 +49,7 @@ struct Camera {
   Vec3d position{0, 4, 12}, target{};
   double field_of_view = 0.75;  ///< rad, vertical (3D)
   double height = 10;           ///< m from bottom to top (2D)
-  double width = 0;             ///< m from left to right that must be seen too (2D)
+  double width = 0;             ///< m from left to right, through the target, that narrow pictures must show too
   int follow = -1;              ///< the id of a body, or −1
 };
 

@@ -85,10 +85,10 @@ Json declaration_fields(const Declaration& d) {
   Json camera = {{"position", vector_json(d.camera.position)}, {"target", vector_json(d.camera.target)}};
   if (d.dimension == 2) {
     camera["height"] = d.camera.height;
-    if (d.camera.width > 0) camera["width"] = d.camera.width;
   } else {
     camera["field_of_view"] = d.camera.field_of_view;
   }
+  if (d.camera.width > 0) camera["width"] = d.camera.width;
   if (d.camera.follow >= 0) camera["follow"] = d.camera.follow;
   Json parameters = Json::array(), plots = Json::array(), inputs = Json::array();
   for (const Parameter& p : d.parameters) parameters.push_back(parameter_json(p));

@@ -5,6 +5,7 @@ import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} fro
 import {dirname, join, relative, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
+import {thumbnails} from './thumbnails.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url)), root = join(here, '../..');
 const {values: {web, module}} = parseArgs({options: {web: {type: 'string'}, module: {type: 'string'}}});
@@ -26,8 +27,6 @@ await build({
   legalComments: 'linked',
 });
 cpSync(join(here, 'src/icon.svg'), join(out, 'icon.svg'));
-const page = readFileSync(join(here, 'src/index.html'), 'utf8');
-writeFileSync(join(out, 'index.html'), web ? page.replace('name="engine" content="native"', 'name="engine" content="wasm"') : page);
 
 /** Scenes by NAME.json, presets by presets/KIND/NAME.json: the names by which scene files ask for each other. */
 function dataFiles() {
@@ -53,7 +52,12 @@ function demoSources() {
   }
   return sources;
 }
-writeFileSync(join(out, 'sources.json'), JSON.stringify(demoSources()));
+const sources = demoSources();
+writeFileSync(join(out, 'lessons.json'), JSON.stringify(JSON.parse(readFileSync(join(here, 'lessons.json'), 'utf8'))));
+writeFileSync(join(out, 'sources.json'), JSON.stringify(sources));
+const pictures = await thumbnails(root, out, sources);
+const page = readFileSync(join(here, 'src/index.html'), 'utf8').replace('name="thumbnails" content=""', `name="thumbnails" content="${pictures.join(' ')}"`);
+writeFileSync(join(out, 'index.html'), web ? page.replace('name="engine" content="native"', 'name="engine" content="wasm"') : page);
 
 if (web) {
   cpSync(module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), join(out, 'carom.wasm'));

@@ -8,59 +8,84 @@ function roundLength(length: number): number {
   return (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10) * power;
 }
 
+/** The grid in the floor's own shader: lines one to two pixels wide at any distance, which fade where they would flicker. */
+class Floor {
+  private tones = {base: {value: new THREE.Color()}, weak: {value: new THREE.Color()}, strong: {value: new THREE.Color()}};
+  private spacing = {value: 1};
+  // What lies on the ground lies before it: the floor is drawn a little further away than it is.
+  private material = new THREE.MeshStandardMaterial({roughness: 0.95, transparent: true, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 24});
+  readonly mesh = new THREE.Mesh(new THREE.PlaneGeometry(1, 1).rotateX(-Math.PI / 2), this.material);
+
+  constructor() {
+    this.mesh.receiveShadow = true;
+    this.mesh.renderOrder = -1;
+    this.material.onBeforeCompile = (shader) => {
+      Object.assign(shader.uniforms, this.tones, {spacing: this.spacing});
+      shader.vertexShader = shader.vertexShader.replace('#include <common>', '#include <common>\nvarying vec2 place;')
+        .replace('#include <begin_vertex>', '#include <begin_vertex>\nplace = (modelMatrix * vec4(position, 1.0)).xz;');
+      shader.fragmentShader = shader.fragmentShader.replace('#include <common>', `#include <common>
+        varying vec2 place;
+        uniform vec3 base, weak, strong;
+        uniform float spacing;
+        float lines(vec2 p, float pixels) {
+          vec2 step = max(fwidth(p), vec2(1e-6)), near = abs(fract(p - 0.5) - 0.5) / step;
+          vec2 seen = clamp(0.5 * pixels + 0.5 - near, 0.0, 1.0) * clamp(1.5 - 3.0 * step, 0.0, 1.0);
+          return max(seen.x, seen.y);
+        }`).replace('#include <map_fragment>', `
+        diffuseColor.rgb = mix(mix(base, weak, lines(place / spacing, 1.4)), strong, lines(place / (5.0 * spacing), 2.0));
+        diffuseColor.a = 1.0 - smoothstep(40.0, 190.0, length(place) / spacing);`);
+    };
+  }
+  set(dark: boolean, spacing: number, level: number): void {
+    this.tones.base.value.set(dark ? '#26303c' : '#c9cdc9');
+    this.tones.weak.value.set(dark ? '#3a4859' : '#aeb5af');
+    this.tones.strong.value.set(dark ? '#5a6b81' : '#87918a');
+    this.spacing.value = spacing;
+    this.mesh.scale.setScalar(400 * spacing);
+    this.mesh.position.y = level;
+  }
+}
+
 export class Ground {
   readonly group = new THREE.Group();
+  private floor = new Floor();
+  private marks = new THREE.Group();
   private dark = false;
   private spacing = 1;
   private level: number | undefined = 0;
   private plane?: {height: number; aspect: number; target: number[]};
+  private stale = true;
 
-  setTheme(dark: boolean): void { this.dark = dark; this.rebuild(); }
-  setScale(distance: number): void { this.spacing = roundLength(distance / 12); this.plane = undefined; this.rebuild(); }
-  showGround(level: number | undefined): void { this.level = level; this.plane = undefined; this.rebuild(); }
-  showPlane(height: number, aspect: number, target: number[]): void { this.plane = {height, aspect, target}; this.rebuild(); }
+  constructor() { this.group.add(this.floor.mesh, this.marks); }
 
-  private rebuild(): void {
-    for (const child of [...this.group.children]) {
-      this.group.remove(child);
+  setTheme(dark: boolean): void { this.dark = dark; this.stale = true; }
+  setScale(distance: number): void { this.spacing = roundLength(distance / 12); this.plane = undefined; this.stale = true; }
+  showGround(level: number | undefined): void { this.level = level; this.plane = undefined; this.stale = true; }
+  showPlane(height: number, aspect: number, target: number[]): void { this.plane = {height, aspect, target}; this.stale = true; }
+
+  /** Before drawing: builds anew what has changed. */
+  update(): void {
+    if (!this.stale) return;
+    this.stale = false;
+    for (const child of [...this.marks.children]) {
+      this.marks.remove(child);
       const drawn = child as THREE.Mesh;
       drawn.geometry?.dispose();
       (drawn.material as THREE.Material & {map?: THREE.Texture})?.map?.dispose();
       (drawn.material as THREE.Material)?.dispose();
     }
+    this.floor.mesh.visible = !this.plane && this.level !== undefined;
     if (this.plane) this.paper(this.plane.height, this.plane.aspect, this.plane.target);
-    else if (this.level !== undefined) this.floor(this.level);
+    else if (this.level !== undefined) this.scale(this.level);
   }
 
-  private floor(level: number): void {
-    const tile = 10 * this.spacing, size = 400 * this.spacing;
-    const canvas = document.createElement('canvas');
-    canvas.width = canvas.height = 1024;
-    const ink = canvas.getContext('2d')!;
-    ink.fillStyle = this.dark ? '#26303c' : '#c9cdc9';
-    ink.fillRect(0, 0, 1024, 1024);
-    for (let i = 0; i <= 10; ++i) {
-      const strong = i % 10 === 0 || i % 5 === 0;
-      ink.fillStyle = this.dark ? (strong ? '#55657a' : '#384656') : (strong ? '#8d968f' : '#b3b9b4');
-      const w = strong ? 5 : 2.5, at = i * 102.4 - w / 2;
-      ink.fillRect(at, 0, w, 1024);
-      ink.fillRect(0, at, 1024, w);
-    }
-    const texture = new THREE.CanvasTexture(canvas);
-    texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-    texture.repeat.set(size / tile, size / tile);
-    texture.anisotropy = 16;
-    texture.colorSpace = THREE.SRGBColorSpace;
-    const floor = new THREE.Mesh(new THREE.PlaneGeometry(size, size), new THREE.MeshStandardMaterial({map: texture, roughness: 0.95}));
-    floor.rotation.x = -Math.PI / 2;
-    floor.position.y = level - 0.002 * this.spacing;
-    floor.receiveShadow = true;
-    this.group.add(floor);
+  private scale(level: number): void {
+    this.floor.set(this.dark, this.spacing, level);
     for (let i = -4; i <= 4; ++i) {
       if (i === 0) continue;
       const at = i * 5 * this.spacing;
-      this.label(`${at} m`, new THREE.Vector3(at, level + 0.004, 0.55 * this.spacing), 0.55 * this.spacing, true);
-      this.label(`${at} m`, new THREE.Vector3(0.9 * this.spacing, level + 0.004, at), 0.55 * this.spacing, true);
+      this.label(`${at} m`, new THREE.Vector3(at, level, 0.55 * this.spacing), 0.55 * this.spacing, true);
+      this.label(`${at} m`, new THREE.Vector3(0.9 * this.spacing, level, at), 0.55 * this.spacing, true);
     }
   }
 
@@ -77,7 +102,7 @@ export class Ground {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
       const color = this.dark ? (strong ? '#3b4a5c' : '#212b37') : (strong ? '#b4c0ca' : '#cfd9e1');
-      this.group.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color})));
+      this.marks.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color})));
     }
     for (let i = -6; i <= 6; ++i) {
       const at = (v: number) => Math.round(v / (5 * spacing)) * 5 * spacing + 5 * spacing * i;
@@ -91,7 +116,7 @@ export class Ground {
     const canvas = document.createElement('canvas');
     canvas.width = 256;
     canvas.height = 64;
-    const ink = canvas.getContext('2d')!;
+    const ink = canvas.getContext('2d', {willReadFrequently: true})!;
     ink.font = '600 44px system-ui, sans-serif';
     ink.textAlign = 'center';
     ink.textBaseline = 'middle';
@@ -100,10 +125,10 @@ export class Ground {
     const map = new THREE.CanvasTexture(canvas);
     map.colorSpace = THREE.SRGBColorSpace;
     map.anisotropy = 8;
-    const label = new THREE.Mesh(new THREE.PlaneGeometry(4 * height, height), new THREE.MeshBasicMaterial({map, transparent: true, depthWrite: false}));
+    const label = new THREE.Mesh(new THREE.PlaneGeometry(4 * height, height), new THREE.MeshBasicMaterial({map, transparent: true, depthWrite: false, polygonOffset: flat, polygonOffsetFactor: -1, polygonOffsetUnits: -4}));
     if (flat) label.rotation.x = -Math.PI / 2;
     label.position.copy(position);
     label.renderOrder = 1;
-    this.group.add(label);
+    this.marks.add(label);
   }
 }

@@ -2,6 +2,7 @@
 import {byId} from './dom';
 import {Compare, Follower, isTwin} from './compare';
 import {Editing} from './editing';
+import {Gallery, narrow} from './gallery';
 import {Gamepads} from './gamepad';
 import {Hands} from './hands';
 import {Panel} from './panel';
@@ -58,9 +59,16 @@ class Page implements Listener {
   private pausedEdit = false;  // it was paused, and stays so
   private wanted?: Link;  // what the next `opened` is to restore
   private gamepads = new Gamepads(this.send);
+  private gallery = new Gallery((demo) => {
+    if (this.gallery.shown) history.pushState(null, '', writeLink({demo, parameters: {}}));  // back leads to the start page
+    this.open({demo, parameters: {}});
+    if (narrow() && !this.gallery.shown) this.toggle('menu', 'no-demos');
+  });
   private demos: DemoSummary[] = [];
   private opened?: Opened;
   private running = true;
+  shown = -1;  // the step whose bodies are drawn
+  firstPicture = 0;  // ms after the page's load
   private resume = false;  // after that, it goes on
   private lost?: Link;  // what was open when the connection was lost
   private held = new Map<string, string>();  // key → action
@@ -73,16 +81,19 @@ class Page implements Listener {
     byId('help-button').onclick = () => byId<HTMLDialogElement>('help').showModal();
     byId<HTMLSelectElement>('theme').onchange = (event) => this.theme((event.target as HTMLSelectElement).value);
     this.canvas.addEventListener('dblclick', (event) => this.choose(this.viewer.bodyAt(event.clientX, event.clientY)));
-    byId<HTMLInputElement>('search').oninput = (event) => this.search((event.target as HTMLInputElement).value);
-    byId('menu').onclick = () => this.toggle('menu', 'no-demos');
+    byId('menu').onclick = () => { if (!this.gallery.shown) this.toggle('menu', 'no-demos'); };
     byId('panel-toggle').onclick = () => this.toggle('panel-toggle', 'no-panel');
-    if (!isTwin && matchMedia('(max-width: 800px)').matches) { this.toggle('menu', 'no-demos'); this.toggle('panel-toggle', 'no-panel'); }
+    // Beside a demo the list stands where there is room for it; the start page has all of them.
+    if (!isTwin && matchMedia('(max-width: 1400px)').matches) this.toggle('menu', 'no-demos');
+    if (!isTwin && narrow()) this.toggle('panel-toggle', 'no-panel');
     addEventListener('keydown', (event) => this.key(event, true));
     addEventListener('keyup', (event) => this.key(event, false));
     addEventListener('blur', () => this.letGo());
     addEventListener('hashchange', () => {
       const link = readLink(location.hash);
-      if (link.demo !== this.opened?.demo || Object.keys(link.parameters).length > 0) this.open(link);
+      if (!link.demo) this.start();
+      else if (this.gallery.shown) this.open(link);
+      else if (link.demo !== this.opened?.demo || Object.keys(link.parameters).length > 0) this.open(link);
     });
     new ResizeObserver(() => this.viewer.resize()).observe(byId('stage'));
     this.frameLoop();
@@ -106,7 +117,8 @@ class Page implements Listener {
 
   private frameLoop = (now = performance.now()) => {
     this.gamepads.poll();
-    this.viewer.render(now);
+    if (!this.gallery.shown) this.viewer.render(now);
+    if (this.firstPicture === 0 && this.shown >= 0) requestAnimationFrame((then) => { this.firstPicture ||= then; });
     this.plots.draw();
     this.compare?.view(this.viewer.viewpoint);
     requestAnimationFrame(this.frameLoop);
@@ -115,6 +127,7 @@ class Page implements Listener {
   connected(connected: boolean): void {
     this.notice(connected ? '' : 'The connection to the engine is lost. Trying again…');
     if (connected) return;
+    if (this.gallery.shown) return;
     this.lost ??= this.share.link();
     this.resume = this.running;
     if (this.lost?.step && this.lost.step > 3600) delete this.lost.step;
@@ -135,12 +148,16 @@ class Page implements Listener {
       case 'welcome': {
         this.demos = message.demos;
         document.body.classList.toggle('game', message.engine === 'game');  // a running game keeps its own time
-        this.listDemos();
+        this.gallery.list(this.demos);
         // A connection that was lost comes back to where it was: a run is made by its demo, its values and its steps.
         const link = this.lost ?? readLink(location.hash), scene = this.share.scene;
         this.lost = undefined;
         if (scene && link.demo === scene.name) this.send({type: 'open_scene', ...scene});
-        else this.open(this.demos.some((d) => d.id === link.demo) ? link : {demo: this.demos[0]?.id, parameters: {}});
+        else if (this.demos.some((d) => d.id === link.demo) || message.engine === 'game') this.open(link.demo ? link : {demo: this.demos[0]?.id, parameters: {}});
+        else {
+          this.start();
+          if (link.demo) this.notice(`There is no demo called “${link.demo}”.`, 8000);
+        }
         break;
       }
       case 'opened': this.show(message); break;
@@ -190,13 +207,24 @@ class Page implements Listener {
 
   frame(frame: Frame): void {
     this.viewer.apply(frame);
+    this.shown = frame.step;
     for (const s of frame.samples) this.plots.add(s.plot, s.series, s.x, s.y);
     byId('clock').textContent = `${frame.time.toFixed(2)} s · step ${frame.step}`;
     this.timeline.frame(frame.step);
     this.compare?.follow(frame.step);
     this.follower?.frame(frame.step, frame.samples);
     this.share.step = frame.step;
-    if (frame.stats) this.panel.numbers(frame.stats);
+    if (frame.stats) this.panel.numbers(frame.stats, frame.step);
+  }
+
+  /** All demos to choose from; what ran stands still meanwhile. */
+  private start(): void {
+    if (this.opened && this.running) this.send({type: 'pause'});
+    this.compare?.close();
+    this.editing.close();
+    this.gallery.shown = true;
+    this.gallery.mark('');
+    this.letGo();
   }
 
   private open(link: Link): void {
@@ -207,6 +235,8 @@ class Page implements Listener {
 
   private show(opened: Opened): void {
     this.opened = opened;
+    this.gallery.shown = false;
+    this.shown = -1;
     this.compare?.close();
     if (this.compare) this.compare.opened = opened;
     this.follower?.opened();
@@ -233,50 +263,7 @@ class Page implements Listener {
     else if (this.editing.active) this.send({type: 'source'});
     this.tools.draw();
     showReport({body: -1} as never, opened.dt);
-    for (const link of byId('demos').querySelectorAll('a')) link.toggleAttribute('aria-current', link.dataset.demo === opened.demo);
-  }
-
-  private listDemos(): void {
-    const groups = new Map<string, DemoSummary[]>();
-    for (const demo of this.demos) groups.set(demo.group, [...(groups.get(demo.group) ?? []), demo]);
-    byId('demo-list').replaceChildren(...[...groups].map(([group, demos]) => {
-      const section = document.createElement('section');
-      const heading = document.createElement('h2');
-      heading.textContent = group;
-      const list = document.createElement('ul');
-      for (const demo of demos) {
-        const link = document.createElement('a');
-        link.href = `#${encodeURIComponent(demo.id)}`;
-        link.dataset.demo = demo.id;
-        const summary = document.createElement('small');
-        summary.textContent = demo.summary;
-        link.append(demo.title, summary);
-        link.onclick = (event) => {
-          event.preventDefault();
-          this.open({demo: demo.id, parameters: {}});
-          if (matchMedia('(max-width: 800px)').matches) this.toggle('menu', 'no-demos');
-        };
-        const item = document.createElement('li');
-        item.append(link);
-        list.append(item);
-      }
-      section.append(heading, list);
-      return section;
-    }));
-  }
-
-  /** Shows the demos whose title, summary or group holds every word. */
-  private search(text: string): void {
-    const words = text.toLowerCase().split(/\s+/).filter((word) => word);
-    for (const section of byId('demo-list').querySelectorAll('section')) {
-      const group = section.querySelector('h2')!.textContent!.toLowerCase();
-      let shown = 0;
-      for (const item of section.querySelectorAll('li')) {
-        item.hidden = !words.every((word) => item.textContent!.toLowerCase().includes(word) || group.includes(word));
-        if (!item.hidden) ++shown;
-      }
-      section.hidden = shown === 0;
-    }
+    this.gallery.mark(opened.demo);
   }
 
   private key(event: KeyboardEvent, down: boolean): void {

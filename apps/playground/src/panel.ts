@@ -3,6 +3,8 @@ import type {Numbers, Opened, Parameter, Stats} from './protocol';
 import {element} from './dom';
 import {fromDisplay, short, toDisplay, unitOf} from './quantities';
 
+interface Lesson { symbols: Record<string, string>; try: string[]; ends: string }
+
 export class Panel {
   private shown = new Map<string, (si: number) => void>();
 
@@ -11,14 +13,7 @@ export class Panel {
   open(demo: Opened): void {
     const about = document.getElementById('about')!;
     about.replaceChildren(element('p', {className: 'summary', textContent: demo.summary}));
-    if (demo.text) {
-      const text = element('div', {className: 'text'});
-      for (const paragraph of demo.text.split('\n\n')) {
-        const formula = /^\s{2,}|^[^.]{0,80}=[^.]{0,120}$/.test(paragraph);
-        text.append(element('p', {className: formula ? 'formula' : '', textContent: paragraph.trim()}));
-      }
-      about.append(element('details', {open: false}, element('summary', {textContent: 'What this shows'}), text));
-    }
+    about.append(this.lesson(demo));
     about.append(this.source(demo.demo));
     const list = document.getElementById('parameters')!;
     this.shown.clear();
@@ -26,6 +21,28 @@ export class Panel {
     list.parentElement!.hidden = demo.parameters.length === 0;
     document.getElementById('plot-heading')!.parentElement!.hidden = demo.plots.length === 0;
     this.inputs(demo);
+  }
+
+  /** The page of a demo: plain words and formulas; then, fetched when somebody reads it, symbols, what to try, where the model ends. */
+  private lesson(demo: Opened): HTMLElement {
+    const text = element('div', {className: 'text'});
+    for (const paragraph of demo.text.split('\n\n').filter((p) => p)) {
+      const formula = /^\s{2,}|^[^.]{0,80}=[^.]{0,120}$/.test(paragraph);
+      text.append(element('p', {className: formula ? 'formula' : '', textContent: paragraph.trim()}));
+    }
+    const details = element('details', {id: 'lesson', open: false}, element('summary', {textContent: 'What this shows, what to try'}), text);
+    details.addEventListener('toggle', () => {
+      void fetch('lessons.json').then((answer) => answer.json() as Promise<Record<string, Lesson | undefined>>).then((all) => {
+        const found = all[demo.demo];
+        if (!found) return;
+        const symbols = Object.entries(found.symbols);
+        if (symbols.length > 0) text.append(element('h3', {textContent: 'Symbols'}), element('dl', {className: 'symbols'}, ...symbols.flatMap(([sign, meaning]) => [element('dt', {textContent: sign}), element('dd', {textContent: meaning})])));
+        text.append(element('h3', {textContent: 'Try'}), element('ul', {}, ...found.try.map((one) => element('li', {textContent: one}))),
+          element('h3', {textContent: 'Where the model ends'}), element('p', {textContent: found.ends}));
+      }, () => {});
+    }, {once: true});
+    details.hidden = demo.text === '';
+    return details;
   }
 
   /** The C++ that makes the demo, as it was compiled; fetched when somebody wants to see it. */
@@ -100,7 +117,7 @@ export class Panel {
     ]);
   }
 
-  numbers(stats: Stats): void {
+  numbers(stats: Stats, step: number): void {
     const rows: [string, string][] = [
       ['Bodies', `${stats.bodies} (${stats.awake} awake)`], ['Contacts', String(stats.contacts)], ['Joints', String(stats.joints)],
       ['Islands', String(stats.islands)], ['Step', `${stats.stepMs.toFixed(2)} ms on ${stats.threads} thread${stats.threads === 1 ? '' : 's'}`],
@@ -108,6 +125,7 @@ export class Panel {
       ['Potential energy', `${short(stats.potential)} J`], ['Worst penetration', `${short(1000 * stats.penetration, 3)} mm`], ['State hash', stats.hash],
     ];
     this.rows('numbers', rows);
+    document.getElementById('numbers')!.dataset.step = String(step);
   }
 
   private rows(id: string, rows: [string, string][]): void {

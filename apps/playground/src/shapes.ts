@@ -10,6 +10,14 @@ export interface Drawable {
   build: (fine: number) => THREE.BufferGeometry;
 }
 
+/** How far a shape reaches from its body's origin, metres; infinite for planes, unknown (0) for meshes. */
+export function reachOf(shape: Shape): number {
+  if (shape.kind === 'plane') return Infinity;
+  const own = Math.max(...[shape.half_extents, shape.radii].map((v) => (v ? Math.hypot(...v) : 0)), shape.half_length ?? 0, shape.half_height ?? 0,
+    ...(shape.points ?? []).map((p) => Math.hypot(p[0], p[1])));
+  return Math.hypot(shape.local[0], shape.local[1], shape.local[2]) + own + (shape.radius ?? 0);
+}
+
 const cut = (n: number, fine: number) => Math.max(6, Math.round(n * fine));
 
 const one = () => new THREE.Vector3(1, 1, 1);

@@ -34,14 +34,16 @@ export class Tools {
     byId('layers').replaceChildren(...LAYERS.map(([name, label]) => this.toggle(label, LEGEND[name] ?? '', false, (on) => {
       if (on) this.layers.add(name); else this.layers.delete(name);
       this.draw();
-    })), this.toggle('Shapes', '', true, (on) => { this.viewer.showShapes(on); }),
+    }, name)), this.toggle('Shapes', '', true, (on) => { this.viewer.showShapes(on); }),
     this.toggle('Shadows', '', true, (on) => { this.viewer.showShadows(on); }),
-    this.toggle('Trail of the chosen body', '', false, (on) => { this.viewer.showTrail(on); }));
+    this.toggle('Trails', 'of the chosen body, or of all that move', false, (on) => { this.viewer.showTrails(on); }),
+    this.toggle('Heat colours', 'bodies coloured by their speed', false, (on) => { this.viewer.showHeat(on); }));
   }
 
-  private toggle(label: string, legend: string, on: boolean, change: (on: boolean) => void): HTMLElement {
+  private toggle(label: string, legend: string, on: boolean, change: (on: boolean) => void, layer?: string): HTMLElement {
     const box = element('input', {type: 'checkbox', checked: on});
     box.onchange = () => change(box.checked);
+    if (layer) box.dataset.layer = layer;
     return element('label', {className: 'toggle', title: legend}, box, label, ...(legend ? [element('small', {textContent: ` ${legend}`})] : []));
   }
 

@@ -4,94 +4,22 @@ import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
 import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
-import {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
 import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Points, type Shape, type Surface} from './protocol';
+import {Batch} from './batch';
+import {stepBack, widened, type Seen} from './framing';
 import {Ground} from './ground';
+import {Heat} from './heat';
+import {surroundings} from './light';
 import {Cloud, Surfaces} from './particles';
-import {Trail} from './trail';
-import {drawable2, drawable3, type Drawable} from './shapes';
+import {drawable2, drawable3, reachOf, type Drawable} from './shapes';
+import {Trails} from './trail';
 
 const PALETTE = ['#e4572e', '#f4b942', '#2a9d8f', '#4a8fe7', '#9b6dd6', '#e07a9b', '#6bbf59', '#d98e4a'];
 
-/** One instanced mesh for all shapes of one geometry. Grows by doubling. */
-class Batch {
-  mesh: THREE.InstancedMesh;
-  owners: number[] = [];
-  private free: number[] = [];
-
-  private geometry?: THREE.BufferGeometry;
-  private fine = 0;
-
-  constructor(private build: (fine: number) => THREE.BufferGeometry, private material: THREE.Material, private parent: THREE.Object3D) {
-    this.mesh = this.allocate(16);
-  }
-  private allocate(capacity: number): THREE.InstancedMesh {
-    // Thousands of round bodies are small on the screen: coarser ones do.
-    const fine = capacity > 4096 ? 0.3 : capacity > 512 ? 0.5 : 1;
-    if (fine !== this.fine) {
-      this.geometry?.dispose();
-      this.geometry = this.build(fine);
-      this.fine = fine;
-    }
-    const mesh = new THREE.InstancedMesh(this.geometry, this.material, capacity);
-    mesh.count = 0;
-    mesh.castShadow = mesh.receiveShadow = true;
-    mesh.frustumCulled = false;
-    mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
-    mesh.setColorAt(0, new THREE.Color());
-    this.parent.add(mesh);
-    return mesh;
-  }
-  add(owner: number, matrix: THREE.Matrix4, color: THREE.Color): number {
-    const free = this.free.pop();
-    if (free !== undefined) {
-      this.owners[free] = owner;
-      this.mesh.setMatrixAt(free, matrix);
-      this.mesh.setColorAt(free, color);
-      this.touch();
-      return free;
-    }
-    const slot = this.mesh.count;
-    if (slot === this.mesh.instanceMatrix.count) {
-      const old = this.mesh;
-      this.mesh = this.allocate(2 * slot);
-      this.mesh.instanceMatrix.array.set(old.instanceMatrix.array);
-      this.mesh.instanceColor!.array.set(old.instanceColor!.array);
-      this.mesh.count = slot;
-      this.parent.remove(old);
-      old.dispose();
-    }
-    this.owners[slot] = owner;
-    this.mesh.count = slot + 1;
-    this.mesh.setMatrixAt(slot, matrix);
-    this.mesh.setColorAt(slot, color);
-    this.touch();
-    return slot;
-  }
-  /** Its place shows nothing until another one takes it. */
-  remove(slot: number): void {
-    this.mesh.setMatrixAt(slot, NOWHERE);
-    this.owners[slot] = -1;
-    this.free.push(slot);
-    this.touch();
-  }
-  touch(): void {
-    this.mesh.instanceMatrix.needsUpdate = true;
-    this.mesh.instanceColor!.needsUpdate = true;
-    this.mesh.boundingSphere = null;
-  }
-  dispose(): void {
-    this.parent.remove(this.mesh);
-    this.mesh.dispose();
-    this.geometry?.dispose();
-  }
-}
-
-const NOWHERE = new THREE.Matrix4().makeScale(0, 0, 0);
 const SLEEP_TONE = new THREE.Color('#8a8f98');
 
 interface Part { batch: Batch; slot: number; local: THREE.Matrix4; color: THREE.Color }
-interface Drawn { body: Body; parts: Part[]; position: THREE.Vector3; rotation: THREE.Quaternion; color: THREE.Color; asleep: boolean }
+interface Drawn { body: Body; parts: Part[]; position: THREE.Vector3; rotation: THREE.Quaternion; color: THREE.Color; asleep: boolean; heat: number }
 
 export class Viewer {
   readonly renderer: THREE.WebGLRenderer;
@@ -101,11 +29,12 @@ export class Viewer {
   private root = new THREE.Group();
   private controls: OrbitControls;
   private sun = new THREE.DirectionalLight('#fff4e0', 2.4);
-  private sky = new THREE.HemisphereLight('#dfeaff', '#8a8072', 0.5);
+  private surroundings = new THREE.LightProbe(surroundings(), 1);
   private scheme = matchMedia('(prefers-color-scheme: dark)');
   private ground = new Ground();
   private mark = new THREE.Group();
-  private trail = new Trail();
+  private trails = new Trails();
+  private heat = new Heat();
   private cloud = new Cloud();
   private surfaces = new Surfaces();
   private chosen = -1;
@@ -121,6 +50,8 @@ export class Viewer {
   private follow = -1;
   private home: Camera = {position: [8, 6, 12], target: [0, 1, 0]};
   private framed = {width: 0, height: 0};
+  private stale = true;  // something to draw has changed
+  private fresh = false;  // opened, and its bodies have not come yet
   private pixel = 0.02;
   private touched = false;  // the user has turned the view; nothing else may
   private quality = 2;
@@ -135,10 +66,6 @@ export class Viewer {
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
     this.renderer.toneMappingExposure = 0.95;
-    const pmrem = new THREE.PMREMGenerator(this.renderer);
-    this.scene.environment = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
-    this.scene.environmentIntensity = 0.55;
-    pmrem.dispose();
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0004;
@@ -147,13 +74,14 @@ export class Viewer {
     this.hand.renderOrder = 10;
     this.hand.visible = false;
     this.lines.frustumCulled = this.hand.frustumCulled = false;
-    this.scene.add(this.root, this.sun, this.sun.target, this.sky, this.ground.group, this.lines, this.hand, this.mark, this.trail.line, this.cloud.object, this.surfaces.group);
+    this.scene.add(this.root, this.sun, this.sun.target, this.surroundings, this.ground.group, this.lines, this.hand, this.mark, this.trails.group, this.cloud.object, this.surfaces.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.scheme.addEventListener('change', () => this.setTheme());
     this.setTheme();
   }
 
   setTheme(): void {
+    this.stale = true;
     const chosen = document.documentElement.dataset.theme, dark = chosen ? chosen === 'dark' : this.scheme.matches;
     this.scene.background = new THREE.Color(dark ? '#10161f' : '#dde6ee');
     this.scene.fog = null;
@@ -162,6 +90,7 @@ export class Viewer {
 
   /** A new demo: camera, dimension, nothing drawn yet. */
   open(dimension: 2 | 3, camera: Camera): void {
+    this.stale = true;
     this.clear();
     this.meshes.clear();
     this.dimension = dimension;
@@ -170,7 +99,16 @@ export class Viewer {
     this.origin.copy(target.length() > 1e4 ? target : new THREE.Vector3());
     const near = (p: number[]) => p.map((x, i) => x - this.origin.getComponent(i));
     this.home = {...camera, position: near(camera.position), target: near(camera.target)};
+    this.fresh = true;
     this.resetView();
+  }
+
+  /** What moves, as the camera of the demo must show it: places in the view's coordinates and how far they reach. */
+  private *seen(): Iterable<Seen> {
+    for (const {body, position} of this.drawn.values()) {
+      const reach = Math.max(0, ...body.shapes.map(reachOf));
+      if (Number.isFinite(reach)) yield {position, reach};
+    }
   }
 
   resetView(): void {
@@ -180,7 +118,7 @@ export class Viewer {
     this.follow = this.home.follow ?? -1;
     this.controls.dispose();
     if (this.dimension === 2) {
-      const height = Math.max(this.home.height ?? 20, (this.home.width ?? 0) / aspect);
+      const height = widened(this.home, aspect, this.seen());
       this.pixel = height / 600;
       this.camera = new THREE.OrthographicCamera(-height * aspect / 2, height * aspect / 2, height / 2, -height / 2, 0.1, 100);
       this.camera.position.set(target[0], target[1], 50);
@@ -190,16 +128,17 @@ export class Viewer {
       this.controls.touches.ONE = THREE.TOUCH.PAN;
       this.controls.target.set(target[0], target[1], 0);
       this.controls.addEventListener('start', () => { this.touched = true; });
+      this.controls.addEventListener('change', () => { this.stale = true; });
     } else {
-      // Cameras are declared for a picture that is wider than high; in a narrow one they step back, so that nothing is cut off.
       const away = new THREE.Vector3(...(position as [number, number, number])).sub(new THREE.Vector3(...(target as [number, number, number])));
-      away.multiplyScalar(Math.min(2, Math.max(1, 1.1 / aspect)));
+      away.multiplyScalar(stepBack(this.home, aspect, this.seen()));
       const distance = away.length();
       this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
       this.camera.position.set(target[0], target[1], target[2]).add(away);
       this.controls = new OrbitControls(this.camera, this.canvas);
       this.controls.target.set(target[0], target[1], target[2]);
       this.controls.addEventListener('start', () => { this.touched = true; });
+      this.controls.addEventListener('change', () => { this.stale = true; });
       this.controls.maxPolarAngle = Math.PI * 0.95;
       this.sunFor(distance);
       this.ground.setScale(distance);
@@ -224,6 +163,7 @@ export class Viewer {
   }
 
   setGround(level: number | undefined): void {
+    this.stale = true;
     if (this.dimension === 3) this.ground.showGround(level === undefined ? undefined : level - this.origin.y);
   }
 
@@ -235,7 +175,8 @@ export class Viewer {
     this.drawn.clear();
     this.waiting = [];
     this.showMark();
-    this.trail.clear();
+    this.trails.clear();
+    this.heat.restart();
     this.cloud.clear();
     this.surfaces.clear();
     this.setLines(new Float32Array(), new Uint32Array());
@@ -243,14 +184,18 @@ export class Viewer {
   }
 
   setBodies(bodies: Body[]): void {
+    this.stale = true;
     this.clear();
     for (const body of bodies) this.addBody(body);
+    if (this.fresh && !this.touched) this.resetView();
+    this.fresh = false;
   }
 
   addBody(body: Body): void {
+    this.stale = true;
     const [w, x, y, z] = body.rotation;
     const drawn: Drawn = {
-      body, parts: [], asleep: false, color: new THREE.Color(body.color ?? this.colorOf(body)),
+      body, parts: [], asleep: false, heat: 0, color: new THREE.Color(body.color ?? this.colorOf(body)),
       position: new THREE.Vector3(...(body.position as [number, number, number])).sub(this.origin), rotation: new THREE.Quaternion(x, y, z, w),
     };
     this.drawn.set(body.id, drawn);
@@ -292,6 +237,7 @@ export class Viewer {
   }
 
   removeBodies(ids: number[]): void {
+    this.stale = true;
     for (const id of ids) {
       for (const {batch, slot} of this.drawn.get(id)?.parts ?? []) batch.remove(slot);
       this.drawn.delete(id);
@@ -301,6 +247,7 @@ export class Viewer {
   }
 
   addMesh(mesh: Mesh): void {
+    this.stale = true;
     this.meshes.set(mesh.id, mesh);
     const ready = this.waiting.filter((w) => w.shape.mesh === mesh.id);
     this.waiting = this.waiting.filter((w) => w.shape.mesh !== mesh.id);
@@ -310,37 +257,64 @@ export class Viewer {
     }
   }
 
-  setPoints(points: Points): void { this.cloud.set(points, this.origin.clone().negate(), this.dimension === 2); }
-  setSurface(surface: Surface): void { this.surfaces.set(surface, this.origin.clone().negate(), this.dimension === 2); }
+  setPoints(points: Points): void { this.stale = true; this.cloud.set(points, this.origin.clone().negate(), this.dimension === 2); }
+  setSurface(surface: Surface): void { this.stale = true; this.surfaces.set(surface, this.origin.clone().negate(), this.dimension === 2); }
 
   apply(frame: Frame): void {
+    this.stale = true;
     // Positions come relative to the frame's origin; what is drawn is relative to the view's own.
     const shift = new THREE.Vector3(frame.origin[0] - this.origin.x, frame.origin[1] - this.origin.y, frame.origin[2] - this.origin.z);
     const pose = new THREE.Matrix4(), matrix = new THREE.Matrix4(), unit = new THREE.Vector3(1, 1, 1), tone = new THREE.Color();
-    const touched = new Set<Batch>();
+    const touched = new Set<Batch>(), since = this.heat.on ? this.heat.since(frame.time) : 0;
     const view = frame.bodies;
     for (let i = 0; i < frame.count; ++i) {
       const at = i * BODY_BYTES;
       const word = view.getUint32(at, true);
       const drawn = this.drawn.get(word & 0x7fffffff);
       if (!drawn) continue;
+      if (since > 0) this.before.copy(drawn.position);
       drawn.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true)).add(shift);
+      if (since > 0) drawn.heat = this.before.distanceTo(drawn.position) / since;
       drawn.rotation.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
       pose.compose(drawn.position, drawn.rotation, unit);
       const asleep = (word >>> 31) === 1;
       for (const {batch, slot, local, color} of drawn.parts) {
         batch.mesh.setMatrixAt(slot, matrix.multiplyMatrices(pose, local));
-        if (asleep !== drawn.asleep) batch.mesh.setColorAt(slot, asleep ? tone.copy(color).lerp(SLEEP_TONE, 0.35) : color);
+        if (asleep !== drawn.asleep && !this.heat.on) batch.mesh.setColorAt(slot, asleep ? tone.copy(color).lerp(SLEEP_TONE, 0.35) : color);
         touched.add(batch);
       }
       drawn.asleep = asleep;
-      if (drawn.body.id === this.chosen) this.trail.add(drawn.position);
+      if (this.trails.group.visible && drawn.body.type !== 'fixed') this.trails.add(drawn.body.id, this.chosen, drawn.position);
       if (drawn.body.id === this.follow) this.moveWith(drawn.position);
     }
+    if (since > 0) this.paintHeat(frame, touched);
     for (const batch of touched) batch.touch();
     this.setLines(frame.lines, frame.lineColors);
     this.lines.position.copy(shift);
     if (this.dimension === 2) this.lines.position.z = 1;
+  }
+
+  private before = new THREE.Vector3();
+  private moved = new Set<number>();
+  /** What is not in a frame stands still. */
+  private paintHeat(frame: Frame, touched: Set<Batch>): void {
+    this.moved.clear();
+    for (let i = 0; i < frame.count; ++i) this.moved.add(frame.bodies.getUint32(i * BODY_BYTES, true) & 0x7fffffff);
+    let fastest = 0;
+    for (const drawn of this.drawn.values()) {
+      if (!this.moved.has(drawn.body.id)) drawn.heat = 0;
+      fastest = Math.max(fastest, drawn.heat);
+    }
+    this.heat.scale(fastest);
+    for (const drawn of this.drawn.values())
+      if (drawn.body.type === 'dynamic') for (const {batch, slot} of drawn.parts) { batch.mesh.setColorAt(slot, this.heat.color(drawn.heat)); touched.add(batch); }
+  }
+  /** Bodies in the colours of their speeds, or in their own again. */
+  showHeat(on: boolean): void {
+    this.stale = true;
+    this.heat.show(on);
+    for (const drawn of this.drawn.values())
+      for (const {batch, slot, color} of drawn.parts) { batch.mesh.setColorAt(slot, color); batch.touch(); }
   }
 
   private moveWith(position: THREE.Vector3): void {
@@ -350,7 +324,9 @@ export class Viewer {
     this.controls.target.add(shift);
   }
 
+  lineCount = 0;
   private setLines(points: Float32Array, colors: Uint32Array): void {
+    this.lineCount = colors.length;
     this.lines.visible = colors.length > 0;
     if (!this.lines.visible) return;
     const rgb = new Float32Array(6 * colors.length), one = new THREE.Color();
@@ -367,6 +343,7 @@ export class Viewer {
   /** Where the camera is and what it looks at, in world coordinates. */
   get viewpoint(): number[] { return [...this.camera.position.clone().add(this.origin).toArray(), ...this.controls.target.clone().add(this.origin).toArray()]; }
   set viewpoint([x, y, z, tx, ty, tz]: number[]) {
+    this.stale = true;
     this.camera.position.set(x, y, z).sub(this.origin);
     this.controls.target.set(tx, ty, tz).sub(this.origin);
     this.controls.update();
@@ -403,9 +380,10 @@ export class Viewer {
   nameOf(id: number): string { return this.drawn.get(id)?.body.name || `body ${id}`; }
   get chosenBody(): number { return this.chosen; }
   choose(id: number): void {
+    this.stale = true;
     if (id === this.chosen) return;
     this.chosen = id;
-    this.trail.clear();
+    this.trails.clear();
   }
   /** The body that moves before or after the chosen one. */
   neighbour(way: number): number {
@@ -415,18 +393,20 @@ export class Viewer {
   }
   /** The camera goes with the chosen body; asked again, or with none chosen, it stays where it is. */
   followChosen(): void {
+    this.stale = true;
     this.follow = this.follow === this.chosen ? -1 : this.chosen;
     const drawn = this.drawn.get(this.follow);
     if (drawn) this.moveWith(drawn.position);
   }
   get followed(): number { return this.follow; }
 
-  showShapes(on: boolean): void { this.root.visible = on; }
-  showShadows(on: boolean): void { this.sun.castShadow = on; }
-  showTrail(on: boolean): void { this.trail.line.visible = on; }
+  showShapes(on: boolean): void { this.stale = true; this.root.visible = on; }
+  showShadows(on: boolean): void { this.stale = true; this.sun.castShadow = on; }
+  showTrails(on: boolean): void { this.stale = true; this.trails.group.visible = on; this.trails.clear(); }
 
   /** A point with its normal, where a probe hit; without a point nothing. */
   showMark(point?: number[], normal?: number[]): void {
+    this.stale = true;
     this.mark.visible = point !== undefined;
     if (!point || !normal) return;
     if (this.mark.children.length === 0) {
@@ -462,11 +442,13 @@ export class Viewer {
 
   /** The spring between a grabbed point and the pointer; no arguments: hidden. World coordinates. */
   showHand(from?: THREE.Vector3, to?: THREE.Vector3): void {
+    this.stale = true;
     this.hand.visible = !!(from && to);
     if (from && to) this.hand.geometry.setFromPoints([from.clone().sub(this.origin), to.clone().sub(this.origin)]);
   }
 
   resize(): void {
+    this.stale = true;
     const width = this.canvas.clientWidth, height = Math.max(1, this.canvas.clientHeight);
     if (!this.touched && this.framed.width > 0 && Math.abs(width / height - this.framed.width / this.framed.height) > 0.02) return this.resetView();
     this.renderer.setSize(width, height, false);
@@ -503,12 +485,20 @@ export class Viewer {
 
   render(now: number): void {
     this.adapt(now);
-    this.controls.update();
+    // A picture that would be the one before is not drawn: that spares a phone's battery.
+    if (!this.controls.update() && !this.stale) return;
+    this.stale = false;
+    if (this.camera instanceof THREE.PerspectiveCamera) {
+      // As far away as it may be: the depth buffer then tells apart what lies close together.
+      const near = Math.max(0.02, this.camera.position.distanceTo(this.controls.target) / 100);
+      if (Math.abs(near / this.camera.near - 1) > 0.1) { this.camera.near = near; this.camera.updateProjectionMatrix(); }
+    }
     const reach = this.sun.userData.reach ?? 20;
     const center = this.controls.target;
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).add(new THREE.Vector3(0.45, 1, 0.35).normalize().multiplyScalar(3 * reach));
     this.camera.updateMatrixWorld();
+    this.ground.update();
     this.cloud.view(this.camera, this.renderer.domElement.height / 2, this.sun.position.clone().sub(center));
     this.renderer.render(this.scene, this.camera);
   }

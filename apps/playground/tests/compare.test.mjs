@@ -1,7 +1,7 @@
 // Two settings side by side: the right view keeps in step, has values of its own, and its curves beside the left one's.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {bodies, picture, place, serve, stepOf, until, visit} from './harness.mjs';
+import {bodies, paused, picture, place, serve, until, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
@@ -12,14 +12,12 @@ test('two settings side by side, in step', async () => {
   await page.click('#share >> text=Compare');
   const handle = await page.waitForSelector('iframe');
   const twin = await handle.contentFrame();
-  await twin.waitForFunction(() => window.caromPage?.viewer.bodyIds('dynamic').length > 0, null, {timeout: 30000});
+  await twin.waitForFunction(() => window.caromPage?.viewer.bodyIds('dynamic').length > 0);
   // Both run; paused they are at the same step and, with the same values, at the same place.
-  await page.waitForFunction(() => window.caromPage.compare.twinStep > 30, null, {timeout: 30000});
-  await page.click('#run');
-  await until(page, 'Run');
+  await page.waitForFunction(() => window.caromPage.compare.twinStep > 30);
   const same = async () => {
-    const step = await stepOf(page);
-    await twin.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) === n, step, {timeout: 30000});
+    const step = await paused(page);
+    await twin.waitForFunction((n) => window.caromPage.shown === n, step);
   };
   await same();
   const id = (await bodies(page, 'dynamic'))[0];
@@ -35,9 +33,7 @@ test('two settings side by side, in step', async () => {
   }, name);
   await page.click('#run');
   await until(page, 'Pause');
-  await page.waitForTimeout(2500);
-  await page.click('#run');
-  await until(page, 'Run');
+  await page.waitForFunction((n) => window.caromPage.compare.twinStep > n, 90 + await page.evaluate(() => window.caromPage.compare.twinStep));
   await same();
   assert.notDeepEqual(await place(twin, id), await place(page, id));
   await picture(page, 'compare');

@@ -2,43 +2,33 @@
 // gamepad, the keyboard alone.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {bodies, picture, place, screen, serve, stepOf, until, visit} from './harness.mjs';
+import {at, beyond, bodies, drawn, hashAt, movedFrom, paused, picture, place, runFor, screen, serve, slide, stepOf, until, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
 after(() => server?.close());
 const open = (demo, options) => visit(`${server.url}#${demo}`, options);
-const at = (page, step) => page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) === n, step);
-const beyond = (page, step) => page.waitForFunction((n) => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)[1]) > n, step, {timeout: 60000});
-const slide = (page, step) => page.$eval('#past', (slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, step);
-const hash = (page) => page.$$eval('#numbers dd', (all) => all[all.length - 1].textContent);
 const middle = async (page) => { const b = await page.locator('#view').boundingBox(); return {x: b.x + b.width / 2, y: b.y + b.height / 2}; };
 
 test('a step back, a scrub to the past, and on from there with the same bits', async () => {
   const page = await open('wrecking-ball');
   await beyond(page, 60);
-  await page.click('#run');
-  await until(page, 'Run');
-  const end = await stepOf(page);
+  const end = await paused(page);
   await page.click('#back');
   await at(page, end - 1);
   await slide(page, 30);
   await at(page, 30);
-  await page.waitForTimeout(500);  // the step is told before its bodies are
   const ball = (await bodies(page, 'dynamic')).at(-1), then = await place(page, ball);
   await slide(page, end);
   await at(page, end);
-  await page.waitForTimeout(500);
   assert.notDeepEqual(await place(page, ball), then);
-  const before = await hash(page);
+  const before = await hashAt(page, end);
   await slide(page, 30);
   await at(page, 30);
-  await page.waitForTimeout(500);
   assert.deepEqual(await place(page, ball), then, 'the past is as it was');
-  for (let i = 30; i < end; ++i) await page.evaluate(() => window.caromPage.send({type: 'step', count: 1}));
+  await page.evaluate((count) => window.caromPage.send({type: 'step', count}), end - 30);
   await at(page, end);
-  await page.waitForTimeout(300);
-  assert.equal(await hash(page), before, 'and leads to the same present');
+  assert.equal(await hashAt(page, end), before, 'and leads to the same present');
   await page.done();
 });
 
@@ -55,7 +45,7 @@ test('shooting a body, asking why, following it', async () => {
   await page.focus('#view');
   await page.keyboard.press('f');
   assert.equal(await page.evaluate(() => window.caromPage.viewer.followed), shot);
-  await page.waitForTimeout(2500);
+  await runFor(page, 60);
   await page.locator('#why-section').scrollIntoViewIfNeeded();
   await picture(page, 'why');
   await page.done();
@@ -66,23 +56,39 @@ test('probes tell what lies under the pointer', async () => {
   const there = await middle(page);
   for (const [key, text] of [['3', /along the ray/], ['4', /along the ray/], ['5', /away|nothing/]]) {
     await page.keyboard.press(key);
-    await page.mouse.move(there.x + 20, there.y + 40);
-    await page.waitForTimeout(80);
-    await page.mouse.move(there.x, there.y + 30);
-    await page.waitForFunction(() => document.querySelector('#probe').textContent !== '');
-    assert.match(await page.textContent('#probe'), text);
+    // A probe asks at most twenty times a second: the pointer moves until it has.
+    let said = '';
+    for (let i = 0; said === ''; i = 1 - i) {
+      await page.mouse.move(there.x + i, there.y + 30);
+      said = await page.textContent('#probe');
+    }
+    assert.match(said, text);
   }
   await page.done();
 });
 
 test('every layer of debug drawing, in space and in the plane', async () => {
-  for (const demo of ['joints', 'collision-lab-2d']) {
+  for (const demo of ['joints', 'card-house']) {
     const page = await open(demo);
-    for (let layer = 0; layer < 8; ++layer) {
-      await page.locator('#layers input').nth(layer).check();
-      await page.waitForTimeout(150);
+    const lines = () => page.evaluate(() => window.caromPage.viewer.lineCount);
+    await beyond(page, 40);
+    await paused(page);
+    const layers = page.locator('#layers input[data-layer]'), bare = await lines();
+    const without = [];  // which need what this scene lacks
+    for (let i = 0; i < await layers.count(); ++i) {
+      const name = await layers.nth(i).getAttribute('data-layer');
+      await layers.nth(i).check();
+      const now = await stepOf(page);
+      await page.click('#step');
+      await at(page, now + 1);
+      if (await lines() <= bare) without.push(name);
+      await layers.nth(i).uncheck();
     }
-    await page.waitForTimeout(800);
+    for (const needed of ['bounds', 'centers', 'islands']) assert.ok(!without.includes(needed), `${demo}: no lines of ${without}`);
+    assert.ok(!without.includes(demo === 'joints' ? 'joints' : 'contacts'), `${demo}: no lines of ${without}`);
+    for (const box of await layers.all()) await box.check();
+    await page.click('#run');
+    await runFor(page, 20);
     await picture(page, `layers ${demo}`);
     await page.locator('#timing').scrollIntoViewIfNeeded();
     await picture(page, `numbers ${demo}`);
@@ -124,10 +130,7 @@ test('a gamepad drives the hovercraft', async () => {
     navigator.getGamepads = () => [pad];
     window.pad = pad;
   });
-  await page.waitForTimeout(1500);
-  await page.evaluate(() => { window.pad.axes[1] = 0; });
-  const after = await place(page, craft);
-  assert.ok(Math.hypot(after[0] - before[0], after[1] - before[1]) > 0.3, `${before} → ${after}`);
+  await movedFrom(page, craft, before, 0.3);
   await page.done();
 });
 

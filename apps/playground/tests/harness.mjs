@@ -10,16 +10,19 @@ import {fileURLToPath} from 'node:url';
 import {createRequire} from 'node:module';
 import {chromium} from 'playwright-core';
 
-const here = dirname(fileURLToPath(import.meta.url));
+const here = dirname(fileURLToPath(import.meta.url)), root = join(here, '../../..');
 export const carom = process.env.CAROM ?? join(here, '../../../build/release/apps/command/carom');
 const browserPath = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/google-chrome', '/usr/bin/chromium-browser'].find(existsSync);
 export const pictures = process.env.PICTURES ?? join(here, '../../../out/page');
-export const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 mkdirSync(pictures, {recursive: true});
+
+/** Milliseconds until a condition counts as never coming true: machines differ by more than one expects. */
+export const PATIENCE = 120e3;
 
 /** The live server. */
 export async function serve(port = 0) {
-  const child = spawn(carom, ['serve', '--port', String(port)], {stdio: ['ignore', 'pipe', 'inherit']});
+  const child = spawn(carom, ['serve', '--port', String(port)], {cwd: root, stdio: ['ignore', 'pipe', 'inherit']});
   const url = await new Promise((resolve, reject) => {
     let text = '';
     child.stdout.on('data', (bytes) => {
@@ -28,9 +31,11 @@ export async function serve(port = 0) {
       if (match) resolve(match[0]);
     });
     child.on('exit', (code) => reject(new Error(`carom serve ended with ${code}: ${text}`)));
-    setTimeout(() => reject(new Error(`carom serve printed no address: ${text}`)), 20000).unref();
+    setTimeout(() => reject(new Error(`carom serve printed no address: ${text}`)), PATIENCE).unref();
   });
-  return {url, close: () => child.kill('SIGINT')};
+  // Its port is free once it has ended.
+  const ended = new Promise((resolve) => child.on('exit', resolve));
+  return {url, close: () => { child.kill('SIGINT'); return ended; }};
 }
 
 /** A folder over HTTP as the plainest web server would: no headers but the type, and that only of what browsers insist on. */
@@ -58,23 +63,56 @@ afterEach(async () => {
 after(async () => { await browser?.close(); });
 
 /** A page at an address; `done` fails the test on any error that the page had. */
-export async function visit(address, {viewport = {width: 1000, height: 700}, ...options} = {}) {
+export async function visit(address, {viewport = {width: 1000, height: 700}, ...options} = {}, shows = true) {
   const context = await (await launched()).newContext({viewport, ...options});
   contexts.push(context);
   const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE);
   page.problems = [];
   page.on('pageerror', (error) => page.problems.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
   page.done = async () => assert.deepEqual(page.problems, []);
   await page.goto(address);
-  await page.waitForFunction(() => document.querySelector('#clock').textContent.includes('step'), null, {timeout: 30000});
+  if (shows) await page.waitForFunction(() => window.caromPage?.shown >= 0);
   return page;
 }
 
 export const stepOf = (page) => page.$eval('#clock', (e) => Number(e.textContent.match(/step (\d+)/)[1]));
+/** The bodies of exactly this step are drawn; of one beyond it; the numbers of exactly this step are shown. */
+export const at = (page, step) => page.waitForFunction((n) => window.caromPage.shown === n && document.querySelector('#clock').textContent.endsWith(`step ${n}`), step);
+export const beyond = (page, step) => page.waitForFunction((n) => window.caromPage.shown > n, step);
+export const hashAt = async (page, step) => {
+  await page.waitForFunction((n) => document.querySelector('#numbers').dataset.step === String(n), step);
+  return page.$$eval('#numbers dd', (all) => all[all.length - 1].textContent);
+};
+/** Runs on for so many steps from where it is. */
+export const runFor = async (page, steps) => beyond(page, steps + await page.evaluate(() => window.caromPage.shown));
+export const paused = async (page) => {
+  await page.click('#run');
+  await until(page, 'Run');
+  const step = await stepOf(page);
+  await at(page, step);
+  return step;
+};
+export const slide = (page, step) => page.$eval('#past', (slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, step);
+/** A body has moved from `before` by more than so many metres. */
+export const movedFrom = (page, id, before, metres) => page.waitForFunction(([i, from, far]) => Math.hypot(...window.caromPage.viewer.bodyPosition(i).map((x, k) => x - from[k])) > far, [id, before, metres]);
+/** A pointer holds a body. */
+export const holding = (page) => page.waitForFunction(() => [...window.caromPage.hands.holds.values()].some((h) => h.held));
+/** The picture of what has come is drawn. */
+export const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 export const until = (page, text) => page.waitForFunction((t) => document.querySelector('#run').textContent === t, text);
 export const bodies = (page, type) => page.evaluate((t) => window.caromPage.viewer.bodyIds(t), type);
 export const place = (page, id) => page.evaluate((i) => window.caromPage.viewer.bodyPosition(i), id);
 export const screen = (page, id) => page.evaluate((i) => window.caromPage.viewer.screenOf(i), id);
-export const demosOf = (page) => page.$$eval('#demos a', (links) => links.map((a) => a.dataset.demo));
-export const picture = (page, name) => page.screenshot({path: join(pictures, `${name.replace(/\W/g, '_')}.png`)});
+export const demosOf = (page) => page.$$eval('#demo-list a', (links) => links.map((a) => a.dataset.demo));
+export const picture = async (page, name) => {
+  await drawn(page);
+  await page.screenshot({path: join(pictures, `${name.replace(/\W/g, '_')}.png`)});
+};
+/** What a blind or keyboard user would stumble over, seriously, in a part of the page. */
+export async function barriers(page, part) {
+  if (!await page.evaluate(() => 'axe' in window)) await page.evaluate(axe);
+  return page.evaluate(async (within) => (await window.axe.run(within ?? document, {resultTypes: ['violations']})).violations.filter((v) => ['serious', 'critical'].includes(v.impact))
+    .map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`), part);
+}

@@ -26,7 +26,7 @@ class Artillery final : public Repeatable<Artillery, Demo3> {
         "Elevations "
         "are in mils, 6 400 to the circle.";
     d.duration = 12;
-    d.camera = {{-900, 900, 5200}, {3600, 350, 0}};
+    d.camera = {.position = {-900, 900, 5200}, .target = {3600, 350, 0}, .width = 9000};
     d.ground = 0;
     d.parameters = {
         {"charge", "Charge", "", "", "4: 337 m/s, 6: 474 m/s at the muzzle", 4, 6, 2, 6, false},

@@ -28,7 +28,7 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         "(quadratic).";
     d.duration = 9;
     d.loop = true;
-    d.camera = {{175, 70, 330}, {175, 42, 0}};
+    d.camera = {.position = {175, 70, 330}, .target = {175, 42, 0}, .width = 410};
     d.ground = 0;
     d.parameters = {
         {"speed", "Speed v", "m/s", "m/s", "", 10, 500, 1, 60, false},

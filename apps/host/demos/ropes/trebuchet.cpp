@@ -25,7 +25,7 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
         "Arm and weight keep a part of it. The sling, a rope, makes the way of the stone longer than the arm, and lets "
         "go where its velocity points up at the angle that is set.";
     d.duration = 9;
-    d.camera = {{9, 6, 22}, {9, 4, 0}, 0.8};
+    d.camera = {.position = {9, 6, 22}, .target = {9, 4, 0}, .field_of_view = 0.8, .width = 33};
     d.ground = 0;
     d.parameters = {
         {"weight", "Counterweight", "kg", "kg", "", 100, 1500, 0, 500, false},
