@@ -93,8 +93,9 @@ build_page() {
   quietly page npm run --prefix apps/playground build
 }
 
-# build_web: the page with the engine in it, in out/web, for any web server.
+# build_web: the page with the engine in it, in out/web, for any web server. The native command draws the demos' pictures.
 build_web() {
+  [ -x build/release/apps/command/carom ] || build_native -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF
   build_wasm carom_module
   build_page
   quietly web node apps/playground/build.mjs --web out/web

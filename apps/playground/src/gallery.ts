@@ -50,9 +50,10 @@ export class Gallery {
     this.groups.clear();
     for (const demo of demos) this.groups.set(demo.group, [...(this.groups.get(demo.group) ?? []), demo]);
     const ordered = [...this.groups].sort((a, b) => place(a[1]) - place(b[1]));
-    byId('demo-count').textContent = `${demos.length} demos of ${this.groups.size} kinds`;
+    byId('demo-count').textContent = `${demos.length} demos of ${this.groups.size} kinds.`;
     byId('demo-list').replaceChildren(...ordered.map(([group, list], i) => section(i, place(list),
       element('h2', {}, group, element('small', {textContent: chaptersOf(list)})), element('ul', {}, ...list.map((demo) => this.card(demo))))));
+    this.fit();
     byId('chapters').replaceChildren(...ordered.map(([group], i) => element('button', {type: 'button', textContent: group, onclick: () => {
       byId(`group-${i}`).scrollIntoView({behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth'});
       byId(`group-${i}`).querySelector('a')?.focus({preventScroll: true});
@@ -70,6 +71,11 @@ export class Gallery {
       this.open(demo.id);
     };
     return element('li', {}, link);
+  }
+
+  /** A section is as wide as the cards that it shows. */
+  private fit(): void {
+    for (const section of byId('demo-list').querySelectorAll('section')) section.style.setProperty('--count', String(section.querySelectorAll('li:not([hidden])').length));
   }
 
   mark(demo: string): void {
@@ -90,6 +96,7 @@ export class Gallery {
       section.hidden = shown === 0;
       found += shown;
     }
+    this.fit();
     byId('nothing-found').hidden = found > 0;
   }
 }

@@ -4,55 +4,35 @@ import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
 import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
-import {BODY_BYTES, type Body, type Camera, type Frame, type Mesh, type Points, type Shape, type Surface} from './protocol';
-import {Batch} from './batch';
-import {stepBack, widened, type Seen} from './framing';
+import {Bodies} from './bodies';
+import {stepBack, widened} from './framing';
 import {Ground} from './ground';
-import {Heat} from './heat';
 import {surroundings} from './light';
 import {Cloud, Surfaces} from './particles';
-import {drawable2, drawable3, reachOf, type Drawable} from './shapes';
-import {Trails} from './trail';
-
-const PALETTE = ['#e4572e', '#f4b942', '#2a9d8f', '#4a8fe7', '#9b6dd6', '#e07a9b', '#6bbf59', '#d98e4a'];
-
-const SLEEP_TONE = new THREE.Color('#8a8f98');
-
-interface Part { batch: Batch; slot: number; local: THREE.Matrix4; color: THREE.Color }
-interface Drawn { body: Body; parts: Part[]; position: THREE.Vector3; rotation: THREE.Quaternion; color: THREE.Color; asleep: boolean; heat: number }
+import type {Body, Camera, Frame, Mesh, Points, Surface} from './protocol';
 
 export class Viewer {
   readonly renderer: THREE.WebGLRenderer;
   camera: THREE.PerspectiveCamera | THREE.OrthographicCamera = new THREE.PerspectiveCamera();
   dimension: 2 | 3 = 3;
   private scene = new THREE.Scene();
-  private root = new THREE.Group();
+  private bodies = new Bodies();
   private controls: OrbitControls;
   private sun = new THREE.DirectionalLight('#fff4e0', 2.4);
   private surroundings = new THREE.LightProbe(surroundings(), 1);
   private scheme = matchMedia('(prefers-color-scheme: dark)');
   private ground = new Ground();
   private mark = new THREE.Group();
-  private trails = new Trails();
-  private heat = new Heat();
   private cloud = new Cloud();
   private surfaces = new Surfaces();
-  private chosen = -1;
   private lines = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({vertexColors: true, linewidth: 2.5}));
   private hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: '#ff2d55', depthTest: false}));
-  private material = new THREE.MeshStandardMaterial({vertexColors: true, roughness: 0.72, metalness: 0});
-  private material2 = new THREE.MeshBasicMaterial({vertexColors: true, side: THREE.DoubleSide});
-  private batches = new Map<string, Batch>();
-  private drawn = new Map<number, Drawn>();
-  private meshes = new Map<number, Mesh>();
-  private waiting: {id: number; shape: Shape}[] = [];
   private origin = new THREE.Vector3();
   private follow = -1;
   private home: Camera = {position: [8, 6, 12], target: [0, 1, 0]};
   private framed = {width: 0, height: 0};
   private stale = true;  // something to draw has changed
   private fresh = false;  // opened, and its bodies have not come yet
-  private pixel = 0.02;
   private touched = false;  // the user has turned the view; nothing else may
   private quality = 2;
   private slowness = 16;
@@ -74,7 +54,7 @@ export class Viewer {
     this.hand.renderOrder = 10;
     this.hand.visible = false;
     this.lines.frustumCulled = this.hand.frustumCulled = false;
-    this.scene.add(this.root, this.sun, this.sun.target, this.surroundings, this.ground.group, this.lines, this.hand, this.mark, this.trails.group, this.cloud.object, this.surfaces.group);
+    this.scene.add(this.bodies.root, this.sun, this.sun.target, this.surroundings, this.ground.group, this.lines, this.hand, this.mark, this.bodies.trails.group, this.cloud.object, this.surfaces.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.scheme.addEventListener('change', () => this.setTheme());
     this.setTheme();
@@ -92,7 +72,7 @@ export class Viewer {
   open(dimension: 2 | 3, camera: Camera): void {
     this.stale = true;
     this.clear();
-    this.meshes.clear();
+    this.bodies.open(dimension);
     this.dimension = dimension;
     // Far from the world's origin everything is drawn about the camera's target: the GPU computes in float.
     const target = new THREE.Vector3(...(camera.target as [number, number, number]));
@@ -103,14 +83,6 @@ export class Viewer {
     this.resetView();
   }
 
-  /** What moves, as the camera of the demo must show it: places in the view's coordinates and how far they reach. */
-  private *seen(): Iterable<Seen> {
-    for (const {body, position} of this.drawn.values()) {
-      const reach = Math.max(0, ...body.shapes.map(reachOf));
-      if (Number.isFinite(reach)) yield {position, reach};
-    }
-  }
-
   resetView(): void {
     const {position, target} = this.home;
     const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
@@ -118,8 +90,8 @@ export class Viewer {
     this.follow = this.home.follow ?? -1;
     this.controls.dispose();
     if (this.dimension === 2) {
-      const height = widened(this.home, aspect, this.seen());
-      this.pixel = height / 600;
+      const height = widened(this.home, aspect, this.bodies.seen());
+      this.bodies.pixel = height / 600;
       this.camera = new THREE.OrthographicCamera(-height * aspect / 2, height * aspect / 2, height / 2, -height / 2, 0.1, 100);
       this.camera.position.set(target[0], target[1], 50);
       this.controls = new OrbitControls(this.camera, this.canvas);
@@ -131,7 +103,7 @@ export class Viewer {
       this.controls.addEventListener('change', () => { this.stale = true; });
     } else {
       const away = new THREE.Vector3(...(position as [number, number, number])).sub(new THREE.Vector3(...(target as [number, number, number])));
-      away.multiplyScalar(stepBack(this.home, aspect, this.seen()));
+      away.multiplyScalar(stepBack(this.home, aspect, this.bodies.seen()));
       const distance = away.length();
       this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
       this.camera.position.set(target[0], target[1], target[2]).add(away);
@@ -170,13 +142,8 @@ export class Viewer {
   enableOrbit(enabled: boolean): void { this.controls.enabled = enabled; }
 
   private clear(): void {
-    for (const batch of this.batches.values()) batch.dispose();
-    this.batches.clear();
-    this.drawn.clear();
-    this.waiting = [];
+    this.bodies.clear();
     this.showMark();
-    this.trails.clear();
-    this.heat.restart();
     this.cloud.clear();
     this.surfaces.clear();
     this.setLines(new Float32Array(), new Uint32Array());
@@ -191,72 +158,9 @@ export class Viewer {
     this.fresh = false;
   }
 
-  addBody(body: Body): void {
-    this.stale = true;
-    const [w, x, y, z] = body.rotation;
-    const drawn: Drawn = {
-      body, parts: [], asleep: false, heat: 0, color: new THREE.Color(body.color ?? this.colorOf(body)),
-      position: new THREE.Vector3(...(body.position as [number, number, number])).sub(this.origin), rotation: new THREE.Quaternion(x, y, z, w),
-    };
-    this.drawn.set(body.id, drawn);
-    for (const shape of body.shapes) this.addShape(drawn, shape);
-  }
-
-  private colorOf(body: Body): string {
-    if (body.type === 'fixed') return this.dimension === 2 ? '#7d8894' : '#b9b4a9';
-    if (body.type === 'kinematic') return '#7a8fa6';
-    return PALETTE[body.id % PALETTE.length];
-  }
-
-  private addShape(drawn: Drawn, shape: Shape): void {
-    const found: Drawable | undefined = this.dimension === 3 ? drawable3(shape, this.meshes) : drawable2(shape, this.pixel);
-    if (!found) {
-      if (shape.kind === 'mesh') this.waiting.push({id: drawn.body.id, shape});
-      return;
-    }
-    const opacity = shape.sensor ? Math.min(0.35, shape.opacity ?? 1) : shape.opacity ?? 1;
-    const key = `${found.key} ${opacity.toFixed(2)}${shape.sensor ? ' sensor' : ''}`;
-    let batch = this.batches.get(key);
-    if (!batch) this.batches.set(key, batch = new Batch(found.build, this.materialFor(opacity), this.root));
-    const [px, py, pz, qw, qx, qy, qz] = shape.local;
-    const local = new THREE.Matrix4().compose(new THREE.Vector3(px, py, pz), new THREE.Quaternion(qx, qy, qz, qw), found.scale);
-    const pose = new THREE.Matrix4().compose(drawn.position, drawn.rotation, new THREE.Vector3(1, 1, 1));
-    const color = shape.color ? new THREE.Color(shape.color) : drawn.color;
-    drawn.parts.push({batch, local, color, slot: batch.add(drawn.body.id, pose.multiply(local), color)});
-  }
-
-  private materialFor(opacity: number): THREE.Material {
-    const solid = this.dimension === 3 ? this.material : this.material2;
-    if (opacity > 0.99) return solid;
-    const glass = solid.clone();
-    glass.transparent = true;
-    glass.opacity = opacity;
-    glass.depthWrite = false;
-    if (this.dimension === 3) glass.side = THREE.DoubleSide;
-    return glass;
-  }
-
-  removeBodies(ids: number[]): void {
-    this.stale = true;
-    for (const id of ids) {
-      for (const {batch, slot} of this.drawn.get(id)?.parts ?? []) batch.remove(slot);
-      this.drawn.delete(id);
-    }
-    const gone = new Set(ids);
-    this.waiting = this.waiting.filter((w) => !gone.has(w.id));
-  }
-
-  addMesh(mesh: Mesh): void {
-    this.stale = true;
-    this.meshes.set(mesh.id, mesh);
-    const ready = this.waiting.filter((w) => w.shape.mesh === mesh.id);
-    this.waiting = this.waiting.filter((w) => w.shape.mesh !== mesh.id);
-    for (const {id, shape} of ready) {
-      const drawn = this.drawn.get(id);
-      if (drawn) this.addShape(drawn, shape);
-    }
-  }
-
+  addBody(body: Body): void { this.stale = true; this.bodies.add(body, this.origin); }
+  removeBodies(ids: number[]): void { this.stale = true; this.bodies.remove(ids); }
+  addMesh(mesh: Mesh): void { this.stale = true; this.bodies.addMesh(mesh); }
   setPoints(points: Points): void { this.stale = true; this.cloud.set(points, this.origin.clone().negate(), this.dimension === 2); }
   setSurface(surface: Surface): void { this.stale = true; this.surfaces.set(surface, this.origin.clone().negate(), this.dimension === 2); }
 
@@ -264,58 +168,16 @@ export class Viewer {
     this.stale = true;
     // Positions come relative to the frame's origin; what is drawn is relative to the view's own.
     const shift = new THREE.Vector3(frame.origin[0] - this.origin.x, frame.origin[1] - this.origin.y, frame.origin[2] - this.origin.z);
-    const pose = new THREE.Matrix4(), matrix = new THREE.Matrix4(), unit = new THREE.Vector3(1, 1, 1), tone = new THREE.Color();
-    const touched = new Set<Batch>(), since = this.heat.on ? this.heat.since(frame.time) : 0;
-    const view = frame.bodies;
-    for (let i = 0; i < frame.count; ++i) {
-      const at = i * BODY_BYTES;
-      const word = view.getUint32(at, true);
-      const drawn = this.drawn.get(word & 0x7fffffff);
-      if (!drawn) continue;
-      if (since > 0) this.before.copy(drawn.position);
-      drawn.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true)).add(shift);
-      if (since > 0) drawn.heat = this.before.distanceTo(drawn.position) / since;
-      drawn.rotation.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
-      pose.compose(drawn.position, drawn.rotation, unit);
-      const asleep = (word >>> 31) === 1;
-      for (const {batch, slot, local, color} of drawn.parts) {
-        batch.mesh.setMatrixAt(slot, matrix.multiplyMatrices(pose, local));
-        if (asleep !== drawn.asleep && !this.heat.on) batch.mesh.setColorAt(slot, asleep ? tone.copy(color).lerp(SLEEP_TONE, 0.35) : color);
-        touched.add(batch);
-      }
-      drawn.asleep = asleep;
-      if (this.trails.group.visible && drawn.body.type !== 'fixed') this.trails.add(drawn.body.id, this.chosen, drawn.position);
-      if (drawn.body.id === this.follow) this.moveWith(drawn.position);
-    }
-    if (since > 0) this.paintHeat(frame, touched);
-    for (const batch of touched) batch.touch();
+    this.bodies.apply(frame, shift);
+    const followed = this.bodies.get(this.follow);
+    if (followed) this.moveWith(followed.position);
     this.setLines(frame.lines, frame.lineColors);
     this.lines.position.copy(shift);
     if (this.dimension === 2) this.lines.position.z = 1;
   }
 
-  private before = new THREE.Vector3();
-  private moved = new Set<number>();
-  /** What is not in a frame stands still. */
-  private paintHeat(frame: Frame, touched: Set<Batch>): void {
-    this.moved.clear();
-    for (let i = 0; i < frame.count; ++i) this.moved.add(frame.bodies.getUint32(i * BODY_BYTES, true) & 0x7fffffff);
-    let fastest = 0;
-    for (const drawn of this.drawn.values()) {
-      if (!this.moved.has(drawn.body.id)) drawn.heat = 0;
-      fastest = Math.max(fastest, drawn.heat);
-    }
-    this.heat.scale(fastest);
-    for (const drawn of this.drawn.values())
-      if (drawn.body.type === 'dynamic') for (const {batch, slot} of drawn.parts) { batch.mesh.setColorAt(slot, this.heat.color(drawn.heat)); touched.add(batch); }
-  }
   /** Bodies in the colours of their speeds, or in their own again. */
-  showHeat(on: boolean): void {
-    this.stale = true;
-    this.heat.show(on);
-    for (const drawn of this.drawn.values())
-      for (const {batch, slot, color} of drawn.parts) { batch.mesh.setColorAt(slot, color); batch.touch(); }
-  }
+  showHeat(on: boolean): void { this.stale = true; this.bodies.showHeat(on); }
 
   private moveWith(position: THREE.Vector3): void {
     const shift = position.clone().sub(this.controls.target);
@@ -369,40 +231,33 @@ export class Viewer {
   bodyAt(x: number, y: number): number {
     const ray = this.ray(x, y);
     ray.origin.sub(this.origin);
-    const caster = new THREE.Raycaster(ray.origin, ray.direction);
-    // Sensors push nothing, and nothing holds them.
-    const solid = [...this.batches].filter(([key]) => !key.endsWith(' sensor')).map(([, batch]) => batch);
-    const hit = caster.intersectObjects(solid.map((batch) => batch.mesh), false)[0];
-    if (hit?.instanceId === undefined) return -1;
-    return solid.find((batch) => batch.mesh === hit.object)?.owners[hit.instanceId] ?? -1;
+    return this.bodies.hit(new THREE.Raycaster(ray.origin, ray.direction));
   }
 
-  nameOf(id: number): string { return this.drawn.get(id)?.body.name || `body ${id}`; }
-  get chosenBody(): number { return this.chosen; }
+  nameOf(id: number): string { return this.bodies.get(id)?.body.name || `body ${id}`; }
+  get chosenBody(): number { return this.bodies.chosen; }
   choose(id: number): void {
     this.stale = true;
-    if (id === this.chosen) return;
-    this.chosen = id;
-    this.trails.clear();
+    this.bodies.choose(id);
   }
   /** The body that moves before or after the chosen one. */
   neighbour(way: number): number {
-    const ids = this.bodyIds('dynamic');
+    const ids = this.bodyIds('dynamic'), chosen = this.bodies.chosen;
     if (ids.length === 0) return -1;
-    return ids[(ids.indexOf(this.chosen) + way + ids.length + (this.chosen < 0 && way < 0 ? 1 : 0)) % ids.length];
+    return ids[(ids.indexOf(chosen) + way + ids.length + (chosen < 0 && way < 0 ? 1 : 0)) % ids.length];
   }
   /** The camera goes with the chosen body; asked again, or with none chosen, it stays where it is. */
   followChosen(): void {
     this.stale = true;
-    this.follow = this.follow === this.chosen ? -1 : this.chosen;
-    const drawn = this.drawn.get(this.follow);
+    this.follow = this.follow === this.bodies.chosen ? -1 : this.bodies.chosen;
+    const drawn = this.bodies.get(this.follow);
     if (drawn) this.moveWith(drawn.position);
   }
   get followed(): number { return this.follow; }
 
-  showShapes(on: boolean): void { this.stale = true; this.root.visible = on; }
+  showShapes(on: boolean): void { this.stale = true; this.bodies.root.visible = on; }
   showShadows(on: boolean): void { this.stale = true; this.sun.castShadow = on; }
-  showTrails(on: boolean): void { this.stale = true; this.trails.group.visible = on; this.trails.clear(); }
+  showTrails(on: boolean): void { this.stale = true; this.bodies.showTrails(on); }
 
   /** A point with its normal, where a probe hit; without a point nothing. */
   showMark(point?: number[], normal?: number[]): void {
@@ -424,19 +279,19 @@ export class Viewer {
 
   /** Whether a body that moves lies under the pointer: then a drag pulls it, otherwise it turns the view. */
   dynamicBodyAt(x: number, y: number): boolean {
-    return this.drawn.get(this.bodyAt(x, y))?.body.type === 'dynamic';
+    return this.bodies.get(this.bodyAt(x, y))?.body.type === 'dynamic';
   }
 
   /** Where a body's origin appears on the page (CSS pixels), for tests and labels. */
   screenOf(id: number): {x: number; y: number} | undefined {
-    const drawn = this.drawn.get(id);
+    const drawn = this.bodies.get(id);
     if (!drawn) return undefined;
     const box = this.canvas.getBoundingClientRect();
     const p = drawn.position.clone().project(this.camera);
     return {x: box.left + (p.x + 1) / 2 * box.width, y: box.top + (1 - p.y) / 2 * box.height};
   }
-  bodyPosition(id: number): number[] | undefined { return this.drawn.get(id)?.position.toArray(); }
-  bodyIds(type: Body['type']): number[] { return [...this.drawn.values()].filter((d) => d.body.type === type).map((d) => d.body.id); }
+  bodyPosition(id: number): number[] | undefined { return this.bodies.get(id)?.position.toArray(); }
+  bodyIds(type: Body['type']): number[] { return this.bodies.ids(type); }
 
   get viewDirection(): THREE.Vector3 { return this.camera.getWorldDirection(new THREE.Vector3()); }
 

@@ -96,6 +96,29 @@ test('every layer of debug drawing, in space and in the plane', async () => {
   }
 });
 
+test('heat colours tell speeds, trails tell ways', async () => {
+  const page = await open('wrecking-ball');
+  await beyond(page, 30);
+  const colors = () => page.evaluate(() => {
+    const seen = new Set();
+    for (const batch of window.caromPage.viewer.bodies.batches.values()) for (let i = 0; i < batch.mesh.count; ++i) seen.add([...batch.mesh.instanceColor.array.slice(3 * i, 3 * i + 3)].map((x) => x.toFixed(3)).join());
+    return seen.size;
+  });
+  const own = await colors();
+  await page.check('#layers >> text=Heat colours');
+  await page.check('#layers >> text=Trails');
+  await page.waitForSelector('#legend', {state: 'visible'});
+  await runFor(page, 20);
+  assert.match(await page.textContent('#legend-top'), /^(1|2|5|10|20) m\/s$/);
+  assert.ok(own < 40 && await colors() > 3, 'fast and slow bodies differ');
+  assert.ok(await page.evaluate(() => [...window.caromPage.viewer.bodies.drawn.values()].some((d) => d.heat > 1)));
+  assert.ok(await page.evaluate(() => window.caromPage.viewer.bodies.trails.group.children.some((line) => line.geometry.drawRange.count > 5)));
+  await picture(page, 'heat and trails');
+  await page.uncheck('#layers >> text=Heat colours');
+  assert.ok(await colors() < 40, 'their own colours again');
+  await page.done();
+});
+
 test('three fingers hold three bodies', async () => {
   const page = await open('pyramids', {hasTouch: true});
   await page.click('#run');

@@ -1,7 +1,7 @@
 // The page against the real engine: `carom serve` and headless Chromium.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {at, barriers, beyond, bodies, demosOf, holding, movedFrom, paused, picture, place, runFor, screen, serve, stepOf, until, visit} from './harness.mjs';
+import {at, barriers, beyond, bodies, demosOf, drawn, holding, movedFrom, paused, picture, place, runFor, screen, serve, stepOf, until, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
@@ -23,7 +23,7 @@ test('the start page shows all demos by chapters with pictures, finds them by wo
   assert.ok(await page.$$eval('#demo-list img', (all) => all.some((img) => !img.complete)), 'not all of them at once');
   await picture(page, 'start');
   assert.deepEqual(await barriers(page), []);
-  for (const image of await page.locator('#demo-list section img:last-child').all()) await image.scrollIntoViewIfNeeded();
+  for (const image of await page.locator('#demo-list section li:last-child img').all()) await image.scrollIntoViewIfNeeded();
   await page.waitForFunction(() => [...document.querySelectorAll('#demo-list section li:last-child img')].every((img) => img.complete && img.naturalWidth === 400));
   for (const [name, width, height, colorScheme] of [['start phone', 360, 740, 'light'], ['start phone dark', 360, 740, 'dark'], ['start 4k', 3840, 2160, 'light'], ['start 4k dark', 3840, 2160, 'dark']]) {
     await page.setViewportSize({width, height});
@@ -141,6 +141,39 @@ test('a phone of 360 pixels shows the view, opens the menu and the panel', async
   await page.tap('#panel-toggle');
   await runFor(page, 10);
   await picture(page, 'phone_panel');
+  await page.done();
+});
+
+test('a narrow window shows the bodies that a wide one shows', async () => {
+  const page = await open('wrecking-ball', {viewport: {width: 1500, height: 800}});
+  await page.click('#panel-toggle');
+  const seen = () => page.evaluate(() => {
+    const {viewer} = window.caromPage, box = document.querySelector('#view').getBoundingClientRect();
+    return [...viewer.bodyIds('dynamic'), ...viewer.bodyIds('kinematic')].filter((id) => {
+      const at = viewer.screenOf(id);
+      return at.x > box.left && at.x < box.right && at.y > box.top && at.y < box.bottom;
+    });
+  });
+  for (const demo of ['trebuchet', 'trajectory-lab', 'orbit_painter', 'joints', 'pyramids', 'chain', 'collision-lab-2d', 'machines', 'bridge']) {
+    await page.evaluate((d) => { location.hash = `${d}?step=2`; }, demo);
+    await page.waitForFunction((d) => window.caromPage.opened.demo === d && window.caromPage.shown === 2, demo);
+    const wide = await seen();
+    assert.ok(wide.length > 0, demo);
+    await page.setViewportSize({width: 360, height: 740});
+    await drawn(page);
+    await drawn(page);
+    const lost = new Set(wide);
+    for (const id of await seen()) lost.delete(id);
+    assert.equal(lost.size, 0, `${demo}: ${lost.size} of ${wide.length} bodies are out of frame`);
+    await page.setViewportSize({width: 1500, height: 800});
+    await drawn(page);
+  }
+  await page.done();
+});
+
+test('who wants less motion gets a camera that stops at once', async () => {
+  const page = await open('chain', {reducedMotion: 'reduce'});
+  assert.equal(await page.evaluate(() => window.caromPage.viewer.controls.enableDamping), false);
   await page.done();
 });
 
