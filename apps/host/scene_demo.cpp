@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "apps/host/scene_matter.h"
 #include "carom/environment/environment.h"
 
 namespace carom::host {
@@ -79,6 +80,10 @@ class SceneDemo final : public DemoOf<D> {
     }
     sample(stage);
     start_water(stage);
+    if (world_.matter) {
+      picture_.begin(stage, *world_.matter);
+      picture_.draw<D>(stage, *world_.matter);
+    }
   }
 
   core::Status step(Stage<D>& stage) override {
@@ -90,6 +95,7 @@ class SceneDemo final : public DemoOf<D> {
   void after_step(Stage<D>& stage) override {
     sample(stage);
     show_water(stage);
+    if (world_.matter) picture_.draw<D>(stage, *world_.matter);
     if constexpr (D::dimension == 3)
       if (const auto place = world_.flight_place()) fly(stage, *place);
     for (Followed& f : trails_) {
@@ -203,10 +209,7 @@ class SceneDemo final : public DemoOf<D> {
 
   /// The environment of the scene as it is now; null where it has none.
   std::shared_ptr<const environment::Environment> around(Stage<D>& stage) const {
-    if (world_.environment.is_null()) return nullptr;
-    const auto definition = stage.world().effector_definition(world_.environment);
-    const auto* found = definition.ok() ? std::get_if<rigid::Surroundings<D>>(&*definition) : nullptr;
-    return found != nullptr ? found->environment : nullptr;
+    return scene::environment_of(stage.world(), world_.environment);
   }
   void start_water(Stage<D>& stage) {
     const auto here = around(stage);
@@ -271,6 +274,7 @@ class SceneDemo final : public DemoOf<D> {
   double extent_ = 1;
   std::vector<math::Vec3d> rungs_;
   static constexpr std::uint32_t water_cells = 80;
+  MatterPicture picture_;
   int water_ = -1;  ///< its surface; negative: no water
 };
 

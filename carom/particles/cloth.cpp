@@ -217,7 +217,12 @@ double Cloth::elastic_energy() const {
     sum += 0.5 * double(t.area) * (e1 * double(t.stress[0]) + e2 * double(t.stress[1]) + e3 * double(t.stress[2]));
   }
   for (const detail::ClothPatch& patch : now.patches)
-    for (const Vec3f c : patch.curvature) sum += 0.5 * double(length_squared(c));
+    for (const auto& weight : patch.weight) {
+      Vec3f curvature{};
+      for (int p = 1; p < 6; ++p)
+        curvature += weight[p] * Vec3f(now.position[patch.corner[p]] - now.position[patch.corner[0]]);
+      sum += 0.5 * double(length_squared(curvature));
+    }
   return sum;
 }
 Vec3d Cloth::pin_force(int vertex) const {

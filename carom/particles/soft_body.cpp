@@ -71,7 +71,7 @@ Status SoftState::set_mesh() {
   }
   for (std::size_t i = 0; i < n; ++i)
     if (mass[i] == 0) return core::Error{core::text("point ", i, " of SoftBodyDef is in no tetrahedron")};
-  matrix.build(int(n), {{corners, 4}});
+  matrix.build(int(n), corners, 4, {});
   for (std::size_t e = 0; e < elements.size(); ++e)
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b)

@@ -6,6 +6,7 @@
 #include "carom/scene/detail/document.h"
 #include "carom/scene/detail/expression.h"
 #include "carom/scene/detail/flight.h"
+#include "carom/scene/matter.h"
 
 namespace carom::scene {
 namespace {
@@ -219,6 +220,8 @@ SceneWorld::SceneWorld(SceneWorld&&) noexcept = default;
 SceneWorld& SceneWorld::operator=(SceneWorld&&) noexcept = default;
 
 Status SceneWorld::step() {
+  if (matter && world2) return matter->step(*world2, dt, environment_of(*world2, environment).get());
+  if (matter && world3) return matter->step(*world3, dt, environment_of(*world3, environment).get());
   if (world2) return world2->step(float(dt));
   if (world3) return world3->step(float(dt));
   if (!flight) return core::Error{"the scene has no world"};
@@ -237,9 +240,14 @@ std::uint64_t SceneWorld::step_count() const {
   return flight ? flight->at : 0;
 }
 std::uint64_t SceneWorld::state_hash() const {
-  if (world2) return world2->state_hash();
-  if (world3) return world3->state_hash();
   core::StateHash hash;
+  if (world2 || world3) {
+    const std::uint64_t bodies_hash = world2 ? world2->state_hash() : world3->state_hash();
+    if (!matter) return bodies_hash;
+    hash.add(bodies_hash);
+    matter->add_to(hash);
+    return hash.digest();
+  }
   if (!flight) return 0;
   const FreeBodyState& s = flight->now().state;
   for (int i = 0; i < 3; ++i) hash.add(s.position[i]).add(s.velocity[i]).add(s.angular_velocity[i]);
@@ -328,6 +336,7 @@ Result<Probe> SceneWorld::probe(std::string_view text) const {
           turns = world3->joint_state(joint->id).ok() && world3->joint_state(joint->id)->type == JointType::hinge;
         unit = source.field == coordinate ? (turns ? "rad" : "m") : (turns ? "rad/s" : "m/s");
       }
+    } else if (matter && matter->find(name, dimension, source, unit)) {
     } else if (const SceneBody* body = longest_owner(bodies, name, rest);
                body != nullptr && match_quantity(rest, body_names, dimension, source.field, source.component)) {
       source.kind = Probe::Source::Kind::body;
@@ -345,6 +354,8 @@ Result<Probe> SceneWorld::probe(std::string_view text) const {
       const std::string owner = name.substr(0, name.find('.'));
       for (const QuantityName& q : world_names) known.push_back(q.name);
       for (const SceneBody& b : bodies) known.push_back(b.name);
+      const std::vector<std::string> things = matter ? matter->names() : std::vector<std::string>();
+      for (const std::string& thing : things) known.push_back(thing);
       return core::Error{message + ", expected one of the world (time, energy.kinetic, …) or body.quantity" +
                          core::did_you_mean(owner, known)};
     }
@@ -373,6 +384,9 @@ double SceneWorld::read(const Probe& probe) const {
         break;
       case Probe::Source::Kind::joint:
         values[i] = world2 ? read_joint_state(*world2, s) : world3 ? read_joint_state(*world3, s) : missing;
+        break;
+      case Probe::Source::Kind::matter:
+        values[i] = matter ? matter->read(s) : missing;
         break;
       case Probe::Source::Kind::flight:
         values[i] = flight ? detail::flight_fields()[std::size_t(s.field)].read(flight->now()) : missing;

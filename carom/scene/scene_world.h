@@ -1,4 +1,4 @@
-// A running scene: a world of the plane or of space, or a flight, with the names of the file.
+// A running scene: a world of the plane or of space with all that is in it, or a flight, with the names of the file.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,7 @@ using core::Status;
 
 enum class Kind : std::uint8_t { rigid, flight };
 
+class Matter;
 namespace detail {
 struct Expression;
 class Flight;
@@ -51,10 +52,11 @@ class CAROM_API Probe {
 
   /// What one name in the expression stands for.
   struct Source {
-    enum class Kind : std::uint8_t { world, body, joint, flight } kind = Kind::world;
+    enum class Kind : std::uint8_t { world, body, joint, flight, matter } kind = Kind::world;
     int field = 0, component = 0;
     rigid::BodyId body{};
     rigid::JointId joint{};
+    int list = 0, item = 0;  ///< of matter
   };
   std::vector<Source> sources;
   std::shared_ptr<const detail::Expression> expression;
@@ -74,7 +76,8 @@ class CAROM_API SceneWorld {
   std::unique_ptr<rigid::World2> world2;  ///< one of these three is there
   std::unique_ptr<rigid::World3> world3;
   std::unique_ptr<detail::Flight> flight;
-  std::vector<SceneBody> bodies;  ///< in creation order
+  std::unique_ptr<Matter> matter;  ///< ropes, cloth, liquids and so on (matter.h); null where there are none
+  std::vector<SceneBody> bodies;   ///< in creation order
   std::vector<SceneJoint> joints;
   std::vector<SceneEffector> effectors;
   rigid::EffectorId environment{};  ///< of the key "environment"; null where the scene has none
@@ -103,5 +106,14 @@ struct SceneMessages {
   std::vector<std::string> meshes;
 };
 CAROM_API SceneMessages scene_messages(const SceneWorld& world, const double* ground = nullptr);
+
+/// Of the effector that stands for the key "environment"; null where the scene has none.
+template <class D>
+std::shared_ptr<const environment::Environment> environment_of(const rigid::World<D>& world, rigid::EffectorId id) {
+  if (id.is_null()) return nullptr;
+  const auto definition = world.effector_definition(id);
+  const auto* found = definition.ok() ? std::get_if<rigid::Surroundings<D>>(&*definition) : nullptr;
+  return found != nullptr ? found->environment : nullptr;
+}
 
 }  // namespace carom::scene

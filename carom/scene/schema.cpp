@@ -1,4 +1,7 @@
 // The JSON Schema (draft 2020-12) of scene files, made from the tables that the loader reads with.
+#include <algorithm>
+#include <iterator>
+
 #include "carom/scene/detail/document.h"
 #include "carom/scene/detail/fields.h"
 #include "carom/scene/scene.h"
@@ -25,7 +28,10 @@ std::string measure_name(Measure measure) {
 }
 
 std::string item_schema(const Field& field) {
-  if (field.of == tables().body || field.of == tables().joint || field.of == tables().effector)
+  const ObjectKind* const grouped[] = {tables().body,   tables().joint,  tables().effector,
+                                       tables().rope,   tables().cloth,  tables().soft_body,
+                                       tables().liquid, tables().grains, tables().particles};
+  if (field.of != nullptr && std::find(std::begin(grouped), std::end(grouped), field.of) != std::end(grouped))
     return "{\"anyOf\": [" + reference_to(field.of->name) + ", " + reference_to("group") + "]}";
   if (field.of == tables().shape || field.of == tables().surface)
     return "{\"anyOf\": [{\"type\": \"string\"}, " + reference_to(field.of->name) + "]}";

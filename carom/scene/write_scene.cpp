@@ -437,6 +437,10 @@ Result<std::string> write_scene(const World3& world, const WriteOptions& options
   return SceneWriter<Dim3>(world, options, names).write();
 }
 Result<std::string> write_scene(const SceneWorld& world, const WriteOptions& options) {
+  if (world.matter != nullptr)
+    return core::Error{
+        "only bodies, joints and effectors can be written: this scene has ropes, cloth, liquids, grains "
+        "or particles too"};
   if (world.world2) return write_scene(*world.world2, options, world.bodies);
   if (world.world3) return write_scene(*world.world3, options, world.bodies);
   return core::Error{"only worlds of bodies can be written"};

@@ -5,7 +5,12 @@
 #include <cstdlib>
 #include <new>
 
+#include "carom/particles/cloth.h"
 #include "carom/particles/coupling.h"
+#include "carom/particles/fluid.h"
+#include "carom/particles/granular.h"
+#include "carom/particles/rope.h"
+#include "carom/particles/soft_body.h"
 
 namespace particles_allocation_test {
 std::atomic<long> allocations{0};
@@ -62,6 +67,71 @@ TEST(ParticleAllocation, NoneInAWarmStep) {
     EXPECT_EQ(allocations - before, 0) << (grains ? "grains" : "particles");
     EXPECT_GT(s.size(), 500);
   }
+}
+
+/// A floor and a box that falls among whatever is there; counts what `step` allocates once it is warm.
+template <class D, class Step>
+long allocations_among_bodies(int warm, const Step& step) {
+  rigid::World<D> world;
+  rigid::BodyDef<D> def;
+  def.type = rigid::BodyType::fixed;
+  const auto floor = world.create_body(def).value();
+  def.type = rigid::BodyType::dynamic;
+  def.position.x = 0.5;
+  def.position.y = 0.9;
+  if constexpr (D::dimension == 3) {
+    def.position.z = 0.5;
+    world.add_shape(floor, geometry::Plane{}).value();
+    world.add_shape(world.create_body(def).value(), geometry::Box{{.15f, .15f, .15f}}, {.density = 300}).value();
+  } else {
+    world.add_shape(floor, geometry::make_box2({5, .01f})).value();
+    world.add_shape(world.create_body(def).value(), geometry::make_box2({.15f, .15f}), {.density = 300}).value();
+  }
+  const auto run = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      EXPECT_TRUE(step(world).ok());
+      EXPECT_TRUE(world.step(1.0f / 60).ok());
+    }
+  };
+  run(warm);
+  const long before = allocations;
+  run(60);
+  return allocations - before;
+}
+
+template <class D>
+void liquids_and_grains_allocate_nothing() {
+  typename D::Position half = FluidDef<D>::unit_position();
+  half.y = 0.5;
+  auto fluid = Fluid<D>::create({.spacing = .05f}).value();
+  fluid.add_box({}, half).value();
+  EXPECT_EQ(allocations_among_bodies<D>(30, [&](rigid::World<D>& w) { return fluid.step(w, 1.0f / 60); }), 0);
+  auto grains = Granular<D>::create({.radius = .04f}).value();
+  grains.add_box({}, half).value();
+  EXPECT_EQ(allocations_among_bodies<D>(120, [&](rigid::World<D>& w) { return grains.step(w, 1.0f / 60); }), 0);
+}
+TEST(ParticleAllocation, NoneInAWarmStepOfLiquidsAndGrains) {
+  liquids_and_grains_allocate_nothing<rigid::Dim2>();
+  liquids_and_grains_allocate_nothing<rigid::Dim3>();
+}
+
+TEST(ParticleAllocation, NoneInAWarmStepOfRopes) {
+  RopeSet ropes;
+  const math::Vec3d points[] = {{-1, 1.2, .5}, {.5, 1.0, .5}, {2, 1.2, .5}};
+  const int rope = ropes.add({.points = points, .segments = 40}).value();
+  rigid::World3 none;
+  ropes.attach(rope, {.node = 0, .point = points[0]}, none).value();
+  ropes.attach(rope, {.node = -1, .point = points[2]}, none).value();
+  EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(200, [&](rigid::World3& w) { return ropes.step(w, 1.0 / 60); }), 0);
+}
+
+TEST(ParticleAllocation, NoneInAWarmStepOfClothAndSoftBodies) {
+  const ClothSheet sheet = make_cloth_sheet({0, 1.3, 0}, {1, 0, 0}, {0, 0, 1}, 17, 17);
+  auto cloth = Cloth::make({.points = sheet.points, .triangles = sheet.triangles}).value();
+  EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(240, [&](rigid::World3& w) { return cloth.step(w, 1.0 / 60); }), 0);
+  const SoftMesh mesh = make_soft_box({.3, .02, .3}, {.4, .4, .4}, 4, 4, 4);
+  auto soft = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
+  EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(240, [&](rigid::World3& w) { return soft.step(w, 1.0 / 60); }), 0);
 }
 
 }  // namespace particles_allocation_test

@@ -91,6 +91,10 @@ TEST_P(EverySceneFile, ComesBackFromAFileWithTheSameStateHash) {
     EXPECT_FALSE(write_scene(world).ok()) << "a flight is not a world of bodies";
     return;
   }
+  if (world.matter) {
+    EXPECT_FALSE(write_scene(world).ok()) << "ropes, cloth and so on are not written";
+    return;
+  }
   for (int i = 0; i < 25; ++i) ASSERT_TRUE(world.step().ok());
   const Result<std::string> text = write_scene(world);
   ASSERT_TRUE(text.ok()) << text.error().message;
@@ -128,7 +132,8 @@ class SceneExpectations : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneExpectations,
                          testing::Values("nesc_01", "nesc_02", "nesc_04", "pendulum", "collision_lab_2d",
                                          "collision_lab_3d", "tumbling_brick", "hovercraft_2d", "cannon",
-                                         "floating_boxes", "wall_and_wrecking_ball"));
+                                         "floating_boxes", "wall_and_wrecking_ball", "ropes", "flag", "soft_bodies",
+                                         "dam_break_2d", "sand_2d", "weather"));
 TEST_P(SceneExpectations, AreMet) { expect_expectations(load(std::string(GetParam()) + ".json")); }
 
 TEST(SceneExpectation, FollowsTheParameters) {

@@ -159,19 +159,22 @@ void ClothState::find_patches() {
 
 void ClothState::connect() {
   const int n = int(position.size());
-  std::vector<std::uint32_t> stencils;
+  // Bending is quadratic in the positions with constant weights: a number for every pair of a patch's corners.
+  std::vector<SoftMatrix::Link> links;
+  links.reserve(36 * patches.size());
   for (const ClothPatch& patch : patches)
-    for (const std::uint32_t c : patch.corner) stencils.push_back(c);
-  matrix.build(n, {{corners, 3}, {stencils, 6}});
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b) {
+        double value = 0;
+        for (const auto& weight : patch.weight) value += double(weight[a]) * double(weight[b]);
+        if (value != 0) links.push_back({patch.corner[a], patch.corner[b], float(value)});
+      }
+  matrix.build(n, corners, 3, links);
   list_incidences(n, corners, triangle_first, triangle_list);
-  list_incidences(n, stencils, patch_first, patch_list);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         triangles[t].slots[3 * a + b] = matrix.slot(corners[3 * t + std::size_t(a)], corners[3 * t + std::size_t(b)]);
-  for (ClothPatch& patch : patches)
-    for (int a = 0; a < 6; ++a)
-      for (int b = 0; b < 6; ++b) patch.slots[6 * a + b] = matrix.slot(patch.corner[a], patch.corner[b]);
   mass.assign(std::size_t(n), 0.0f);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int a = 0; a < 3; ++a)

@@ -24,8 +24,6 @@ struct ClothTriangle {
 struct ClothPatch {
   std::uint32_t corner[6] = {};  ///< a corner that is missing is the first again, with no weight
   float weight[3][6] = {};       ///< of the positions: curvatures uu, vv, uv, times the root of area and stiffness
-  int slots[36] = {};
-  Vec3f curvature[3] = {};
 };
 
 struct ClothPair {
@@ -56,7 +54,6 @@ struct ClothState {
   // What follows from the mesh.
   SoftMatrix matrix;
   std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
-  std::vector<int> patch_first, patch_list;        ///< by vertex: 6·patch + corner
   float smallest_edge = 0, mean_edge = 0;
 
   // Of a step.

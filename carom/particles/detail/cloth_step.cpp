@@ -62,17 +62,6 @@ void ClothState::stretch() {
       triangle.brake = (2 * press) * math::outer(n, n) + rub * (Mat3f::identity() + (-1.0f) * math::outer(n, n));
     }
   });
-  tasks.parallel_for(int(patches.size()), cloth_chunk, [&](int from, int to, int) {
-    for (int k = from; k < to; ++k) {
-      ClothPatch& patch = patches[std::size_t(k)];
-      const Vec3d origin = position[patch.corner[0]];
-      for (Vec3f& c : patch.curvature) c = {};
-      for (int p = 1; p < 6; ++p) {
-        const Vec3f d(position[patch.corner[p]] - origin);
-        for (int c = 0; c < 3; ++c) patch.curvature[c] += patch.weight[c][p] * d;
-      }
-    }
-  });
 }
 
 void ClothState::assemble(float h, Vec3f gravity) {
@@ -82,11 +71,15 @@ void ClothState::assemble(float h, Vec3f gravity) {
   const float c11 = warp * inverse_share, c22 = weft * inverse_share, c12 = nu * weft * inverse_share;
   const float shear = float(fabric.shear_stiffness);
   const float weight = h * h + h * float(fabric.damping);
+  matrix.link_scale = weight;
   core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
   tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
-      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = SoftBlock{};
+      for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) {
+        matrix.blocks[std::size_t(k)] = SoftBlock{};
+        matrix.blocks[std::size_t(k)].add_diagonal(weight * matrix.near[std::size_t(k)]);
+      }
       Vec3f force{};
       Mat3f brake = Mat3f::zero();
       for (int k = triangle_first[i]; k < triangle_first[i + 1]; ++k) {
@@ -110,18 +103,7 @@ void ClothState::assemble(float h, Vec3f gravity) {
           block.add_diagonal(turn);
         }
       }
-      for (int k = patch_first[i]; k < patch_first[i + 1]; ++k) {
-        const int place = patch_list[std::size_t(k)], a = place % 6;
-        const ClothPatch& patch = patches[std::size_t(place / 6)];
-        const float w0 = patch.weight[0][a], w1 = patch.weight[1][a], w2 = patch.weight[2][a];
-        if (w0 == 0 && w1 == 0 && w2 == 0) continue;
-        force -= w0 * patch.curvature[0] + w1 * patch.curvature[1] + w2 * patch.curvature[2];
-        for (int b = 0; b < 6; ++b) {
-          const float entry = weight * (w0 * patch.weight[0][b] + w1 * patch.weight[1][b] + w2 * patch.weight[2][b]);
-          SoftBlock& block = matrix.blocks[std::size_t(patch.slots[6 * a + b])];
-          block.add_diagonal(entry);
-        }
-      }
+      force -= matrix.pull_of_links(row, position.data());
       solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]}) + h * brake;
       solver.right[i] = h * force + (h * mass[i]) * gravity;
     }
@@ -134,7 +116,7 @@ void ClothState::assemble(float h, Vec3f gravity) {
   matrix.multiply(solver.change.data(), solver.reaction.data(), tasks);
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     solver.right[i] -= solver.reaction[i];
-    solver.change[i] = {};
+    solver.change[i] = solver.guess[i];
     solver.holds[i] = {};
   }
 }

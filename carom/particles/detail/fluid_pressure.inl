@@ -1,8 +1,8 @@
-// The pressure: one symmetric system for the liquid's cells and the bodies in it, solved by conjugate gradients with a
-// modified incomplete Cholesky factor (Bridson, "Fluid Simulation for Computer Graphics", 2nd ed. 2015, ch. 5).
+// The pressure: one symmetric system for the liquid's cells and the bodies in it (solved in fluid_solver.inl), and what
+// it does to the velocities.
 #pragma once
 
-#include "carom/particles/detail/fluid_solids.inl"
+#include "carom/particles/detail/fluid_solver.inl"
 
 namespace carom::particles::detail {
 
@@ -60,7 +60,7 @@ void FluidState<D>::build_rows() {
   FluidSystem<N>& s = system;
   for (int i = 0; i < n; ++i) row_of[liquid[i]] = i;
   s.rows.resize(n);
-  for (auto* v : {&s.right, &s.x, &s.residual, &s.search, &s.product, &s.z, &s.factor}) {
+  for (auto* v : s.vectors()) {
     v->resize(n + 1);
     (*v)[n] = 0;
   }
@@ -134,143 +134,6 @@ void FluidState<D>::build_rows() {
     }
     body.cell_count = int(s.touched.size()) - body.first_cell;
   }
-}
-
-template <class D>
-void FluidState<D>::push_of(const FluidBody<D>& body, const std::vector<float>& x, Vector& force,
-                            Angular& torque) const {
-  double f[3] = {0, 0, 0}, t[3] = {0, 0, 0};
-  for (int k = 0; k < body.cell_count; ++k) {
-    const FluidTouch<N>& touch = system.touched[body.first_cell + k];
-    const double p = x[touch.cell];
-    for (int a = 0; a < N; ++a) f[a] += p * touch.area[a];
-    for (int a = 0; a < (N == 2 ? 1 : 3); ++a) t[a] += p * touch.moment[a];
-  }
-  for (int a = 0; a < N; ++a) force[a] = cell_mass * float(f[a]);
-  if constexpr (N == 2)
-    torque = cell_mass * float(t[0]);
-  else
-    torque = cell_mass * Vec3f{float(t[0]), float(t[1]), float(t[2])};
-}
-
-template <class D>
-void FluidState<D>::apply_rows(const std::vector<float>& x, std::vector<float>& y, bool with_bodies) {
-  const FluidSystem<N>& s = system;
-  const int n = int(s.rows.size());
-  parallel(n, 4096, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const FluidRow<N>& row = s.rows[i];
-      float sum = row.diagonal * x[i];
-      for (int a = 0; a < N; ++a) sum += row.minus[a] * x[row.minus_cell[a]] + row.plus[a] * x[row.plus_cell[a]];
-      y[i] = sum;
-    }
-  });
-  if (!with_bodies) return;
-  for (const FluidBody<D>& body : bodies) {
-    if (!body.moves || body.cell_count == 0) continue;
-    Vector force{};
-    Angular torque{};
-    push_of(body, x, force, torque);
-    Vector way{};
-    for (int a = 0; a < N; ++a) way[a] = body.inverse_mass[a] * force[a];
-    const Angular turn = body.inverse_inertia * torque;
-    for (int k = 0; k < body.cell_count; ++k) {
-      const FluidTouch<N>& touch = s.touched[body.first_cell + k];
-      float sum = 0;
-      for (int a = 0; a < N; ++a) sum += touch.area[a] * way[a];
-      if constexpr (N == 2)
-        sum += touch.moment[0] * turn;
-      else
-        for (int a = 0; a < 3; ++a) sum += touch.moment[a] * turn[a];
-      y[touch.cell] += sum;
-    }
-  }
-}
-
-template <class D>
-void FluidState<D>::factorise() {
-  constexpr float tuning = 0.97f, safety = 0.25f;
-  FluidSystem<N>& s = system;
-  for (int i = 0; i < int(s.rows.size()); ++i) {
-    const FluidRow<N>& row = s.rows[i];
-    float e = row.diagonal;
-    for (int a = 0; a < N; ++a) {
-      const int j = row.minus_cell[a];
-      const float q = s.factor[j];
-      if (row.minus[a] == 0) continue;
-      const float t = row.minus[a] * q;
-      e -= t * t;
-      float others = 0;
-      for (int b = 0; b < N; ++b)
-        if (b != a) others += s.rows[j].plus[b];
-      e -= tuning * row.minus[a] * others * q * q;
-    }
-    if (e < safety * row.diagonal) e = row.diagonal;
-    s.factor[i] = e > 0 ? 1 / math::sqrt(e) : 0.0f;
-  }
-}
-
-/// z = (L Lᵀ)⁻¹ r.
-template <class D>
-void FluidState<D>::precondition() {
-  FluidSystem<N>& s = system;
-  const int n = int(s.rows.size());
-  for (int i = 0; i < n; ++i) {
-    const FluidRow<N>& row = s.rows[i];
-    float t = s.residual[i];
-    for (int a = 0; a < N; ++a) t -= row.minus[a] * (s.factor[row.minus_cell[a]] * s.z[row.minus_cell[a]]);
-    s.z[i] = t * s.factor[i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    const FluidRow<N>& row = s.rows[i];
-    float t = s.z[i];
-    for (int a = 0; a < N; ++a) t -= row.plus[a] * s.factor[i] * s.z[row.plus_cell[a]];
-    s.z[i] = t * s.factor[i];
-  }
-}
-
-/// Conjugate gradients from `system.x` until no cell's divergence is above `tolerance` (m/s, or cells).
-template <class D>
-bool FluidState<D>::solve(float tolerance, int limit, bool with_bodies, int& iterations, float& left) {
-  FluidSystem<N>& s = system;
-  const int n = int(s.rows.size());
-  apply_rows(s.x, s.product, with_bodies);
-  float worst = 0;
-  for (int i = 0; i < n; ++i) {
-    s.residual[i] = s.right[i] - s.product[i];
-    worst = math::max(worst, math::abs(s.residual[i]));
-  }
-  left = worst;
-  if (worst <= tolerance) return true;
-  precondition();
-  double rz = 0;
-  for (int i = 0; i < n; ++i) {
-    s.search[i] = s.z[i];
-    rz += double(s.residual[i]) * s.z[i];
-  }
-  for (int iteration = 0; iteration < limit; ++iteration) {
-    ++iterations;
-    apply_rows(s.search, s.product, with_bodies);
-    double curvature = 0;
-    for (int i = 0; i < n; ++i) curvature += double(s.search[i]) * s.product[i];
-    if (!(curvature > 0)) return false;
-    const float way = float(rz / curvature);
-    worst = 0;
-    for (int i = 0; i < n; ++i) {
-      s.x[i] += way * s.search[i];
-      s.residual[i] -= way * s.product[i];
-      worst = math::max(worst, math::abs(s.residual[i]));
-    }
-    left = worst;
-    if (worst <= tolerance) return true;
-    precondition();
-    double next = 0;
-    for (int i = 0; i < n; ++i) next += double(s.residual[i]) * s.z[i];
-    const float again = float(next / rz);
-    rz = next;
-    for (int i = 0; i < n; ++i) s.search[i] = s.z[i] + again * s.search[i];
-  }
-  return false;
 }
 
 /// Where a part of the liquid has no surface, only the differences of pressure are known, and what flows in must be

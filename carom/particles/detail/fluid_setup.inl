@@ -54,9 +54,9 @@ void FluidState<D>::reserve() {
   liquid.reserve(rows);
   queue.reserve(inner);
   system.rows.reserve(rows);
-  for (auto* v :
-       {&system.right, &system.x, &system.residual, &system.search, &system.product, &system.z, &system.factor})
-    v->reserve(rows + 1);
+  system.below.reserve(rows);
+  system.above.reserve(rows);
+  for (auto* v : system.vectors()) v->reserve(rows + 1);
   budgets.reserve(n);
   painted.reserve(64);
   solids.reserve(64);

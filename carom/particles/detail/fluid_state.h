@@ -3,6 +3,7 @@
 // in m/s, so that a face between two cells changes its velocity by their difference.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <vector>
 
@@ -90,11 +91,25 @@ struct FluidTouch {
   float moment[N == 2 ? 1 : 3];  ///< m
 };
 
+/// One side of a row after scaling by the preconditioner. The neighbour along x is the row next to it.
+template <int N>
+struct FluidLinks {
+  float along;          ///< of the neighbour along x
+  float across[N - 1];  ///< of the others
+  int cell[N - 1];      ///< compact index; the number of rows where there is none
+};
+
 template <int N>
 struct FluidSystem {
   std::vector<FluidRow<N>> rows;
-  std::vector<float> right, x, residual, search, product, z, factor;
+  std::vector<FluidLinks<N>> below, above;  ///< factors of the preconditioner
+  std::vector<float> right, x, residual, search, product, z;
+  std::vector<float> scale, inverse_scale;  ///< of a row and its unknown
+  std::vector<float> middle;                ///< the scaled diagonal less 2
   std::vector<FluidTouch<N>> touched;
+  std::array<std::vector<float>*, 9> vectors() {
+    return {&right, &x, &residual, &search, &product, &z, &scale, &inverse_scale, &middle};
+  }
 };
 
 enum FluidCell : std::uint8_t { fluid_air = 0, fluid_liquid = 1 };
@@ -183,13 +198,15 @@ struct FluidState {
   int face_owner(int component, int face) const;
   Vector solid_velocity(int owner, int component, int face) const;
   Vector face_place(int component, int face) const;
+  // fluid_solver.inl
+  bool solve(float tolerance, int limit, bool with_bodies, int& iterations, float& left);
+  void factorise();
+  void apply_rows(const std::vector<float>& x, std::vector<float>& y, bool with_bodies);
+  void add_bodies(const std::vector<float>& x, std::vector<float>& y, bool scaled);
+  float true_residual() const;
   // fluid_pressure.inl
   void accelerate(float dt);
   void build_rows();
-  bool solve(float tolerance, int limit, bool with_bodies, int& iterations, float& left);
-  void factorise();
-  void precondition();
-  void apply_rows(const std::vector<float>& x, std::vector<float>& y, bool with_bodies);
   void project(float dt);
   void spread_particles(float dt);
   void continue_velocities(std::vector<float> (&field)[N], int layer);
@@ -197,7 +214,8 @@ struct FluidState {
   void hold_at_walls();
   void balance_sealed();
   void subtract_gradient(std::vector<float> (&field)[N], bool from_field);
-  void push_of(const FluidBody<D>& body, const std::vector<float>& x, Vector& force, Angular& torque) const;
+  void push_of(const FluidBody<D>& body, const std::vector<float>& x, bool scaled, Vector& force,
+               Angular& torque) const;
   void give(FluidBody<D>& body, Vector force, Angular torque);
   // fluid_particles.inl
   void to_particles();

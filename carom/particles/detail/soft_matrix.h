@@ -1,11 +1,10 @@
 // A symmetric matrix of 3×3 blocks by the neighbours of a mesh, and conjugate gradients on it: what implicit steps of
-// cloth and of soft bodies solve. The same bits for any number of threads: rows are independent, and sums of products
-// are taken by chunks of a fixed size in their order.
+// cloth and of soft bodies solve. The same bits for any number of threads: rows of products are independent, the solver
+// itself goes through the rows in their order.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -32,6 +31,12 @@ struct SoftBlock {
     y[1] += d;
     z[2] += d;
   }
+  static SoftBlock of(const Mat3f& m) {
+    SoftBlock out;
+    out.add(m.column(0), m.column(1), m.column(2));
+    return out;
+  }
+  Lanes times(Lanes v) const { return x * v[0] + y * v[1] + z * v[2]; }
   Mat3f matrix() const { return {{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}; }
 };
 
@@ -49,31 +54,61 @@ class SoftMatrix {
     std::span<const std::uint32_t> vertices;
     int size = 3;
   };
-  /// Blocks for every pair of vertices that share an element.
-  void build(int vertices, std::initializer_list<Elements> kinds);
+  /// A number times the unit matrix that does not change: bending. Both (i, j) and (j, i) are named.
+  struct Link {
+    std::uint32_t row = 0, column = 0;
+    float value = 0;
+  };
+  /// Blocks for every pair of vertices that share an element. Links between others are kept as numbers; `near` has
+  /// those of the blocks, by slot.
+  void build(int vertices, std::span<const std::uint32_t> elements, int size, std::span<const Link> links);
   int rows() const { return int(first_.size()) - 1; }
   /// Place of block (i, j); the pair must share an element.
   int slot(std::uint32_t i, std::uint32_t j) const;
   int first(int row) const { return first_[std::size_t(row)]; }
+  int diagonal(int row) const { return diagonal_[std::size_t(row)]; }
   std::vector<SoftBlock> blocks;
+  std::vector<float> near;  ///< the links' numbers, by slot; whoever fills the blocks adds them
+  float link_scale = 1;     ///< times all links that are not in blocks
 
   /// y = blocks·x
   void multiply(const Vec3f* x, Vec3f* y, core::TaskScheduler& scheduler) const;
-  std::size_t column(int slot) const { return column_[std::size_t(slot)]; }
+  /// Σ (link) (x_j − x_i) over all links of a row, near and far.
+  Vec3f pull_of_links(int row, const math::Vec3d* x) const;
 
  private:
-  std::vector<int> first_;
+  friend class SoftSolver;
+  /// Blocks and links of a row from one side of its diagonal, times x.
+  SoftBlock::Lanes side(int from, int to, int far_from, int far_to, const Vec3f* x) const {
+    SoftBlock::Lanes sum{}, far{};
+    for (int k = from; k < to; ++k) {
+      const SoftBlock& block = blocks[std::size_t(k)];
+      const Vec3f v = x[column_[std::size_t(k)]];
+      sum += block.x * v.x + block.y * v.y + block.z * v.z;
+    }
+    for (int k = far_from; k < far_to; ++k) {
+      const Vec3f v = x[far_column_[std::size_t(k)]];
+      far += far_value_[std::size_t(k)] * SoftBlock::Lanes{v.x, v.y, v.z, 0};
+    }
+    return sum + link_scale * far;
+  }
+  std::vector<int> first_, diagonal_;
   std::vector<std::uint32_t> column_;
+  std::vector<int> far_first_, far_middle_;  ///< links of a row; the first of them above the diagonal
+  std::vector<std::uint32_t> far_column_;
+  std::vector<float> far_value_;
 };
 
-/// (D + K) x = b for particles that are free, b + reaction for those that are held, by preconditioned conjugate
-/// gradients with the holds projected out (Baraff and Witkin 1998, "Large steps in cloth simulation"; Ascher and
-/// Boxerman 2003).
+/// (D + K) x = b for particles that are free, b + reaction for those that are held, by conjugate gradients with the
+/// holds projected out (Baraff and Witkin 1998, "Large steps in cloth simulation"; Ascher and Boxerman 2003).
+/// Preconditioned by a symmetric sweep of block Gauss–Seidel in Eisenstat's form (SIAM J. Sci. Stat. Comput. 2 (1981)
+/// 1): an iteration goes through every block once.
 class SoftSolver {
  public:
   std::vector<Mat3f> diagonal;  ///< D, by particle
   std::vector<Vec3f> right;     ///< b, N·s
   std::vector<Vec3f> change;    ///< x, m/s: at the start the held parts and a guess of the free ones
+  std::vector<Vec3f> guess;     ///< x of the last solve
   std::vector<SoftHold> holds;
   std::vector<Vec3f> reaction;  ///< (D + K) x − b
 
@@ -83,10 +118,13 @@ class SoftSolver {
   int solve(const SoftMatrix& matrix, double tolerance, float least, int most, core::TaskScheduler& scheduler);
 
  private:
-  double product(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b, core::TaskScheduler& scheduler);
-  std::vector<Vec3f> residual_, direction_, image_, scaled_;
-  std::vector<Mat3f> inverse_;
-  std::vector<double> sums_;
+  void prepare(const SoftMatrix& matrix);
+  void scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
+  double start_sweep(const SoftMatrix& matrix, std::vector<Vec3f>& x, std::vector<Vec3f>& weighted);
+  void settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
+
+  std::vector<Vec3f> residual_, weighted_residual_, direction_, back_, forward_, image_, weighted_image_;
+  std::vector<SoftBlock> full_, inverse_;  ///< of the diagonal: as it is, and inverted within what is free
 };
 
 }  // namespace carom::particles::detail

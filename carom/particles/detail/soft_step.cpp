@@ -102,7 +102,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
   matrix.multiply(solver.change.data(), solver.reaction.data(), tasks);
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     solver.right[i] -= solver.reaction[i];
-    solver.change[i] = {};
+    solver.change[i] = solver.guess[i];
     solver.holds[i] = {};
   }
 }

@@ -3,6 +3,7 @@
 #include "carom/core/spelling.h"
 #include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/joints.h"
+#include "carom/scene/detail/matter.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -124,12 +125,11 @@ class Builder final : public BodyNames {
     for (const char* what : {"bodies", "joints", "effectors"}) {
       what_ = what;
       next_ = 0;
-      for (const Node& part : document_.parts)
-        for (const char* list : {"bodies", "joints", "effectors"})
-          if (const Node* node = part.find(list)) visit(*node, list, list);
+      visit_parts();
       if (update_ && !reader_.failed()) check_count(what);
       if (reader_.failed()) return false;
     }
+    if (!make_matter()) return false;
     // Shapes and joints wake what they touch, so that sleepers are laid down when everything stands.
     for (const BodyId id : sleepers_)
       if (!reader_.accept(world().set_awake(id, false), document_.main(), "bodies")) return false;
@@ -165,6 +165,33 @@ class Builder final : public BodyNames {
     if (!map->is_object()) return reader_.expected(*map, key, "an object of names");
     for (std::size_t i = 0; i < map->keys.size(); ++i)
       into[map->keys[i]] = {&map->children[i], std::string(key) + "." + map->keys[i]};
+  }
+
+  static constexpr const char* lists[] = {"bodies",      "joints",  "effectors", "ropes",    "cloths",
+                                          "soft_bodies", "liquids", "grains",    "particles"};
+  void visit_parts() {
+    for (const Node& part : document_.parts)
+      for (const char* list : lists)
+        if (const Node* node = part.find(list)) visit(*node, list, list);
+  }
+  /// Ropes and so on, after the bodies that hold them; what runs already stays as it is.
+  bool make_matter() {
+    std::shared_ptr<const environment::Environment> around = environment_of(world(), out_.environment);
+    if (!update_) {
+      auto made = std::make_unique<Matter>();
+      MatterPlace<D> place{reader_, *this, world(), *made, 10.0 * document_.maximum_objects, {}};
+      matter_ = &place;
+      for (const char* what : matter_lists) {
+        what_ = what;
+        visit_parts();
+        if (reader_.failed()) return false;
+      }
+      matter_ = nullptr;
+      resolve_sub_emissions(place);
+      if (reader_.failed()) return false;
+      if (!made->names().empty()) out_.matter = std::move(made);
+    }
+    return out_.matter == nullptr || reader_.accept(out_.matter->set_wind(around.get()), document_.main(), "particles");
   }
 
   void visit(const Node& list, std::string_view key, const std::string& path) {
@@ -203,7 +230,7 @@ class Builder final : public BodyNames {
         return reader_.fail(loops, o.path_of("repeat"),
                             "found more than " + std::to_string(document_.maximum_objects) + " turns");
       if (!reader_.wanted(o)) return;
-      for (const char* list : {"bodies", "joints", "effectors"})
+      for (const char* list : lists)
         if (const Node* inner = o.find(list)) visit(*inner, list, o.path_of(list));
       return;
     }
@@ -225,6 +252,7 @@ class Builder final : public BodyNames {
       return reader_.fail(
           node, path,
           "found more than " + std::to_string(document_.maximum_objects) + " bodies, shapes, joints and effectors");
+    if (matter_ != nullptr) return read_matter(*matter_, what_, node, path);
     if (what_ == "bodies")
       body(node, path);
     else if (what_ == "joints")
@@ -411,6 +439,7 @@ class Builder final : public BodyNames {
   std::map<std::string, std::size_t, std::less<>> names_;
   std::vector<BodyId> sleepers_;
   std::string_view what_;
+  MatterPlace<D>* matter_ = nullptr;  ///< while matter is made
   std::size_t next_ = 0;
   int turns_ = 0, made_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "carom/scene/detail/fields.h"
 
 #include "carom/scene/detail/environment_fields.h"
+#include "carom/scene/detail/matter_fields.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -37,8 +38,10 @@ constexpr Field rotation_fields[] = {
     {"roll", T::quantity, M::angle, "turn about x, applied first", nullptr, {}, false, 3},
     {"quaternion", T::number_list, M::plain, "w, x, y, z", nullptr, {}, false, 3},
 };
+}  // namespace
 const ObjectKind rotation_kind{"rotation", "A rotation: axis and angle, yaw, pitch and roll, or a quaternion.",
                                rotation_fields};
+namespace {
 
 constexpr Field parameter_fields[] = {
     {"value", T::quantity, M::count_, "the default", nullptr, {}, true},
@@ -70,7 +73,9 @@ constexpr Field filter_fields[] = {
     {"mask", T::bits, M::plain, "what it collides with"},
     {"group", T::integer, M::plain, "negative: never collide within the group; positive: always"},
 };
+}  // namespace
 const ObjectKind filter_kind{"filter", "Which shapes collide.", filter_fields};
+namespace {
 
 constexpr Field surface_fields[] = {
     {"material", T::reference, M::plain, "name of a material, or one written here", &material_kind, {}, true},
@@ -398,9 +403,16 @@ constexpr Field group_fields[] = {
     {"bodies", T::list, M::plain, "", &body_kind},
     {"joints", T::list, M::plain, "", &joint_kind},
     {"effectors", T::list, M::plain, "", &effector_kind},
+    {"ropes", T::list, M::plain, "ropes", &rope_kind, {}, false, 3},
+    {"cloths", T::list, M::plain, "cloths", &cloth_kind, {}, false, 3},
+    {"soft_bodies", T::list, M::plain, "soft bodies", &soft_body_kind, {}, false, 3},
+    {"liquids", T::list, M::plain, "liquids", &liquid_kind},
+    {"grains", T::list, M::plain, "sand, gravel, beads", &grains_kind},
+    {"particles", T::list, M::plain, "systems of particles", &particles_kind},
 };
-const ObjectKind group_kind{"group", "Bodies, joints and effectors made again for every value of the loop variables.",
-                            group_fields};
+const ObjectKind group_kind{
+    "group", "Bodies, joints, effectors, ropes and so on made again for every value of the loop variables.",
+    group_fields};
 
 constexpr Field camera_fields[] = {
     {"position", T::vector, M::length, "of the eye", nullptr, {}, false, 3},
@@ -527,13 +539,19 @@ constexpr Field scene_fields[] = {
     {"world", T::object, M::plain, "", &world_kind},
     {"ground", T::quantity, M::length, "height of a ground plane that pictures draw"},
     {"include", T::list, M::plain,
-     "files whose materials, shapes, parameters, bodies, joints and effectors come first"},
+     "files whose materials, shapes, parameters, bodies, joints, effectors, ropes and so on come first"},
     {"parameters", T::map, M::plain, "", &parameter_kind},
     {"materials", T::map, M::plain, "", &material_kind},
     {"shapes", T::map, M::plain, "", &shape_kind},
     {"bodies", T::list, M::plain, "bodies and groups", &body_kind},
     {"joints", T::list, M::plain, "joints and groups", &joint_kind},
     {"effectors", T::list, M::plain, "effectors and groups", &effector_kind},
+    {"ropes", T::list, M::plain, "ropes and groups", &rope_kind, {}, false, 3},
+    {"cloths", T::list, M::plain, "cloths and groups", &cloth_kind, {}, false, 3},
+    {"soft_bodies", T::list, M::plain, "soft bodies and groups", &soft_body_kind, {}, false, 3},
+    {"liquids", T::list, M::plain, "liquids and groups", &liquid_kind},
+    {"grains", T::list, M::plain, "sand, gravel, beads and groups", &grains_kind},
+    {"particles", T::list, M::plain, "systems of particles and groups", &particles_kind},
     {"environment", T::object, M::plain, "gravity, air, wind and water around the bodies", &environment_kind},
     {"camera", T::object, M::plain, "", &camera_kind},
     {"plots", T::list, M::plain, "", &plot_kind},
@@ -553,6 +571,12 @@ constexpr Field part_fields[] = {
     {"bodies", T::list, M::plain, "", &body_kind},
     {"joints", T::list, M::plain, "", &joint_kind},
     {"effectors", T::list, M::plain, "", &effector_kind},
+    {"ropes", T::list, M::plain, "ropes", &rope_kind, {}, false, 3},
+    {"cloths", T::list, M::plain, "cloths", &cloth_kind, {}, false, 3},
+    {"soft_bodies", T::list, M::plain, "soft bodies", &soft_body_kind, {}, false, 3},
+    {"liquids", T::list, M::plain, "liquids", &liquid_kind},
+    {"grains", T::list, M::plain, "sand, gravel, beads", &grains_kind},
+    {"particles", T::list, M::plain, "systems of particles", &particles_kind},
 };
 const ObjectKind part_kind{"part", "A file that scenes include.", part_fields};
 constexpr Field preset_fields[] = {
@@ -605,7 +629,24 @@ const ObjectKind* const all_kinds[] = {&scene_kind,
                                        &obstacle_kind,
                                        &wake_kind,
                                        &sea_kind,
-                                       &sea_wave_kind};
+                                       &sea_wave_kind,
+                                       &rope_kind,
+                                       &rope_attachment_kind,
+                                       &rope_winch_kind,
+                                       &rope_lump_kind,
+                                       &cloth_kind,
+                                       &pin_kind,
+                                       &soft_body_kind,
+                                       &liquid_kind,
+                                       &fill_kind,
+                                       &tap_kind,
+                                       &drain_kind,
+                                       &grains_kind,
+                                       &particles_kind,
+                                       &emitter_kind,
+                                       &sub_emission_kind,
+                                       &attractor_kind,
+                                       &touch_kind};
 
 }  // namespace
 
@@ -642,6 +683,12 @@ const FieldTables& tables() {
                              .earth = &earth_kind,
                              .vehicle = &vehicle_kind,
                              .initial = &initial_kind,
+                             .rope = &rope_kind,
+                             .cloth = &cloth_kind,
+                             .soft_body = &soft_body_kind,
+                             .liquid = &liquid_kind,
+                             .grains = &grains_kind,
+                             .particles = &particles_kind,
                              .all = all_kinds};
   return t;
 }

@@ -35,6 +35,12 @@ constexpr MeasureInfo measures[] = {
     {"a charge", "C", "2 C"},
     {"an electric field", "V/m", "100 V/m"},
     {"a magnetic flux density", "T", "0.5 T"},
+    {"a mass per length", "kg/m", "65 g/m"},
+    {"a mass per area", "kg/m^2", "150 g/m^2"},
+    {"a bending stiffness", "N*m^2", "0.01 N*m^2"},
+    {"a damping of strain", "N*s", "50 N*s"},
+    {"a bending stiffness per width", "N*m", "5e-6 N*m"},
+    {"a kinematic viscosity", "m^2/s", "1e-6 m^2/s"},
 };
 static_assert(sizeof measures / sizeof measures[0] == std::size_t(Measure::count_));
 

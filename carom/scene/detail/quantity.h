@@ -61,6 +61,12 @@ enum class Measure : std::uint8_t {
   charge,
   electric_field,
   flux_density,
+  mass_per_length,
+  mass_per_area,
+  rope_bending,
+  rope_damping,
+  cloth_bending,
+  kinematic_viscosity,
   count_
 };
 struct MeasureInfo {

@@ -1,0 +1,290 @@
+#include "carom/scene/matter.h"
+
+#include "carom/core/hash.h"
+#include "carom/core/string.h"
+
+namespace carom::scene {
+namespace {
+using math::Vec3d;
+
+/// What a body of many points can be asked for, without walking its points twice.
+struct Extent {
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300}, sum{};
+  int count = 0;
+  void add(Vec3d p) {
+    low = math::min(low, p);
+    high = math::max(high, p);
+    sum += p;
+    ++count;
+  }
+  Vec3d middle() const { return count > 0 ? sum / double(count) : Vec3d{}; }
+};
+Vec3d in_space(math::Vec2d p) { return {p.x, p.y, 0}; }
+Vec3d in_space(Vec3d p) { return p; }
+
+template <class List>
+Extent extent_of(const List& positions) {
+  Extent out;
+  for (const auto& p : positions) out.add(in_space(p));
+  return out;
+}
+template <class Many>
+Extent extent_of_many(const Many& many) {
+  Extent out;
+  for (int i = 0; i < many.size(); ++i) out.add(in_space(many.position(i)));
+  return out;
+}
+
+enum Field { count_field, mass, kinetic_energy, center, lower, upper, length_field, tension, area, volume };
+struct FieldName {
+  std::string_view name, unit;
+  bool vector;
+};
+constexpr FieldName fields[] = {{"count", "", false},    {"mass", "kg", false},   {"kinetic_energy", "J", false},
+                                {"center", "m", true},   {"lower", "m", true},    {"upper", "m", true},
+                                {"length", "m", false},  {"tension", "N", false}, {"area", "m^2", false},
+                                {"volume", "m^3", false}};
+enum List { rope_list, cloth_list, soft_list, liquid_list, grain_list, particle_list, list_count };
+constexpr std::string_view list_names[] = {"rope", "cloth", "soft_body", "liquid", "grains", "particles"};
+constexpr unsigned common =
+    1u << count_field | 1u << mass | 1u << kinetic_energy | 1u << center | 1u << lower | 1u << upper;
+constexpr unsigned has[] = {common | 1u << length_field | 1u << tension,
+                            common | 1u << tension | 1u << area,
+                            common | 1u << volume,
+                            common | 1u << volume,
+                            common,
+                            common};
+
+/// Calls see(list, place, name) for every thing.
+template <class See>
+void each_name(const Matter& m, const See& see) {
+  const auto list = [&](int which, const auto& things) {
+    for (std::size_t i = 0; i < things.size(); ++i) see(which, int(i), things[i].name);
+  };
+  list(rope_list, m.ropes);
+  list(cloth_list, m.cloths);
+  list(soft_list, m.soft_bodies);
+  list(liquid_list, m.plane.liquids);
+  list(liquid_list, m.space.liquids);
+  list(grain_list, m.plane.grains);
+  list(grain_list, m.space.grains);
+  list(particle_list, m.plane.particles);
+  list(particle_list, m.space.particles);
+}
+
+double component(const Extent& e, const Probe::Source& s) {
+  const Vec3d v = s.field == center ? e.middle() : s.field == lower ? e.low : e.high;
+  return v[s.component];
+}
+double rope_kinetic_energy(const particles::RopeSet& set, int rope) {
+  double sum = 0;
+  const auto v = set.velocities(rope);
+  for (const Vec3d& u : v) sum += math::dot(u, u);
+  return 0.5 * set.mass(rope) * sum / double(v.size());
+}
+double read_rope(const particles::RopeSet& set, int rope, const Probe::Source& s) {
+  switch (s.field) {
+    case count_field:
+      return double(set.positions(rope).size());
+    case mass:
+      return set.mass(rope);
+    case kinetic_energy:
+      return rope_kinetic_energy(set, rope);
+    case length_field:
+      return set.length(rope);
+    case tension: {
+      double most = 0;
+      for (const double t : set.tensions(rope)) most = math::max(most, t);
+      return most;
+    }
+    default:
+      return component(extent_of(set.positions(rope)), s);
+  }
+}
+double read_cloth(const particles::Cloth& cloth, const Probe::Source& s) {
+  switch (s.field) {
+    case count_field:
+      return cloth.vertex_count();
+    case mass:
+      return cloth.mass();
+    case kinetic_energy:
+      return cloth.kinetic_energy();
+    case tension:
+      return cloth.greatest_tension();
+    case area:
+      return cloth.area();
+    default:
+      return component(extent_of(cloth.positions()), s);
+  }
+}
+double read_soft(const particles::SoftBody& body, const Probe::Source& s) {
+  switch (s.field) {
+    case count_field:
+      return body.vertex_count();
+    case mass:
+      return body.mass();
+    case kinetic_energy:
+      return body.kinetic_energy();
+    case volume:
+      return body.volume();
+    case center:
+      return body.center()[s.component];
+    default:
+      return component(extent_of(body.positions()), s);
+  }
+}
+template <class D>
+double read_many(const MatterOf<D>& m, const Probe::Source& s) {
+  const auto place = std::size_t(s.item);
+  if (s.list == liquid_list) {
+    const particles::Fluid<D>& fluid = m.liquids[place].thing;
+    if (s.field == count_field) return fluid.size();
+    if (s.field == mass) return double(fluid.particle_mass()) * fluid.size();
+    if (s.field == kinetic_energy) return fluid.kinetic_energy();
+    if (s.field == volume) return fluid.volume();
+    return component(extent_of_many(fluid), s);
+  }
+  if (s.list == grain_list) {
+    const particles::Granular<D>& grains = m.grains[place].thing;
+    if (s.field == count_field) return grains.size();
+    if (s.field == mass) return grains.mass();
+    if (s.field == kinetic_energy) return grains.kinetic_energy();
+    return component(extent_of_many(grains), s);
+  }
+  const particles::ParticleSystem& system = m.particles[place].thing.system;
+  if (s.field == count_field) return system.size();
+  if (s.field == mass) return system.totals().mass;
+  if (s.field == kinetic_energy) return system.totals().kinetic_energy;
+  return component(extent_of_many(system), s);
+}
+
+/// A steady wind as the environment has it at a place now.
+environment::Wind wind_near(const environment::Environment& around, Vec3d place, double time) {
+  return {.velocity = around.wind(place, time)};
+}
+
+}  // namespace
+
+template <class D>
+Status Matter::step(rigid::World<D>& world, double dt, const environment::Environment* around) {
+  const double time = world.time();
+  if constexpr (D::dimension == 3) {
+    if (!ropes.empty()) {
+      if (around != nullptr) {
+        Extent all;
+        for (int r = 0; r < rope_set.size(); ++r)
+          for (const Vec3d& p : rope_set.positions(r)) all.add(p);
+        rope_set.set_air(
+            {.density = around->air(all.middle()).density, .wind = wind_near(*around, all.middle(), time)});
+      }
+      if (Status s = rope_set.step(world, dt); !s) return s;
+    }
+    for (auto& cloth : cloths) {
+      if (around != nullptr) {
+        const Vec3d middle = extent_of(cloth.thing.positions()).middle();
+        if (Status s = cloth.thing.set_air(around->air(middle).density, wind_near(*around, middle, time)); !s) return s;
+      }
+      if (Status s = cloth.thing.step(world, dt); !s) return s;
+    }
+    for (auto& body : soft_bodies)
+      if (Status s = body.thing.step(world, dt); !s) return s;
+  }
+  MatterOf<D>& many = of<D>();
+  for (auto& liquid : many.liquids)
+    if (Status s = liquid.thing.step(world, float(dt)); !s) return s;
+  for (auto& grains : many.grains)
+    if (Status s = grains.thing.step(world, float(dt)); !s) return s;
+  if (Status s = world.step(float(dt)); !s) return s;
+
+  for (auto& entry : many.particles) {
+    SceneParticles<D>& p = entry.thing;
+    if (Status s = p.coupling.step(world, p.system, dt); !s) return s;
+  }
+  // Births last: every system has told what happened in this step.
+  for (auto& entry : many.particles)
+    for (const SubEmissionRule& rule : entry.thing.rules) {
+      particles::ParticleSystem& from = entry.thing.system;
+      const auto born = many.particles[std::size_t(rule.into)].thing.system.emit_at(
+          rule.at_death ? from.deaths() : from.hits(), rule.emission);
+      if (!born) return born.error();
+    }
+  return {};
+}
+
+Status Matter::set_wind(const environment::Environment* around) {
+  const auto set = [around](auto& many) -> Status {
+    for (auto& entry : many.particles) {
+      particles::Air air{.turbulence = entry.thing.turbulence};
+      if (around != nullptr) {
+        air.wind = around->definition().wind.mean;
+        air.ground = around->definition().ground;
+      }
+      if (Status s = entry.thing.system.set_air(air); !s) return s;
+    }
+    return {};
+  };
+  if (Status s = set(plane); !s) return s;
+  return set(space);
+}
+
+template Status Matter::step(rigid::World2&, double, const environment::Environment*);
+template Status Matter::step(rigid::World3&, double, const environment::Environment*);
+
+void Matter::add_to(core::StateHash& hash) const {
+  if (!ropes.empty()) hash.add(rope_set.state_hash());
+  for (const auto& c : cloths) hash.add(c.thing.state_hash());
+  for (const auto& s : soft_bodies) hash.add(s.thing.state_hash());
+  const auto add = [&hash](const auto& many) {
+    for (const auto& l : many.liquids) hash.add(l.thing.state_hash());
+    for (const auto& g : many.grains) hash.add(g.thing.state_hash());
+    for (const auto& p : many.particles) hash.add(p.thing.system.state_hash());
+  };
+  add(plane);
+  add(space);
+}
+
+bool Matter::find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const {
+  bool found = false;
+  std::size_t best = 0;
+  each_name(*this, [&](int list, int place, const std::string& name) {
+    const std::string whole = core::text(list_names[list], ".", name, ".");
+    if (text.substr(0, whole.size()) != whole || whole.size() < best) return;
+    const std::string_view rest = text.substr(whole.size());
+    for (int f = 0; f < int(std::size(fields)); ++f) {
+      if ((has[list] >> f & 1) == 0 || rest.substr(0, fields[f].name.size()) != fields[f].name) continue;
+      const std::string_view end = rest.substr(fields[f].name.size());
+      const bool good =
+          fields[f].vector ? end.size() == 2 && end[0] == '.' && end[1] >= 'x' && end[1] <= (dimension == 2 ? 'y' : 'z')
+                           : end.empty();
+      if (!good) continue;
+      best = whole.size();
+      found = true;
+      source.kind = Probe::Source::Kind::matter;
+      source.list = list;
+      source.item = place;
+      source.field = f;
+      source.component = fields[f].vector ? end[1] - 'x' : 0;
+      unit = fields[f].unit;
+      if (list == cloth_list && f == tension) unit = "N/m";
+      if (dimension == 2 && f == volume) unit = "m^2";
+    }
+  });
+  return found;
+}
+
+double Matter::read(const Probe::Source& s) const {
+  if (s.list == rope_list) return read_rope(rope_set, ropes[std::size_t(s.item)].thing, s);
+  if (s.list == cloth_list) return read_cloth(cloths[std::size_t(s.item)].thing, s);
+  if (s.list == soft_list) return read_soft(soft_bodies[std::size_t(s.item)].thing, s);
+  const bool in_plane = !plane.liquids.empty() || !plane.grains.empty() || !plane.particles.empty();
+  return in_plane ? read_many(plane, s) : read_many(space, s);
+}
+
+std::vector<std::string> Matter::names() const {
+  std::vector<std::string> out;
+  each_name(*this,
+            [&](int list, int, const std::string& name) { out.push_back(core::text(list_names[list], ".", name)); });
+  return out;
+}
+
+}  // namespace carom::scene
