@@ -32,6 +32,7 @@ struct FluidDef {
   float spacing = 0.05f;             ///< m between particles at rest, 1e-4 … 100; a cell is two of them wide
   float density = 1000;              ///< kg/m³ (plane: kg/m²), > 0
   float viscosity = 1e-6f;           ///< m²/s, kinematic; the scheme itself adds a little
+  float surface_tension = 0;  ///< N/m (plane: N), 0 … 10; matters where a drop is smaller than a centimetre or two
   typename D::Vector gravity = rigid::default_gravity<D>();  ///< m/s²
   /// Sides of the domain that are walls: lower x, upper x, lower y, … What leaves through an open side is gone.
   bool walls[6] = {true, true, true, true, true, true};
@@ -114,6 +115,7 @@ class CAROM_API Fluid {
   /// Advances by dt seconds (0 < dt ≤ 0.1) among the bodies of `world`, which get their impulses as forces for
   /// the world's own step of the same dt, which must follow. What a body weighs in the liquid follows from its velocity
   /// and mass as the world has them now. Errors: dt out of range, a world that refuses an impulse.
+  /// With surface tension: dt of more than 64 times the period of the shortest ripples over 4π.
   core::Status step(rigid::World<D>& world, float dt);
   /// Without bodies.
   core::Status step(float dt);

@@ -14,6 +14,7 @@ void Rope::resize(std::size_t n) {
   for (auto* list : {&lower, &diagonal, &upper, &factor, &held}) list->resize(n);
   lump.resize(n);
   contacts.resize(n);
+  edges.resize(n - 1);
   nodes.resize(n);
   mass.resize(n);
   rest.resize(n - 1);
@@ -279,6 +280,8 @@ int RopeSet::contact_count(int index) const {
   int count = 0;
   for (const detail::RopeContact& contact : detail::rope_at(ropes_, index).contacts)
     count += contact.state != detail::RopeHold::none;
+  for (const detail::RopeEdge& edge : detail::rope_at(ropes_, index).edges)
+    count += edge.contact.state != detail::RopeHold::none;
   return count;
 }
 

@@ -108,17 +108,7 @@ void ClothState::assemble(float h, Vec3f gravity) {
       solver.right[i] = h * force + (h * mass[i]) * gravity;
     }
   });
-  // − (h² + h β) K v: the forces at the end of the step. What is common to all velocities drops out of K v exactly.
-  Vec3f common{};
-  for (const Vec3f v : velocity) common += v;
-  common = common * (1 / float(velocity.size()));
-  for (std::size_t i = 0; i < velocity.size(); ++i) solver.change[i] = velocity[i] - common;
-  matrix.multiply(solver.change.data(), solver.reaction.data(), tasks);
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    solver.right[i] -= solver.reaction[i];
-    solver.change[i] = solver.guess[i];
-    solver.holds[i] = {};
-  }
+  solver.begin(matrix, velocity, tasks);
 }
 
 void ClothState::hold(float h, Vec3f gravity) {
@@ -166,44 +156,9 @@ void ClothState::step(rigid::World3& world, double dt) {
   const Vec3f gravity = world.definition().gravity;
   core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
   obstacles.clear();
-  for (std::size_t k = pins.size(); k-- > 0;)
-    if (pins[k].body != rigid::BodyId{} && !world.contains(pins[k].body)) {
-      pin_of[std::size_t(pinned[k])] = -1;
-      pins.erase(pins.begin() + std::ptrdiff_t(k));
-      pinned.erase(pinned.begin() + std::ptrdiff_t(k));
-      for (std::size_t j = k; j < pins.size(); ++j) pin_of[std::size_t(pinned[j])] = int(j);
-    }
-  for (std::size_t k = 0; k < pins.size(); ++k) {
-    SoftPin& pin = pins[k];
-    const std::size_t i = std::size_t(pinned[k]);
-    pin.index = pin.body == rigid::BodyId{} ? -1 : obstacles.body_index(world, pin.body);
-    pin.mass = 0;
-    if (pin.index < 0) {
-      position[i] = pin.point;
-      velocity[i] = {};
-      continue;
-    }
-    const auto& body = obstacles.bodies[std::size_t(pin.index)];
-    position[i] = body.place(pin.point);
-    velocity[i] = Vec3f(body.velocity_at(position[i]));
-    if (!body.dynamic || !body.awake) continue;
-    // A body that moves resists at the point as a lump of about its effective mass there, shared among its pins.
-    int sharing = 0;
-    for (const SoftPin& other : pins) sharing += other.body == pin.body;
-    pin.mass = float(body.mass / sharing);
-  }
+  place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
   pin_impulse.assign(pins.size(), Vec3d{});
-  if (collide) {
-    geometry::Bounds3d bounds{position[0], position[0]};
-    float fastest = 0;
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      bounds.low = min(bounds.low, position[i]);
-      bounds.high = max(bounds.high, position[i]);
-      fastest = math::max(fastest, length_squared(velocity[i]));
-    }
-    obstacles.gather(world, grow(bounds, 2 * fabric.thickness + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)),
-                     filter, pins);
-  }
+  if (collide) gather_near(fabric.thickness, dt, world, filter, pins, position, velocity, obstacles);
   iterations = 0;
   greatest_tension = 0;
   wind_impulse = {};

@@ -43,9 +43,9 @@ Status check_fluid(const FluidDef<D>& d) {
   constexpr int N = D::dimension;
   for (const Status& s :
        {fluid_range("spacing", d.spacing, 1e-4, 100), fluid_range("density", d.density, 1e-3, 1e6),
-        fluid_range("viscosity", d.viscosity, 0, 1e3), fluid_range("max_particles", d.max_particles, 1, 1 << 22),
-        fluid_range("courant", d.courant, 0.1, 5), fluid_range("max_substeps", d.max_substeps, 1, 64),
-        fluid_range("threads", d.threads, 1, 64)})
+        fluid_range("viscosity", d.viscosity, 0, 1e3), fluid_range("surface_tension", d.surface_tension, 0, 10),
+        fluid_range("max_particles", d.max_particles, 1, 1 << 22), fluid_range("courant", d.courant, 0.1, 5),
+        fluid_range("max_substeps", d.max_substeps, 1, 64), fluid_range("threads", d.threads, 1, 64)})
     if (!s.ok()) return s;
   double cells = 1;
   for (int a = 0; a < N; ++a) {

@@ -307,6 +307,8 @@ void FluidState<D>::substep(float dt) {
   place_solids();
   classify();
   label();
+  tension_dt = definition.surface_tension * dt * inverse_cell * inverse_cell / definition.density;
+  measure_curvature();
   lap(2);
   accelerate(dt);
   project(dt);
@@ -351,7 +353,13 @@ core::Status FluidState<D>::step(rigid::World<D>* world, float dt) {
   fastest = math::sqrt(fastest);
   statistics.max_speed = fastest;
   const float crossed = (fastest + length(definition.gravity) * dt) * dt * inverse_cell / definition.courant;
-  const int parts = crossed < float(definition.max_substeps) ? math::max(1, int(crossed) + 1) : definition.max_substeps;
+  const int ripples = capillary_substeps(dt);
+  if (ripples > most_ripples)
+    return core::Error{core::text("Fluid::step: a surface tension of ", definition.surface_tension,
+                                  " N/m at a spacing of ", definition.spacing, " m needs ", ripples,
+                                  " substeps in dt, expected ", most_ripples, " at most: a shorter step")};
+  int parts = crossed < float(definition.max_substeps) ? math::max(1, int(crossed) + 1) : definition.max_substeps;
+  parts = math::max(parts, ripples);
   statistics.substeps = parts;
   for (int k = 0; k < parts; ++k) substep(dt / float(parts));
   statistics.particles = int(particles.size());

@@ -2,7 +2,7 @@
 // it does to the velocities.
 #pragma once
 
-#include "carom/particles/detail/fluid_solver.inl"
+#include "carom/particles/detail/fluid_surface.inl"
 
 namespace carom::particles::detail {
 
@@ -69,7 +69,7 @@ void FluidState<D>::build_rows() {
       const int c = liquid[i];
       FluidRow<N>& row = s.rows[i];
       row.diagonal = 0;
-      float out = 0;
+      float out = 0, raised = 0;
       for (int a = 0; a < N; ++a) {
         const int up = c + grid.stride[a], down = c - grid.stride[a];
         const auto side = [&](int face, int next, float sign, float& coefficient, int& cell_index) {
@@ -89,12 +89,13 @@ void FluidState<D>::build_rows() {
           } else {
             const float theta = level[c] / (level[c] - level[next]);
             row.diagonal += w / math::max(theta, least_depth);
+            raised += w / math::max(theta, least_depth) * surface_pressure(c, next, theta);
           }
         };
         side(c, down, -1.0f, row.minus[a], row.minus_cell[a]);
         side(up, up, 1.0f, row.plus[a], row.plus_cell[a]);
       }
-      s.right[i] = -out;
+      s.right[i] = raised - out;
     }
   });
   s.touched.clear();
@@ -188,6 +189,7 @@ void FluidState<D>::project(float dt) {
   subtract_gradient(velocity, true);
 
   push_solids(dt, false);
+  pull_of_surface();
 }
 
 /// Impulses on what closes faces, and their opposite for the liquid: the pressure on a solid's surface within a cell
@@ -258,15 +260,20 @@ void FluidState<D>::subtract_gradient(std::vector<float> (&field)[N], bool from_
         // The lower face is this cell's; the upper one only where no liquid cell is there to own it.
         if (open[a][c] > 0) {
           float step = s.x[i];
-          if (kind[down] == fluid_liquid)
+          if (kind[down] == fluid_liquid) {
             step -= s.x[row_of[down]];
-          else
-            step /= math::max(level[c] / (level[c] - level[down]), least_depth);
+          } else {
+            const float theta = level[c] / (level[c] - level[down]);
+            if (from_field) step -= surface_pressure(c, down, theta);
+            step /= math::max(theta, least_depth);
+          }
           field[a][c] = (from_field ? field[a][c] : 0.0f) - step;
           known[a][c] = 1;
         }
         if (open[a][up] > 0 && kind[up] != fluid_liquid) {
-          const float step = s.x[i] / math::max(level[c] / (level[c] - level[up]), least_depth);
+          const float theta = level[c] / (level[c] - level[up]);
+          const float surface = from_field ? surface_pressure(c, up, theta) : 0.0f;
+          const float step = (s.x[i] - surface) / math::max(theta, least_depth);
           field[a][up] = (from_field ? field[a][up] : 0.0f) + step;
           known[a][up] = 1;
         }

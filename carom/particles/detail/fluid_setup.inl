@@ -32,6 +32,8 @@ void FluidState<D>::make_grid() {
   for (auto* field :
        {&mass, &node_distance, &fixed_distance, &room, &fixed_room, &fill, &level, &pressure, &volume, &fixed_volume})
     field->assign(grid.size + 4, 0.0f);
+  if (definition.surface_tension > 0)
+    for (auto* field : {&curvature, &smooth}) field->assign(grid.size + 4, 0.0f);
   std::fill(level.begin(), level.end(), 1.0f);
   node_owner.assign(grid.size + 4, -1);
   kind.assign(grid.size + 4, fluid_air);

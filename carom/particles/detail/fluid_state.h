@@ -158,7 +158,8 @@ struct FluidState {
   float pressure_dt = 0;
   float spreading_rate = 60;  ///< 1/s: how fast unevenness is taken out
 
-  std::vector<int> liquid;  ///< cells, ascending
+  std::vector<float> curvature, smooth;  ///< of the surface, 1/cells; with surface tension only
+  std::vector<int> liquid;               ///< cells, ascending
   FluidSystem<N> system;
   std::vector<FluidSolid<D>> solids;
   std::vector<FluidBody<D>> bodies;
@@ -172,6 +173,8 @@ struct FluidState {
     bool sealed = true;  ///< no free surface anywhere
     double excess = 0;
     int cells = 0;
+    Position surface{};  ///< impulse of the surface's tension on the liquid
+    bool held = false;   ///< touches something that is closed
   };
   std::vector<Budget> budgets;  ///< one a component
   std::vector<int> queue;
@@ -204,6 +207,12 @@ struct FluidState {
   void apply_rows(const std::vector<float>& x, std::vector<float>& y, bool with_bodies);
   void add_bodies(const std::vector<float>& x, std::vector<float>& y, bool scaled);
   float true_residual() const;
+  // fluid_surface.inl
+  void measure_curvature();
+  float surface_pressure(int cell, int next, float theta) const;
+  void pull_of_surface();
+  int capillary_substeps(float dt) const;
+  float tension_dt = 0;  ///< σ dt/(ρ h²), m/s a curvature of one cell
   // fluid_pressure.inl
   void accelerate(float dt);
   void build_rows();

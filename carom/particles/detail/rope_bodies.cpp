@@ -219,6 +219,12 @@ void RopeSolver::couple() {
       target[(row + 3 + std::size_t(k)) * stride] += turn[k];
     }
   };
+  const auto link = [&](int one, int other) {
+    int& first = set.first_block_[std::size_t(one)];
+    first = math::min(first, other);
+    int& back = set.first_block_[std::size_t(other)];
+    back = math::min(back, one);
+  };
   for (Rope& rope : set.ropes_) {
     const int n = rope.count();
     if (rope.touched.empty()) continue;
@@ -239,15 +245,32 @@ void RopeSolver::couple() {
           Vec3d answer = rope.diagonal[std::size_t(i)] * column[i];
           if (i > low) answer += rope.lower[std::size_t(i)] * column[i - 1];
           if (i < high) answer += rope.upper[std::size_t(i)] * column[i + 1];
+          const Vec3d unit{double(c % 3 == 0), double(c % 3 == 1), double(c % 3 == 2)};
+          answer -= edge_push(rope, i, rope.touched[t], c < 3 ? unit : Vec3d{}, c < 3 ? Vec3d{} : unit);
           if (length_squared(answer) == 0) continue;
           near = true;
           add(row, set.matrix_.data() + std::size_t(other) * 6 + std::size_t(c), size, node.arm, answer);
         }
-        if (!near) continue;
-        int& first = set.first_block_[std::size_t(body.column)];
-        first = math::min(first, other);
-        int& back = set.first_block_[std::size_t(other)];
-        back = math::min(back, body.column);
+        if (near) link(body.column, other);
+      }
+    }
+    for (std::size_t e = 0; e < rope.edges.size(); ++e) {
+      const RopeNode& point = rope.edges[e].point;
+      if (point.hold == RopeHold::none || point.body < 0) continue;
+      const RopeBody& body = set.bodies_[std::size_t(point.body)];
+      if (body.column < 0) continue;
+      const std::size_t row = std::size_t(body.column) * 6;
+      add(row, set.right_.data(), 1, point.arm, point.reaction);
+      for (std::size_t t = 0; t < rope.touched.size(); ++t) {
+        const int other = set.bodies_[std::size_t(rope.touched[t])].column;
+        bool near = false;
+        for (int c = 0; c < 6; ++c) {
+          const Vec3d answer = edge_answer(rope, e, t, c);
+          if (length_squared(answer) == 0) continue;
+          near = true;
+          add(row, set.matrix_.data() + std::size_t(other) * 6 + std::size_t(c), size, point.arm, answer);
+        }
+        if (near) link(body.column, other);
       }
     }
   }

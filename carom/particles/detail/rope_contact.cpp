@@ -1,4 +1,4 @@
-// Particles of ropes against the shapes of the world.
+// Particles of ropes against the shapes of the world; segments between them are in rope_edges.cpp.
 #include "carom/math/elementary.h"
 #include "carom/particles/detail/rope_solver.h"
 #include "carom/particles/detail/soft_obstacles.h"
@@ -32,6 +32,7 @@ void RopeSolver::find_contacts(Rope& rope) {
   (void)world.overlap_bounds(grow(bounds, radius + reach), set.found_);
 
   for (RopeContact& contact : rope.contacts) contact.separation = 1e30;
+  for (RopeEdge& edge : rope.edges) edge.contact.separation = 1e30;
   for (const rigid::ShapeId id : set.found_) {
     const auto definition = world.shape_definition(id);
     const auto owner = world.body_of(id);
@@ -67,9 +68,12 @@ void RopeSolver::find_contacts(Rope& rope) {
       contact.body = index;
       contact.friction = friction;
     }
+    find_edges(rope, set.shapes_.back(), number, friction, tight);
   }
   for (RopeContact& contact : rope.contacts)
     if (contact.separation == 1e30) contact = RopeContact{};
+  for (RopeEdge& edge : rope.edges)
+    if (edge.contact.separation == 1e30) edge = RopeEdge{};
 }
 
 void RopeSolver::place_contacts(Rope& rope) {
@@ -94,22 +98,30 @@ void RopeSolver::place_contacts(Rope& rope) {
     }
     contact.separation = double(here);
     node.normal = rotate(body.rotation, rotate(near.turn, Vec3d(normal)));
-    node.body = contact.body;
-    node.arm = rope.position[i] - rope.material.radius * node.normal - body.center;
-    // Where the step is to leave it at least: on the surface, or a fifth less deep than now.
-    const double deep = math::min(double(here), 0.0), end = deep + math::min(-0.2 * deep, h * 1.0);
-    node.target = body.velocity + cross(body.spin, node.arm) +
-                  (dot(node.normal, drift) + (end - double(ahead)) / h) * node.normal;
-    node.hold = contact.state;
-    const double most = h * contact.friction * contact.push;
-    node.resistance = most / rope_slip;
-    node.grip = h * (contact.grip - dot(contact.grip, node.normal) * node.normal);
-    if (contact.state == RopeHold::slide) {
-      const Vec3d against = rope.velocity[i] - node.target;
-      node.resistance = most / math::max(length(against - dot(against, node.normal) * node.normal), rope_slip);
-      node.grip = {};
-    }
+    place_hold(contact, node, rope.position[i], rope.velocity[i], double(ahead), rope.material.radius);
   }
+}
+
+/// What holds a point of the rope in this substep, by the plane that `node.normal` and the separations here and ahead
+/// tell.
+void RopeSolver::place_hold(RopeContact& contact, RopeNode& node, Vec3d position, Vec3d velocity, double ahead,
+                            double radius) const {
+  const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+  const Vec3d drift = velocity - body.velocity_at(position);
+  node.body = contact.body;
+  node.arm = position - radius * node.normal - body.center;
+  // Where the step is to leave it at least: on the surface, or a fifth less deep than now.
+  const double deep = math::min(contact.separation, 0.0), end = deep + math::min(-0.2 * deep, h * 1.0);
+  node.target =
+      body.velocity + cross(body.spin, node.arm) + (dot(node.normal, drift) + (end - ahead) / h) * node.normal;
+  node.hold = contact.state;
+  const double most = h * contact.friction * contact.push;
+  node.resistance = most / rope_slip;
+  node.grip = h * (contact.grip - dot(contact.grip, node.normal) * node.normal);
+  if (contact.state != RopeHold::slide) return;
+  const Vec3d against = velocity - node.target;
+  node.resistance = most / math::max(length(against - dot(against, node.normal) * node.normal), rope_slip);
+  node.grip = {};
 }
 
 Vec3d RopeSolver::change_at(const RopeNode& node) const {
@@ -122,52 +134,59 @@ Vec3d RopeSolver::change_at(const RopeNode& node) const {
 
 // Coulomb's friction as an implicit resistance whose coefficient follows the normal force and the slip of the last
 // iteration. What sticks keeps its grip from substep to substep, so that it does not creep.
+bool RopeSolver::update_hold(RopeContact& contact, RopeNode& node, Vec3d velocity, int iteration) const {
+  const Vec3d against = velocity - node.target - change_at(node);
+  const double closing = dot(node.normal, against);
+  if (node.hold == RopeHold::none) {
+    if (closing >= -1e-9 || iteration > 5) return false;
+    node.hold = RopeHold::slide;
+    node.resistance = 0;
+    node.grip = {};
+    return true;
+  }
+  const double push = dot(node.normal, node.reaction);
+  if (push < 0) {
+    node.hold = RopeHold::none;
+    return true;
+  }
+  if (contact.friction == 0 || iteration > 6) return false;
+  const double most = contact.friction * push, speed = length(against - closing * node.normal);
+  contact.slip = speed;
+  const Vec3d along = node.reaction - push * node.normal;
+  const double held = length(along);
+  bool changed = false;
+  if (node.hold == RopeHold::stick && held > most * 1.0001) {
+    node.hold = RopeHold::slide;
+    changed = true;
+  }
+  const Vec3d grip = node.grip;
+  const double before = node.resistance;
+  if (node.hold == RopeHold::stick) {
+    node.resistance = most / rope_slip;
+  } else if (speed > rope_slip) {
+    node.resistance = most / speed;
+    node.grip = {};
+  } else {
+    // About to slide: all of the friction that there is, the way it held; a tenth of it gives way with the slip.
+    node.resistance = 0.1 * most / rope_slip;
+    node.grip = held > 0 ? (math::max(most - node.resistance * speed, 0.0) / held) * along : Vec3d{};
+  }
+  return changed || math::abs(node.resistance - before) > 0.004 * (node.resistance + before) ||
+         length(node.grip - grip) > 0.01 * most;
+}
+
 bool RopeSolver::update_holds(Rope& rope, int iteration) {
   if (!rope.collide) return false;
   bool changed = false;
   for (std::size_t i = 0; i < rope.position.size(); ++i) {
-    RopeContact& contact = rope.contacts[i];
-    RopeNode& node = rope.nodes[i];
-    if (contact.near < 0 || node.hold == RopeHold::attached) continue;
-    const Vec3d against = rope.solution[i] - node.target - change_at(node);
-    const double closing = dot(node.normal, against);
-    if (node.hold == RopeHold::none) {
-      if (closing >= -1e-9 || iteration > 5) continue;
-      node.hold = RopeHold::slide;
-      node.resistance = 0;
-      node.grip = {};
-      changed = true;
-      continue;
-    }
-    const double push = dot(node.normal, node.reaction);
-    if (push < 0) {
-      node.hold = RopeHold::none;
-      changed = true;
-      continue;
-    }
-    if (contact.friction == 0 || iteration > 6) continue;
-    const double most = contact.friction * push, speed = length(against - closing * node.normal);
-    contact.slip = speed;
-    const Vec3d along = node.reaction - push * node.normal;
-    const double held = length(along);
-    if (node.hold == RopeHold::stick && held > most * 1.0001) {
-      node.hold = RopeHold::slide;
-      changed = true;
-    }
-    const Vec3d grip = node.grip;
-    const double before = node.resistance;
-    if (node.hold == RopeHold::stick) {
-      node.resistance = most / rope_slip;
-    } else if (speed > rope_slip) {
-      node.resistance = most / speed;
-      node.grip = {};
-    } else {
-      // About to slide: all of the friction that there is, the way it held; a tenth of it gives way with the slip.
-      node.resistance = 0.1 * most / rope_slip;
-      node.grip = held > 0 ? (math::max(most - node.resistance * speed, 0.0) / held) * along : Vec3d{};
-    }
-    changed |= math::abs(node.resistance - before) > 0.004 * (node.resistance + before) ||
-               length(node.grip - grip) > 0.01 * most;
+    if (rope.contacts[i].near < 0 || rope.nodes[i].hold == RopeHold::attached) continue;
+    changed |= update_hold(rope.contacts[i], rope.nodes[i], rope.solution[i], iteration);
+  }
+  for (std::size_t e = 0; e < rope.edges.size(); ++e) {
+    RopeEdge& edge = rope.edges[e];
+    if (edge.point.body < 0) continue;
+    changed |=
+        update_hold(edge.contact, edge.point, lerp(rope.solution[e], rope.solution[e + 1], edge.share), iteration);
   }
   return changed;
 }

@@ -88,6 +88,15 @@ struct RopeNode {
   Vec3d reaction{};       ///< N·s on the particle
 };
 
+/// A segment that lies on something between its particles: a point of it is held as a particle would be, by a stiffness
+/// within the system of the row. Where the ends touch as deep as the middle, they do without.
+struct RopeEdge {
+  RopeContact contact{};
+  RopeNode point{};
+  double share = 0.5;           ///< of the second end
+  Mat3d stiff = Mat3d::zero();  ///< kg: impulse = stiff (target − velocity) + grip
+};
+
 struct Rope {
   RopeMaterial material{};
   rigid::Filter filter{};
@@ -99,6 +108,7 @@ struct Rope {
   std::vector<std::uint8_t> broken;
   std::vector<RopeGrip> grips;
   std::vector<RopeContact> contacts;  ///< by particle
+  std::vector<RopeEdge> edges;        ///< by segment
   double winch[2] = {0, 0};
   double twist = 0, twist_offset = 0;  ///< rad
   double peak = 0;

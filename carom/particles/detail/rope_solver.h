@@ -31,7 +31,18 @@ struct RopeSolver {
   Vec3d shape_point(const RopeShape& shape, Vec3d point) const;  ///< in the shape's frame
   void place_contacts(Rope& rope);                               ///< at the start of a substep
   bool update_holds(Rope& rope, int iteration);                  ///< true: something changed
+  void place_hold(RopeContact& contact, RopeNode& node, Vec3d position, Vec3d velocity, double ahead,
+                  double radius) const;
+  bool update_hold(RopeContact& contact, RopeNode& node, Vec3d velocity, int iteration) const;
   void keep_contact(RopeContact& contact, const RopeNode& node, bool gone) const;
+
+  // rope_edges.cpp
+  void find_edges(Rope& rope, const RopeShape& near, int number, double friction, const geometry::Bounds3f& tight);
+  void place_edges(Rope& rope);
+  void add_edges(Rope& rope) const;  ///< to the rows
+  void react_edges(Rope& rope, bool coupled) const;
+  Vec3d edge_answer(const Rope& rope, std::size_t edge, std::size_t t, int c) const;
+  Vec3d edge_push(const Rope& rope, int node, int body, Vec3d velocity, Vec3d spin) const;
 
   // rope_step.cpp
   int needed_substeps(const Rope& rope) const;
@@ -42,8 +53,8 @@ struct RopeSolver {
   void hold_grips(Rope& rope);
   void assemble(Rope& rope);
   void solve(Rope& rope);
-  void react(Rope& rope);     ///< impulses on the particles that the solution asks for
-  double change(Rope& rope);  ///< the greatest strain by which the last iteration was off, squared; tensions
+  void react(Rope& rope, bool coupled);  ///< impulses on the particles that the solution asks for
+  double change(Rope& rope);             ///< the greatest strain by which the last iteration was off, squared; tensions
   void advance(Rope& rope, int index);
 };
 

@@ -71,6 +71,7 @@ void RopeSolver::wind_winches(Rope& rope) {
       erase(rope.rest, gone);
       erase(rope.tension, gone);
       erase(rope.broken, gone);
+      erase(rope.edges, gone);
       for (RopeGrip& grip : rope.grips)
         if (std::size_t(grip.attachment.node) > node) --grip.attachment.node;
       rope.resize(rope.position.size());
@@ -87,6 +88,7 @@ void RopeSolver::wind_winches(Rope& rope) {
       insert(rope.contacts, node, RopeContact{});
       insert(rope.tension, at, rope.tension[at]);
       insert(rope.broken, at, std::uint8_t(0));
+      insert(rope.edges, at, RopeEdge{});
       insert(rope.rest, at, 0.0);
       rope.rest[at] = end == 0 ? near : far;
       rope.rest[at + 1] = end == 0 ? far : near;
@@ -135,6 +137,7 @@ void RopeSolver::prepare(Rope& rope) {
     for (const RopeGrip& grip : rope.grips)
       if (grip.attachment.node == i) touch(grip.body);
     if (rope.contacts[std::size_t(i)].shape != rigid::ShapeId{}) touch(rope.contacts[std::size_t(i)].body);
+    if (i + 1 < n) touch(rope.edges[std::size_t(i)].contact.body);
   }
   rope.columns.resize(rope.touched.size() * 6 * std::size_t(n));
 }
@@ -226,6 +229,7 @@ void RopeSolver::assemble(Rope& rope) {
     rope.momentum[i] += pull;
     rope.momentum[i + 1] -= pull;
   }
+  add_edges(rope);
 }
 
 void RopeSolver::solve(Rope& rope) {
@@ -267,6 +271,11 @@ void RopeSolver::solve(Rope& rope) {
         low = math::min(low, i);
         high = i;
       }
+    for (std::size_t e = 0; e < rope.edges.size(); ++e)
+      if (rope.edges[e].point.hold != RopeHold::none && rope.edges[e].point.body == rope.touched[t]) {
+        low = math::min(low, e);
+        high = math::max(high, e + 1);
+      }
     while (low > 0 && low < n && !ends(low)) --low;
     while (low < n && high + 1 < n && !ends(high)) ++high;
     if (low == n) low = 1, high = 0;
@@ -280,6 +289,7 @@ void RopeSolver::solve(Rope& rope) {
         Vec3d r{};
         if (node.hold != RopeHold::none && node.body == rope.touched[t])
           r = held_part(node, rope.mass[i], k < 3 ? unit : cross(unit, node.arm));
+        r += project(node, edge_push(rope, int(i), rope.touched[t], k < 3 ? unit : Vec3d{}, k < 3 ? Vec3d{} : unit));
         if (i > low) r -= project(node, rope.lower[i] * column[i - 1]);
         column[i] = rope.factor[i] * r;
       }
@@ -288,7 +298,7 @@ void RopeSolver::solve(Rope& rope) {
   }
 }
 
-void RopeSolver::react(Rope& rope) {
+void RopeSolver::react(Rope& rope, bool coupled) {
   const std::size_t n = rope.position.size();
   for (std::size_t i = 0; i < n; ++i) {
     RopeNode& node = rope.nodes[i];
@@ -298,6 +308,7 @@ void RopeSolver::react(Rope& rope) {
     if (i + 1 < n) row += rope.upper[i] * rope.solution[i + 1];
     node.reaction = row;
   }
+  react_edges(rope, coupled);
 }
 
 double RopeSolver::change(Rope& rope) {
@@ -329,6 +340,15 @@ void RopeSolver::advance(Rope& rope, int index) {
     RopeBody& body = set.bodies_[std::size_t(node.body)];
     body.impulse -= node.reaction;
     body.turn -= cross(node.arm, node.reaction);
+  }
+  for (RopeEdge& edge : rope.edges) {
+    if (edge.contact.near < 0) continue;
+    const bool gone = edge.point.hold == RopeHold::none;
+    keep_contact(edge.contact, edge.point, gone);
+    if (gone || edge.point.body < 0) continue;
+    RopeBody& body = set.bodies_[std::size_t(edge.point.body)];
+    body.impulse -= edge.point.reaction;
+    body.turn -= cross(edge.point.arm, edge.point.reaction);
   }
   for (RopeGrip& grip : rope.grips) {
     const std::size_t i = std::size_t(grip.attachment.node);
@@ -381,17 +401,18 @@ Status RopeSolver::run() {
       forces(rope);
       hold_grips(rope);
       place_contacts(rope);
+      place_edges(rope);
     }
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
       for (Rope& rope : set.ropes_) {
         assemble(rope);
         solve(rope);
-        react(rope);
+        react(rope, false);
       }
       couple();
       bool again = false;
       for (Rope& rope : set.ropes_) {
-        react(rope);
+        react(rope, true);
         if (iteration + 1 == most_iterations) continue;
         again |= update_holds(rope, iteration);
         const double off = change(rope);

@@ -7,7 +7,7 @@ namespace carom::particles::detail {
 namespace {
 constexpr int rows_at_once = 128;
 using Lanes = SoftBlock::Lanes;
-Lanes lanes(Vec3f v) { return {v.x, v.y, v.z, 0}; }
+Lanes lanes(Vec3f v) { return Lanes{v.x, v.y, v.z, 0}; }
 Vec3f vector(Lanes v) { return {v[0], v[1], v[2]}; }
 }  // namespace
 
@@ -101,6 +101,19 @@ void SoftSolver::resize(std::size_t n) {
   holds.resize(n);
 }
 
+void SoftSolver::begin(const SoftMatrix& matrix, const std::vector<Vec3f>& velocity, core::TaskScheduler& scheduler) {
+  Vec3f common{};
+  for (const Vec3f v : velocity) common += v;
+  common = common * (1 / float(velocity.size()));
+  for (std::size_t i = 0; i < velocity.size(); ++i) change[i] = velocity[i] - common;
+  matrix.multiply(change.data(), reaction.data(), scheduler);
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    right[i] -= reaction[i];
+    change[i] = guess[i];
+    holds[i] = {};
+  }
+}
+
 /// Of a particle on a plane only what acts along it counts: its inverse maps to and from there.
 void SoftSolver::prepare(const SoftMatrix& matrix) {
   for (std::size_t i = 0; i < right.size(); ++i) {
@@ -111,9 +124,9 @@ void SoftSolver::prepare(const SoftMatrix& matrix) {
     } else if (holds[i].rank == 0) {
       inverse_[i] = SoftBlock::of(inverse(whole));
     } else {
-      const Mat3f across = math::outer(holds[i].normal, holds[i].normal), free = Mat3f::identity() - across;
-      const Mat3f inner = free * whole * free + ((1.0f / 3) * trace(whole)) * across;
-      inverse_[i] = SoftBlock::of(free * inverse(inner) * free);
+      const Mat3f across = math::outer(holds[i].normal, holds[i].normal), within = Mat3f::identity() - across;
+      const Mat3f inner = within * whole * within + ((1.0f / 3) * trace(whole)) * across;
+      inverse_[i] = SoftBlock::of(within * inverse(inner) * within);
     }
   }
 }

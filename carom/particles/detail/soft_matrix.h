@@ -113,6 +113,9 @@ class SoftSolver {
   std::vector<Vec3f> reaction;  ///< (D + K) x − b
 
   void resize(std::size_t n);
+  /// Takes the forces at the end of the step, −K v, to the right-hand side, and starts from the last solution, nothing
+  /// held. What is common to all velocities drops out of K v exactly.
+  void begin(const SoftMatrix& matrix, const std::vector<Vec3f>& velocity, core::TaskScheduler& scheduler);
   /// Iterations used. `tolerance` is relative to the right-hand side, or to that of changes of `least` m/s if it is
   /// less.
   int solve(const SoftMatrix& matrix, double tolerance, float least, int most, core::TaskScheduler& scheduler);

@@ -95,16 +95,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
           (h * float(pressure) / 6) * cross(Vec3f(position[surface[k + 1]] - a), Vec3f(position[surface[k + 2]] - a));
       for (std::size_t j = 0; j < 3; ++j) solver.right[surface[k + j]] += push;
     }
-  Vec3f common{};
-  for (const Vec3f v : velocity) common += v;
-  common = common * (1 / float(velocity.size()));
-  for (std::size_t i = 0; i < velocity.size(); ++i) solver.change[i] = velocity[i] - common;
-  matrix.multiply(solver.change.data(), solver.reaction.data(), tasks);
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    solver.right[i] -= solver.reaction[i];
-    solver.change[i] = solver.guess[i];
-    solver.holds[i] = {};
-  }
+  solver.begin(matrix, velocity, tasks);
 }
 
 void SoftState::hold(float h, Vec3f gravity) {
@@ -169,37 +160,8 @@ void SoftState::step(rigid::World3& world, double dt) {
   const Vec3f gravity = world.definition().gravity;
   core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
   obstacles.clear();
-  for (std::size_t k = pins.size(); k-- > 0;)
-    if (pins[k].body != rigid::BodyId{} && !world.contains(pins[k].body)) {
-      pin_of[std::size_t(pinned[k])] = -1;
-      pins.erase(pins.begin() + std::ptrdiff_t(k));
-      pinned.erase(pinned.begin() + std::ptrdiff_t(k));
-      for (std::size_t j = k; j < pins.size(); ++j) pin_of[std::size_t(pinned[j])] = int(j);
-    }
-  for (std::size_t k = 0; k < pins.size(); ++k) {
-    SoftPin& pin = pins[k];
-    const std::size_t i = std::size_t(pinned[k]);
-    pin.index = pin.body == rigid::BodyId{} ? -1 : obstacles.body_index(world, pin.body);
-    pin.mass = 0;
-    const auto* body = pin.index >= 0 ? &obstacles.bodies[std::size_t(pin.index)] : nullptr;
-    position[i] = body ? body->place(pin.point) : pin.point;
-    velocity[i] = body ? Vec3f(body->velocity_at(position[i])) : Vec3f{};
-    if (!body || !body->dynamic || !body->awake) continue;
-    int sharing = 0;
-    for (const SoftPin& other : pins) sharing += other.body == pin.body;
-    pin.mass = float(body->mass / sharing);
-  }
-  if (collide) {
-    geometry::Bounds3d bounds{position[0], position[0]};
-    float fastest = 0;
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      bounds.low = min(bounds.low, position[i]);
-      bounds.high = max(bounds.high, position[i]);
-      fastest = math::max(fastest, length_squared(velocity[i]));
-    }
-    obstacles.gather(world, grow(bounds, 2 * material.skin + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)), filter,
-                     pins);
-  }
+  place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
+  if (collide) gather_near(material.skin, dt, world, filter, pins, position, velocity, obstacles);
   iterations = 0;
   for (int s = 0; s < substeps; ++s) {
     strain();

@@ -25,4 +25,13 @@ void hold_touch(SoftTouch& touch, std::size_t i, math::Vec3d position, Vec3f vel
 bool revise_touches(std::vector<SoftTouch>& touches, const std::vector<math::Vec3d>& position,
                     const std::vector<Vec3f>& velocity, float h, const SoftObstacles& obstacles, SoftSolver& solver);
 
+/// Drops pins of bodies that are gone, puts pinned vertices to their places, and says by what mass a body resists
+/// there: one that moves as a lump of about its effective mass, shared among its pins.
+void place_pins(std::vector<SoftPin>& pins, std::vector<int>& pinned, std::vector<int>& pin_of, rigid::World3& world,
+                SoftObstacles& obstacles, std::vector<Vec3d>& position, std::vector<Vec3f>& velocity);
+/// What is within reach of a step of the vertices, kept `apart` m from shapes.
+void gather_near(double apart, double dt, rigid::World3& world, const rigid::Filter& filter,
+                 const std::vector<SoftPin>& pins, const std::vector<Vec3d>& position,
+                 const std::vector<Vec3f>& velocity, SoftObstacles& obstacles);
+
 }  // namespace carom::particles::detail

@@ -154,6 +154,7 @@ constexpr Field liquid_fields[] = {
     {"spacing", T::quantity, M::length, "between particles; a cell is two of them wide"},
     {"density", T::quantity, M::density},
     {"viscosity", T::quantity, M::kinematic_viscosity},
+    {"surface_tension", T::quantity, M::stiffness, "matters for drops of a centimetre or two"},
     {"walls", T::list, M::plain, "which sides are walls: \"lower_x\", \"upper_x\", \"lower_y\" …; all unless given"},
     {"fill", T::list, M::plain, "boxes and balls of liquid at the start", &fill_kind},
     {"taps", T::list, M::plain, "from which liquid comes", &tap_kind},

@@ -79,6 +79,7 @@ void read_liquid(MatterPlace<D>& place, const Object& o) {
   def.spacing = float(r.number(o, "spacing", double(def.spacing)));
   def.density = float(r.number(o, "density", double(def.density)));
   def.viscosity = float(r.number(o, "viscosity", double(def.viscosity)));
+  def.surface_tension = float(r.number(o, "surface_tension", 0));
   def.gravity = place.world.definition().gravity;
   read_walls(r, o, def.walls);
   def.courant = float(r.number(o, "courant", double(def.courant)));
