@@ -6,6 +6,8 @@
 
 namespace carom::particles::detail {
 
+inline constexpr int grain_slab = 4;  // layers of cells that one thread solves
+
 /// By cell, without those that left through an open side.
 template <class D>
 void GranularState<D>::sort() {

@@ -7,8 +7,6 @@
 
 namespace carom::particles::detail {
 
-inline constexpr int grain_slab = 4;  // layers of cells that one thread solves
-
 /// Normals and gaps where the grains are now.
 template <class D>
 void GranularState<D>::measure() {
