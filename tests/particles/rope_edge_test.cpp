@@ -28,7 +28,11 @@ struct ThinPost {
     rigid::ShapeDef<Dim3> shape;
     shape.material.friction = float(mu);
     world.add_shape(world.create_body(def).value(), geometry::Cylinder{0.5f, float(post)}, shape).value();
-    const Vec3d points[] = {{-1, -0.4, 0}, {0, post + radius, 0}, {1, -0.4, 0}};
+    const double r = post + radius;
+    std::vector<Vec3d> points{{-r, -0.6, 0}};
+    for (int i = 0; i <= 8; ++i)
+      points.push_back({-r * math::cos(math::pi * i / 8), r * math::sin(math::pi * i / 8), 0});
+    points.push_back({r, -0.6, 0});
     ropes
         .add({.material = {.mass_per_length = 0.01,
                            .radius = radius,
@@ -41,7 +45,7 @@ struct ThinPost {
         .value();
     for (int k = 0; k < 2; ++k) {
       rigid::BodyDef<Dim3> body;
-      body.position = points[2 * k];
+      body.position = k == 0 ? points.front() : points.back();
       ends[k] = world.create_body(body).value();
       const double m = k == 0 ? first : second;
       world.set_mass_properties(ends[k], {m, {}, Mat3d::diagonal({.1, .1, .1})}).value();
@@ -69,39 +73,41 @@ struct ThinPost {
 };
 
 TEST(RopeEdges, LongSegmentsHangOverAThinPostWithoutPassingThrough) {
-  // 15 segments: the middle one lies across the post, its ends 7 cm away from a post of 2 cm.
+  // A segment of 9 cm lies across a post of 2 cm; laid straight through it at the start, it comes out.
   ThinPost hangs(0.5, 20, 20, 15);
+  hangs.run(0.5);
   double worst = 0;
   for (int i = 0; i < 120; ++i) {
     hangs.run(dt);
     worst = math::max(worst, hangs.deepest());
   }
   RecordProperty("deepest", std::to_string(worst));
-  EXPECT_LT(worst, 0.002);
-  EXPECT_GT(hangs.world.state(hangs.ends[0])->center_of_mass.y, -1.2) << "400 N on a rope of 22 g";
+  EXPECT_LT(worst, 0.001);
+  EXPECT_GT(hangs.world.state(hangs.ends[0])->center_of_mass.y, -0.75) << "200 N on each end of a rope of 13 g";
 }
 
 TEST(RopeEdges, WithoutFrictionItIsAtwoodsMachine) {
-  // The rope turns by more than a right angle over the post; pieces of 9 cm pass over it one by one.
+  // Segments of 5 cm pass over a post of 2 cm one by one.
   ThinPost atwood(0, 3, 2, 24);
-  atwood.run(0.5);  // until both hang
-  const double before[] = {atwood.speed(0), atwood.speed(1)};
-  (void)before;
-  ThinPost balanced(0, 2, 2, 24);
-  balanced.run(2);
-  EXPECT_NEAR(balanced.speed(0), balanced.speed(1), 0.25) << "nothing drives it";
+  atwood.run(0.1);
+  const double before = atwood.speed(0);
+  atwood.run(0.3);
+  const double found = (before - atwood.speed(0)) / 0.3, expected = g * (3 - 2) / (3 + 2);
+  RecordProperty("share", std::to_string(found / expected));
+  EXPECT_NEAR(found, expected, 0.1 * expected);
 }
 
 TEST(RopeEdges, FrictionHoldsWhatItHasTo) {
-  // e^{μφ} with φ near π once both hang: 3 : 2 needs μ > .13.
-  ThinPost holds(0.4, 3, 2, 24), slides(0.02, 3, 2, 24);
-  holds.run(3);
-  slides.run(1);
-  const double y = holds.world.state(holds.ends[0])->center_of_mass.y;
+  // 3 : 2 needs e^{μπ} > 1.5, μ > .13.
+  ThinPost holds(0.4, 3, 2, 24), slides(0.05, 3, 2, 24);
   holds.run(1);
-  EXPECT_NEAR(holds.world.state(holds.ends[0])->center_of_mass.y, y, 0.03);
+  slides.run(0.5);
+  const double y = holds.world.state(holds.ends[0])->center_of_mass.y;
+  holds.run(2);
+  RecordProperty("creep", std::to_string(y - holds.world.state(holds.ends[0])->center_of_mass.y));
+  EXPECT_NEAR(holds.world.state(holds.ends[0])->center_of_mass.y, y, 0.005);
   EXPECT_LT(slides.world.state(slides.ends[0])->center_of_mass.y,
-            holds.world.state(holds.ends[0])->center_of_mass.y - 0.1);
+            holds.world.state(holds.ends[0])->center_of_mass.y - 0.05);
 }
 
 TEST(RopeEdges, MomentumGoesToTheBodyThatASegmentMeets) {
