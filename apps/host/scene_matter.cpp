@@ -20,6 +20,8 @@ std::uint32_t foam(std::uint32_t color, float t) {
 }  // namespace
 
 void MatterPicture::begin(StageBase& stage, const scene::Matter& matter) {
+  const Declaration& d = stage.declaration();
+  least_ = float(0.0015 * (d.dimension == 2 ? d.camera.height : math::distance(d.camera.position, d.camera.target)));
   const auto triangles = [](std::span<const std::uint32_t> t) {
     return std::vector<std::uint32_t>(t.begin(), t.end());
   };
@@ -54,13 +56,13 @@ void MatterPicture::add_ropes(const scene::Matter& matter) {
     const float radius = float(matter.rope_set.material(rope.thing).radius);
     const auto bead = [&](math::Vec3d p) {
       places_.push_back(Vec3f(p));
-      radii_.push_back(math::max(radius, 0.012f));  // thinner ones are not seen
+      radii_.push_back(math::max(radius, least_));
       colors_.push_back(rope.color << 8 | 0xff);
     };
     for (std::size_t i = 0; i + 1 < positions.size(); ++i) {
       if (broken[i]) continue;
       const double way = math::distance(positions[i], positions[i + 1]);
-      const int pieces = math::clamp(int(way / (0.8 * math::max(double(radius), 0.012))), 1, 24);
+      const int pieces = math::clamp(int(way / (0.8 * double(math::max(radius, least_)))), 1, 24);
       for (int k = 0; k < pieces; ++k) bead(math::lerp(positions[i], positions[i + 1], double(k) / pieces));
     }
     bead(positions.back());
@@ -94,7 +96,7 @@ void MatterPicture::add_balls(const scene::MatterOf<D>& many) {
     entry.thing.system.look(found_, found_radii_, found_colors_);
     places_.insert(places_.end(), found_.begin(), found_.end());
     colors_.insert(colors_.end(), found_colors_.begin(), found_colors_.end());
-    for (const float r : found_radii_) radii_.push_back(math::max(r, 0.012f));
+    for (const float r : found_radii_) radii_.push_back(math::max(r, least_));
   }
 }
 

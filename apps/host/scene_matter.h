@@ -22,6 +22,7 @@ class MatterPicture {
   void add_ropes(const scene::Matter& matter);
   void set_surfaces(StageBase& stage, const scene::Matter& matter);
 
+  float least_ = 0;  ///< m: what is smaller is drawn so large, to be seen
   std::vector<int> cloths_, soft_bodies_;
   std::vector<math::Vec3f> places_, corners_, found_;
   std::vector<float> radii_, found_radii_;
