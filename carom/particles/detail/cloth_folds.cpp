@@ -8,17 +8,36 @@ using math::Vec3d;
 
 namespace {
 
-struct FoldCell {
-  std::int64_t x, y, z;
+/// Vertices by the cells of a box round them, along x first: what is near a triangle are a few runs of the list.
+struct FoldGrid {
+  Vec3d low{};
+  double inverse = 1;  // 1/m
+  int cells[3] = {1, 1, 1};
+
+  int along(double x, int axis) const {
+    const double c = (x - low[axis]) * inverse;
+    return c > 0 ? (c < cells[axis] ? int(c) : cells[axis] - 1) : 0;
+  }
+  std::size_t place(Vec3d p) const {
+    return std::size_t(along(p.x, 0) + cells[0] * (along(p.y, 1) + cells[1] * along(p.z, 2)));
+  }
+  std::size_t count() const { return std::size_t(cells[0]) * std::size_t(cells[1]) * std::size_t(cells[2]); }
 };
-FoldCell cell_of(Vec3d p, double size) {
-  return {std::int64_t(math::floor(p.x / size)), std::int64_t(math::floor(p.y / size)),
-          std::int64_t(math::floor(p.z / size))};
-}
-std::size_t place_of(FoldCell c, std::size_t mask) {
-  const std::uint64_t h = std::uint64_t(c.x) * 0x9E3779B97F4A7C15u ^ std::uint64_t(c.y) * 0xC2B2AE3D27D4EB4Fu ^
-                          std::uint64_t(c.z) * 0x165667B19E3779F9u;
-  return std::size_t(h ^ h >> 29) & mask;
+/// Cells of this size, or of a coarser one where there would be more than `most` of them.
+FoldGrid make_fold_grid(const std::vector<Vec3d>& position, double size, double most) {
+  FoldGrid grid;
+  Vec3d high = grid.low = position[0];
+  for (const Vec3d& p : position) {
+    grid.low = min(grid.low, p);
+    high = max(high, p);
+  }
+  const Vec3d extent = high - grid.low;
+  const auto cells = [&] { return (extent.x / size + 1) * (extent.y / size + 1) * (extent.z / size + 1); };
+  while (cells() > most && size < 1e9) size *= 1.3;
+  if (!(cells() <= most)) return grid;  // flown apart without measure: one cell
+  grid.inverse = 1 / size;
+  for (int k = 0; k < 3; ++k) grid.cells[k] = int(extent[k] / size) + 1;
+  return grid;
 }
 
 /// Shares of the corners at the foot of the perpendicular; false where it lies outside.
@@ -37,17 +56,17 @@ bool foot(Vec3f p, Vec3f a, Vec3f b, Vec3f& share, Vec3f& normal, float& height)
 }  // namespace
 
 void ClothState::keep_apart(float h) {
+  const std::size_t n = position.size(), most = 8 * n + 1024;
   const double size = 1.2 * double(mean_edge);
-  const std::size_t n = position.size();
-  std::size_t table = 64;
-  while (table < 2 * n) table *= 2;
-  cell_first.assign(table + 1, 0);
+  const FoldGrid grid = make_fold_grid(position, size, double(most));
+  cell_first.reserve(most + 1);
+  cell_first.assign(grid.count() + 1, 0);
   cell_list.resize(n);
-  for (std::size_t i = 0; i < n; ++i) ++cell_first[place_of(cell_of(position[i], size), table - 1) + 1];
-  for (std::size_t k = 0; k < table; ++k) cell_first[k + 1] += cell_first[k];
-  for (std::size_t i = n; i-- > 0;)  // from the back, so that a cell's list rises
-    cell_list[std::size_t(--cell_first[place_of(cell_of(position[i], size), table - 1) + 1])] = int(i);
-  // Each entry + 1 now holds the begin of its cell, as the one after holds its end.
+  for (const Vec3d& p : position) ++cell_first[grid.place(p) + 1];
+  for (std::size_t k = 0; k < grid.count(); ++k) cell_first[k + 1] += cell_first[k];
+  for (std::size_t i = 0; i < n; ++i) cell_list[std::size_t(cell_first[grid.place(position[i])]++)] = int(i);
+  for (std::size_t k = grid.count(); k > 0; --k) cell_first[k] = cell_first[k - 1];
+  cell_first[0] = 0;
   const float apart = math::min(float(fabric.thickness), 0.6f * smallest_edge);
   pairs.clear();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -59,28 +78,26 @@ void ClothState::keep_apart(float h) {
     Vec3d high = max(position[c[0]], max(position[c[1]], position[c[2]]));
     low -= Vec3d{margin, margin, margin};
     high += Vec3d{margin, margin, margin};
-    const FoldCell from = cell_of(low, size), to = cell_of(high, size);
-    if (to.x - from.x > 8 || to.y - from.y > 8 || to.z - from.z > 8) continue;  // stretched out of all measure
+    const int x0 = grid.along(low.x, 0), x1 = grid.along(high.x, 0);
+    const int y0 = grid.along(low.y, 1), y1 = grid.along(high.y, 1);
+    const int z0 = grid.along(low.z, 2), z1 = grid.along(high.z, 2);
+    if (x1 - x0 > 8 || y1 - y0 > 8 || z1 - z0 > 8) continue;  // stretched out of all measure
     const Vec3d origin = position[c[0]];
     const Vec3f a(position[c[1]] - origin), b(position[c[2]] - origin);
-    for (std::int64_t x = from.x; x <= to.x; ++x)
-      for (std::int64_t y = from.y; y <= to.y; ++y)
-        for (std::int64_t z = from.z; z <= to.z; ++z) {
-          const std::size_t place = place_of({x, y, z}, table - 1);
-          const int begin = cell_first[place + 1], end = place + 2 <= table ? cell_first[place + 2] : int(n);
-          for (int k = begin; k < end; ++k) {
-            const std::uint32_t v = std::uint32_t(cell_list[std::size_t(k)]);
-            if (v == c[0] || v == c[1] || v == c[2]) continue;
-            const Vec3d p = position[v];
-            const FoldCell own = cell_of(p, size);  // not another cell of the same place in the table
-            if (own.x != x || own.y != y || own.z != z) continue;
-            if (p.x < low.x || p.y < low.y || p.z < low.z || p.x > high.x || p.y > high.y || p.z > high.z) continue;
-            Vec3f share, normal;
-            float height = 0;
-            if (foot(Vec3f(p - origin), a, b, share, normal, height) && math::abs(height) < float(margin))
-              pairs.push_back({v, std::uint32_t(t)});
-          }
+    for (int z = z0; z <= z1; ++z)
+      for (int y = y0; y <= y1; ++y) {
+        const std::size_t row = std::size_t(grid.cells[0]) * std::size_t(y + grid.cells[1] * z);
+        for (int k = cell_first[row + std::size_t(x0)]; k < cell_first[row + std::size_t(x1) + 1]; ++k) {
+          const std::uint32_t v = std::uint32_t(cell_list[std::size_t(k)]);
+          if (v == c[0] || v == c[1] || v == c[2]) continue;
+          const Vec3d p = position[v];
+          if (p.x < low.x || p.y < low.y || p.z < low.z || p.x > high.x || p.y > high.y || p.z > high.z) continue;
+          Vec3f share, normal;
+          float height = 0;
+          if (foot(Vec3f(p - origin), a, b, share, normal, height) && math::abs(height) < float(margin))
+            pairs.push_back({v, std::uint32_t(t)});
         }
+      }
   }
   const auto lightness = [&](std::uint32_t i) {
     return pin_of[i] >= 0 && pins[std::size_t(pin_of[i])].mass == 0 ? 0.0f : 1 / mass[i];
