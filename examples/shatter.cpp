@@ -20,6 +20,7 @@ int main() {
   definition.pose.position = {0, 3, 0};
   definition.angular_velocity = {0.5f, 0, 1.5f};
   auto structure = blast::Structure3::make(world, definition).value();
+  blast::FractureStepper3 stepper;
   auto charge = blast::Explosion3::make({.position = {4, 0.1, 0}, .mass = 2, .time = 2}).value();
 
   constexpr float dt = 1.0f / 60;
@@ -28,8 +29,7 @@ int main() {
     for (const auto& load : charge.loads())
       if (const auto part = structure.part_of(load.shape); part != blast::ground)
         structure.add_load(part, load.impulse, load.point, load.duration);
-    world.step(dt).value();
-    structure.after_step(world, dt).value();
+    stepper.step(world, dt, structure).value();
     if (!structure.events().empty())
       std::printf("%.2f s: %zu bonds broke, %zu bodies\n", world.time(), structure.events().size(),
                   structure.cluster_count());

@@ -81,12 +81,28 @@ class CAROM_API Structure {
   /// numbers out of range, what the world refuses.
   static core::Result<Structure> make(World& world, const StructureDef<D>& definition);
 
-  /// After each step of `dt` s: breaks what must. Of a blow that broke bonds of what stands on the ground, what they
-  /// could not bear is given back to the striker, which goes on with it and meets the loose parts in the next step.
+  /// After each step of `dt` s: breaks what must. A FractureStepper in place of World::step does better where things
+  /// strike fast: here the step is over when the bonds break. Of a blow that broke bonds of what stands on the ground,
+  /// what they could not bear is given back to the striker, which meets the loose parts in the next step; a free body
+  /// keeps what the blow made of it.
   core::Status after_step(World& world, float dt);
   /// A load besides what touches: an impulse (N·s, at a point of the world) that acted within `duration` s on a part.
   /// It counts in the next after_step; the body has to be told of it by someone else (an Explosion does).
   void add_load(std::uint32_t part, Vector impulse, Position point, double duration);
+
+  // What a FractureStepper does, one by one, for loops with other models in them. A step: start_step; snapshot; the
+  // world's step; find_breaks. Where that says true: restore, bear, part_bodies, and from the snapshot again; else
+  // part_bodies.
+  void start_step();       ///< forgets the events of the last one
+  bool can_break() const;  ///< some bond still holds something
+  /// Breaks bonds by what the last step of the world did. True: contacts broke some, and parts came off.
+  core::Result<bool> find_breaks(World& world, float dt);
+  /// On the world as it was before that step: takes from strikers what the bonds bore.
+  core::Status bear(World& world);
+  /// Instead, where the step is not done again: what bonds to the ground could not bear goes back to the strikers.
+  core::Status give_back(World& world);
+  /// Makes bodies of what came off.
+  core::Status part_bodies(World& world);
 
   /// The part that a shape is of, or `ground` (none).
   std::uint32_t part_of(rigid::ShapeId shape) const;
@@ -128,10 +144,24 @@ class CAROM_API Structure {
     Position point;
     double duration;
   };
+  /// Of a contact, over the step that was done.
+  struct Blow {
+    std::uint32_t cluster = 0, part = 0;
+    Position point{};
+    Position impulse{};  // N·s, on the cluster
+    double duration = 0;
+    rigid::BodyId striker{};
+    double approach_speed = 0;              // m/s, 0: it was there before
+    double kept = 1;                        // what the bonds bore of it
+    Position cluster_arm{}, striker_arm{};  // m, of the point about the centres of mass
+  };
   core::Status make_body(World& world, Cluster& cluster, const typename D::Pose& frame, Vector velocity,
                          typename D::Angular spin);
   core::Status split(World& world, std::uint32_t cluster);
-  core::Status look_at(World& world, std::uint32_t cluster, float dt);
+  bool look_at(World& world, std::uint32_t cluster, float dt);
+  bool collect_blows(World& world, std::uint32_t cluster, float dt);
+  /// Worst stress by strength that had to be passed for parts to come off; 0: none did.
+  double break_bonds(World& world, std::uint32_t cluster);
 
   std::shared_ptr<const StructureDef<D>> definition_;
   std::vector<std::uint32_t> cluster_of_;
@@ -142,12 +172,48 @@ class CAROM_API Structure {
   std::vector<Load> loads_;
   std::vector<BreakEvent<D>> events_;
   std::vector<rigid::BodyId> made_, changed_;
+  std::vector<std::uint32_t> apart_;             // of the step
+  std::vector<Blow> blows_;                      // of the step; those of the cluster that is looked at come last
+  std::vector<rigid::ContactView<D>> contacts_;  // scratch
+  std::vector<rigid::BodyId> struck_;            // scratch: what hits were told of
   std::size_t broken_ = 0;
+};
+
+/// World::step for worlds with structures in them: where a blow breaks bonds it goes back to before the step, takes
+/// from the striker what the bonds bore, lets go what they no longer hold, and does the step again, so that the striker
+/// meets loose parts at its time and with the speed that it has left. Momentum and angular momentum are kept (what
+/// stands on the ground gives its share to the ground), energy is never won. What acts before the step (forces,
+/// impulses) is done again with it; CustomEffectors with a state of their own are asked again.
+template <class D>
+class CAROM_API FractureStepper {
+ public:
+  FractureStepper() = default;
+  FractureStepper(const FractureStepper&) {}  // there is nothing to copy but memory
+  FractureStepper& operator=(const FractureStepper&) { return *this; }
+
+  /// Does what World::step(dt) and after_step of all the structures do. Where the world is left after an error is its
+  /// state before the step or after it.
+  core::Status step(rigid::World<D>& world, float dt, std::span<Structure<D>* const> structures);
+  core::Status step(rigid::World<D>& world, float dt, Structure<D>& structure) {
+    Structure<D>* const one = &structure;
+    return step(world, dt, std::span(&one, 1));
+  }
+  /// How often the last step was done: 1 where nothing broke.
+  int rounds() const { return rounds_; }
+  static constexpr int most_rounds = 12;  ///< then what is left acts in the next step
+
+ private:
+  rigid::Snapshot<D> before_;
+  int rounds_ = 0;
 };
 
 extern template class CAROM_API Structure<rigid::Dim2>;
 extern template class CAROM_API Structure<rigid::Dim3>;
+extern template class CAROM_API FractureStepper<rigid::Dim2>;
+extern template class CAROM_API FractureStepper<rigid::Dim3>;
 using Structure2 = Structure<rigid::Dim2>;
 using Structure3 = Structure<rigid::Dim3>;
+using FractureStepper2 = FractureStepper<rigid::Dim2>;
+using FractureStepper3 = FractureStepper<rigid::Dim3>;
 
 }  // namespace carom::blast

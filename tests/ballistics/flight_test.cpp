@@ -64,6 +64,7 @@ TEST(Flight, SmallArmsAgainstTheReferenceIntegration) {
                 {{200, 2478.25, -1.918, .21647, 4.034},
                  {300, 2195.23, -9.526, .34510, 9.641},
                  {400, 1931.94, -24.390, .49079, 18.249},
+                 {500, 1685.21, -48.632, .65704, 30.478},
                  {600, 1453.12, -85.217, .84873, 47.184},
                  {800, 1065.82, -214.545, 1.33559, 98.807}}}};
   for (const auto& load : loads) {
@@ -169,6 +170,10 @@ TEST(Flight, PeriodArtilleryByTheSphereTable) {
     ASSERT_TRUE(flight);
     EXPECT_NEAR(flight->end().position.x / .9144, row.yards, 1e-3 * row.yards);
   }
+  // From a muzzle 1.15 m above the ground at 5°: 1487 yd.
+  const auto flight = fly(shot, {}, {{0, 1.15, 0}, 1440 * .3048 * direction(5 * degree)}, {.time = 100, .ground = 0});
+  ASSERT_TRUE(flight);
+  EXPECT_NEAR(flight->end().position.x / .9144, 1487, 1e-3 * 1487);
 }
 
 TEST(Flight, BadInputIsNamed) {

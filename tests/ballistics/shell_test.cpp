@@ -65,6 +65,8 @@ TEST(Shell, PointMassAgreesWithTheReferenceIntegration) {
   EXPECT_NEAR(range(684, 45 * degree).position.x, 17875.03, 1.8);
   EXPECT_NEAR(range(684, 45 * degree).time, 67.6226, .007);
   EXPECT_NEAR(range(337, 97.2 * 2 * math::pi / 6400).position.x, 2013.1, .2);
+  EXPECT_NEAR(range(337, 211.6 * 2 * math::pi / 6400).position.x, 4017.4, .4);
+  EXPECT_NEAR(range(474, 258.4 * 2 * math::pi / 6400).position.x, 7036.0, .7);
   EXPECT_NEAR(range(474, 539.9 * 2 * math::pi / 6400).position.x, 10977.7, 1.1);
 }
 
@@ -143,6 +145,9 @@ TEST(Spin, MillerLitzAndTheJump) {
   EXPECT_NEAR(spin_drift(stability, 1.464), 6.192, 1e-3);
   EXPECT_NEAR(miller_stability({168, .308, 1.215}, 11, 2650), 2.032, 5e-4);
   EXPECT_NEAR(miller_stability({62, .224, .906}, 7, 3100), 2.497, 5e-4);
+  // The public note's worked example says 1:8 and 1.49; by its own formula that is 1:9.
+  EXPECT_NEAR(miller_stability(heavy, 8, 3006.6), 1.883, 5e-4 * 2);
+  EXPECT_NEAR(miller_stability(heavy, 9, 3006.6), 1.488, 5e-4);
   EXPECT_NEAR(miller_stability(heavy, 8, 3006.6) / miller_stability(heavy, 12, 3006.6), 2.25, 1e-12);
   EXPECT_NEAR(aerodynamic_jump(1.49, {220, .308, 1.5}), .0149 - .0024 * 4.870130 + .032, 1e-7);
 }

@@ -75,6 +75,8 @@ TEST(Sights, PublishedRangeTables) {
   EXPECT_NEAR(heavy.at(500 * yard)->speed / foot, 2118.1, 6.4);
   EXPECT_NEAR(heavy.at(500 * yard)->height / inch, -45.0, .55);
   EXPECT_NEAR(heavy.at(500 * yard)->side / inch, 1.2, .1);
+  EXPECT_NEAR(heavy.at(1000 * yard)->speed / foot, 1417.8, .003 * 1417.8);
+  EXPECT_NEAR(heavy.at(1000 * yard)->time, 1.464, .003 * 1.464);
   EXPECT_NEAR(heavy.at(1000 * yard)->height / inch, -293.6, 1.1);
   EXPECT_NEAR(heavy.at(1000 * yard)->side / inch, 6.2, .1);
 }

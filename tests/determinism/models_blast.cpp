@@ -43,14 +43,14 @@ void blast_models(int width) {
   d.material = blast::bond_material(blast::Substance::brick_and_mortar);
   blast::anchor_below(d, 0.05);
   auto structure = blast::Structure3::make(world, d).value();
+  blast::FractureStepper3 stepper;
   auto charge = blast::Explosion3::make({.position = {0.2, 0.3, 2}, .mass = 2}).value();
   for (int i = 0; i < 60; ++i) {
     (void)charge.apply(world, 1.0 / 60);
     for (const auto& load : charge.loads())
       if (const std::uint32_t part = structure.part_of(load.shape); part != blast::ground)
         structure.add_load(part, load.impulse, load.point, load.duration);
-    (void)world.step(1 / 60.f);
-    (void)structure.after_step(world, 1 / 60.f);
+    (void)stepper.step(world, 1 / 60.f, structure);
   }
   hash.add(world.state_hash()).add(std::uint64_t(structure.cluster_count())).add(std::uint64_t(structure.broken()));
   print_model("blasted_wall", hash);

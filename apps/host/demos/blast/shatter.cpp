@@ -81,8 +81,11 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
     ball_ = stage.add(body, geometry::Sphere{radius}, {.density = 7800, .material = {.user_id = 0xff000000u | dark}});
   }
 
+  core::Status step(Stage3& stage) override {
+    return stepper_.step(stage.world(), float(stage.declaration().dt), wall_);
+  }
+
   void after_step(Stage3& stage) override {
-    stage.check(wall_.after_step(stage.world(), float(stage.declaration().dt)));
     show_changes(stage, wall_);
     const double t = stage.world().time();
     stage.sample(0, 0, t, double(wall_.cluster_count()));
@@ -110,6 +113,7 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
     return w;
   }
   blast::Structure3 wall_;
+  blast::FractureStepper3 stepper_;
   rigid::BodyId ball_;
   double mass_ = 0;
   int shots_ = 0;
