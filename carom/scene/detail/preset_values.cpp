@@ -1,0 +1,88 @@
+#include "carom/scene/detail/preset_values.h"
+
+#include "carom/core/string.h"
+#include "carom/math/units.h"
+
+namespace carom::scene::detail {
+
+bool PresetValues::has(std::string_view name) const {
+  for (const sports::Number& n : numbers)
+    if (n.name == name) return true;
+  for (const PresetText& t : texts)
+    if (t.name == name) return true;
+  return false;
+}
+double PresetValues::number(std::string_view name, double otherwise) const {
+  for (const sports::Number& n : numbers)
+    if (n.name == name) return n.value;
+  return otherwise;
+}
+std::string_view PresetValues::text(std::string_view name, std::string_view otherwise) const {
+  for (const PresetText& t : texts)
+    if (t.name == name) return t.value;
+  return otherwise;
+}
+
+core::Error preset_error(std::string_view file, const Node& at, std::string_view where, const std::string& message) {
+  return core::Error{core::text(file, ":", at.line, ": ", where, ": ", message)};
+}
+
+core::Result<Node> read_preset_tree(std::string_view text, std::string_view file, bool array) {
+  auto document = parse_document(text, file, 0, {.bytes = 1u << 20, .nodes = 4096, .depth = 8});
+  if (!document) return document.error();
+  if (!document->is_object())
+    return preset_error(file, *document, "preset", "found " + show(*document) + ", expected an object");
+  for (const std::string& key : document->keys)
+    if (key != "description" && key != "source" && key != "values")
+      return preset_error(file, *document->find(key), key, "found a key that a preset does not have");
+  const Node* values = document->find("values");
+  if (values == nullptr || !(array ? values->is_array() : values->is_object()))
+    return preset_error(file, values ? *values : *document, "values",
+                        array ? "expected a list of objects" : "expected an object of named quantities");
+  return document;
+}
+
+core::Result<double> read_preset_quantity(const Node& node, std::string_view unit, std::string_view file,
+                                          std::string_view where) {
+  if (node.kind == NodeKind::number && unit.empty()) return node.number;
+  if (!node.is_text())
+    return preset_error(file, node, where,
+                        "found " + show(node) + ", expected " +
+                            (unit.empty() ? std::string("a number") : "a quantity in " + std::string(unit)));
+  const math::QuantityResult known = math::parse_quantity("1 " + std::string(unit));
+  const math::QuantityResult quantity =
+      math::parse_quantity(node.text, unit.empty() ? math::Dimension{} : known.dimension);
+  if (!quantity.ok) return preset_error(file, node, where, quantity.error);
+  return quantity.si;
+}
+
+core::Result<PresetValues> read_preset(std::string_view text, std::string_view file,
+                                       std::span<const sports::NumberName> names,
+                                       std::span<const std::string_view> texts) {
+  auto tree = read_preset_tree(text, file, false);
+  if (!tree) return tree.error();
+  PresetValues out{.root = std::move(*tree), .numbers = {}, .texts = {}};
+  const Node& values = *out.root.find("values");
+  for (std::size_t i = 0; i < values.keys.size(); ++i) {
+    const std::string& key = values.keys[i];
+    const Node& node = values.children[i];
+    const std::string where = "values." + key;
+    bool is_text = false;
+    for (const std::string_view name : texts) is_text = is_text || name == key;
+    if (is_text) {
+      if (!node.is_text()) return preset_error(file, node, where, "found " + show(node) + ", expected a name");
+      out.texts.push_back({key, node.text});
+      continue;
+    }
+    const sports::NumberName* known = nullptr;
+    for (const sports::NumberName& name : names)
+      if (name.name == key) known = &name;
+    if (known == nullptr) return preset_error(file, node, where, "found a name that is not known here");
+    const auto quantity = read_preset_quantity(node, known->unit, file, where);
+    if (!quantity) return quantity.error();
+    out.numbers.push_back({key, *quantity});
+  }
+  return core::Result<PresetValues>(std::move(out));  // moved, never copied: the names live in the tree
+}
+
+}  // namespace carom::scene::detail

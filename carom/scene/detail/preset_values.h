@@ -1,0 +1,40 @@
+// Preset files that are one flat list of quantities: {"description", "source", "values": {name: quantity or text}}.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carom/core/result.h"
+#include "carom/scene/detail/document.h"
+#include "carom/sports/numbers.h"
+
+namespace carom::scene::detail {
+
+struct PresetText {
+  std::string name, value;
+};
+struct PresetValues {
+  Node root;
+  std::vector<sports::Number> numbers;  // SI; names live in `root`
+  std::vector<PresetText> texts;
+
+  bool has(std::string_view name) const;
+  double number(std::string_view name, double otherwise) const;
+  std::string_view text(std::string_view name, std::string_view otherwise = "") const;
+};
+
+/// "file:line: values.mass: found …, expected …"
+core::Error preset_error(std::string_view file, const Node& at, std::string_view where, const std::string& message);
+/// Quantities of these names, and texts of those; others, and what is named twice, are errors.
+core::Result<PresetValues> read_preset(std::string_view text, std::string_view file,
+                                       std::span<const sports::NumberName> names,
+                                       std::span<const std::string_view> texts);
+/// One quantity, in the unit's dimension (empty: a plain number), or an error.
+core::Result<double> read_preset_quantity(const Node& node, std::string_view unit, std::string_view file,
+                                          std::string_view where);
+/// The tree of a preset with its values, whose kind is checked: "values" an object, or an array where `array` says so.
+core::Result<Node> read_preset_tree(std::string_view text, std::string_view file, bool array);
+
+}  // namespace carom::scene::detail

@@ -1,0 +1,200 @@
+#include "carom/scene/weapon_presets.h"
+
+#include "carom/core/string.h"
+#include "carom/scene/detail/preset_values.h"
+
+namespace carom::scene {
+namespace {
+
+using detail::PresetValues;
+using sports::NumberName;
+
+core::Error told_of(std::string_view file, const core::Error& error) {
+  return core::Error{core::text(file, ": ", error.message)};
+}
+
+/// A name of a preset, never a path.
+bool plain_name(std::string_view name) {
+  if (name.empty() || name.size() > 80) return false;
+  for (const char c : name)
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
+      return false;
+  return true;
+}
+
+/// The number of that name into `into`, where the file has it.
+void take(const PresetValues& values, std::string_view name, double& into) { into = values.number(name, into); }
+
+}  // namespace
+
+core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std::string_view file) {
+  static constexpr NumberName names[] = {{"ballistic_coefficient", ""},
+                                         {"drag_coefficient", ""},
+                                         {"form_factor", ""},
+                                         {"mass", "kg"},
+                                         {"diameter", "m"},
+                                         {"length", "m"},
+                                         {"muzzle_speed", "m/s"},
+                                         {"speed_deviation", "m/s"},
+                                         {"powder_mass", "kg"},
+                                         {"gas_speed", "m/s"}};
+  static constexpr std::string_view texts[] = {"drag_function"};
+  const auto values = detail::read_preset(text, file, names, texts);
+  if (!values) return values.error();
+  const auto error = [&](std::string_view where, const std::string& message) {
+    return detail::preset_error(file, *values->root.find("values"), "values." + std::string(where), message);
+  };
+  for (const std::string_view needed : {"mass", "diameter", "muzzle_speed"})
+    if (!values->has(needed)) return error(needed, "is missing");
+  ballistics::Ammunition a;
+  take(*values, "mass", a.mass);
+  take(*values, "diameter", a.diameter);
+  take(*values, "length", a.length);
+  take(*values, "muzzle_speed", a.muzzle_speed);
+  take(*values, "speed_deviation", a.speed_deviation);
+  take(*values, "powder_mass", a.powder_mass);
+  take(*values, "gas_speed", a.gas_speed);
+  if (values->has("drag_function") == values->has("drag_coefficient"))
+    return error("drag_function", "expected either a drag_function or a drag_coefficient");
+  const double coefficient = values->number("drag_coefficient", 0), form = values->number("form_factor", 1);
+  if (!(coefficient >= 0) || !math::is_finite(coefficient))
+    return error("drag_coefficient", core::refused("it", coefficient, "a finite number >= 0"));
+  if (!(form > 0) || !math::is_finite(form))
+    return error("form_factor", core::refused("it", form, "a finite number > 0"));
+  ballistics::DragCurve curve(coefficient);
+  if (values->has("drag_function")) {
+    const auto function = ballistics::drag_function_from_name(values->text("drag_function"));
+    if (!function)
+      return error("drag_function", core::text("found ", core::quoted(values->text("drag_function")),
+                                               ", expected g1, g2, g5, g6, g7, g8, gi, gs or ra4"));
+    curve = ballistics::DragCurve(*function);
+  }
+  if (values->has("ballistic_coefficient")) {
+    const double bc = values->number("ballistic_coefficient", 1);
+    if (!(bc > 0) || !math::is_finite(bc))
+      return error("ballistic_coefficient", core::refused("it", bc, "a finite number of lb/in² > 0"));
+    if (!values->has("drag_function")) return error("ballistic_coefficient", "expected a drag_function beside it");
+    a.projectile = ballistics::projectile_from_coefficient(ballistics::DragFunction::g1, bc);
+    a.projectile.drag = curve;
+    a.projectile.area_per_mass *= form;
+  } else {
+    if (!(a.mass > 0 && a.diameter > 0)) return error("mass", "expected a mass and a diameter above zero");
+    a.projectile = ballistics::projectile_from_size(curve, a.mass, a.diameter, form);
+  }
+  if (auto s = ballistics::check(a); !s) return told_of(file, s.error());
+  return a;
+}
+
+core::Result<ballistics::Sight> parse_sight(std::string_view text, std::string_view file) {
+  static constexpr NumberName names[] = {{"height", "m"}, {"click", "rad"}, {"spacing", "rad"}, {"magnification", ""}};
+  const auto values = detail::read_preset(text, file, names, {});
+  if (!values) return values.error();
+  ballistics::Sight s;
+  take(*values, "height", s.height);
+  take(*values, "click", s.click);
+  take(*values, "spacing", s.spacing);
+  take(*values, "magnification", s.magnification);
+  if (auto checked = ballistics::check(s); !checked) return told_of(file, checked.error());
+  return s;
+}
+
+core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_view file,
+                                           const PresetResolver& resolver) {
+  static constexpr NumberName names[] = {{"mass", "kg"},
+                                         {"muzzle_speed", "m/s"},
+                                         {"twist", "m"},
+                                         {"zero", "m"},
+                                         {"dispersion", "rad"},
+                                         {"rounds_per_minute", ""},
+                                         {"mount_mass", "kg"},
+                                         {"mount_inertia", "kg*m^2"},
+                                         {"mount_bore_above_shoulder", "m"},
+                                         {"mount_bore_beside_shoulder", "m"},
+                                         {"mount_push_frequency", "Hz"},
+                                         {"mount_push_damping", ""},
+                                         {"mount_rise_frequency", "Hz"},
+                                         {"mount_rise_damping", ""}};
+  static constexpr std::string_view texts[] = {"ammunition", "sight"};
+  const auto values = detail::read_preset(text, file, names, texts);
+  if (!values) return values.error();
+  const auto error = [&](std::string_view where, const std::string& message) {
+    return detail::preset_error(file, *values->root.find("values"), "values." + std::string(where), message);
+  };
+  const auto preset = [&](std::string_view kind) -> core::Result<std::string> {
+    const std::string_view name = values->text(kind);
+    if (!plain_name(name))
+      return error(kind, core::text("found ", core::quoted(name), ", expected the name of a preset"));
+    if (!resolver) return error(kind, "there is nobody to ask for presets");
+    auto found = resolver(core::text("presets/", kind, "/", name, ".json"));
+    if (!found) return error(kind, found.error().message);
+    return found;
+  };
+  ballistics::Weapon w;
+  const auto ammunition = preset("ammunition");
+  if (!ammunition) return ammunition.error();
+  auto round = parse_ammunition(*ammunition, core::text("presets/ammunition/", values->text("ammunition"), ".json"));
+  if (!round) return error("ammunition", round.error().message);
+  w.ammunition = *round;
+  if (values->has("sight")) {
+    const auto sight = preset("sight");
+    if (!sight) return sight.error();
+    const auto read = parse_sight(*sight, core::text("presets/sight/", values->text("sight"), ".json"));
+    if (!read) return error("sight", read.error().message);
+    w.sight = *read;
+  }
+  take(*values, "mass", w.mass);
+  take(*values, "muzzle_speed", w.muzzle_speed);
+  take(*values, "twist", w.twist);
+  take(*values, "zero", w.zero);
+  take(*values, "dispersion", w.dispersion);
+  take(*values, "rounds_per_minute", w.rounds_per_minute);
+  take(*values, "mount_mass", w.mount.mass);
+  take(*values, "mount_inertia", w.mount.inertia);
+  take(*values, "mount_bore_above_shoulder", w.mount.bore_above_shoulder);
+  take(*values, "mount_bore_beside_shoulder", w.mount.bore_beside_shoulder);
+  take(*values, "mount_push_frequency", w.mount.push_frequency);
+  take(*values, "mount_push_damping", w.mount.push_damping);
+  take(*values, "mount_rise_frequency", w.mount.rise_frequency);
+  take(*values, "mount_rise_damping", w.mount.rise_damping);
+  if (auto s = ballistics::check(w); !s) return told_of(file, s.error());
+  return w;
+}
+
+core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, std::string_view file) {
+  static constexpr NumberName names[] = {{"thickness", "m"},          {"strength", "Pa"},    {"inertia", "kg/m^3"},
+                                         {"limit_speed", "m/s"},      {"density", "kg/m^3"}, {"ricochet_angle", "rad"},
+                                         {"ricochet_restitution", ""}};
+  const auto tree = detail::read_preset_tree(text, file, true);
+  if (!tree) return tree.error();
+  const detail::Node& list = *tree->find("values");
+  if (list.children.empty() || list.children.size() > 100)
+    return detail::preset_error(file, list, "values", "expected 1 to 100 layers");
+  std::vector<ballistics::Layer> layers;
+  for (std::size_t i = 0; i < list.children.size(); ++i) {
+    const detail::Node& node = list.children[i];
+    const std::string at = core::text("values[", i, "]");
+    if (!node.is_object())
+      return detail::preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
+    ballistics::Layer layer;
+    double* const fields[] = {&layer.thickness, &layer.medium.strength, &layer.medium.inertia,      &layer.limit_speed,
+                              &layer.density,   &layer.ricochet_angle,  &layer.ricochet_restitution};
+    for (std::size_t k = 0; k < node.keys.size(); ++k) {
+      const std::string where = at + "." + node.keys[k];
+      if (node.keys[k] == "name") continue;
+      double* field = nullptr;
+      std::string_view unit;
+      for (std::size_t f = 0; f < std::size(names); ++f)
+        if (names[f].name == node.keys[k]) field = fields[f], unit = names[f].unit;
+      if (field == nullptr)
+        return detail::preset_error(file, node.children[k], where, "found a name that is not known here");
+      const auto quantity = detail::read_preset_quantity(node.children[k], unit, file, where);
+      if (!quantity) return quantity.error();
+      *field = *quantity;
+    }
+    layers.push_back(layer);
+  }
+  if (auto s = ballistics::check_layers(layers); !s) return told_of(file, s.error());
+  return layers;
+}
+
+}  // namespace carom::scene

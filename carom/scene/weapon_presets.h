@@ -1,0 +1,33 @@
+// Guns, ammunition, sights and walls of carom/ballistics from preset files: {"description", "source", "values":
+// {name: quantity or name}}; a wall's values are a list, a layer each.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carom/ballistics/weapon.h"
+#include "carom/core/result.h"
+#include "carom/export.h"
+
+namespace carom::scene {
+
+/// Gives the text of presets/KIND/NAME.json.
+using PresetResolver = std::function<core::Result<std::string>(std::string_view path)>;
+
+// Errors name file, line, value, what was found and what was expected; `file` is how they call the text.
+/// presets/ammunition/NAME.json: "drag_function" (by name) or "drag_coefficient", "ballistic_coefficient" or none
+/// (then by mass, diameter and form_factor), "mass", "diameter", "length", "muzzle_speed", "speed_deviation",
+/// "powder_mass", "gas_speed".
+CAROM_API core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std::string_view file);
+/// presets/sight/NAME.json: "height", "click", "spacing", "magnification".
+CAROM_API core::Result<ballistics::Sight> parse_sight(std::string_view text, std::string_view file);
+/// presets/gun/NAME.json: "ammunition" and "sight" by name, asked of `resolver` as "presets/ammunition/NAME.json"; the
+/// numbers of a Weapon and, as "mount_…", of its mount.
+CAROM_API core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_view file,
+                                                     const PresetResolver& resolver);
+/// presets/wall/NAME.json: layers from the side of the shooter.
+CAROM_API core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, std::string_view file);
+
+}  // namespace carom::scene

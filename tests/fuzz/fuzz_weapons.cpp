@@ -1,0 +1,63 @@
+// Presets of guns, ammunition, sights and walls from anybody: numbers that can be, or a clear error that names the
+// file.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "carom/scene/weapon_presets.h"
+
+namespace {
+
+void require(bool true_of_all, const char* what) {
+  if (true_of_all) return;
+  std::fprintf(stderr, "%s\n", what);
+  std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace carom;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto named = [](const auto& result) {
+    require(result.ok() || result.error().message.starts_with("f"), "an error that does not name the file");
+    return result.ok();
+  };
+  const auto round = scene::parse_ammunition(text, "f");
+  if (named(round)) {
+    require(ballistics::check(*round).ok(), "ammunition that cannot be");
+    const auto flight =
+        ballistics::fly(round->projectile, {}, {{}, {round->muzzle_speed, 0, 0}}, {.time = 0.05, .tolerance = 1e-6});
+    require(!flight.ok() || math::is_finite(math::length(flight->end().position)), "a flight that is not finite");
+  }
+  const auto sight = scene::parse_sight(text, "f");
+  if (named(sight)) require(ballistics::check(*sight).ok(), "a sight that cannot be");
+  // The gun's own file stands for those it names, too.
+  const auto resolver = [&](std::string_view path) -> core::Result<std::string> {
+    require(path.starts_with("presets/") && path.find("..") == std::string_view::npos, "a path out of the presets");
+    if (path.starts_with("presets/sight")) return std::string(R"({"values": {"height": "5 cm"}})");
+    return std::string(
+        R"({"values": {"mass": "10 g", "diameter": "8 mm", "muzzle_speed": "800 m/s", "drag_function": "g7"}})");
+  };
+  const auto gun = scene::parse_gun(text, "f", resolver);
+  if (named(gun)) {
+    require(ballistics::check(*gun).ok(), "a gun that cannot be");
+    require(math::is_finite(ballistics::free_recoil(*gun).energy), "a recoil that is not finite");
+    const double shots[] = {0, 0.1};
+    const auto motion =
+        ballistics::recoil_at(gun->mount, ballistics::recoil_impulse(ballistics::charge_of(*gun)), shots, 0.3);
+    require(math::is_finite(motion.back) && math::is_finite(motion.rise), "a motion that is not finite");
+  }
+  const auto wall = scene::parse_wall(text, "f");
+  if (named(wall)) {
+    const auto passages = ballistics::penetrate({}, *wall);
+    require(passages.ok(), "a wall that cannot be");
+    double speed = 800;
+    for (const auto& p : *passages) {
+      require(p.speed_out >= 0 && p.speed_out <= speed * (1 + 1e-12), "a wall that gives speed");
+      speed = p.speed_out;
+    }
+  }
+  return 0;
+}
