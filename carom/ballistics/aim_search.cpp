@@ -1,0 +1,208 @@
+// Where the aim solver looks for shots, and how it knows that there are none.
+#include "carom/ballistics/detail/aim_solver.h"
+
+namespace carom::ballistics::detail {
+
+AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
+                     core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
+    : projectile_(projectile), conditions_(conditions), shooter_(shooter), target_(target), options_(options) {
+  const double density = conditions.air.at(shooter.muzzle.y).density;
+  const double speed = shooter.muzzle_speed;
+  sound_ = conditions.air.at(shooter.muzzle.y).speed_of_sound;
+  const double k = 0.5 * density * projectile.drag(speed / sound_) * projectile.area_per_mass;
+  decay_ = k > 0 ? 1 / (k * speed) : 1e30;
+  fall_speed_ = math::min(speed, math::sqrt(conditions.gravity * decay_ * speed));
+}
+
+Aims AimSolver::scan() const {
+  const double fastest =
+      shooter_.muzzle_speed + math::length(shooter_.velocity) + math::length(conditions_.wind.at(shooter_.muzzle.y));
+  const double first_time = math::max(
+      1e-4, 0.2 * math::length(target_(0) - shooter_.muzzle) / (fastest + math::length(velocity_of_target(0))));
+  const double ratio = math::max(options_.longest_time / first_time, 1.01);
+  const int steps = 160;
+  Aims aims;
+  Guess previous{vacuum(first_time), first_time};
+  Need at_previous = need(previous), before{};
+  Guess before_guess{};
+  for (int i = 1; i <= steps; ++i) {
+    Guess next{previous.u, first_time * math::pow(ratio, double(i) / steps)};
+    if (!at_previous.known || math::length(previous.u) > 4 * shooter_.muzzle_speed) next.u = vacuum(next.time);
+    const Need at_next = need(next);
+    if (!at_next.known) continue;
+    if (at_previous.known && (at_previous.lack < 0) != (at_next.lack < 0)) {
+      bisect(previous, at_previous, next, aims);
+    } else if (before.known && at_previous.known && at_previous.lack < 0 && at_previous.lack > before.lack &&
+               at_previous.lack > at_next.lack) {
+      touch(before_guess, previous, at_previous.lack, next, aims);  // a peak below zero between samples may reach it
+    }
+    before = at_previous;
+    before_guess = previous;
+    previous = next;
+    at_previous = at_next;
+  }
+  return aims;
+}
+
+void AimSolver::keep(Aims& aims, const Root& root) const {
+  if (!root.found || root.guess.time > options_.longest_time) return;
+  const Shot shot{(root.guess.u - shooter_.velocity) / shooter_.muzzle_speed, root.guess.time, root.arrival.position,
+                  root.arrival.velocity};
+  if (!aims.low || shot.time < aims.low->time) aims.low = shot;
+  if (!aims.high || shot.time > aims.high->time) aims.high = shot;
+}
+
+bool AimSolver::two_arcs(Aims& aims, bool steady) const {
+  // In vacuum the lack is cheap: more than one peak there means a target whose motion makes further arcs.
+  constexpr int samples = 48;
+  double previous = -1e300;
+  int peaks = 0;
+  bool rises = true;
+  for (int i = 1; i <= samples; ++i) {
+    const double lack = vacuum_lack(options_.longest_time * math::square(double(i) / samples));
+    if (rises && lack < previous) ++peaks;
+    rises = lack >= previous;
+    previous = lack;
+  }
+  if (peaks + (rises ? 1 : 0) > 1) return false;
+  const bool far = steady && looks_far();
+  if (far && out_of_reach()) return true;
+  return by_guesses(aims) || (steady && !far && out_of_reach()) || climb(aims);
+}
+
+/// Straight at the target, by the time of flight of quadratic drag.
+double AimSolver::flat_time() const {
+  const double speed = shooter_.muzzle_speed;
+  double time = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double way = math::length(target_(time) - shooter_.muzzle - time * shooter_.velocity);
+    const double worn = math::min(way / (decay_ * speed), 5.0);
+    time = worn > 1e-6 ? decay_ * math::expm1(worn) : way / speed;
+  }
+  return time;
+}
+
+/// On such a flight it would fall by more than the shots that go farthest do (.3 to .55 of the way).
+bool AimSolver::looks_far() const {
+  const double time = flat_time();
+  return 0.5 * conditions_.gravity * time * time > 0.65 * math::length(target_(time) - shooter_.muzzle);
+}
+
+bool AimSolver::by_guesses(Aims& aims) const {
+  const double speed = shooter_.muzzle_speed, g = conditions_.gravity;
+  const double fall_speed = math::sqrt(g * decay_ * speed);
+  const double time = flat_time();
+  if (!(time > 0)) return false;
+  const Vec3d flat = target_(time) - shooter_.muzzle + Vec3d{0, 0.5 * g * time * time, 0} - time * shooter_.velocity;
+  const Root low = refine({shooter_.velocity + (speed / math::length(flat)) * flat, time}, 14, true);
+  if (!low.found) return false;
+  if (!options_.high_arc) {
+    // It is the earliest where a little less time would need more speed; the slope tells, unless it is near the peak.
+    if (low.slope * low.guess.time < -0.1 * speed) {
+      keep(aims, low);
+      return true;
+    }
+    Guess sooner{low.guess.u, 0.98 * low.guess.time};
+    const Need at_sooner = need(sooner);
+    if (!at_sooner.known || at_sooner.lack >= 0) return false;
+    keep(aims, low);
+    return true;
+  }
+  // High: nearly straight up, and down at the terminal speed.
+  const double ratio = speed / fall_speed;
+  const double up = ratio > 1e-3 ? fall_speed / g * math::atan(ratio) : speed / g;
+  const double height =
+      ratio > 1e-3 ? fall_speed * fall_speed / (2 * g) * math::log1p(ratio * ratio) : speed * speed / (2 * g);
+  const double deep = math::max(height - (target_(up).y - shooter_.muzzle.y), 0.0);
+  const double down = ratio > 1e-3
+                          ? fall_speed / g * math::log1p(math::expm1(deep * g / (fall_speed * fall_speed)) * 2) * 0.5 +
+                                math::sqrt(2 * deep / g) * 0.5
+                          : math::sqrt(2 * deep / g);
+  Guess guess{{}, 0.95 * (up + down)};
+  const Vec3d way = target_(guess.time) - shooter_.muzzle - guess.time * shooter_.velocity;
+  const double flown = math::max(math::hypot(way.x, way.z), 1e-9);
+  const double level = math::min(flown / (2 * height + deep) * speed, 0.7 * speed);
+  const double climb = math::sqrt(speed * speed - level * level);
+  guess.u = shooter_.velocity + Vec3d{level * way.x / flown, climb, level * way.z / flown};
+  const Root high = refine(guess);
+  if (!high.found || high.guess.time < 1.001 * low.guess.time) return false;  // two roots are all there are
+  keep(aims, low);
+  keep(aims, high);
+  return true;
+}
+
+bool AimSolver::out_of_reach() const {
+  const Vec3d way = target_(0) - shooter_.muzzle;
+  const double away = math::hypot(way.x, way.z), level = math::atan2(way.y, away);
+  if (away < 0.3 * math::length(way) || math::length(velocity_of_target(0)) > 0.2 * shooter_.muzzle_speed ||
+      math::length(shooter_.velocity) > 0.5 * shooter_.muzzle_speed)
+    return false;
+  constexpr int shots = 5;
+  double elevation[shots], over[shots], azimuth = math::atan2(way.z, way.x);
+  int best = 0;
+  for (int i = 0; i < shots; ++i) {
+    elevation[i] = level + (1.5 - level) * (i + 0.5) / shots;
+    const Pass at = pass(elevation[i], azimuth);
+    if (!at.plain || at.over > -0.05 * away) return false;
+    over[i] = at.over;
+    azimuth += at.aside;
+    if (over[i] > over[best]) best = i;
+  }
+  if (best == 0 || best == shots - 1) return false;
+  // A parabola through the best and its neighbours: the peak is b²/4a above the middle one.
+  const double a = over[best] - 0.5 * (over[best - 1] + over[best + 1]), b = 0.5 * (over[best + 1] - over[best - 1]);
+  return a > 0 && over[best] + 2 * b * b / (4 * a) < -0.05 * away;
+}
+
+bool AimSolver::climb(Aims& aims) const {
+  constexpr double golden = 0.6180339887498949;
+  double low = math::log(1e-3), high = math::log(options_.longest_time);
+  const auto in_vacuum = [&](double x) { return vacuum_lack(math::exp(x)); };
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  for (int i = 0; i < 24; ++i) {
+    (in_vacuum(a) > in_vacuum(b) ? high : low) = in_vacuum(a) > in_vacuum(b) ? b : a;
+    a = high - golden * (high - low);
+    b = low + golden * (high - low);
+  }
+  // With drag the peak lies elsewhere, but the way up to it can be felt, in shrinking strides of ln T.
+  const double latest = math::log(options_.longest_time);
+  Guess top{vacuum(math::exp(a)), math::exp(a)};
+  Need at_top = need(top);
+  if (!at_top.known) return false;
+  double stride = 0.4;
+  for (int i = 0; i < 60 && at_top.lack < 0 && stride > 2e-3; ++i) {
+    const double x = math::min(math::log(top.time) + stride, latest);
+    Guess next{top.u, math::exp(x)};
+    const Need at_next = need(next);
+    if (at_next.known && at_next.lack > at_top.lack && next.time > top.time) {
+      top = next;
+      at_top = at_next;
+      continue;
+    }
+    Guess back{top.u, top.time * math::exp(-stride)};
+    const Need at_back = need(back);
+    if (at_back.known && at_back.lack > at_top.lack) {
+      top = back;
+      at_top = at_back;
+    } else {
+      stride *= 0.4;
+    }
+  }
+  // Below zero at the peak of a smooth hill whose sides are strides of .002 away: no solution.
+  if (at_top.lack < 0) return true;
+  for (const double step : {1 / 1.3, 1.3}) {
+    Guess inside = top, outside = top;
+    Need at_outside = at_top;
+    for (int i = 0; i < 60 && at_outside.lack >= 0; ++i) {
+      inside = outside;
+      outside.time *= step;
+      if (outside.time > options_.longest_time * 1.3 || outside.time < 1e-5) break;
+      at_outside = need(outside);
+      if (!at_outside.known) return false;
+    }
+    if (at_outside.lack < 0 && !bisect(inside, {true, 1}, outside, aims)) return false;
+  }
+  return aims.low.has_value();
+}
+
+}  // namespace carom::ballistics::detail

@@ -1,0 +1,130 @@
+// How AimSolver and its parts are divided: aim_flight.cpp flies, aim_roots.cpp finds the shot near a guess,
+// aim_search.cpp finds guesses, or that there are none.
+#pragma once
+
+#include "carom/ballistics/aim.h"
+#include "carom/ballistics/detail/point_mass.h"
+
+namespace carom::ballistics::detail {
+
+using math::Vec3d;
+
+/// One aiming problem. The target's velocity is only needed near enough for Newton's method: differences serve.
+class AimSolver {
+ public:
+  AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
+            core::FunctionRef<Vec3d(double)> target, const AimOptions& options);
+
+  struct Guess {
+    Vec3d u{};  // the initial velocity in the world
+    double time = 0;
+  };
+  struct Arrival {
+    Vec3d position{}, velocity{};
+  };
+
+  /// Newton's method for u and T together.
+  struct Root {
+    bool found = false;
+    double slope = 0;  // m/s², of the speed that is needed over T: falls on the low side, rises on the high one
+    Guess guess{};
+    Arrival arrival{};
+  };
+  /// `eager`: gives up where the first steps do not lead there; `near`: the guess is as good as there.
+  Root refine(Guess guess, int most = 40, bool eager = false, bool near = false) const;
+
+  /// All roots by a walk through the flight times, the earliest and the latest of them.
+  Aims scan() const;
+  /// The usual case, in which the speed to spare has one peak over T, with an arc on either side of it. False: it is
+  /// not the usual case, and the scan must tell.
+  bool two_arcs(Aims& aims, bool steady) const;
+
+ private:
+  /// Finds u(T), from the guess that is there; false where it would need more than several muzzle speeds.
+  struct Need {
+    bool known = false;
+    double lack = -1e300;  // muzzle speed − |u − v|: ≥ 0 where the gun is fast enough
+  };
+  Need need(Guess& guess) const;
+
+  /// The initial velocity that hits at T in vacuum.
+  Vec3d vacuum(double time) const {
+    const Vec3d way = target_(time) - shooter_.muzzle;
+    return way / time + Vec3d{0, 0.5 * conditions_.gravity * time, 0};
+  }
+  double vacuum_lack(double time) const {
+    return shooter_.muzzle_speed - math::length(vacuum(time) - shooter_.velocity);
+  }
+  Vec3d velocity_of_target(double time) const {
+    const double h = 1e-3 * math::max(time, 1e-2);
+    return (target_(time + h) - target_(time)) / h;
+  }
+  double flat_time() const;
+  bool looks_far() const;
+  void keep(Aims& aims, const Root& root) const;
+  bool by_guesses(Aims& aims) const;
+  /// True: certainly no solution. Shots at five elevations pass the target's distance below it, and so does the best
+  /// one between them, by a good margin.
+  bool out_of_reach() const;
+  /// From the best time in vacuum up to the peak of the speed to spare, then down both sides of it.
+  bool climb(Aims& aims) const;
+  /// The root between a and b, where the lack has different signs: halved until Newton's method finds one there.
+  bool bisect(Guess a, const Need& at_a, Guess b, Aims& aims) const;
+  /// A peak of the lack between a and b, below zero in the samples: where it reaches zero there are two roots.
+  void touch(Guess a, Guess peak, double at_peak, Guess b, Aims& aims) const;
+
+  /// The inverse of ∂x(T)/∂u.
+  struct Inverse {
+    Vec3d row[3];
+    Vec3d apply(Vec3d x) const { return {math::dot(row[0], x), math::dot(row[1], x), math::dot(row[2], x)}; }
+    Vec3d apply_transposed(Vec3d x) const { return x.x * row[0] + x.y * row[1] + x.z * row[2]; }
+  };
+  /// Without gravity a turn of u turns the whole path, and quadratic drag gives ∂D/∂|u| = T v_end/|u|.
+  Inverse estimate(const Guess& guess, const Arrival& end) const;
+  /// The inverse of the derivative by differences.
+  Inverse derivatives(const Guess& guess, const Arrival& end, double accuracy) const;
+  /// Broyden's update of the inverse: it must give du for dx.
+  static void update(Inverse& inverse, Vec3d du, Vec3d dx);
+
+  /// The steps of a path as shares of its time. Paths that follow the same ones err alike, whatever air in layers and
+  /// the bends of drag curves do to the estimate of the error: Newton's method converges on them without noise.
+  struct Schedule {
+    static constexpr int most = 600;
+    int count = 0;  // most + 1: too many
+    float ends[most];
+    void add(double end) {
+      if (count < most) ends[count] = float(end);
+      if (count <= most) ++count;
+    }
+  };
+  struct Step {
+    Vec3d x{}, v{}, k{};
+    double error = 0;  // m/s
+  };
+  /// Dormand and Prince's pair of orders 5 and 4; k1 is the acceleration at the start, k the one at the end.
+  Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
+  /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
+  Arrival propagate(Vec3d u, double time, double allowed, Schedule* schedule = nullptr) const;
+  Arrival follow(Vec3d u, double time, const Schedule& schedule) const;
+  /// How a shot passes the distance of the target.
+  struct Pass {
+    bool plain = false;  // it does so once and at a slant, or never
+    double over = 0;     // m above the target; where it falls short, less what it lacks in distance
+    double aside = 0;    // rad, how much farther to turn
+  };
+  Pass pass(double elevation, double azimuth) const;
+  Vec3d at(Vec3d position, Vec3d velocity) const {
+    return point_mass_acceleration(projectile_, conditions_, position, velocity);
+  }
+
+  const Projectile& projectile_;
+  const Conditions& conditions_;
+  const Shooter& shooter_;
+  core::FunctionRef<Vec3d(double)> target_;
+  AimOptions options_;
+  double decay_ = 1e30;     // s, in which drag takes the muzzle speed
+  double fall_speed_ = 0;   // m/s, terminal, at most the muzzle speed
+  double sound_ = 340.294;  // m/s, at the muzzle
+};
+
+}  // namespace carom::ballistics::detail
