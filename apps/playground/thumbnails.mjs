@@ -29,7 +29,7 @@ export async function thumbnails(root, out, sources) {
     ...listed.stress.map((d) => ({id: d.demo, declared: d, text: '', moment: 0.3})),  // thousands of bodies: a few steps must do
     ...listed.scenes.map((d) => ({id: `scene:${d.demo}`, declared: d, text: readFileSync(join(root, `scenes/${d.demo}.json`), 'utf8')})),
   ];
-  const made = waiting.map((w) => w.id);
+  const made = [];
   let drawn = 0;
   const draw = async () => {
     for (let next = waiting.shift(); next; next = waiting.shift()) {
@@ -39,12 +39,18 @@ export async function thumbnails(root, out, sources) {
       if (!existsSync(kept)) {
         // Well under way, and early enough that something still happens.
         const moment = next.moment ?? Math.min(declared.duration, Math.max(0.5, Math.min(2.5, 0.3 * declared.duration))), scratch = join(cache, `${key}-frames`);
-        await run('render', declared.demo, '--bare', '--quiet', '--threads', '1', '--size', SIZE, '--from', String(moment), '--to', String(moment), '--out', scratch);
+        try {
+          await run('render', declared.demo, '--bare', '--quiet', '--threads', '1', '--size', SIZE, '--from', String(moment), '--to', String(moment), '--out', scratch);
+        } catch (error) {
+          console.log(`no picture of ${id}: ${String(error.stderr ?? error).trim()} (is ${program} up to date?)`);
+          continue;
+        }
         renameSync(join(scratch, 'frame-000000.png'), kept);
         rmSync(scratch, {recursive: true});
         ++drawn;
       }
       copyFileSync(kept, join(folder, name));
+      made.push(id);
     }
   };
   await Promise.all(Array.from({length: availableParallelism()}, draw));

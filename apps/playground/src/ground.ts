@@ -32,14 +32,14 @@ class Floor {
           vec2 seen = clamp(0.5 * pixels + 0.5 - near, 0.0, 1.0) * clamp(1.5 - 3.0 * step, 0.0, 1.0);
           return max(seen.x, seen.y);
         }`).replace('#include <map_fragment>', `
-        diffuseColor.rgb = mix(mix(base, weak, lines(place / spacing, 1.4)), strong, lines(place / (5.0 * spacing), 2.0));
+        diffuseColor.rgb = mix(mix(base, weak, lines(place / spacing, 1.2)), strong, lines(place / (5.0 * spacing), 1.6));
         diffuseColor.a = 1.0 - smoothstep(40.0, 190.0, length(place) / spacing);`);
     };
   }
   set(dark: boolean, spacing: number, level: number): void {
     this.tones.base.value.set(dark ? '#26303c' : '#c9cdc9');
     this.tones.weak.value.set(dark ? '#3a4859' : '#aeb5af');
-    this.tones.strong.value.set(dark ? '#5a6b81' : '#87918a');
+    this.tones.strong.value.set(dark ? '#55657a' : '#929b94');
     this.spacing.value = spacing;
     this.mesh.scale.setScalar(400 * spacing);
     this.mesh.position.y = level;

@@ -93,7 +93,7 @@ class Page implements Listener {
       const link = readLink(location.hash);
       if (!link.demo) this.start();
       else if (this.gallery.shown) this.open(link);
-      else if (link.demo !== this.opened?.demo || Object.keys(link.parameters).length > 0) this.open(link);
+      else if (link.demo !== this.opened?.demo || link.step !== undefined || link.camera || Object.keys(link.parameters).length > 0) this.open(link);
     });
     new ResizeObserver(() => this.viewer.resize()).observe(byId('stage'));
     this.frameLoop();
