@@ -11,6 +11,7 @@ import {createRequire} from 'node:module';
 import {chromium} from 'playwright-core';
 
 const here = dirname(fileURLToPath(import.meta.url)), root = join(here, '../../..');
+export {root};
 export const carom = process.env.CAROM ?? join(here, '../../../build/release/apps/command/carom');
 const browserPath = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/google-chrome', '/usr/bin/chromium-browser'].find(existsSync);
 export const pictures = process.env.PICTURES ?? join(here, '../../../out/page');

@@ -5,7 +5,7 @@ import {mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:f
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {at, beyond, bodies, carom, paused, picture, place, serve, slide, until, visit} from './harness.mjs';
+import {at, beyond, bodies, carom, paused, picture, place, root, serve, slide, until, visit} from './harness.mjs';
 
 let server;
 const folder = mkdtempSync(join(tmpdir(), 'carom-page-'));
@@ -55,7 +55,7 @@ test('a recording is made, saved, opened again and scrubbed', async () => {
 });
 
 test('a recording of 30 MB opens and is scrubbed; a broken one is named', async () => {
-  execFileSync(carom, ['run', 'heap', '--set', 'layers=25', '--steps', '500', '--no-pictures', '--quiet', '--out', folder]);
+  execFileSync(carom, ['run', 'heap', '--set', 'layers=25', '--steps', '500', '--no-pictures', '--quiet', '--out', folder], {cwd: root});
   const file = join(folder, 'recording.carom-rec');
   assert.ok(statSync(file).size > 25e6, `${statSync(file).size} bytes`);
   const page = await open('chain');

@@ -8,7 +8,7 @@ import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
 import {promisify} from 'node:util';
 import {gzipSync} from 'node:zlib';
-import {at, beyond, bodies, carom, holding, paused, picture, place, screen, serveFolder, visit} from './harness.mjs';
+import {at, beyond, bodies, carom, holding, paused, picture, place, root, screen, serveFolder, visit} from './harness.mjs';
 
 const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
 const steps = Number(process.env.HASH_STEPS ?? 600);
@@ -89,7 +89,7 @@ function hashesAfter(runs) {
 }
 
 test(`state hashes after ${steps} steps: native and WebAssembly in Chromium`, {timeout: 1800e3}, async () => {
-  const run = promisify(execFile), limits = {maxBuffer: 1 << 26};
+  const run = promisify(execFile), limits = {maxBuffer: 1 << 26, cwd: root};
   const listed = JSON.parse((await run(carom, ['list', '--json'], limits)).stdout);
   const only = process.env.HASH_DEMOS?.split(',');
   const names = [...listed.demos.map((d) => d.demo), ...listed.scenes.map((d) => `scene:${d.demo}`), ...(only ? listed.stress.map((d) => d.demo) : [])]
