@@ -42,7 +42,7 @@ class Floor {
     this.tones.strong.value.set(dark ? '#55657a' : '#929b94');
     this.spacing.value = spacing;
     this.mesh.scale.setScalar(400 * spacing);
-    this.mesh.position.y = level;
+    this.mesh.position.y = level - 0.003 * spacing;  // below lawns and lanes that lie a finger's breadth too deep
   }
 }
 
