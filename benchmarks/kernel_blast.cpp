@@ -28,22 +28,24 @@ void CellHull(benchmark::State& state) {
 }
 BENCHMARK(CellHull);
 
-/// From a body to two hundred in the world.
+/// From a body to two hundred in the world, on so many threads.
 void FractureAtRunTime(benchmark::State& state) {
+  const auto pool = core::make_thread_pool(int(state.range(0)));
   for (auto _ : state) {
     state.PauseTiming();
     rigid::World3 world;
     world.reserve({.bodies = 300, .shapes = 300, .contacts = 4000}).value();
     state.ResumeTiming();
-    auto definition = structure_of(
-        fracture_convex(voronoi_pattern(unit_cube, uniform_sites(unit_cube, 200, 1)).value(), {.meshes = false})
-            .value(),
-        2400);
+    auto definition =
+        structure_of(fracture_convex(voronoi_pattern(unit_cube, uniform_sites(unit_cube, 200, 1), pool.get()).value(),
+                                     {.meshes = false, .scheduler = pool.get()})
+                         .value(),
+                     2400);
     definition.bonds.clear();
     benchmark::DoNotOptimize(Structure3::make(world, definition));
   }
 }
-BENCHMARK(FractureAtRunTime)->Unit(benchmark::kMillisecond);
+BENCHMARK(FractureAtRunTime)->Arg(1)->Arg(2)->Arg(4)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 void FractureMesh(benchmark::State& state) {
   const geometry::Triangles ring = geometry::make_torus_mesh(0.7f, 0.25f, 24, 12);

@@ -170,19 +170,26 @@ core::Result<Fracture> fracture_convex(const Pattern& pattern, const FractureOpt
   Fracture fracture;
   constexpr std::uint32_t none = 0xffffffff;
   std::vector<std::uint32_t> piece_of(pattern.cells.size(), none);
-  std::vector<ConvexCell> work(1);
+  std::vector<Piece> pieces(pattern.cells.size());
+  core::SerialScheduler alone;
+  core::TaskScheduler& threads = options.scheduler != nullptr ? *options.scheduler : alone;
+  threads.parallel_for(int(pattern.cells.size()), 8, [&](int begin, int end, int) {
+    for (std::uint32_t i = std::uint32_t(begin); i < std::uint32_t(end); ++i) {
+      const ConvexCell& cell = pattern.cells[i];
+      if (cell.empty()) continue;
+      Piece& piece = pieces[i];
+      piece.cell = i;
+      piece.mass = cell.mass_properties(1);
+      if (!(piece.mass.mass > 0)) continue;
+      if (options.meshes) add_convex_triangles(cell, options.texture_scale, piece);
+      if (options.hulls) detail::add_hull(cell, piece.mass.center, options.skin, piece.hulls);
+    }
+  });
   fracture.pieces.reserve(pattern.cells.size());
   for (std::uint32_t i = 0; i < pattern.cells.size(); ++i) {
-    const ConvexCell& cell = pattern.cells[i];
-    if (cell.empty()) continue;
-    Piece piece;
-    piece.cell = i;
-    piece.mass = cell.mass_properties(1);
-    if (!(piece.mass.mass > 0)) continue;
-    if (options.meshes) add_convex_triangles(cell, options.texture_scale, piece);
-    if (options.hulls) detail::add_hull(cell, piece.mass.center, options.skin, piece.hulls);
+    if (!(pieces[i].mass.mass > 0)) continue;
     piece_of[i] = std::uint32_t(fracture.pieces.size());
-    fracture.pieces.push_back(std::move(piece));
+    fracture.pieces.push_back(std::move(pieces[i]));
   }
   std::vector<Vec3d> polygon;
   fracture.bonds.reserve(pattern.meetings.size());

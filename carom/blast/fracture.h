@@ -42,6 +42,7 @@ struct FractureOptions {
   double texture_scale = 1;     ///< of the coordinates of cuts, per metre; the same from both sides of a cut
   double least_solidity = 0.7;  ///< a piece of a mesh that fills less of its hull gets several (0: always one)
   int max_hulls = 6;            ///< of a piece, 1 … 32
+  core::TaskScheduler* scheduler = nullptr;  ///< pieces of convex solids on several threads, with the same bits
 };
 
 /// The pieces of the convex container itself. Errors: options out of range.

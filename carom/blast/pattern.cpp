@@ -132,16 +132,19 @@ struct Reach {
 
 /// Cuts the cell of a site by the planes halfway to its neighbours, nearest first, as long as they can reach it.
 template <class Clip, class Measure, class Fits>
-core::Result<ConvexCell::Cut> cut_cell(const SiteGrid& grid, std::span<const Vec3d> sites, std::uint32_t i, Reach reach,
-                                       std::vector<SiteGrid::Near>& near, Clip&& clip, Measure&& measure, Fits&& fits) {
+ConvexCell::Cut cut_cell(const SiteGrid& grid, std::span<const Vec3d> sites, std::uint32_t i, Reach reach,
+                         std::vector<SiteGrid::Near>& near, std::uint32_t& twin, Clip&& clip, Measure&& measure,
+                         Fits&& fits) {
   const Vec3d site = sites[i];
   for (int ring = 0; ring < grid.rings(); ++ring) {
     if (ring > 1 && math::square((ring - 1) * grid.edge()) > 4 * reach.squared) break;
     grid.ring(i, ring, 4 * reach.squared, near);
     for (const SiteGrid::Near& n : near) {
       if (n.distance_squared > 4 * reach.squared) break;
-      if (!(n.distance_squared > 0))
-        return core::Error{core::text("voronoi_pattern: sites ", i, " and ", n.site, " are in one place")};
+      if (!(n.distance_squared > 0)) {
+        twin = n.site;
+        return ConvexCell::Cut::all;
+      }
       const Vec3d way = sites[n.site] - site;
       if (reach.along(way) <= 0.5 * n.distance_squared) continue;
       const Vec3d middle = 0.5 * (site + sites[n.site]), normal = way / math::sqrt(n.distance_squared);
@@ -232,42 +235,54 @@ core::Result<std::vector<Vec3d>> radial_sites(const ConvexCell& container, const
   return sites;
 }
 
-core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<const Vec3d> sites) {
+core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<const Vec3d> sites,
+                                      core::TaskScheduler* scheduler) {
   if (auto s = check(container); !s) return s.error();
   if (sites.empty()) return core::Error{"voronoi_pattern: no sites, expected at least one"};
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (!is_finite(sites[i])) return core::Error{core::text("voronoi_pattern: site ", i, " is not finite")};
   const SiteGrid grid(sites, bounds_of(container));
   Pattern pattern;
-  pattern.cells.reserve(sites.size());
-  pattern.meetings.reserve(8 * sites.size());
-  ConvexCell::Scratch scratch;
-  detail::CellCutter cutter;
-  std::vector<SiteGrid::Near> near;
-  for (std::uint32_t i = 0; i < sites.size(); ++i) {
-    ConvexCell& cell = pattern.cells.emplace_back();
-    bool done = false;
-    if (cutter.load(container, container.tolerance())) {
-      const auto cut = [&](const HalfSpace& h) { return cutter.clip(h.normal, h.offset, h.tag); };
-      const auto found = cut_cell(
-          grid, sites, i, Reach::of(container, sites[i]), near, cut, [&] { return Reach::of(cutter, sites[i]); },
-          [&] { return cutter.fits(); });
-      if (!found.ok()) return found.error();
-      done = cutter.fits();
-      if (done && *found != ConvexCell::Cut::all) cell.take(cutter, container.tolerance());
-    }
-    if (!done) {
+  pattern.cells.resize(sites.size());
+  struct Work {
+    ConvexCell::Scratch scratch;
+    detail::CellCutter cutter;
+    std::vector<SiteGrid::Near> near;
+  };
+  core::SerialScheduler alone;
+  core::TaskScheduler& threads = scheduler != nullptr ? *scheduler : alone;
+  std::vector<Work> works(std::size_t(threads.thread_count()));
+  constexpr std::uint32_t nobody = 0xffffffff;
+  std::vector<std::uint32_t> twins(sites.size(), nobody);  // another site in the same place
+  threads.parallel_for(int(sites.size()), 8, [&](int begin, int end, int worker) {
+    Work& work = works[std::size_t(worker)];
+    for (std::uint32_t i = std::uint32_t(begin); i < std::uint32_t(end); ++i) {
+      ConvexCell& cell = pattern.cells[i];
+      const Reach whole = Reach::of(container, sites[i]);
+      bool done = false;
+      if (work.cutter.load(container, container.tolerance())) {
+        const auto cut = [&](const HalfSpace& h) { return work.cutter.clip(h.normal, h.offset, h.tag); };
+        const auto found = cut_cell(
+            grid, sites, i, whole, work.near, twins[i], cut, [&] { return Reach::of(work.cutter, sites[i]); },
+            [&] { return work.cutter.fits(); });
+        done = work.cutter.fits();
+        if (done && found != ConvexCell::Cut::all) cell.take(work.cutter, container.tolerance());
+      }
+      if (done || twins[i] != nobody) continue;
       cell = container;
-      const auto found = cut_cell(
-          grid, sites, i, Reach::of(container, sites[i]), near,
-          [&](const HalfSpace& h) { return cell.clip(h, scratch); }, [&] { return Reach::of(cell, sites[i]); },
-          [] { return true; });
-      if (!found.ok()) return found.error();
+      (void)cut_cell(
+          grid, sites, i, whole, work.near, twins[i], [&](const HalfSpace& h) { return cell.clip(h, work.scratch); },
+          [&] { return Reach::of(cell, sites[i]); }, [] { return true; });
     }
-    for (const ConvexCell::Face& face : cell.faces())
+  });
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    if (twins[i] != nobody)
+      return core::Error{core::text("voronoi_pattern: sites ", i, " and ", twins[i], " are in one place")};
+  pattern.meetings.reserve(8 * sites.size());
+  for (std::uint32_t i = 0; i < sites.size(); ++i)
+    for (const ConvexCell::Face& face : pattern.cells[i].faces())
       if (face.tag >= 0 && std::uint32_t(face.tag) > i)
         pattern.meetings.push_back({i, std::uint32_t(face.tag), face.tag, int(i)});
-  }
   return pattern;
 }
 

@@ -3,6 +3,7 @@
 
 #include "carom/blast/convex_cell.h"
 #include "carom/core/result.h"
+#include "carom/core/scheduler.h"
 
 namespace carom::blast {
 
@@ -44,7 +45,9 @@ CAROM_API core::Result<std::vector<math::Vec3d>> radial_sites(const ConvexCell& 
 /// grid until all that are farther than twice the farthest corner (the security radius: Lévy & Bonneel, "Variational
 /// anisotropic surface meshing with Voronoi parallel linear enumeration", 2013). Errors: no site, a site that is not
 /// finite, two in one place, an empty container.
-CAROM_API core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<const math::Vec3d> sites);
+/// `scheduler`: cells on several threads, with the same bits.
+CAROM_API core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<const math::Vec3d> sites,
+                                                core::TaskScheduler* scheduler = nullptr);
 /// `count` slabs square to `normal`, with borders moved by up to `jitter` (0 … 1) of half a thickness.
 CAROM_API core::Result<Pattern> slab_pattern(const ConvexCell& container, math::Vec3d normal, int count,
                                              double jitter = 0, std::uint64_t seed = 0);

@@ -114,6 +114,28 @@ TEST(Fracture, StatisticsOfPoissonVoronoiCells) {
   EXPECT_NEAR(squares - 1, 0.179, 0.02);
 }
 
+TEST(Fracture, SameOnAnyNumberOfThreads) {
+  const ConvexCell box(geometry::Bounds3d{{0, 0, 0}, {1, 1, 1}});
+  const auto sites = uniform_sites(box, 150, 8);
+  const auto pool = core::make_thread_pool(3);
+  const auto one = fracture_convex(voronoi_pattern(box, sites).value(), {}).value(),
+             many = fracture_convex(voronoi_pattern(box, sites, pool.get()).value(), {.scheduler = pool.get()}).value();
+  ASSERT_EQ(one.pieces.size(), many.pieces.size());
+  ASSERT_EQ(one.bonds.size(), many.bonds.size());
+  for (std::size_t i = 0; i < one.pieces.size(); ++i) {
+    EXPECT_EQ(one.pieces[i].mass.mass, many.pieces[i].mass.mass);
+    EXPECT_EQ(one.pieces[i].vertices, many.pieces[i].vertices);
+    ASSERT_EQ(one.pieces[i].hulls.size(), many.pieces[i].hulls.size());
+    for (std::size_t h = 0; h < one.pieces[i].hulls.size(); ++h)
+      EXPECT_EQ(one.pieces[i].hulls[h]->vertices, many.pieces[i].hulls[h]->vertices);
+  }
+  for (std::size_t i = 0; i < one.bonds.size(); ++i) EXPECT_EQ(one.bonds[i].area, many.bonds[i].area);
+  std::vector<Vec3d> doubled = sites;
+  doubled.push_back(sites[3]);
+  EXPECT_EQ(voronoi_pattern(box, doubled, pool.get()).error().message,
+            "voronoi_pattern: sites 3 and 150 are in one place");
+}
+
 TEST(Fracture, EveryPointIsInExactlyOneCell) {
   const ConvexCell box = unit_box();
   std::vector<Pattern> patterns;
