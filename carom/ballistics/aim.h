@@ -46,8 +46,8 @@ struct AimOptions {
   bool high_arc = true;       ///< false: only the earliest hit is looked for, in a fraction of the time
 };
 
-/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 10 to 25 µs, both
-/// 50 to 200 µs, a target clearly out of reach 60 to 120 µs; a target that is only just in or out of reach, or has
+/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 10 to 20 µs, both
+/// 50 to 150 µs, a target clearly out of reach 45 µs; a target that is only just in or out of reach, or has
 /// several arcs, a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
