@@ -31,6 +31,29 @@ TYPED_TEST(WorldDeterminism, ThreadsDoNotMatter) {
   EXPECT_EQ(heap_hash<D>(2, 0, true), one);
   EXPECT_EQ(heap_hash<D>(4, 0, true), one);
 }
+/// One body under more contacts than there are colours: all the others share it.
+template <class D>
+std::uint64_t loaded_plate_hash(int threads) {
+  WorldDef<D> d = world_with<D>();
+  d.threads = threads;
+  World<D> world(d);
+  add_ground(world);
+  const double half = D::dimension == 2 ? 60 : 8;
+  add_body<D>(world, BodyType::dynamic, box_shape<D>(float(half), 0.25f, float(half)), at<D>(0, 0.25));
+  const int along = D::dimension == 2 ? 150 : 20, rows = D::dimension == 2 ? 1 : 20;
+  for (int i = 0; i < along; ++i)
+    for (int k = 0; k < rows; ++k)
+      add_box<D>(world, at<D>(0.75 * (i - 0.5 * along), 0.8 + 0.05 * ((i + k) % 7), 0.75 * (k - 0.5 * rows)), 0.25f,
+                 {0.4f, 0, float(100 + 37 * (i % 11)), 0});
+  run(world, 120);
+  return world.state_hash();
+}
+TYPED_TEST(WorldDeterminism, ThreadsDoNotMatterWhereAllTouchOneBody) {
+  using D = TypeParam;
+  const std::uint64_t one = loaded_plate_hash<D>(1);
+  for (int i = 0; i < 3; ++i)
+    for (const int threads : {2, 4}) EXPECT_EQ(loaded_plate_hash<D>(threads), one) << threads << " threads";
+}
 TYPED_TEST(WorldDeterminism, WidthsDoNotMatter) {
   using D = TypeParam;
   const std::uint64_t four = heap_hash<D>(1, 4, false);

@@ -326,11 +326,22 @@ void feature(const Convex& c, Vec3f d, Feature& out) {
 }
 
 bool side_line(const Convex& c, Vec3f d, Vec3f line[2]) {
-  if (c.kind != CoreKind::segment && !is_round(c)) return false;
+  const bool edged = c.kind == CoreKind::box || c.kind == CoreKind::hull;
+  if (c.kind != CoreKind::segment && !is_round(c) && !edged) return false;
   Feature f;
   feature(c, d, f);
-  if (f.count != 2) return false;
-  line[0] = f.point[0], line[1] = f.point[1];
+  int first = 0, second = 1;
+  if (edged) {  // of the sides of the face the one that stands out
+    float most = -1e30f;
+    for (int i = 0; i < f.count; ++i) {
+      const int k = i + 1 == f.count ? 0 : i + 1;
+      if (const float out = dot(d, f.point[i] + f.point[k]); out > most) most = out, first = i, second = k;
+    }
+    if (f.id[first] > f.id[second]) std::swap(first, second);  // the same way round whichever face was taken
+  } else if (f.count != 2) {
+    return false;
+  }
+  line[0] = f.point[first], line[1] = f.point[second];
   const Vec3f t = line[1] - line[0];
   return abs(dot(t, d)) < 0.03f * length(t);
 }

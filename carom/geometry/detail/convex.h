@@ -58,7 +58,8 @@ struct Feature {
 void feature(const Convex& c, Vec3f direction, Feature& out);
 /// The flat face `face` as a polygon, counterclockwise seen from outside.
 void face_feature(const Convex& c, int face, Vec3f toward, Feature& out);
-/// A straight line of the surface that is level across `direction` (a side of a cylinder, a segment itself).
+/// A straight line of the surface that stands out along `direction` and is level across it: a side of a cylinder, an
+/// edge of a box or a hull, a segment itself.
 bool side_line(const Convex& c, Vec3f direction, Vec3f line[2]);
 
 }  // namespace carom::geometry::detail

@@ -220,7 +220,8 @@ void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D
   block.write_a[lane] = block.write_b[lane] = none;
 }
 
-/// The bodies feel the load of the contact between them. Bodies of a colour's contacts differ, so this needs no lock.
+/// The bodies feel the load of the contact between them. Bodies of a colour's contacts differ, and those of the
+/// overflow come in order, so this needs no lock.
 template <class D, int W>
 void add_load(StepContext<D>& context, const ContactBlock<D, W>& block, int lane, float load) {
   if (load <= 0) return;
@@ -290,9 +291,12 @@ void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std:
   }
 }
 
+/// May blocks of the overflow, which share bodies, be taken at once?
+enum class Overflow : std::uint8_t { at_once, in_order };
+
 /// Calls f(manifolds of the colour, first, lanes, block, extra, marks) for the blocks of every colour, in parallel.
 template <class D, int W, class F>
-void for_blocks(StepContext<D>& context, F&& f) {
+void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
   WorldImplementation<D>& world = context.world;
   for (int color = 0; color <= overflow_color; ++color) {
     const std::vector<std::int32_t>& manifolds = world.graph.colors[color].manifolds;
@@ -307,7 +311,7 @@ void for_blocks(StepContext<D>& context, F&& f) {
           blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k, blocks.marks + first);
       }
     };
-    if (blocks.count <= block_grain)
+    if (blocks.count <= block_grain || (color == overflow_color && overflow == Overflow::in_order))
       run(0, blocks.count, 0);
     else
       context.scheduler.parallel_for(blocks.count, block_grain, run);
@@ -330,44 +334,49 @@ void prepare_blocks(StepContext<D>& context) {
     blocks.marks = context.arena.template allocate_zeroed<std::uint8_t>((c.manifolds.size() + 7) / 8 * 8).data();
   }
   const bool any_special = !world.shapes.extras.empty() || world.hit_event_shapes > 0;
-  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
-                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra, std::uint8_t* marks) {
-    ContactRaw<D, W> raw;
-    for (int lane = 0; lane < lanes; ++lane) {
-      prefetch_manifold(world, manifolds, first + std::size_t(lane));
-      gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
-    }
-    for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
-    world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
-    for (int lane = 0; lane < lanes; ++lane) {
-      const std::int32_t m = manifolds[first + std::size_t(lane)];
-      if (raw.anchor_state[lane] > 0) set_anchor(context, m, block, lane);
-      if (extra != nullptr || world.hit_event_shapes > 0) find_approach(context, m, block, extra, lane);
-      if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
-      if (any_special) prepare_special(context, m, block, extra, lane);
-      if (extra != nullptr) marks[lane] = bounce_mark(*extra, lane);
-    }
-  });
+  for_blocks<D, W>(context, Overflow::at_once,
+                   [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
+                       ContactExtra<D, W>* extra, std::uint8_t* marks) {
+                     ContactRaw<D, W> raw;
+                     for (int lane = 0; lane < lanes; ++lane) {
+                       prefetch_manifold(world, manifolds, first + std::size_t(lane));
+                       gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
+                     }
+                     for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+                     world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
+                     for (int lane = 0; lane < lanes; ++lane) {
+                       const std::int32_t m = manifolds[first + std::size_t(lane)];
+                       if (raw.anchor_state[lane] > 0) set_anchor(context, m, block, lane);
+                       if (extra != nullptr || world.hit_event_shapes > 0)
+                         find_approach(context, m, block, extra, lane);
+                       if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
+                       if (any_special) prepare_special(context, m, block, extra, lane);
+                       if (extra != nullptr) marks[lane] = bounce_mark(*extra, lane);
+                     }
+                   });
 }
 
 template <class D, int W>
 void store_blocks(StepContext<D>& context) {
-  for_blocks<D, W>(context, [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes,
-                                ContactBlock<D, W>& block, ContactExtra<D, W>* extra, std::uint8_t*) {
-    for (int lane = 0; lane < lanes; ++lane)
-      for (const std::int32_t body : {block.read_a[lane], block.read_b[lane]}) {
-        __builtin_prefetch(&context.world.scratch.loads[std::size_t(body)], 1);
-        __builtin_prefetch(&context.bodies[body]);
-      }
-    for (int lane = 0; lane < lanes; ++lane) {
-      const std::size_t i = first + std::size_t(lane);
-      if (i + 12 < manifolds.size()) {
-        const char* record = reinterpret_cast<const char*>(&context.world.contacts.manifold(manifolds[i + 12]));
-        for (std::size_t k = 0; k < sizeof(ManifoldRecord<D>); k += 64) __builtin_prefetch(record + k, 1);
-      }
-      store_lane<D, W>(context, manifolds[i], block, extra, lane);
-    }
-  });
+  for_blocks<D, W>(context, Overflow::in_order,
+                   [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
+                       ContactExtra<D, W>* extra, std::uint8_t*) {
+                     for (int lane = 0; lane < lanes; ++lane)
+                       for (const std::int32_t body : {block.read_a[lane], block.read_b[lane]}) {
+                         __builtin_prefetch(&context.world.scratch.loads[std::size_t(body)], 1);
+                         __builtin_prefetch(&context.bodies[body]);
+                       }
+                     for (int lane = 0; lane < lanes; ++lane) {
+                       const std::size_t i = first + std::size_t(lane);
+                       if (i + 12 < manifolds.size()) {
+                         const char* record =
+                             reinterpret_cast<const char*>(&context.world.contacts.manifold(manifolds[i + 12]));
+                         for (std::size_t k = 0; k < sizeof(ManifoldRecord<D>); k += 64)
+                           __builtin_prefetch(record + k, 1);
+                       }
+                       store_lane<D, W>(context, manifolds[i], block, extra, lane);
+                     }
+                   });
 }
 
 }  // namespace
