@@ -120,7 +120,7 @@ TYPED_TEST(QualityFree, MomentumOfAPile) {
 
       .at_most(length(after.momentum - before.momentum) / linear, 1e-6);
   Gate(21, "the same: angular momentum off by (of Σ|r||p|)", D::dimension)
-      .not_yet(0.0011)
+      .not_yet(0.0014)
       .at_most(turned / angular, 1e-6);
 }
 
@@ -155,7 +155,7 @@ TYPED_TEST(QualityFree, SamePlaceEverywhere) {
     for (std::size_t i = 0; i < here.size(); ++i) worst = std::max(worst, length(there[i] - here[i]));
     char what[64];
     std::snprintf(what, sizeof what, "stack of five settles at %.0e m: trajectories differ", place);
-    Gate(22, what, D::dimension, "m").not_yet(1.2e-3).at_most(worst, 1e-4);
+    Gate(22, what, D::dimension, "m").not_yet(D::dimension == 2 && place > 1e5 ? 1.2e-3 : -1).at_most(worst, 1e-4);
   }
 }
 TYPED_TEST(QualityFree, SameVerdictAtEverySize) {

@@ -99,7 +99,9 @@ struct ContactKernels {
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
                 int order) = nullptr;
-  void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h) = nullptr;
+  /// counted: 1 where the impulses are those of the substep, 0 where another relaxing pass follows.
+  void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h,
+                float counted) = nullptr;
   void (*restitute)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
 };
 

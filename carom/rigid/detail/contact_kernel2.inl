@@ -76,7 +76,7 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
 template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
                                       Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
-                                      WideFloat<W> push_speed, int order) {
+                                      WideFloat<W> push_speed, WideFloat<W> counted, int order) {
   using F = WideFloat<W>;
   order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
@@ -110,7 +110,7 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
     const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
-    if constexpr (!UseBias) (F::load(point.total) + lambda).store(point.total);
+    if constexpr (!UseBias) (F::load(point.total) + lambda * counted).store(point.total);
     const WideVec2<W> p = {delta * n.x, delta * n.y};
     push_back(a, ma, ia, p, delta * turn_a);
     push(b, mb, ib, p, delta * turn_b);
@@ -123,14 +123,15 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed), order);
+    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed), F::splat(1),
+                            order);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
 }
 
 template <int W>
-void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
+void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h, float counted) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
@@ -157,12 +158,12 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
           clamp(old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target)), F::splat(0) - limit, limit);
       const F delta = lambda - old;
       lambda.store(c.tangent_impulse);
-      (F::load(c.tangent_total) + lambda).store(c.tangent_total);
+      (F::load(c.tangent_total) + lambda * F::splat(counted)).store(c.tangent_total);
       const WideVec2<W> p = {delta * t.x, delta * t.y};
       push_back(a, ma, ia, p, delta * turn_a);
       push(b, mb, ib, p, delta * turn_b);
     }
-    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), 0);
+    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), 0);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }

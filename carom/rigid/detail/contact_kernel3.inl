@@ -77,7 +77,7 @@ template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
                                       Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
                                       const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed,
-                                      int order) {
+                                      WideFloat<W> counted, int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -108,7 +108,7 @@ CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlo
     const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
-    if constexpr (!UseBias) (F::load(point.total) + lambda).store(point.total);
+    if constexpr (!UseBias) (F::load(point.total) + lambda * counted).store(point.total);
     const WideVec3<W> p = multiply(n, delta);
     push_back(a, ma, ia, p, multiply(turn_a, delta));
     push(b, mb, ib, p, multiply(turn_b, delta));
@@ -122,7 +122,8 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
-                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed), order);
+                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed),
+                            F::splat(1), order);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -147,7 +148,7 @@ CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a,
 }
 
 template <int W>
-void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
+void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h, float counted) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
@@ -181,13 +182,13 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       l2 *= scale;
       l1.store(c.tangent_impulse[0]);
       l2.store(c.tangent_impulse[1]);
-      (F::load(c.tangent_total[0]) + l1).store(c.tangent_total[0]);
-      (F::load(c.tangent_total[1]) + l2).store(c.tangent_total[1]);
+      (F::load(c.tangent_total[0]) + l1 * F::splat(counted)).store(c.tangent_total[0]);
+      (F::load(c.tangent_total[1]) + l2 * F::splat(counted)).store(c.tangent_total[1]);
       const WideVec3<W> p = add(multiply(t, l1 - old1), multiply(u, l2 - old2));
       push_back(a, ma, ia, p, cross(ra, p));
       push(b, mb, ib, p, cross(rb, p));
     }
-    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), 0);
+    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), F::splat(counted), 0);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }

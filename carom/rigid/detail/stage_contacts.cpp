@@ -24,10 +24,11 @@ void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const ty
   put(to.q, lane, local.q);
 }
 
-/// Copies what the records hold to a lane; what follows from it the kernel computes for all lanes at once.
+/// Copies what the records hold to a lane; what follows from it the kernel computes for all lanes at once. Returns the
+/// lane's mark.
 template <class D, int W>
-void gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block, ContactRaw<D, W>& raw,
-                 int lane) {
+std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block,
+                         ContactRaw<D, W>& raw, int lane) {
   using V = typename D::Vector;
   const WorldImplementation<D>& world = context.world;
   const ManifoldRecord<D>& m = world.contacts.manifold(index);
@@ -67,9 +68,11 @@ void gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock
   block.mass_scale[lane] = soft.mass_scale;
   block.impulse_scale[lane] = soft.impulse_scale;
   put(block.center_offset, lane, V(ma.center - mb.center));
+  float deepest = 0;
   for (int i = 0; i < D::max_points; ++i) {
     auto& point = block.point[i];
     const bool exists = i < m.manifold.count;
+    if (exists) deepest = min(deepest, m.manifold.points[i].separation);
     put(point.r_a, lane, exists ? m.manifold.points[i].point : V{});
     point.separation[lane] = exists ? m.manifold.points[i].separation : 0;
     point.normal_mass[lane] = exists ? 1 : 0;
@@ -84,6 +87,7 @@ void gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock
     block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
     block.twist_impulse[lane] = m.impulses.twist;
   }
+  return deepest * soft.bias_rate < -context.push_speed ? mark_pushed : 0;
 }
 
 /// After the kernel: friction that sticks anew remembers where.
@@ -340,7 +344,7 @@ void prepare_blocks(StepContext<D>& context) {
                      ContactRaw<D, W> raw;
                      for (int lane = 0; lane < lanes; ++lane) {
                        prefetch_manifold(world, manifolds, first + std::size_t(lane));
-                       gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
+                       marks[lane] = gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
                      }
                      for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
                      world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
@@ -351,7 +355,7 @@ void prepare_blocks(StepContext<D>& context) {
                          find_approach(context, m, block, extra, lane);
                        if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
                        if (any_special) prepare_special(context, m, block, extra, lane);
-                       if (extra != nullptr) marks[lane] = bounce_mark(*extra, lane);
+                       if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
                      }
                    });
 }

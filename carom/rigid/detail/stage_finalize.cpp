@@ -113,8 +113,10 @@ void finalize_bodies(StepContext<D>& context) {
       m.torque = {};
       pose_from_center(world, body);
       const float speed = max(math::length(s.linear_velocity), spin * max(m.outer_extent, 0.01f));
+      // What is still being pushed out of an overlap is not at rest: that way is not in its velocity.
+      const float pushed = math::length(s.delta_position * context.inverse_dt - s.linear_velocity);
       if (record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0 && speed < record.sleep_speed &&
-          travel * context.inverse_dt < 2 * record.sleep_speed)
+          pushed < 0.2f * record.sleep_speed)
         record.sleep_timer += context.dt;
       else
         record.sleep_timer = 0;

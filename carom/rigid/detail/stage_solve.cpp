@@ -1,4 +1,5 @@
 // The substeps: passes over the bodies and over the colours of the constraint graph, with a barrier after each.
+#include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -57,13 +58,23 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
   }
 }
 
+/// Is something so deep in something else that it is pushed out with the push speed?
+template <class D>
+bool any_pushed(const WorldImplementation<D>& world) {
+  bool any = false;
+  for (int color = 0; color <= color_count; ++color)
+    for_marked(world, color, mark_pushed, [&](std::int32_t) { any = true; });
+  return any;
+}
+
 template <class D>
 void list_stages(StepContext<D>& context) {
+  const int settling = any_pushed(context.world) ? settle_passes : 0;
   StepScratch<D>& scratch = context.world.scratch;
   scratch.solver_stages.clear();
   scratch.solver_loops.clear();
-  scratch.solver_stages.reserve(most_solver_stages(context.substeps));
-  scratch.solver_loops.reserve(most_solver_stages(context.substeps));
+  scratch.solver_stages.reserve(most_solver_stages(context.substeps, settling));
+  scratch.solver_loops.reserve(most_solver_stages(context.substeps, settling));
   for (int substep = 0; substep < context.substeps; ++substep) {
     // Whichever point of a face is solved first takes more than its share: from step to step each has its turn at every
     // place of the sequence, so that a tower's faces do not tilt. Within a step, in which a blow is shared out, there
@@ -76,6 +87,7 @@ void list_stages(StepContext<D>& context) {
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
     add_tree_stage(context, SolverPass::factorise_trees);
+    for (int i = 0; i < settling; ++i) add_color_stages(context, SolverPass::settle);
     add_color_stages(context, SolverPass::relax);
     add_tree_stage(context, SolverPass::settle_trees);
   }
@@ -94,7 +106,8 @@ void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b
   else if (stage.pass == SolverPass::solve)
     kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, stage.order);
   else
-    kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h);
+    kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h,
+                  stage.pass == SolverPass::relax ? 1.0f : 0.0f);
 }
 
 template <class D>
@@ -113,8 +126,8 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
 template <class D>
 void run_joints(StepContext<D>& context, SolverStage stage) {
   const int color = color_of_rank(stage.first_rank);
-  if (stage.pass == SolverPass::velocities || stage.pass == SolverPass::positions || is_of_trees(stage.pass) ||
-      !has_joints(context, color))
+  if (stage.pass == SolverPass::velocities || stage.pass == SolverPass::positions || stage.pass == SolverPass::settle ||
+      is_of_trees(stage.pass) || !has_joints(context, color))
     return;
   if (stage.pass == SolverPass::warm_start)
     warm_start_joints(context, color);

@@ -27,6 +27,7 @@ struct FoundPair {
 
 enum ContactMark : std::uint8_t {
   mark_bounces = 1,  ///< may bounce in this step
+  mark_pushed = 2,   ///< so deep that it is pushed out with the push speed
 };
 /// Where a colour's contacts are in the arena of the step.
 struct ColorBlocks {
@@ -46,6 +47,7 @@ enum class SolverPass : std::uint8_t {
   solve_trees,
   positions,
   factorise_trees,
+  settle,  ///< relaxing, and not the last time
   relax,
   settle_trees
 };
@@ -55,9 +57,12 @@ struct SolverStage {
   std::uint8_t order = 0;                      ///< in which the points of manifolds are solved
 };
 
+/// Where something is pushed out with the push speed, so many more relaxing passes take that speed from it again: what
+/// many overlaps push from all sides would keep some of it.
+inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
-inline constexpr std::size_t most_solver_stages(int substeps) {
-  return std::size_t(substeps) * (6 + 3 * (color_count + 1));
+inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
+  return std::size_t(substeps) * std::size_t(6 + (3 + settling) * (color_count + 1));
 }
 
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
