@@ -11,8 +11,9 @@
 namespace carom::rigid::detail {
 namespace {
 
-/// A body with more contacts than so finds whom it may meet in the trees.
-constexpr int most_listed = 48;
+/// A body with more contacts than so finds whom it may meet in the trees; what does not move is found there sooner than
+/// among contacts with all that does.
+constexpr int most_listed = 48, most_listed_for_still = 3;
 
 enum Kinds : unsigned { with_fixed = 1, with_kinematic = 2, with_dynamic = 4 };  ///< bits by TreeIndex
 
@@ -34,8 +35,10 @@ void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const t
                     Visit&& visit) {
   const ShapeRecord<D>& shape = world.shapes.at(s);
   const BodyRecord& record = world.bodies.record[std::size_t(shape.body)];
-  if (record.contact_count <= most_listed &&
-      geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box)) {
+  // A filter or a one-way surface has left its answer with the contact.
+  const bool plain = !world.contact_filter && world.shapes.extras.empty();
+  const int most = plain && (kinds & with_dynamic) == 0 ? most_listed_for_still : most_listed;
+  if (record.contact_count <= most && geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box)) {
     for (std::int32_t key = record.first_contact; key != none;) {
       const ContactRecord<D>& c = world.contacts.at(key >> 1);
       const int side = key & 1;

@@ -211,11 +211,38 @@ std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const Shap
   return std::uint8_t(change | touch_change(c, c.gap, false));
 }
 
+/// How far the points of a manifold that was just made close in this step by the velocities that their bodies have
+/// there. A turn bends their ways.
+template <class D>
+float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m) {
+  using V = typename D::Vector;
+  const ShapeRecord<D>& shape = world.shapes.at(c.shape[0]);
+  const typename D::Pose pose = shape_pose(world, shape);
+  const V normal = rotate(pose.rotation, m.normal);
+  float farthest = -1e30f;
+  for (int i = 0; i < m.count; ++i) {
+    const typename D::Position point = world_point(pose, m.points[i].point);
+    float closing = 0;
+    for (int side = 0; side < 2; ++side) {
+      const std::size_t body = std::size_t(c.body[side]);
+      const SolverBody<D>& s = world.bodies.solver[body];
+      const V arm = V(point - world.bodies.motion[body].center);
+      const float turn = spin(s) * world.last_dt;
+      const float way = dot(normal, s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
+      closing += (side == 0 ? way : -way) + 0.5f * turn * turn * math::length(arm);
+    }
+    farthest = max(farthest, closing - m.points[i].separation);
+  }
+  return farthest + smallest_separation<D>(m);
+}
+
 /// Nearer than the margin, or so near that they may meet in this step?
 template <class D>
-bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Vector& normal,
+bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m,
                  float separation) {
-  return separation <= c.margin() || separation <= c.margin() + look_ahead(world, c, normal);
+  if (separation <= c.margin()) return true;
+  if (separation > c.margin() + look_ahead(world, c, m.normal)) return false;
+  return separation <= c.margin() + look_ahead(world, c, m);
 }
 
 /// Two convex shapes, or a plane: one manifold at most.
@@ -234,7 +261,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   }
   const float separation = smallest_separation<D>(m);
   c.gap = min(reach, separation);
-  if (!of_interest(world, c, m.normal, separation)) return part(world, c, a, b);
+  if (!of_interest(world, c, m, separation)) return part(world, c, a, b);
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
   if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
     c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
@@ -263,7 +290,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   for (int i = 0; i < found.count; ++i) {
     const float s = smallest_separation<D>(found.manifold[i]);
     c.gap = min(c.gap, s);
-    if (!of_interest(world, c, found.manifold[i].normal, s)) continue;
+    if (!of_interest(world, c, found.manifold[i], s)) continue;
     if (kept != i) {
       found.manifold[kept] = found.manifold[i];
       found.child[kept] = found.child[i];
