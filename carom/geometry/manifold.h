@@ -49,7 +49,9 @@ CAROM_API void collide(const Shape2& a, const Shape2& b, const Transform2f& b_in
 CAROM_API void collide(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, PairCache& cache,
                        Manifold3& out);
 /// One of the shapes may be a mesh, height field or compound, a mesh may meet a plane: one manifold a patch of coplanar
-/// triangles or a child, deepest first, at most out.size(). Returns how many.
+/// triangles or a child, deepest first, at most out.size(). Returns how many; where a convex shape meets nothing of a
+/// surface, out[0].points[0].separation (m) is how far they are from each other at least, as far as that was looked
+/// for.
 CAROM_API int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin,
                            std::span<Manifold3> out);
 

@@ -148,13 +148,53 @@ bool sunk(const HeightField& field, const detail::Convex& b, const Transform3f& 
   return true;
 }
 
+/// A shape that meets nothing of a surface is at least this far (m) from all of it; at most `limit`. What lies below a
+/// height field is solid, so of its triangles only what keeps the shape above or beside them counts.
+float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex& b, const Transform3f& x,
+                const Bounds3f& tight, float limit, bool solid) {
+  const Mat3f turn = to_matrix(x.q);
+  const Vec3f axis[3] = {turn.cx, turn.cy, turn.cz};
+  const Bounds3f own = bounds(shape, {});
+  Bounds3f box = grow(tight, limit);
+  if (solid) box.high.y = 3.4e38f;
+  float least = limit;
+  detail::visit_triangles(surface, box, false, [&](const detail::SurfaceTriangle& t) {
+    const Vec3f low = min(t.corner[0], min(t.corner[1], t.corner[2])),
+                high = max(t.corner[0], max(t.corner[1], t.corner[2]));
+    float gap = solid ? max(tight.low.y - high.y, max(max(low.x - tight.high.x, tight.low.x - high.x),
+                                                      max(low.z - tight.high.z, tight.low.z - high.z)))
+                      : 0.0f;
+    Vec3f normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+    const float size = length(normal);
+    if (size > 0) {
+      normal = normal * (1 / size);
+      for (const float side : {1.0f, -1.0f}) {
+        if (side < 0 && solid) continue;
+        const Vec3f facing = inverse_rotate(x.q, normal * -side);
+        const Vec3f nearest = transform_point(x, Vec3f(detail::support(b, Vec3d(facing))));
+        gap = max(gap, side * dot(normal, nearest - t.corner[0]) - b.radius);
+      }
+    }
+    if (!solid)
+      for (int k = 0; k < 3; ++k) {
+        const float p = dot(axis[k], t.corner[0] - x.p), q = dot(axis[k], t.corner[1] - x.p),
+                    r = dot(axis[k], t.corner[2] - x.p);
+        gap = max(gap, max(min(p, min(q, r)) - own.high[k], own.low[k] - max(p, max(q, r))));
+      }
+    least = min(least, gap);
+    return least > 0;
+  });
+  return max(least, 0.0f);
+}
+
 int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
                    std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const detail::Convex b = detail::convex_of(shape);
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
-  Bounds3f box = grow(bounds(shape, x), margin);
+  const Bounds3f tight = bounds(shape, x);
+  Bounds3f box = grow(tight, margin);
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
   const float same = 2e-3f * (detail::outer_size(b) + b.radius);
   const Reach reach(shape, b, x, margin, solid);
@@ -193,7 +233,14 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     merge_into(patch, points, same);
     return true;
   });
-  if (solid && count == 0) return sunk(*surface.height_field, b, x, out[0]) ? 1 : 0;
+  if (solid && count == 0 && sunk(*surface.height_field, b, x, out[0])) return 1;
+  if (count == 0) {
+    out[0] = {};
+    // A little less than what was measured, for rounding.
+    const float apart = clearance(surface, shape, b, x, tight, margin + 0.5f * detail::inner_size(b), solid);
+    out[0].points[0].separation = apart - 1e-5f * (1 + length(x.p));
+    return 0;
+  }
   Deepest found{out};
   for (int i = 0; i < count; ++i) {
     // The shape's own corners come before points cut by triangles' edges: in ties they are kept, with their names.

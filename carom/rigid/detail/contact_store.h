@@ -36,7 +36,7 @@ struct ContactRecord {
   std::int32_t first_manifold = none;
   std::uint16_t flags = 0;
   std::uint16_t manifold_count = 0;
-  float extent = 0;           ///< m: how far a turn of B by one radian moves its surface
+  float extent = 0;           ///< m: how far a turn of B by one radian about its middle (ball_about) moves its surface
   float inner = 0;            ///< m: half the thickness of the thinner shape
   float gap = 0;              ///< m: without manifolds, the shapes were at least this far apart at `base`
   typename D::Vector axis{};  ///< and, unless zero, that far along it (unit, in A's shape frame)

@@ -40,7 +40,8 @@ struct ContactWatch {
   std::int32_t body[2] = {none, none};  ///< none: look at it
   typename D::Transform base{};         ///< the body of B seen from that of A, when it was looked at
   typename D::Vector normal{};  ///< in A's body; apart: along which they are, or zero; recycled: of the first manifold
-  float extent = 0;             ///< m: how far a turn of B by one radian moves its surface
+  typename D::Vector middle{};  ///< m, in B's body: about it its shape turns
+  float extent = 0;             ///< m: how far a turn of B by one radian moves its surface about that
   float gap = 0;       ///< m, apart: what is left until the shapes are of interest; recycled: less than 0 is close
   float most_way = 0;  ///< m, with the turn, where there is a normal; recycled: across it
   float cap = 0;       ///< m, apart: more than that is not looked ahead; recycled: −1
@@ -52,7 +53,7 @@ inline bool nothing_new(const ContactWatch<D>& w, const std::vector<typename D::
   if (w.body[0] == none) return false;
   const typename D::Pose& pose = poses[std::size_t(w.body[0])];
   const typename D::Transform now = relative(pose, poses[std::size_t(w.body[1])]);
-  const typename D::Vector way = now.p - w.base.p;
+  const typename D::Vector way = transform_point(now, w.middle) - transform_point(w.base, w.middle);
   const float turn = chord(w.base.q, now.q) * w.extent, along = dot(w.normal, way);
   if (w.cap < 0) return w.gap + along < 0 && math::length(way - along * w.normal) + turn < w.most_way;
   const BodySweep<D>&a = sweeps[std::size_t(w.body[0])], &b = sweeps[std::size_t(w.body[1])];

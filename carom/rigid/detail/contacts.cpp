@@ -155,7 +155,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   if (has_round_base(a->geometry) || has_round_base(b->geometry)) c.flags |= contact_on_disc;
   if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
   update_contact_flags(world, index);
-  c.extent = b->outer_extent;
+  c.extent = ball_about(*b).radius;
   const float inner = min(a->inner_extent, b->inner_extent);
   c.inner = inner;
   world.pairs.insert(PairSet::key(shape_a, shape_b));

@@ -59,6 +59,7 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
 inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
                         Found<Dim3>& found) {
   found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
+  if (found.count == 0) found.apart = found.manifold[0].points[0].separation;
   for (int i = 0; i < found.count; ++i) found.child[i] = found.manifold[i].child;
 }
 

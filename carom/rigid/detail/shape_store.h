@@ -7,6 +7,7 @@
 
 #include "carom/core/pool.h"
 #include "carom/geometry/dynamic_tree.h"
+#include "carom/geometry/hull.h"
 #include "carom/rigid/detail/body_store.h"
 
 namespace carom::rigid::detail {
@@ -48,6 +49,27 @@ template <class D>
 struct ShapeRecord : ShapeTraits<D> {
   typename D::Shape geometry{};  ///< never changes while the shape lives
 };
+
+/// A ball about a shape, in the shape's frame: how it moves is told by its middle and its turn about that. A hull or a
+/// polygon may lie far from the origin of its frame (the logs of a trunk).
+template <class D>
+struct ShapeBall {
+  typename D::Vector middle{};
+  float radius = 0;
+};
+inline ShapeBall<Dim2> ball_about(const ShapeRecord<Dim2>& shape) {
+  if (shape.geometry.type != geometry::ShapeType2::polygon) return {{}, shape.outer_extent};
+  const geometry::Polygon& polygon = shape.geometry.polygon;
+  float most = 0;
+  for (int i = 0; i < polygon.count; ++i)
+    most = max(most, math::distance_squared(polygon.vertices[i], polygon.centroid));
+  return {polygon.centroid, math::sqrt(most) + polygon.radius};
+}
+inline ShapeBall<Dim3> ball_about(const ShapeRecord<Dim3>& shape) {
+  if (shape.geometry.type != geometry::ShapeType3::hull) return {{}, shape.outer_extent};
+  const geometry::Hull& hull = *shape.geometry.hull;
+  return {hull.bounds.center(), math::length(hull.bounds.extents()) + hull.radius};
+}
 
 /// What few shapes have.
 template <class D>

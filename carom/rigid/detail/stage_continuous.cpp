@@ -80,8 +80,10 @@ float turn_of(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a
 float turn_of(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
 template <class D>
 bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, float part) {
-  const auto middle = own.c1 - own.c0 - (rotate(own.q1, own.local_center) - rotate(own.q0, own.local_center));
-  return math::length(middle) + turn_of(own.q0, own.q1) * shape.outer_extent <= part * shape.inner_extent;
+  const ShapeBall<D> ball = ball_about(shape);
+  const auto arm = ball.middle - own.local_center,
+             middle = own.c1 - own.c0 + (rotate(own.q1, arm) - rotate(own.q0, arm));
+  return math::length(middle) + turn_of(own.q0, own.q1) * ball.radius <= part * shape.inner_extent;
 }
 
 template <class D>

@@ -25,19 +25,23 @@ float smallest_separation(const typename D::Manifold& m) {
   return s;
 }
 
-/// An upper bound of how far any point of B moved, seen from A, from `base` to `now`.
-template <class T>
-float motion(const T& base, const T& now, float extent) {
-  return math::length(now.p - base.p) + chord(base.q, now.q) * extent;
-}
+/// How B moved, seen from A, from when its manifolds were made to `now`: its middle, and its surface about that by the
+/// turn, at most.
+template <class D>
+struct Moved {
+  typename D::Vector way;
+  float turn;
 
-/// The same without what is along the normal: approach and parting change separations only.
-template <class T, class V>
-float slid(const T& base, const T& now, float extent, const V& normal) {
-  T straight = now;
-  straight.p = now.p - normal * dot(normal, now.p - base.p);
-  return motion(base, straight, extent);
-}
+  Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b, const typename D::Transform& now) {
+    const typename D::Vector middle = ball_about(b).middle;
+    way = transform_point(now, middle) - transform_point(c.base, middle);
+    turn = chord(c.base.q, now.q) * c.extent;
+  }
+  /// An upper bound for any point of B.
+  float most() const { return math::length(way) + turn; }
+  /// The same without what is along the normal: approach and parting change separations only.
+  float across(const typename D::Vector& normal) const { return math::length(way - normal * dot(normal, way)) + turn; }
+};
 
 float spin(const SolverBody<Dim2>& s) { return math::abs(s.angular_velocity); }
 float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity); }
@@ -60,15 +64,15 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
   const float way = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt, normal);
   return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
 }
-/// How much nearer B, now at `now`, may still come to A until the pair is of interest; what it may do in this step not
+/// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
 /// counted. Apart from each other along an axis, they may slide past each other, but are looked at now and then, so
 /// that pairs end whose bounds have parted.
 template <class D>
-float slack_of(const ContactRecord<D>& c, const typename D::Transform& now) {
-  const float slack = c.gap - c.margin(), moved = motion(c.base, now, c.extent);
-  if (c.axis == typename D::Vector{}) return slack - moved;
-  if (moved >= 0.5f * c.inner) return -1e30f;
-  return slack + dot(c.axis, now.p - c.base.p) - chord(c.base.q, now.q) * c.extent;
+float slack_of(const ContactRecord<D>& c, const Moved<D>& moved) {
+  const float slack = c.gap - c.margin();
+  if (c.axis == typename D::Vector{}) return slack - moved.most();
+  if (moved.most() >= 0.5f * c.inner) return -1e30f;
+  return slack + dot(c.axis, moved.way) - moved.turn;
 }
 
 /// The touch flag, with hysteresis: begins within the touch distance, ends when the manifolds are gone or beyond twice
@@ -123,22 +127,25 @@ ContactWatch<D>& watch_contact(WorldImplementation<D>& world, const ContactRecor
   w.base = relative(world.bodies.pose[std::size_t(a)], world.bodies.pose[std::size_t(b)]);
   const bool at_origin = (c.flags & contact_at_origin) != 0;
   w.normal = at_origin ? normal : rotate(world.shapes.at(c.shape[0]).local.q, normal);
-  w.extent = c.extent + (at_origin ? 0 : math::length(world.shapes.at(c.shape[1]).local.p));
+  const ShapeRecord<D>& shape = world.shapes.at(c.shape[1]);
+  w.middle = ball_about(shape).middle;
+  if (!at_origin) w.middle = transform_point(shape.local, w.middle);
+  w.extent = c.extent;
   return w;
 }
 /// Rounding must not let a watch hold a moment longer than the exact test.
 template <class D>
 float rounding_of(const ContactWatch<D>& w) {
-  return 1e-5f + 1e-6f * math::length(w.base.p);
+  return 1e-5f + 1e-6f * (math::length(w.base.p) + math::length(w.middle));
 }
 template <class D>
-void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Transform& now) {
+void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const Moved<D>& moved) {
   ContactWatch<D>& w = watch_contact(world, c, c.axis);
-  w.gap = slack_of(c, now) - rounding_of(w);
+  w.gap = slack_of(c, moved) - rounding_of(w);
   w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
   w.most_way = 0;
   if (c.axis == typename D::Vector{}) return;
-  w.most_way = 0.5f * c.inner - motion(c.base, now, c.extent) - rounding_of(w);
+  w.most_way = 0.5f * c.inner - moved.most() - rounding_of(w);
   if (!(w.most_way > 0)) w.body[0] = none;
 }
 template <class D>
@@ -146,9 +153,7 @@ void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, fl
                     const typename D::Vector& normal) {
   ContactWatch<D>& w = watch_contact(world, c, normal);
   w.most_way = slack - rounding_of(w);
-  // The middle of a shape that is not in its body's may come as near as it slides.
-  w.gap = separation - min(c.margin(), 2 * touch_distance) + rounding_of(w) +
-          ((c.flags & contact_at_origin) != 0 ? 0 : slack);
+  w.gap = separation - min(c.margin(), 2 * touch_distance) + rounding_of(w);
   w.cap = -1;
   if (!(w.most_way > 0)) w.body[0] = none;
 }
@@ -177,10 +182,11 @@ template <class D>
 bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
            std::uint8_t& change) {
   if ((c.flags & contact_known) == 0) return false;
+  const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
   if (c.first_manifold == none) {
     const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, c.axis);
-    if (!(near < slack_of(c, now))) return false;
-    watch_apart(world, c, now);
+    if (!(near < slack_of(c, moved))) return false;
+    watch_apart(world, c, moved);
     return true;
   }
   // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
@@ -188,8 +194,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   // far below the size of features, so that nothing sticks to a stale edge.
   if ((c.flags & contact_round) != 0) return false;
   const typename D::Vector normal = world.contacts.manifold(c.first_manifold).manifold.normal;
-  const float separation = c.gap + dot(normal, now.p - c.base.p);
-  const float far = slid(c.base, now, c.extent, normal), most = recycle_share * c.inner;
+  const float separation = c.gap + dot(normal, moved.way), far = moved.across(normal), most = recycle_share * c.inner;
   if (!(separation < c.margin() && far < most)) return false;
   c.flags |= contact_recycled;
   change = touch_change(c, separation, pressed_any(world.contacts, c));
@@ -207,7 +212,7 @@ std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const Shap
   else if (c.first_manifold != none)
     change = change_empty;
   else
-    watch_apart(world, c, c.base);
+    watch_apart(world, c, Moved<D>(c, b, c.base));
   return std::uint8_t(change | touch_change(c, c.gap, false));
 }
 
