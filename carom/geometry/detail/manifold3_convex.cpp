@@ -286,6 +286,15 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const FacePlane plane = face_plane(t, 0);
   const float along_face = pair.along_a(plane);
   if (along_face - pair.radius() > margin) return false;
+  const float small = max(inner_size(b), 1e-6f);
+  // Beside the triangle, farther than anything may reach? Three support points tell that sooner than a distance.
+  const float reach = 1.0001f * (pair.radius() + margin) + 0.02f * small;
+  for (int e = 0; e < 3; ++e) {
+    const Vec3f outward = cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal);
+    const Vec3f nearest = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, outward)))));
+    const float beyond = dot(outward, nearest - t.corner[e]);
+    if (beyond > 0 && beyond * beyond > reach * reach * length_squared(outward)) return false;
+  }
 
   const auto on_face = [&] {
     Feature face, incident;
@@ -299,7 +308,6 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
     normal = t.normal;
     return out.count > before;
   };
-  const float small = max(inner_size(b), 1e-6f);
   if (flat_edges == 7 || along_face > -0.02f * small) {
     // Nothing but the face may push, or it is shallow: where something stands over the face, the face it is.
     if (flat_edges == 7 || along_face <= 0)

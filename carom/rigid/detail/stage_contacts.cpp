@@ -278,14 +278,18 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
 }
 
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
-/// its bodies, some lanes ahead of their use; preparing is bound by latency.
+/// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
+/// of the one before it waits.
 template <class D>
 void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i) {
-  if (i + 12 < list.size()) prefetch_lines(&world.contacts.manifold(list[i + 12]), sizeof(ManifoldRecord<D>));
-  if (i + 8 < list.size())
-    prefetch_lines(&world.contacts.at(world.contacts.manifold(list[i + 8]).contact), sizeof(ContactRecord<D>));
-  if (i + 4 < list.size()) {
-    const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[i + 4]).contact);
+  constexpr std::size_t manifold_lanes = 40, contact_lanes = 26, body_lanes = 12;
+  if (i + manifold_lanes < list.size())
+    prefetch_lines(&world.contacts.manifold(list[i + manifold_lanes]), sizeof(ManifoldRecord<D>));
+  if (i + contact_lanes < list.size())
+    prefetch_lines(&world.contacts.at(world.contacts.manifold(list[i + contact_lanes]).contact),
+                   sizeof(ContactRecord<D>));
+  if (i + body_lanes < list.size()) {
+    const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[i + body_lanes]).contact);
     for (const std::int32_t body : c.body) {
       prefetch_lines(&world.bodies.motion[std::size_t(body)], sizeof(BodyMotion<D>));
       __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);

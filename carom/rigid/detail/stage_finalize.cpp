@@ -158,8 +158,14 @@ template <class D>
 void gather_hit_events(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
-  for (const std::int32_t contact : world.contacts.awake) {
-    const ContactRecord<D>& c = world.contacts.at(contact);
+  const std::vector<std::int32_t>& awake = world.contacts.awake;
+  for (std::size_t i = 0; i < awake.size(); ++i) {
+    if (i + 24 < awake.size()) __builtin_prefetch(&world.contacts.at(awake[i + 24]).first_manifold);
+    if (i + 12 < awake.size()) {
+      const std::int32_t soon = world.contacts.at(awake[i + 12]).first_manifold;
+      if (soon != none) prefetch_lines(&world.contacts.manifold(soon), sizeof(ManifoldRecord<D>));
+    }
+    const ContactRecord<D>& c = world.contacts.at(awake[i]);
     if ((c.flags & contact_hit_events) == 0) continue;
     ContactHitEvent<D> event{};
     for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {

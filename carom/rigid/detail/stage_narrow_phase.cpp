@@ -46,23 +46,48 @@ struct Moved {
 float spin(const SolverBody<Dim2>& s) { return math::abs(s.angular_velocity); }
 float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity); }
 
+/// How B's shape goes past A in this step by the velocities of their bodies, seen from A: its middle, and what the
+/// turns add to that anywhere in it. Long bodies turn fast at their ends only.
+template <class D>
+BodySweep<D> sweep_of_shape(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+  const ShapeRecord<D>& shape = world.shapes.at(c.shape[1]);
+  const typename D::Position middle = world_point(shape_pose(world, shape), ball_about(shape).middle);
+  BodySweep<D> sweep;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t body = std::size_t(c.body[side]);
+    const SolverBody<D>& s = world.bodies.solver[body];
+    const typename D::Vector arm = typename D::Vector(middle - world.bodies.motion[body].center);
+    const typename D::Vector way = (s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
+    const float angle = spin(s) * world.last_dt;
+    sweep.way = side == 0 ? sweep.way - way : sweep.way + way;
+    sweep.turning += angle * c.extent + 0.5f * angle * angle * math::length(arm);
+  }
+  return sweep;
+}
+/// Calls way(sweep) for the sweep of the bodies and, where they turn, for that of the shape: both are bounds.
+template <class D, class Way>
+float least_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, Way&& way) {
+  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
+  const BodySweep<D>&a = sweeps[std::size_t(c.body[0])], &b = sweeps[std::size_t(c.body[1])];
+  const float turning = min(a.turning + b.turning, most_turning * world.last_dt);
+  float least = way(BodySweep<D>{b.way - a.way, turning});
+  if (turning > 0.1f * c.inner) least = min(least, way(sweep_of_shape(world, c)));
+  return (c.flags & contact_bouncy) != 0 ? least : min(least, 0.5f * c.inner);
+}
+
 /// How far the surfaces of the pair may come nearer in this step. Contacts are foreseen that far, so that impacts
 /// happen at the surface, with the energy a body has there; those that do not bounce look no farther than half their
 /// thickness.
 template <class D>
 float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
-  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
-  const float way = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt);
-  return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
+  return least_way(world, c, [](const BodySweep<D>& s) { return math::length(s.way) + s.turning; });
 }
 /// The same for a contact with this normal (in the frame of A's shape): what counts is what closes along it.
 template <class D>
 float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c, typename D::Vector normal) {
-  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
   if ((c.flags & contact_at_origin) == 0) normal = rotate(world.shapes.at(c.shape[0]).local.q, normal);
   normal = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, normal);
-  const float way = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt, normal);
-  return (c.flags & contact_bouncy) != 0 ? way : min(way, 0.5f * c.inner);
+  return least_way(world, c, [&](const BodySweep<D>& s) { return max(s.turning - dot(normal, s.way), 0.0f); });
 }
 /// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
 /// counted. Apart from each other along an axis, they may slide past each other, but are looked at now and then, so
@@ -443,9 +468,10 @@ void update_contacts(WorldImplementation<D>& world) {
         if (!nothing_new(scratch.watches[std::size_t(begin)], world.bodies.pose, scratch.sweeps, world.last_dt))
           due[number++] = begin;
       for (int k = 0; k < number; ++k) {
-        if (k + 6 < number) __builtin_prefetch(&world.contacts.at(world.contacts.awake[std::size_t(due[k + 6])]));
-        if (k + 3 < number) {
-          const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k + 3])]);
+        if (k + 16 < number)
+          prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(due[k + 16])]), sizeof(ContactRecord<D>));
+        if (k + 6 < number) {
+          const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k + 6])]);
           for (const std::int32_t body : soon.body) __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
           for (const std::int32_t shape : soon.shape) prefetch_lines(&world.shapes.at(shape), 192);
           if (soon.first_manifold != none)
