@@ -287,13 +287,16 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const float along_face = pair.along_a(plane);
   if (along_face - pair.radius() > margin) return false;
   const float small = max(inner_size(b), 1e-6f);
-  // Beside the triangle, farther than anything may reach? Three support points tell that sooner than a distance.
-  const float reach = 1.0001f * (pair.radius() + margin) + 0.02f * small;
-  for (int e = 0; e < 3; ++e) {
-    const Vec3f outward = cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal);
-    const Vec3f nearest = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, outward)))));
-    const float beyond = dot(outward, nearest - t.corner[e]);
-    if (beyond > 0 && beyond * beyond > reach * reach * length_squared(outward)) return false;
+  // Beside the triangle, farther than anything may reach? Three support points tell that sooner than the search for a
+  // distance; balls and capsules have a closed form that is as quick.
+  if (b.kind != CoreKind::point && b.kind != CoreKind::segment) {
+    const float reach = 1.0001f * (pair.radius() + margin) + 0.02f * small;
+    for (int e = 0; e < 3; ++e) {
+      const Vec3f outward = cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal);
+      const Vec3f nearest = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, outward)))));
+      const float beyond = dot(outward, nearest - t.corner[e]);
+      if (beyond > 0 && beyond * beyond > reach * reach * length_squared(outward)) return false;
+    }
   }
 
   const auto on_face = [&] {
