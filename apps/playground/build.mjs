@@ -5,6 +5,7 @@ import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} fro
 import {dirname, join, relative, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
+import {split} from '../wasm/split.mjs';
 import {thumbnails} from './thumbnails.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url)), root = join(here, '../..');
@@ -60,6 +61,8 @@ const page = readFileSync(join(here, 'src/index.html'), 'utf8').replace('name="t
 writeFileSync(join(out, 'index.html'), web ? page.replace('name="engine" content="native"', 'name="engine" content="wasm"') : page);
 
 if (web) {
-  cpSync(module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), join(out, 'carom.wasm'));
-  writeFileSync(join(out, 'files.json'), JSON.stringify(dataFiles()));
+  const files = dataFiles();
+  writeFileSync(join(out, 'files.json'), JSON.stringify(files));
+  for (const [name, {bytes}] of Object.entries(await split(module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), files, out)))
+    console.log(`${name}: ${(bytes / 1000).toFixed(0)} kB gzipped`);
 }

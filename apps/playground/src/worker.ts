@@ -1,5 +1,6 @@
 // The engine in the page: the same simulation host as `carom serve` runs, compiled to WebAssembly. Carries the
 // messages of docs/protocol.md; the module's exports are documented in apps/wasm/exports.cpp.
+import {Parts} from './parts';
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -88,8 +89,10 @@ async function compile(url: string): Promise<WebAssembly.Module> {
 async function start(): Promise<void> {
   const [module, files] = await Promise.all([compile('carom.wasm'), fetch('files.json').then((answer) => answer.json() as Promise<Record<string, string>>)]);
   let made: Exports;
-  const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: system(() => made.memory.buffer)});
+  const parts = new Parts(module);
+  const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: system(() => made.memory.buffer), ...parts.imports()});
   made = instance.exports as unknown as Exports;
+  parts.begin(instance.exports);
   made._initialize();
   host = made;
   for (const [name, file] of Object.entries(files)) {
