@@ -71,7 +71,7 @@ function makeHost(module, files) {
 function runDemos({module, files, count}, {demos, seconds, patience}) {
   const host = makeHost(module, files);
   for (const demo of demos) {
-    host.send({type: 'open', demo});
+    host.send({type: 'open', demo, parameters: {}});
     const until = performance.now() + 1000 * patience;
     for (let frame = 0; frame < 60 * seconds && performance.now() < until; ++frame) host.advance(1 / 60);
   }
