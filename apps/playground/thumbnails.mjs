@@ -22,7 +22,8 @@ export async function thumbnails(root, out, sources) {
   const run = (...rest) => promisify(execFile)(program, rest, {maxBuffer: 1 << 26, cwd: root});
   const started = performance.now(), cache = join(root, 'build/thumbnails'), folder = join(out, 'thumbnails');
   for (const needed of [cache, folder]) mkdirSync(needed, {recursive: true});
-  const listed = JSON.parse((await run('list', '--json')).stdout);
+  // A scene file that cannot be read is told by the exit status; the others are listed all the same.
+  const listed = JSON.parse((await run('list', '--json').catch((error) => error)).stdout);
   const drawing = ['picture', 'raster', 'tessellate'].map((name) => readFileSync(join(root, `apps/command/${name}.cpp`), 'utf8')).join('') + SIZE;
   const waiting = [
     ...listed.demos.map((d) => ({id: d.demo, declared: d, text: sources[d.demo]?.code ?? ''})),
