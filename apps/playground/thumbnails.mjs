@@ -28,7 +28,7 @@ export async function thumbnails(root, out, sources) {
   const waiting = [
     ...listed.demos.map((d) => ({id: d.demo, declared: d, text: sources[d.demo]?.code ?? ''})),
     ...listed.stress.map((d) => ({id: d.demo, declared: d, text: '', moment: 0.3})),  // thousands of bodies: a few steps must do
-    ...listed.scenes.map((d) => ({id: `scene:${d.demo}`, declared: d, text: readFileSync(join(root, `scenes/${d.demo}.json`), 'utf8')})),
+    ...listed.scenes.filter((d) => d.demo).map((d) => ({id: `scene:${d.demo}`, declared: d, text: readFileSync(join(root, `scenes/${d.demo}.json`), 'utf8')})),
   ];
   const made = [];
   let drawn = 0;
