@@ -345,7 +345,7 @@ export class Viewer {
     this.stale = false;
     if (this.camera instanceof THREE.PerspectiveCamera) {
       // As far away as it may be: the depth buffer then tells apart what lies close together.
-      const near = Math.max(0.02, this.camera.position.distanceTo(this.controls.target) / 100);
+      const near = Math.max(0.02, this.camera.position.distanceTo(this.controls.target) / 500);
       if (Math.abs(near / this.camera.near - 1) > 0.1) { this.camera.near = near; this.camera.updateProjectionMatrix(); }
     }
     const reach = this.sun.userData.reach ?? 20;
