@@ -84,6 +84,13 @@ struct RenderOptions {
 };
 int render(const RenderOptions& options);
 
+struct ReplayOptions {
+  std::string recording;
+  int threads = 1;
+  bool json = false, quiet = false;
+};
+int replay(const ReplayOptions& options);
+
 struct SweepOptions {
   std::string scene, out;
   std::vector<std::string> settings;

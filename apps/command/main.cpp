@@ -136,6 +136,24 @@ int main(int count, char** arguments) {
     result = render(render_options);
   });
 
+  ReplayOptions replay_options;
+  CLI::App* replay_command = app.add_subcommand(
+      "replay", "Run a recording again from what opened it, and say at which step it differs, if any does");
+  replay_command->add_option("recording", replay_options.recording, "a recording (.carom-rec)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  replay_command->add_option("--threads,-t", replay_options.threads, "worker threads; 0: all processors")
+      ->check(CLI::Range(0, 64));
+  replay_command->add_flag("--json", replay_options.json, "as JSON");
+  replay_command->add_flag("--quiet,-q", replay_options.quiet, "only the exit status: 0 the same, 1 not");
+  replay_command->footer(
+      with_examples("  carom replay out/wrecking-ball/recording.carom-rec\n"
+                    "  carom replay bug-report.carom-rec --threads 8 --json\n"));
+  replay_command->callback([&] {
+    replay_options.threads = threads_of(replay_options.threads);
+    result = replay(replay_options);
+  });
+
   ServeOptions serve_options;
   CLI::App* serve_command =
       app.add_subcommand("serve", "Serve the playground; the engine runs here, the page shows it");

@@ -10,7 +10,7 @@
 #include "apps/command/picture.h"
 #include "apps/command/report.h"
 #include "apps/host/messages.h"
-#include "apps/host/playback.h"
+#include "apps/host/run_recorder.h"
 #include "carom/core/profiler.h"
 #include "carom/scene/recording.h"
 
@@ -76,9 +76,10 @@ class Runner {
   core::Status open_recording() {
     const host::Declaration& d = simulation_->declaration();
     core::Result<scene::Recorder> opened =
-        scene::Recorder::open(temporary_name(path("recording.carom-rec")), host::recording_header(*simulation_));
+        scene::Recorder::open(temporary_name(path("recording.carom-rec")),
+                              host::recording_header(*simulation_, {simulation_->values(), {}, true}));
     if (!opened.ok()) return opened.error();
-    recorder_.emplace(std::move(opened).value());
+    recorder_.emplace(std::move(opened).value(), *simulation_);
     // Sixty frames a second are enough to look at, however short the steps.
     record_every_ = std::max(1, int(std::lround(1.0 / 60 / d.dt)));
     return record(true);
@@ -87,19 +88,16 @@ class Runner {
   core::Status record(bool always) {
     const std::uint64_t step = simulation_->step_count();
     if (!recorder_ || (!always && step % std::uint64_t(record_every_) != 0)) return {};
-    host::capture_frame(*simulation_, step % 60 == 0 || always, frame_);
     last_recorded_ = step;
-    const core::Status status = recorder_->add(frame_);
-    frame_.samples.clear();
+    const core::Status status = recorder_->add(*simulation_, waiting_);
+    waiting_.clear();
     return status;
   }
 
   void take_samples() {
     std::vector<host::Sample>& fresh = simulation_->base().state.samples;
-    for (const host::Sample& s : fresh) {
-      samples_.push_back(s);
-      if (recorder_) frame_.samples.push_back({std::uint16_t(s.plot), std::uint16_t(s.series), s.x, s.y});
-    }
+    samples_.insert(samples_.end(), fresh.begin(), fresh.end());
+    if (recorder_) waiting_.insert(waiting_.end(), fresh.begin(), fresh.end());
     fresh.clear();
   }
 
@@ -214,9 +212,8 @@ class Runner {
   core::Profiler* profiler_;
   std::string out_;
   Report report_;
-  std::optional<scene::Recorder> recorder_;
-  scene::RecordedFrame frame_;
-  std::vector<host::Sample> samples_;
+  std::optional<host::RunRecorder> recorder_;
+  std::vector<host::Sample> samples_, waiting_;
   int record_every_ = 1;
   std::uint64_t last_recorded_ = ~std::uint64_t{0};
   core::Status trouble_;

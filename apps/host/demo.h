@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/host/stage.h"
+#include "carom/scene/recording.h"
 
 namespace carom::host {
 
@@ -16,6 +17,8 @@ class Demo {
   virtual Declaration declaration() const = 0;
   /// Another of the same kind, for a restart.
   virtual std::unique_ptr<Demo> again() const = 0;
+  /// What it was read from, a scene file first; nothing where a program made it.
+  virtual std::vector<scene::RecordedFile> files() const { return {}; }
   /// What the demo itself remembers, for going back in time: a copy, and back into this one. Null: it cannot be copied.
   virtual std::unique_ptr<Demo> copy() const { return nullptr; }
   virtual void assign(const Demo&) {}

@@ -12,6 +12,8 @@
 #include "apps/host/history.h"
 #include "apps/host/messages.h"
 #include "apps/host/playback.h"
+#include "apps/host/replay.h"
+#include "apps/host/run_recorder.h"
 #include "apps/host/simulation.h"
 #include "carom/ode/clock.h"
 
@@ -83,12 +85,15 @@ class SimulationHost {
   core::Status open(core::Result<std::unique_ptr<Simulation>> opened);
   void begin();
   void restart();
-  void act(History::Action action);
+  DeedOutcome act(const Deed& deed);
+  void forget_after_now();
   void send_scene();
   void send_inspection();
   core::Status start_recording();
   void record();
   void finish_recording();
+  core::Status start_replay();
+  void go_on_with_replay(double real_seconds);
   void send(std::string text);
   void send_binary(std::string bytes);
   void send_status();
@@ -104,9 +109,13 @@ class SimulationHost {
   std::unique_ptr<Simulation> simulation_;
   std::string source_name_, source_text_;  ///< of the open scene; empty where a program made it
   std::vector<std::uint8_t> upload_;       ///< parts of a recording that have come
-  std::unique_ptr<scene::Recorder> recorder_;
+  std::unique_ptr<RunRecorder> recorder_;
   std::string recorded_;
-  scene::RecordedFrame record_frame_;
+  std::unique_ptr<Replay> replay_;
+  double since_told_ = 0;              ///< how far the replay is
+  std::vector<double> opened_values_;  ///< when the run began
+  std::vector<DeedAtStep> done_;       ///< since then
+  bool done_is_lost_ = false;          ///< more than anybody wants to do again
   History history_;
   std::uint32_t layers_ = 0;
   std::int64_t inspected_ = -1;  ///< the body whose report is sent with the numbers, or −1

@@ -297,6 +297,14 @@ std::string inspected_message(std::string_view report) {
   return "{\"type\":\"inspected\"," + std::string(report.substr(1));
 }
 
+std::string verified_message(const ReplayReport& report) {
+  Json out = {{"type", "verified"},      {"done", report.done},     {"equal", report.equal()},
+              {"step", report.step},     {"first", report.first},   {"last", report.last},
+              {"frames", report.frames}, {"hashes", report.hashes}, {"message", report.text()}};
+  if (report.difference) out["differs"] = report.difference->step;
+  return text_of(out);
+}
+
 std::string source_message(std::string_view name, std::string_view text) {
   return text_of({{"type", "source"}, {"name", std::string(name)}, {"text", std::string(text)}});
 }

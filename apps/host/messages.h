@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/host/debug_draw.h"
+#include "apps/host/replay.h"
 #include "apps/host/simulation.h"
 
 namespace carom::host {
@@ -33,6 +34,7 @@ std::string numbers_message(const NumbersFields& fields);
 std::string probed_message(std::string_view kind, const ProbeAnswer& answer);
 /// `report`: the JSON object of Simulation::inspect, or empty where the body is gone.
 std::string inspected_message(std::string_view report);
+std::string verified_message(const ReplayReport& report);
 std::string source_message(std::string_view name, std::string_view text);
 std::string error_message(std::string_view message);
 struct StatusFields {

@@ -1,6 +1,7 @@
 #include "apps/host/playback.h"
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -18,12 +19,14 @@ const core::Error only_shown{"this is a recording: it can be looked at, not chan
 class Playback final : public Simulation {
  public:
   Playback(Declaration declaration, std::shared_ptr<scene::Recording> recording, StepRange range,
-           std::vector<BodyView> views, MeshLibrary meshes)
+           std::vector<BodyView> views, std::vector<std::uint32_t> first_ids, MeshLibrary meshes)
       : Simulation(std::move(declaration)),
         recording_(std::move(recording)),
         stage_(declaration_, {}),
         range_(range),
-        views_(std::move(views)) {
+        views_(std::move(views)),
+        first_ids_(std::move(first_ids)),
+        shown_(first_ids_) {
     base_ = &stage_;
     meshes_ = std::move(meshes);
   }
@@ -34,6 +37,7 @@ class Playback final : public Simulation {
     frame_ = std::move(frame).value();
     index_ = index;
     if (frame_.has_hash) hash_ = frame_.state_hash;
+    show_picture();
     for (const scene::RecordedSample& s : frame_.samples) stage_.sample(s.plot, s.series, s.x, s.y);
     return {};
   }
@@ -52,7 +56,11 @@ class Playback final : public Simulation {
     return status;
   }
   std::string opened_text() const override { return recording_->header().declaration; }
-  std::string scene_text() override { return recording_->header().scene; }
+  std::shared_ptr<scene::Recording> recording() const override { return recording_; }
+  std::string scene_text() override {
+    shown_ = first_ids_;
+    return recording_->header().scene;
+  }
 
   GrabAnswer grab(std::int64_t, math::Vec3d, math::Vec3d) override { return {}; }
   core::Status drag(std::int64_t, math::Vec3d) override { return only_shown; }
@@ -71,10 +79,11 @@ class Playback final : public Simulation {
     out.clear();
     for (const scene::RecordedBody& b : frame_.bodies) out.push_back({b.id, b.position, b.rotation, !b.asleep});
   }
-  /// The bodies of the header that are there now, where they are now. A page reads the header itself.
-  void describe(const std::vector<std::uint32_t>*, std::vector<BodyView>& out) override {
+  /// The bodies that are there now, where they are now.
+  void describe(const std::vector<std::uint32_t>* only, std::vector<BodyView>& out) override {
     std::size_t at = 0;
     for (const scene::RecordedBody& b : frame_.bodies) {
+      if (only && std::find(only->begin(), only->end(), b.id) == only->end()) continue;
       while (at < views_.size() && views_[at].id < b.id) ++at;
       if (at == views_.size() || views_[at].id != b.id) continue;
       out.push_back(views_[at]);
@@ -82,8 +91,19 @@ class Playback final : public Simulation {
       out.back().rotation = b.rotation;
     }
   }
-  void lines(std::vector<Line>& out) const override { out.clear(); }
-  bool take_changes(std::vector<std::uint32_t>&, std::vector<std::uint32_t>&) override { return false; }
+  void lines(std::vector<Line>& out) const override {
+    out.clear();
+    for (const scene::RecordedLine& line : frame_.picture.lines) out.push_back({line.a, line.b, line.rgba});
+  }
+  /// Bodies come and go as frames are shown, in whatever order.
+  bool take_changes(std::vector<std::uint32_t>& added, std::vector<std::uint32_t>& removed) override {
+    std::vector<std::uint32_t> now;
+    for (const scene::RecordedBody& b : frame_.bodies) now.push_back(b.id);
+    std::set_difference(now.begin(), now.end(), shown_.begin(), shown_.end(), std::back_inserter(added));
+    std::set_difference(shown_.begin(), shown_.end(), now.begin(), now.end(), std::back_inserter(removed));
+    shown_ = std::move(now);
+    return !added.empty() || !removed.empty();
+  }
 
   rigid::Counters counters() const override {
     rigid::Counters counters;
@@ -98,7 +118,7 @@ class Playback final : public Simulation {
   std::uint64_t state_hash() const override { return hash_; }
   int threads() const override { return 0; }
   core::Result<std::unique_ptr<Simulation>> reopen(const std::vector<double>&) const override {
-    auto again = std::make_unique<Playback>(declaration_, recording_, range_, views_, meshes_);
+    auto again = std::make_unique<Playback>(declaration_, recording_, range_, views_, first_ids_, meshes_);
     if (const core::Status status = again->show_frame(0); !status.ok()) return status.error();
     return std::unique_ptr<Simulation>(std::move(again));
   }
@@ -110,11 +130,32 @@ class Playback final : public Simulation {
     using StageBase::StageBase;
   };
   void changed(std::string_view) override {}
+  void show_picture() {
+    StageBase::State& state = stage_.state;
+    const scene::RecordedPicture& picture = frame_.picture;
+    state.points = {picture.points, picture.radii, picture.point_rgbas};
+    state.surfaces.resize(picture.surfaces.size());
+    for (std::size_t i = 0; i < picture.surfaces.size(); ++i) {
+      const scene::RecordedSurface& from = picture.surfaces[i];
+      Surface& to = state.surfaces[i];
+      if (to.triangles != from.triangles || to.rgba != from.rgba) to.triangles = from.triangles, ++to.topology;
+      to.corners = from.corners;
+      to.rgba = from.rgba;
+    }
+    state.values_changed = state.values_changed || state.values != frame_.values;
+    if (frame_.values.size() == declaration_.parameters.size()) state.values = frame_.values;
+    if (!recording_->complete())
+      stage_.say("recording, not whole: " + recording_->damage());
+    else
+      stage_.say(frame_.message.empty() ? "recording" : frame_.message);
+  }
 
   std::shared_ptr<scene::Recording> recording_;
   Silent stage_;
   StepRange range_;
-  std::vector<BodyView> views_;  ///< of the header, by rising id
+  std::vector<BodyView> views_;           ///< of all bodies that ever come, by rising id
+  std::vector<std::uint32_t> first_ids_;  ///< of the header's bodies
+  std::vector<std::uint32_t> shown_;      ///< what who looks knows of
   scene::RecordedFrame frame_;
   std::size_t index_ = 0;
   std::uint64_t hash_ = 0;
@@ -131,34 +172,16 @@ core::Result<Declaration> read_declaration(const scene::RecordingHeader& header)
   d.dimension = header.dimension;
   d.dt = header.dt;
   read_camera(header.declaration, d.camera);
+  // Their names are enough to show how they were set.
+  if (opened.contains("parameters") && opened["parameters"].is_array())
+    for (const Json& p : opened["parameters"])
+      if (p.is_object() && p.contains("name") && p["name"].is_string())
+        d.parameters.push_back(
+            {.name = p["name"].get<std::string>(), .label = {}, .unit = {}, .display_unit = {}, .description = {}});
   return d;
 }
 
 }  // namespace
-
-scene::RecordingHeader recording_header(Simulation& simulation) {
-  const Declaration& d = simulation.declaration();
-  scene::RecordingHeader header;
-  header.name = d.id;
-  header.dt = d.dt;
-  header.dimension = d.dimension;
-  header.scene = simulation.scene_text();
-  header.declaration = simulation.opened_text();
-  const std::vector<Mesh>& meshes = simulation.meshes().meshes();
-  for (std::size_t i = 0; i < meshes.size(); ++i) header.meshes.push_back(mesh_message(std::uint32_t(i), meshes[i]));
-  return header;
-}
-
-void capture_frame(Simulation& simulation, bool with_hash, scene::RecordedFrame& frame) {
-  frame.step = simulation.step_count();
-  frame.time = simulation.time();
-  frame.has_hash = with_hash;
-  frame.state_hash = with_hash ? simulation.state_hash() : 0;
-  std::vector<BodyPlace> places;
-  simulation.places(places);
-  frame.bodies.clear();
-  for (const BodyPlace& p : places) frame.bodies.push_back({p.id, !p.awake, p.position, p.rotation});
-}
 
 core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_t> bytes) {
   core::Result<scene::Recording> opened = scene::Recording::from_bytes(std::move(bytes));
@@ -169,17 +192,33 @@ core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_
                        (recording->damage().empty() ? std::string() : "; " + recording->damage())};
   core::Result<Declaration> declaration = read_declaration(recording->header());
   if (!declaration.ok()) return declaration.error();
-  core::Result<SceneViews> views = read_scene(recording->header().scene, recording->header().meshes.size());
+  std::size_t mesh_count = recording->header().meshes.size();
+  core::Result<SceneViews> views = read_scene(recording->header().scene, mesh_count);
   if (!views.ok()) return core::Error{"recording: " + views.error().message};
+  std::vector<std::uint32_t> first_ids;
+  for (const BodyView& body : views->bodies) first_ids.push_back(body.id);
+  std::sort(first_ids.begin(), first_ids.end());
+  MeshLibrary meshes;
+  const auto keep_meshes = [&meshes](const std::vector<std::string>& texts) -> core::Status {
+    for (const std::string& text : texts) {
+      core::Result<Mesh> mesh = read_mesh(text);
+      if (!mesh.ok()) return core::Error{"recording: " + mesh.error().message};
+      meshes.add(std::move(mesh).value());
+    }
+    return {};
+  };
+  if (const core::Status kept = keep_meshes(recording->header().meshes); !kept.ok()) return kept.error();
+  for (const scene::RecordedArrival& arrival : recording->arrivals()) {
+    mesh_count += arrival.meshes.size();
+    core::Result<std::vector<BodyView>> come = read_arrivals(arrival.bodies, mesh_count);
+    if (!come.ok()) return core::Error{"recording: " + come.error().message};
+    views->bodies.insert(views->bodies.end(), std::make_move_iterator(come->begin()),
+                         std::make_move_iterator(come->end()));
+    if (const core::Status kept = keep_meshes(arrival.meshes); !kept.ok()) return kept.error();
+  }
   std::sort(views->bodies.begin(), views->bodies.end(),
             [](const BodyView& a, const BodyView& b) { return a.id < b.id; });
   declaration->ground = views->ground;
-  MeshLibrary meshes;
-  for (const std::string& text : recording->header().meshes) {
-    core::Result<Mesh> mesh = read_mesh(text);
-    if (!mesh.ok()) return core::Error{"recording: " + mesh.error().message};
-    meshes.add(std::move(mesh).value());
-  }
   const core::Result<scene::RecordedFrame> last = recording->frame(recording->frame_count() - 1);
   if (!last.ok()) return last.error();
   const std::uint64_t end = last->step;
@@ -190,9 +229,8 @@ core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_
     declaration->dt = (recording->last_time() - recording->first_time()) / double(recording->frame_count() - 1);
   if (!(declaration->dt > 0)) declaration->dt = recording->header().dt;
   auto playback = std::make_unique<Playback>(std::move(declaration).value(), recording, StepRange{first->step, end},
-                                             std::move(views->bodies), std::move(meshes));
+                                             std::move(views->bodies), std::move(first_ids), std::move(meshes));
   if (const core::Status status = playback->show_frame(0); !status.ok()) return status.error();
-  playback->base().say(recording->complete() ? "recording" : "recording, not whole: " + recording->damage());
   return std::unique_ptr<Simulation>(std::move(playback));
 }
 

@@ -1,4 +1,4 @@
-// Runs as recordings: what `carom run` and a page write, and what a page plays.
+// A recording as a run, for who wants to look at it.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,6 @@
 #include "carom/scene/recording.h"
 
 namespace carom::host {
-
-scene::RecordingHeader recording_header(Simulation& simulation);
-/// The run as it is now. Samples are those that `frame` holds already.
-void capture_frame(Simulation& simulation, bool with_hash, scene::RecordedFrame& frame);
 
 /// A recording as a run whose steps are its frames: nothing can be pulled at or set, any frame can be shown.
 /// Errors name what is wrong with the file; one that ends early plays as far as it is whole, and says so.

@@ -126,6 +126,35 @@ ShapeView read_shape(const Json& json, const std::string& where, std::size_t mes
   return s;
 }
 
+core::Status read_bodies(const Json& bodies, const std::string& list, std::size_t mesh_count,
+                         std::vector<BodyView>& out) {
+  std::string error;
+  for (std::size_t i = 0; i < bodies.size() && error.empty(); ++i) {
+    const std::string where = list + "[" + std::to_string(i) + "]";
+    const Json& json = bodies[i];
+    if (!json.is_object()) return core::Error{where + ": expected an object"};
+    Fields f(json, where, error);
+    BodyView body;
+    body.id = std::uint32_t(math::clamp(f.number("id", 0), 0.0, 4294967295.0));
+    body.name = f.text("name");
+    const std::string type = f.text("type");
+    body.type = type == "fixed"       ? rigid::BodyType::fixed
+                : type == "kinematic" ? rigid::BodyType::kinematic
+                                      : rigid::BodyType::dynamic;
+    body.color = f.color("color");
+    body.position = vec(f.numbers<3>("position", {}));
+    const std::array<double, 4> q = f.numbers<4>("rotation", {1, 0, 0, 0});
+    body.rotation = {float(q[0]), float(q[1]), float(q[2]), float(q[3])};
+    if (const Json* shapes = f.list("shapes"))
+      for (std::size_t k = 0; k < shapes->size(); ++k)
+        if ((*shapes)[k].is_object())
+          body.shapes.push_back(
+              read_shape((*shapes)[k], where + ".shapes[" + std::to_string(k) + "]", mesh_count, error));
+    out.push_back(std::move(body));
+  }
+  return error.empty() ? core::Status{} : core::Status{core::Error{error}};
+}
+
 }  // namespace
 
 core::Result<SceneViews> read_scene(const std::string& text, std::size_t mesh_count) {
@@ -136,32 +165,21 @@ core::Result<SceneViews> read_scene(const std::string& text, std::size_t mesh_co
   Fields whole(scene, "scene", error);
   if (const auto ground = scene.find("ground"); ground != scene.end() && ground->is_object())
     out.ground = Fields(*ground, "scene.ground", error).number("level", 0);
-  if (const Json* bodies = whole.list("bodies")) {
-    for (std::size_t i = 0; i < bodies->size() && error.empty(); ++i) {
-      const std::string where = "scene.bodies[" + std::to_string(i) + "]";
-      const Json& json = (*bodies)[i];
-      if (!json.is_object()) return core::Error{where + ": expected an object"};
-      Fields f(json, where, error);
-      BodyView body;
-      body.id = std::uint32_t(math::clamp(f.number("id", 0), 0.0, 4294967295.0));
-      body.name = f.text("name");
-      const std::string type = f.text("type");
-      body.type = type == "fixed"       ? rigid::BodyType::fixed
-                  : type == "kinematic" ? rigid::BodyType::kinematic
-                                        : rigid::BodyType::dynamic;
-      body.color = f.color("color");
-      body.position = vec(f.numbers<3>("position", {}));
-      const std::array<double, 4> q = f.numbers<4>("rotation", {1, 0, 0, 0});
-      body.rotation = {float(q[0]), float(q[1]), float(q[2]), float(q[3])};
-      if (const Json* shapes = f.list("shapes"))
-        for (std::size_t k = 0; k < shapes->size(); ++k)
-          if ((*shapes)[k].is_object())
-            body.shapes.push_back(
-                read_shape((*shapes)[k], where + ".shapes[" + std::to_string(k) + "]", mesh_count, error));
-      out.bodies.push_back(std::move(body));
-    }
-  }
+  if (const Json* bodies = whole.list("bodies"))
+    if (const core::Status read = read_bodies(*bodies, "scene.bodies", mesh_count, out.bodies); !read.ok())
+      return read.error();
   if (!error.empty()) return core::Error{error};
+  return out;
+}
+
+core::Result<std::vector<BodyView>> read_arrivals(const std::string& text, std::size_t mesh_count) {
+  const Json message = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  std::string error;
+  std::vector<BodyView> out;
+  if (!message.is_object()) return core::Error{"bodies: expected a JSON object"};
+  const Json* added = Fields(message, "bodies", error).list("add");
+  if (added == nullptr) return core::Error{error};
+  if (const core::Status read = read_bodies(*added, "bodies.add", mesh_count, out); !read.ok()) return read.error();
   return out;
 }
 

@@ -18,6 +18,8 @@ struct SceneViews {
   std::optional<double> ground;
 };
 core::Result<SceneViews> read_scene(const std::string& text, std::size_t mesh_count);
+/// The bodies that a `bodies` message adds.
+core::Result<std::vector<BodyView>> read_arrivals(const std::string& text, std::size_t mesh_count);
 /// A binary `mesh` message.
 core::Result<Mesh> read_mesh(const std::string& bytes);
 /// The camera of an `opened` message; what is missing or no number stays as `camera` has it.

@@ -47,6 +47,11 @@ class SceneDemo final : public DemoOf<D> {
 
   Declaration declaration() const override { return declaration_of(scene_, id_); }
   std::unique_ptr<Demo> again() const override { return std::make_unique<SceneDemo<D>>(scene_, id_); }
+  std::vector<scene::RecordedFile> files() const override {
+    std::vector<scene::RecordedFile> out;
+    for (const scene::SourceFile& one : scene_.sources()) out.push_back({one.name, one.bytes});
+    return out;
+  }
 
   void build(Stage<D>& stage) override {
     core::Result<scene::SceneWorld> made =

@@ -237,6 +237,7 @@ class SimulationOf final : public Simulation {
     Demo& demo = *fresh;
     return demo.open(std::move(fresh), values, options_);
   }
+  std::vector<scene::RecordedFile> files() const override { return owner_->files(); }
   int threads() const override { return options_.threads; }
   void expectations(std::vector<Expectation>& out) override { demo_.expectations(stage_, out); }
   rigid::World2* world2() override {

@@ -90,7 +90,10 @@ class Simulation {
 
   /// The steps of a recording (playback.h); a run of the engine has none.
   virtual std::optional<StepRange> recorded() const { return {}; }
+  virtual std::shared_ptr<scene::Recording> recording() const { return nullptr; }
   virtual core::Status show(std::uint64_t) { return core::Error{"show: this is no recording"}; }
+  /// What its demo was read from (Demo::files).
+  virtual std::vector<scene::RecordedFile> files() const { return {}; }
   /// What a page is told when it is opened: the `opened` and `scene` messages.
   virtual std::string opened_text() const;
   virtual std::string scene_text();

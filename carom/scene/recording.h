@@ -3,6 +3,8 @@
 // File: a 16-byte preamble, then chunks, then an index chunk and a 24-byte trailer. Each chunk is
 // {u8 tag, u8[3] zero, u32 payload bytes, u64 hash of tag and payload, payload}. All little-endian.
 // A file cut anywhere plays up to its last whole chunk: the index is found again by scanning.
+// Version 2 adds what is drawn beside bodies, bodies that come later, and what the run was opened from; files of
+// version 1 open as before.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +24,24 @@ using core::Result;
 using core::Status;
 class SceneWorld;
 
+struct RecordedFile {
+  std::string name, bytes;
+};
 struct RecordingHeader {
-  std::uint32_t version = 1;
+  std::uint32_t version = 2;
   std::string name;      ///< of the scene
   double dt = 1.0 / 60;  ///< s a step
   int dimension = 3;
   std::string scene;                ///< the `scene` message of docs/protocol.md
   std::vector<std::string> meshes;  ///< binary mesh messages, as in the protocol
   std::string declaration;          ///< JSON text with plots and camera, or empty
+  std::string origin;               ///< JSON text: what runs it again (docs/protocol.md), or empty
+  std::vector<RecordedFile> files;  ///< the scene that was opened, first, and all that it names; or none
+};
+/// Bodies that the header does not know: a `bodies` message of docs/protocol.md and the meshes that are new in it.
+struct RecordedArrival {
+  std::string bodies;
+  std::vector<std::string> meshes;
 };
 struct RecordedBody {
   std::uint32_t id = 0;
@@ -41,6 +53,23 @@ struct RecordedSample {
   std::uint16_t plot = 0, series = 0;
   double x = 0, y = 0;
 };
+struct RecordedLine {
+  math::Vec3d a{}, b{};
+  std::uint32_t rgba = 0;
+};
+struct RecordedSurface {
+  std::vector<math::Vec3f> corners;
+  std::vector<std::uint32_t> triangles;  ///< three corners each
+  std::uint32_t rgba = 0;
+};
+/// What is drawn beside bodies. Places are kept to 2⁻¹⁶ (points), 2⁻¹⁸ (surfaces) or 2⁻²² (lines) of the whole's size.
+struct RecordedPicture {
+  std::vector<RecordedLine> lines;
+  std::vector<math::Vec3f> points;         ///< m: middles of small balls
+  std::vector<float> radii;                ///< m, one a point
+  std::vector<std::uint32_t> point_rgbas;  ///< one a point
+  std::vector<RecordedSurface> surfaces;
+};
 struct RecordedFrame {
   std::uint64_t step = 0;
   double time = 0;
@@ -48,10 +77,14 @@ struct RecordedFrame {
   std::uint64_t state_hash = 0;
   std::vector<RecordedBody> bodies;     ///< all bodies, by rising id
   std::vector<RecordedSample> samples;  ///< taken since the frame before
+  RecordedPicture picture;
+  std::string message;               ///< a demo's verdict
+  std::vector<double> values;        ///< of the declared parameters
+  std::vector<std::string> actions;  ///< JSON texts: what was done since the frame before (docs/protocol.md)
 };
 
 struct RecorderOptions {
-  int key_interval = 120;  ///< frames between key frames
+  int key_interval = 60;  ///< frames between key frames
 };
 
 /// Writes as it goes: what has been written stays whole whatever comes after.
@@ -67,6 +100,8 @@ class CAROM_API Recorder {
 
   /// Frames must come with rising steps; bodies may come and go.
   Status add(const RecordedFrame& frame);
+  /// Tells what bodies look like that frames from here on name. Their ids must be new.
+  Status introduce(const RecordedArrival& arrival);
   Status finish();  ///< writes index and trailer and closes; the destructor does it too, without telling of errors
   std::uint64_t bytes_written() const;
 
@@ -89,6 +124,7 @@ class CAROM_API Recording {
   static Result<Recording> from_bytes(std::vector<std::uint8_t> bytes);
 
   const RecordingHeader& header() const;
+  const std::vector<RecordedArrival>& arrivals() const;  ///< in the order in which they came
   std::size_t frame_count() const;
   double first_time() const;
   double last_time() const;

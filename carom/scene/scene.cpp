@@ -1,5 +1,6 @@
 #include "carom/scene/scene.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "carom/core/spelling.h"
@@ -268,11 +269,25 @@ bool read_declarations(Reader& reader, Scene& scene, detail::SceneDocument& docu
 
 }  // namespace
 
+std::span<const SourceFile> Scene::sources() const {
+  return document ? std::span<const SourceFile>(document->sources) : std::span<const SourceFile>();
+}
+
 Result<Scene> parse_scene(std::string_view text, std::string_view name, const Resolver& resolver,
                           const LoadOptions& options) {
   auto document = std::make_shared<detail::SceneDocument>();
   document->maximum_objects = options.maximum_objects;
-  if (const Status read = detail::read_parts(*document, text, name, resolver); !read) return read.error();
+  document->sources.push_back({std::string(name), std::string(text)});
+  Resolver keeping;
+  if (resolver)
+    keeping = [&](std::string_view path) -> Result<std::string> {
+      Result<std::string> found = resolver(path);
+      const auto known = [&](const SourceFile& one) { return one.name == path; };
+      if (found.ok() && std::none_of(document->sources.begin() + 1, document->sources.end(), known))
+        document->sources.push_back({std::string(path), *found});
+      return found;
+    };
+  if (const Status read = detail::read_parts(*document, text, name, keeping); !read) return read.error();
   Scene scene;
   scene.file = std::string(name);
   Reader reader(*document);

@@ -78,6 +78,12 @@ struct InstantiateOptions {
   core::Profiler* profiler = nullptr;        ///< likewise
 };
 
+/// A file that a scene was read from.
+struct SourceFile {
+  std::string name;  ///< as the scene names it
+  std::string bytes;
+};
+
 /// A checked scene file. Copies share the document.
 class CAROM_API Scene {
  public:
@@ -105,6 +111,9 @@ class CAROM_API Scene {
   /// Puts what a running world can change to the given values: gravity, effectors, joint motors, limits and springs,
   /// materials, damping. Bodies stay where they are.
   Status apply(SceneWorld& world, std::span<const ParameterValue> values) const;
+
+  /// The scene file and all that it includes or names: with these alone it is read again.
+  std::span<const SourceFile> sources() const;
 
   std::shared_ptr<const detail::SceneDocument> document;
 };

@@ -57,7 +57,7 @@ class Cli : public testing::Test {
 TEST_F(Cli, HelpHasExamplesAndExitCodes) {
   EXPECT_EQ(carom("--help"), 0);
   EXPECT_NE(out_.find("Exit status"), std::string::npos);
-  for (const char* command : {"run", "sweep", "render", "serve", "mass", "list", "doctor", "bench"}) {
+  for (const char* command : {"run", "sweep", "render", "replay", "serve", "mass", "list", "doctor", "bench"}) {
     EXPECT_EQ(carom(std::string(command) + " --help"), 0) << command;
     EXPECT_NE(out_.find("Examples:"), std::string::npos) << command;
   }
@@ -100,6 +100,22 @@ TEST_F(Cli, ASweepThatWasKilledGoesOnAndShardsMakeTheSameTable) {
                           "sweep chain --vary ratio=1:2:x", "sweep chain --vary ratio=1:9999:3",
                           "sweep chain --vary ratio=1,2 --shard 2/2", "sweep chain --vary ratio=1,2 --shard x"})
     EXPECT_EQ(carom(bad), 2) << bad;
+}
+
+TEST_F(Cli, ARecordingIsRunAgainAndCompared) {
+  ASSERT_EQ(carom("run wrecking-ball --steps 40 --set 'ball_mass=2 t' --out run --quiet"), 0) << err_;
+  ASSERT_EQ(carom("replay run/recording.carom-rec --json"), 0) << err_ << out_;
+  const Json report = Json::parse(out_);
+  EXPECT_EQ(report["equal"], true);
+  EXPECT_EQ(report["last"], 40);
+  ASSERT_EQ(carom("replay run/recording.carom-rec --threads 2"), 0) << err_;
+  EXPECT_NE(out_.find("the same: steps 0 to 40"), std::string::npos) << out_;
+  EXPECT_EQ(carom("replay nothing.carom-rec"), 2);
+  // A scene takes what it was read from along: the recording runs again where its files are gone.
+  fs::copy_file(fs::path(CAROM_SOURCE_DIR) / "scenes/heap.json", folder_ / "mine.json");
+  ASSERT_EQ(carom("run mine.json --steps 30 --out mine --quiet"), 0) << err_;
+  fs::remove(folder_ / "mine.json");
+  EXPECT_EQ(carom("replay mine/recording.carom-rec"), 0) << err_ << out_;
 }
 
 #ifdef CAROM_MPI

@@ -1,4 +1,8 @@
 // Recordings: made by a host, sent back to a host, shown frame by frame; damage and nonsense are named.
+#include <cmath>
+#include <functional>
+
+#include "carom/scene/recording.h"
 #include "tests/host/client.h"
 
 namespace carom::host::test {
@@ -100,6 +104,260 @@ TEST(Playback, AFileBeyondTheLimitIsRefused) {
   page.hello();
   upload(page, std::string(5000, 'x'), 400);
   EXPECT_NE(page.last("error").dump().find("recording"), std::string::npos);
+}
+
+/// Opens a demo, records `steps` of it, and gives the page that did it and the file.
+struct Recorded {
+  Page page;
+  std::string file;
+  explicit Recorded(const std::string& demo, int steps, Json parameters = Json::object()) {
+    page.open(demo, std::move(parameters));
+    page.send({{"type", "pause"}});
+    page.send({{"type", "record"}, {"on", true}});
+    page.send({{"type", "step"}, {"count", steps}});
+    end();
+  }
+  void end() {
+    page.send({{"type", "record"}, {"on", false}});
+    EXPECT_FALSE(page.files.empty());
+    file = page.files.empty() ? std::string() : page.files.back();
+  }
+};
+
+TEST(Playback, HoldsWhatEveryDemoDraws) {
+  for (const std::string& id : demo_ids()) {
+    SCOPED_TRACE(id);
+    Page live;
+    live.open(id);
+    live.send({{"type", "pause"}});
+    live.send({{"type", "step"}, {"count", 30}});
+    live.ack();
+    live.advance();
+    const Recorded recorded(id, 30);
+    Page page;
+    page.hello();
+    upload(page, recorded.file, 4 << 20);
+    ASSERT_TRUE(page.last("error").is_null()) << page.last("error");
+    const int last = page.last("status")["last"];
+    if (last != 30) continue;  // its own time: what was recorded before it turned back plays
+    page.send({{"type", "seek"}, {"step", 30}});
+    page.ack();
+    page.advance();
+    ASSERT_FALSE(page.frames.empty());
+    ASSERT_FALSE(live.frames.empty());
+    EXPECT_EQ(page.frames.back().lines, live.frames.back().lines);
+    EXPECT_EQ(page.points, live.points);
+    EXPECT_EQ(page.bodies.size(), live.bodies.size());
+    EXPECT_EQ(page.triangles > 0, live.triangles > 0);
+    EXPECT_EQ(page.last("values"), live.last("values"));
+    const Json said = live.last("status");
+    if (said.contains("message")) {
+      EXPECT_EQ(page.last("status")["message"], said["message"]);
+    }
+    for (const auto& [body, place] : live.bodies) {
+      EXPECT_LT(math::distance(page.body(body).position, place.position), 1e-3);
+    }
+  }
+}
+
+TEST(Playback, BodiesThatComeAndGoAreShownInEveryDirection) {
+  Page page;
+  page.open("pyramids");
+  page.send({{"type", "pause"}});
+  page.send({{"type", "record"}, {"on", true}});
+  const std::size_t before = page.last("scene")["bodies"].size();
+  page.send({{"type", "step"}, {"count", 10}});
+  page.send({{"type", "spawn"},
+             {"form", "ball"},
+             {"size", 0.4},
+             {"density", 800},
+             {"position", {0, 9, 0}},
+             {"velocity", {0, -4, 0}}});
+  page.send({{"type", "step"}, {"count", 20}});
+  EXPECT_EQ(page.last("status")["recording"], true) << "a new body does not end the recording";
+  page.send({{"type", "record"}, {"on", false}});
+  ASSERT_EQ(page.files.size(), 1u);
+  Page shown;
+  shown.hello();
+  upload(shown, page.files[0]);
+  ASSERT_TRUE(shown.last("error").is_null()) << shown.last("error");
+  EXPECT_EQ(shown.last("scene")["bodies"].size(), before);
+  const auto seek = [&shown](int step) {
+    shown.send({{"type", "seek"}, {"step", step}});
+    shown.ack();
+    shown.advance();
+    return shown.bodies.size();
+  };
+  EXPECT_EQ(seek(25), before + 1);
+  EXPECT_EQ(shown.last("bodies")["add"].size(), 1u);
+  EXPECT_EQ(shown.last("bodies")["add"][0]["shapes"][0]["kind"], "sphere");
+  EXPECT_EQ(seek(5), before);
+  EXPECT_EQ(shown.last("bodies")["remove"].size(), 1u);
+  EXPECT_EQ(seek(30), before + 1);
+}
+
+/// Lets a page run its open recording again; the last report.
+Json verified(Page& page) {
+  page.send({{"type", "verify"}});
+  for (int i = 0; i < 20000; ++i) {
+    const Json report = page.last("verified");
+    if (report.is_object() && report["done"] == true) return report;
+    if (!page.last("error").is_null()) return page.last("error");
+    page.advance();
+    page.ack();
+  }
+  return page.last("verified");
+}
+
+TEST(Replay, AnUntouchedRunIsTheSame) {
+  for (const char* id : {"pyramids", "wrecking-ball", "chain", "dam-break"}) {
+    const Recorded recorded(id, 40);
+    Page page;
+    page.hello();
+    upload(page, recorded.file);
+    const Json report = verified(page);
+    EXPECT_EQ(report["equal"], true) << id << ": " << report;
+    EXPECT_EQ(report["last"], 40);
+    EXPECT_EQ(report["frames"], 41);
+    EXPECT_GE(report["hashes"], 4);
+  }
+}
+
+TEST(Replay, WhatWasDoneIsDoneAgain) {
+  // Before the recording, in it, and after going back within it.
+  Page page;
+  page.open("pyramids", {{"friction", 0.4}});
+  page.send({{"type", "pause"}});
+  page.send({{"type", "step"}, {"count", 10}});
+  page.send({{"type", "spawn"},
+             {"form", "box"},
+             {"size", 0.4},
+             {"density", 800},
+             {"position", {0, 12, 0}},
+             {"velocity", {0, -9, 0}}});
+  page.send({{"type", "step"}, {"count", 20}});
+  page.send({{"type", "spawn"},
+             {"form", "ball"},
+             {"size", 0.9},
+             {"density", 900},
+             {"position", {0, 12, 1}},
+             {"velocity", {0, -9, 0}}});
+  page.send({{"type", "step"}, {"count", 5}});
+  page.send({{"type", "seek"}, {"step", 25}});  // the second body is of another future
+  page.send({{"type", "record"}, {"on", true}});
+  page.send({{"type", "step"}, {"count", 15}});
+  page.send({{"type", "grab"}, {"pointer", 1}, {"origin", {0, 0.5, 20}}, {"direction", {0, 0, -1}}});
+  EXPECT_GE(page.last("grabbed")["body"], 0);
+  page.send({{"type", "step"}, {"count", 5}});
+  page.send({{"type", "drag"}, {"pointer", 1}, {"target", {2, 4, 1}}});
+  page.send({{"type", "step"}, {"count", 25}});
+  page.send({{"type", "release"}, {"pointer", 1}});
+  page.send({{"type", "spawn"},
+             {"form", "capsule"},
+             {"size", 0.3},
+             {"density", 800},
+             {"position", {0, 9, 0}},
+             {"velocity", {0, -4, 0}}});
+  page.send({{"type", "step"}, {"count", 20}});
+  page.send({{"type", "record"}, {"on", false}});
+  ASSERT_FALSE(page.files.empty());
+  EXPECT_TRUE(page.last("error").is_null()) << page.last("error");
+  Page shown;
+  shown.hello();
+  upload(shown, page.files.back());
+  const Json report = verified(shown);
+  EXPECT_EQ(report["equal"], true) << report;
+  EXPECT_EQ(report["first"], 25);
+  EXPECT_EQ(report["last"], 90);
+}
+
+/// The same recording with something else in it.
+std::string changed(const std::string& file, const std::function<void(scene::RecordingHeader&)>& header,
+                    const std::function<void(scene::RecordedFrame&)>& frame) {
+  core::Result<scene::Recording> from = scene::Recording::from_bytes({file.begin(), file.end()});
+  EXPECT_TRUE(from.ok());
+  scene::RecordingHeader head = from->header();
+  if (header) header(head);
+  std::string out;
+  core::Result<scene::Recorder> to = scene::Recorder::open(
+      [&out](std::span<const std::uint8_t> bytes) -> core::Status {
+        out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        return {};
+      },
+      head);
+  EXPECT_TRUE(to.ok());
+  for (std::size_t i = 0; i < from->frame_count(); ++i) {
+    core::Result<scene::RecordedFrame> one = from->frame(i);
+    if (frame) frame(*one);
+    EXPECT_TRUE(to->add(*one).ok());
+  }
+  EXPECT_TRUE(to->finish().ok());
+  return out;
+}
+
+TEST(Replay, SaysWhereARunDiffers) {
+  const std::string file = Recorded("pyramids", 60).file;
+  const auto report_of = [](const std::string& text) {
+    Page page;
+    page.hello();
+    upload(page, text);
+    return verified(page);
+  };
+  const auto replace = [](std::string& text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what << " in " << text;
+    text.replace(at, what.size(), by);
+  };
+  Json report = report_of(changed(file, {}, {}));
+  EXPECT_EQ(report["equal"], true) << report;
+  // A hash that is not that of the run.
+  report = report_of(changed(file, {}, [](scene::RecordedFrame& f) {
+    if (f.step == 30) f.state_hash ^= 1;
+  }));
+  EXPECT_EQ(report["equal"], false);
+  EXPECT_EQ(report["differs"], 30) << report;
+  EXPECT_NE(report["message"].get<std::string>().find("state hash"), std::string::npos);
+  // A body elsewhere, by a bit.
+  report = report_of(changed(file, {}, [](scene::RecordedFrame& f) {
+    if (f.step == 17) f.bodies[2].position.y = std::nextafter(f.bodies[2].position.y, 1e9);
+  }));
+  EXPECT_EQ(report["differs"], 17) << report;
+  // Another parameter.
+  report = report_of(changed(file,
+                             [&](scene::RecordingHeader& h) {
+                               replace(h.origin, "\"friction\":", "\"friction\":0.1,\"was\":");
+                               const std::size_t from = h.origin.find(",\"was\":"),
+                                                 to = h.origin.find_first_of(",}", from + 1);
+                               h.origin.erase(from, to - from);
+                             },
+                             {}));
+  EXPECT_EQ(report["equal"], false) << report;
+  EXPECT_GT(report["differs"], 0) << report;
+  // Another build.
+  report = report_of(changed(
+      file, [&](scene::RecordingHeader& h) { replace(h.origin, "\"version\":\"", "\"version\":\"9."); },
+      [](scene::RecordedFrame& f) {
+        if (f.step >= 20) f.state_hash ^= 2;
+      }));
+  EXPECT_EQ(report["differs"], 20) << report;
+  EXPECT_NE(report["message"].get<std::string>().find("recorded by Carom 9."), std::string::npos) << report;
+  // One that does not tell where it comes from, one whose demo nobody knows, one whose actions are no actions.
+  report = report_of(changed(file, [](scene::RecordingHeader& h) { h.origin.clear(); }, {}));
+  EXPECT_NE(report["message"].get<std::string>().find("does not say what opened it"), std::string::npos) << report;
+  report = report_of(
+      changed(file, [&](scene::RecordingHeader& h) { replace(h.origin, "\"pyramids\"", "\"pyramid\""); }, {}));
+  EXPECT_NE(report["message"].get<std::string>().find("not here"), std::string::npos) << report;
+  report = report_of(changed(file, {}, [](scene::RecordedFrame& f) {
+    if (f.step == 5) f.actions = {"{\"step\":4,\"action\":{\"type\":\"grab\"}}"};
+  }));
+  EXPECT_NE(report["message"].get<std::string>().find("field"), std::string::npos) << report;
+}
+
+TEST(Replay, OnlyARecordingCanBeVerified) {
+  Page page;
+  page.open("chain");
+  page.send({{"type", "verify"}});
+  EXPECT_NE(page.last("error").dump().find("no recording"), std::string::npos);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ RecordingHeader header_of(int dimension) {
   h.scene = "{\"type\":\"scene\",\"bodies\":[]}";
   h.meshes = {std::string("\x01\0\0\0", 4), "mesh"};
   h.declaration = "{}";
+  h.origin = "{\"demo\":\"test\"}";
+  h.files = {{"test.json", "{}"}, {"presets/ball.json", std::string("\0\xff", 2)}};
   return h;
 }
 
@@ -39,7 +41,60 @@ RecordedFrame frame_of(int k, int dimension) {
     f.bodies.push_back(b);
   }
   if (k % 2 == 0) f.samples.push_back({1, 2, f.time, 0.1 * k});
+  f.message = k < 15 ? "rising" : "";
+  f.values = {1.5, k < 20 ? 2.0 : 3.0};
+  if (k % 11 == 5) f.actions = {"{\"step\":3}", "second"};
   return f;
+}
+
+/// Drawn things that move, grow, vanish for a while, and a surface that is torn once.
+RecordedPicture picture_of(int k) {
+  RecordedPicture p;
+  if (k % 17 == 9) return p;
+  const double t = k / 60.0;
+  const int lines = 3 + (k < 20 ? 2 * k : 80 - 2 * k) / 2;
+  for (int i = 0; i < lines; ++i)
+    p.lines.push_back(
+        {{0.3 * i, 1e4 + i * i * 0.01, -0.1 * i}, {0.3 * i + t, 1e4 + i, t}, 0xff00ff80u + std::uint32_t(i)});
+  const int points = k % 9 == 4 ? 0 : 150 + k;
+  for (int i = 0; i < points; ++i) {
+    p.points.push_back({float(i % 13) + float(t), 5 - 4.9f * float(t * t), float(i % 7)});
+    p.radii.push_back(i % 3 == 0 ? 0.05f : 0.08f);
+    p.point_rgbas.push_back(0x2f7faeffu + std::uint32_t(i % 5) * 0x01000000u);
+  }
+  for (int s = 0; s < 2; ++s) {
+    RecordedSurface surface;
+    surface.rgba = 0x11223344u + std::uint32_t(s);
+    for (int i = 0; i < 100; ++i)
+      surface.corners.push_back({float(i % 10), 0.2f * float((i * 7 + k) % 11), float(i / 10)});
+    for (std::uint32_t i = 0; i + 11 < (k < 25 ? 100u : 60u); ++i)
+      surface.triangles.insert(surface.triangles.end(), {i, i + 1, i + 11});
+    if (s == 1 && k < 4) surface = {};  // its corners are not known yet
+    p.surfaces.push_back(surface);
+  }
+  return p;
+}
+
+void expect_close(const RecordedPicture& a, const RecordedPicture& b) {
+  ASSERT_EQ(a.lines.size(), b.lines.size());
+  for (std::size_t i = 0; i < a.lines.size(); ++i) {
+    ASSERT_LT(math::distance(a.lines[i].a, b.lines[i].a), 40.0 / (1 << 20));
+    ASSERT_LT(math::distance(a.lines[i].b, b.lines[i].b), 40.0 / (1 << 20));
+    ASSERT_EQ(a.lines[i].rgba, b.lines[i].rgba);
+  }
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i)
+    ASSERT_LT(math::distance(a.points[i], b.points[i]), 40.0f / (1 << 15));
+  ASSERT_EQ(a.radii, b.radii);
+  ASSERT_EQ(a.point_rgbas, b.point_rgbas);
+  ASSERT_EQ(a.surfaces.size(), b.surfaces.size());
+  for (std::size_t s = 0; s < a.surfaces.size(); ++s) {
+    ASSERT_EQ(a.surfaces[s].triangles, b.surfaces[s].triangles);
+    ASSERT_EQ(a.surfaces[s].rgba, b.surfaces[s].rgba);
+    ASSERT_EQ(a.surfaces[s].corners.size(), b.surfaces[s].corners.size());
+    for (std::size_t i = 0; i < a.surfaces[s].corners.size(); ++i)
+      ASSERT_LT(math::distance(a.surfaces[s].corners[i], b.surfaces[s].corners[i]), 20.0f / (1 << 17));
+  }
 }
 
 void expect_same(const RecordedFrame& a, const RecordedFrame& b) {
@@ -56,6 +111,9 @@ void expect_same(const RecordedFrame& a, const RecordedFrame& b) {
   }
   ASSERT_EQ(a.samples.size(), b.samples.size());
   for (std::size_t i = 0; i < a.samples.size(); ++i) ASSERT_EQ(a.samples[i].y, b.samples[i].y);
+  ASSERT_EQ(a.message, b.message);
+  ASSERT_EQ(a.values, b.values);
+  ASSERT_EQ(a.actions, b.actions);
 }
 
 std::vector<std::uint8_t> record(int frames, int dimension, int key_interval = 10, bool finish = true) {
@@ -99,6 +157,96 @@ TEST_P(RecordingInDimension, GivesBackTheBitsInAnyOrder) {
   EXPECT_EQ(r->index_at_time(1.01), 30u);
   EXPECT_EQ(r->index_at_time(99), 46u);
   EXPECT_EQ(r->index_at_step(61), 30u);
+}
+
+TEST(Recording, HoldsWhatIsDrawnBesideBodiesInAnyOrder) {
+  std::vector<std::uint8_t> bytes;
+  Result<Recorder> recorder = Recorder::open(
+      [&](std::span<const std::uint8_t> part) -> Status {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+        return {};
+      },
+      header_of(3), {12});
+  ASSERT_TRUE(recorder.ok());
+  for (int k = 0; k < 40; ++k) {
+    RecordedFrame f = frame_of(k, 3);
+    f.picture = picture_of(k);
+    if (k % 13 == 0) {
+      ASSERT_TRUE(recorder->introduce({"{\"add\":[" + std::to_string(k) + "]}", {"mesh " + std::to_string(k)}}).ok());
+    }
+    ASSERT_TRUE(recorder->add(f).ok()) << k;
+  }
+  const std::vector<std::uint8_t> cut = bytes;
+  ASSERT_TRUE(recorder->finish().ok());
+  for (const std::vector<std::uint8_t>& file : {bytes, cut}) {
+    Result<Recording> r = Recording::from_bytes(file);
+    ASSERT_TRUE(r.ok()) << r.error().message;
+    EXPECT_EQ(r->complete(), file.size() == bytes.size());
+    EXPECT_EQ(r->header().origin, header_of(3).origin);
+    ASSERT_EQ(r->header().files.size(), 2u);
+    EXPECT_EQ(r->header().files[1].bytes, header_of(3).files[1].bytes);
+    ASSERT_EQ(r->arrivals().size(), 4u);
+    EXPECT_EQ(r->arrivals()[3].bodies, "{\"add\":[39]}");
+    EXPECT_EQ(r->arrivals()[1].meshes, std::vector<std::string>{"mesh 13"});
+    ASSERT_EQ(r->frame_count(), 40u);
+    for (const int k : {0, 1, 39, 9, 10, 26, 27, 25, 12, 13, 14, 3, 4, 5, 38, 0}) {
+      const Result<RecordedFrame> f = r->frame(std::size_t(k));
+      ASSERT_TRUE(f.ok()) << k << ": " << f.error().message;
+      expect_same(*f, frame_of(k, 3));
+      expect_close(f->picture, picture_of(k));
+    }
+  }
+}
+
+TEST(Recording, PointsTakeFewBytes) {
+  // 5000 balls in free flight: 28 bytes each in memory.
+  std::vector<std::uint8_t> bytes;
+  Result<Recorder> recorder = Recorder::open(
+      [&](std::span<const std::uint8_t> part) -> Status {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+        return {};
+      },
+      header_of(3));
+  const int count = 5000, frames = 60;
+  for (int k = 0; k < frames; ++k) {
+    RecordedFrame f;
+    f.step = std::uint64_t(k);
+    f.time = k / 60.0;
+    const float t = float(k) / 60;
+    for (int i = 0; i < count; ++i) {
+      const float vx = float(i % 97) / 20 - 2.4f, vy = float(i % 89) / 10, vz = float(i % 83) / 20 - 2;
+      f.picture.points.push_back({vx * t, vy * t - 4.9f * t * t, vz * t});
+      f.picture.radii.push_back(0.02f);
+      f.picture.point_rgbas.push_back(0xffffffffu);
+    }
+    ASSERT_TRUE(recorder->add(f).ok());
+  }
+  ASSERT_TRUE(recorder->finish().ok());
+  EXPECT_LT(double(bytes.size()) / (count * frames), 4.0);
+}
+
+TEST(Recording, FilesOfVersionOneStillOpen) {
+  // The corpus of the fuzzer holds two that version 1 wrote.
+  for (const char* name : {"whole_2d.bin", "whole_3d.bin"}) {
+    Result<Recording> r = Recording::open(std::string(CAROM_SOURCE_DIR "/tests/fuzz/corpus/recording/") + name);
+    ASSERT_TRUE(r.ok()) << r.error().message;
+    EXPECT_EQ(r->header().version, 1u);
+    EXPECT_TRUE(r->complete()) << r->damage();
+    EXPECT_GT(r->frame_count(), 3u);
+    for (std::size_t i = 0; i < r->frame_count(); ++i) EXPECT_TRUE(r->frame(i).ok());
+  }
+}
+
+TEST(Recorder, RefusesAPictureThatDoesNotFit) {
+  Result<Recorder> r = Recorder::open([](std::span<const std::uint8_t>) -> Status { return {}; }, header_of(3));
+  RecordedFrame f = frame_of(1, 3);
+  f.picture.points = {{0, 0, 0}};
+  EXPECT_FALSE(r->add(f).ok()) << "no radius";
+  f.picture = {};
+  f.picture.surfaces = {{{{0, 0, 0}}, {0, 0, 1}, 0}};
+  EXPECT_FALSE(r->add(f).ok()) << "no such corner";
+  f.picture.surfaces = {{{{0, 0, 0}}, {0, 0}, 0}};
+  EXPECT_FALSE(r->add(f).ok()) << "two corners";
 }
 
 TEST(Recording, PlaysUpToWhereItIsWholeAtEveryCut) {

@@ -21,7 +21,8 @@ void from_bits(const std::uint64_t (&bits)[7], RecordedBody& body) {
 
 int byte_count(std::uint64_t value) { return (std::bit_width(value) + 7) / 8; }
 
-constexpr std::uint8_t flag_hash = 1, body_asleep = 1, body_moved = 2;
+constexpr std::uint8_t flag_hash = 1, flag_told = 2, flag_actions = 4, flag_picture = 8;
+constexpr std::uint8_t body_asleep = 1, body_moved = 2;
 
 }  // namespace
 
@@ -41,7 +42,12 @@ std::uint64_t FrameCodec::foretold(const Track& track, int component) const {
 void FrameCodec::encode(const RecordedFrame& frame, bool key, ByteWriter& out) {
   out.varint(frame.step);
   out.number(frame.time);
-  out.fixed(std::uint8_t(frame.has_hash ? flag_hash : 0));
+  // What was told stays until it is told otherwise; a key frame stands alone.
+  const bool told =
+      key ? !frame.message.empty() || !frame.values.empty() : frame.message != message_ || frame.values != values_;
+  const bool drawn = picture_.holds(frame.picture, key);
+  out.fixed(std::uint8_t((frame.has_hash ? flag_hash : 0) | (told ? flag_told : 0) |
+                         (frame.actions.empty() ? 0 : flag_actions) | (drawn ? flag_picture : 0)));
   if (frame.has_hash) out.fixed(frame.state_hash);
   out.varint(frame.samples.size());
   for (const RecordedSample& s : frame.samples) {
@@ -124,13 +130,28 @@ void FrameCodec::encode(const RecordedFrame& frame, bool key, ByteWriter& out) {
   out.varint(changed);
   out.bytes.insert(out.bytes.end(), changes.bytes.begin(), changes.bytes.end());
   tracks_.swap(next_);
+  if (told || key) message_ = frame.message, values_ = frame.values;
+  if (told) {
+    out.text(message_);
+    out.varint(values_.size());
+    for (const double value : values_) out.number(value);
+  }
+  if (!frame.actions.empty()) {
+    out.varint(frame.actions.size());
+    for (const std::string& action : frame.actions) out.text(action);
+  }
+  if (drawn)
+    picture_.encode(frame.picture, key, out);
+  else
+    picture_.clear();
 }
 
 bool FrameCodec::decode(std::span<const std::uint8_t> bytes, bool key, RecordedFrame& frame) {
   ByteReader in(bytes);
   frame.step = in.varint();
   frame.time = in.number();
-  frame.has_hash = (in.fixed<std::uint8_t>() & flag_hash) != 0;
+  const std::uint8_t flags = in.fixed<std::uint8_t>();
+  frame.has_hash = (flags & flag_hash) != 0;
   frame.state_hash = frame.has_hash ? in.fixed<std::uint64_t>() : 0;
   frame.samples.resize(in.count(20));
   for (RecordedSample& s : frame.samples) {
@@ -139,6 +160,27 @@ bool FrameCodec::decode(std::span<const std::uint8_t> bytes, bool key, RecordedF
     s.x = in.number();
     s.y = in.number();
   }
+  if (!decode_bodies(in, key, frame)) return false;
+  if (key) message_.clear(), values_.clear();
+  if (flags & flag_told) {
+    message_ = in.text();
+    values_.resize(in.count(8));
+    for (double& value : values_) value = in.number();
+  }
+  frame.message = message_;
+  frame.values = values_;
+  frame.actions.resize(flags & flag_actions ? in.count(1) : 0);
+  for (std::string& action : frame.actions) action = in.text();
+  if (flags & flag_picture) {
+    if (!picture_.decode(in, key, frame.picture)) return false;
+  } else {
+    picture_.clear();
+    frame.picture = {};
+  }
+  return in.good() && in.left() == 0 && math::is_finite(frame.time);
+}
+
+bool FrameCodec::decode_bodies(ByteReader& in, bool key, RecordedFrame& frame) {
   if (key) tracks_.clear();
   // Removed ids rise, as all ids here do.
   const std::size_t removed = in.count(1);
@@ -172,13 +214,13 @@ bool FrameCodec::decode(std::span<const std::uint8_t> bytes, bool key, RecordedF
     if (!in.good()) break;
     while (old < tracks_.size() && tracks_[old].id < id) keep(tracks_[old++]);
     const bool known = old < tracks_.size() && tracks_[old].id == id;
-    const std::uint8_t flags = in.fixed<std::uint8_t>();
+    const std::uint8_t marks = in.fixed<std::uint8_t>();
     Track track;
     track.id = std::uint32_t(id);
-    track.asleep = (flags & body_asleep) != 0;
+    track.asleep = (marks & body_asleep) != 0;
     if (known) {
       const Track& was = tracks_[old++];
-      const bool moved = (flags & body_moved) != 0;
+      const bool moved = (marks & body_moved) != 0;
       const std::uint32_t lengths = !moved            ? 0
                                     : dimension_ == 2 ? in.fixed<std::uint16_t>()
                                                       : in.fixed<std::uint32_t>();
@@ -204,8 +246,7 @@ bool FrameCodec::decode(std::span<const std::uint8_t> bytes, bool key, RecordedF
   }
   while (old < tracks_.size()) keep(tracks_[old++]);
   tracks_.swap(next_);
-  if (!in.good() || in.left() != 0 || !math::is_finite(frame.time)) return false;
-
+  if (!in.good()) return false;
   frame.bodies.resize(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     frame.bodies[i].id = tracks_[i].id;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "carom/scene/detail/bytes.h"
+#include "carom/scene/detail/picture_codec.h"
 #include "carom/scene/recording.h"
 
 namespace carom::scene::detail {
@@ -25,8 +26,13 @@ class FrameCodec {
   std::uint64_t foretold(const Track& track, int component) const;
   bool used(int component) const { return dimension_ == 3 || (component != 2 && component != 4 && component != 5); }
 
+  bool decode_bodies(ByteReader& in, bool key, RecordedFrame& frame);
+
   int dimension_;
   std::vector<Track> tracks_, next_;
+  PictureCodec picture_;
+  std::string message_;
+  std::vector<double> values_;
 };
 
 }  // namespace carom::scene::detail

@@ -10,11 +10,13 @@
 #include "carom/scene/detail/document.h"
 #include "carom/scene/detail/expression.h"
 #include "carom/scene/detail/fields.h"
+#include "carom/scene/scene.h"
 
 namespace carom::scene::detail {
 
 struct SceneDocument {
   std::vector<std::string> files;               ///< names, as errors show them
+  std::vector<SourceFile> sources;              ///< texts as read, the scene itself first
   std::vector<Node> parts;                      ///< included files in order, the scene itself last
   std::vector<Dimension> parameter_dimensions;  ///< of Scene::parameters
   int maximum_objects = 200000;
