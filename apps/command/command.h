@@ -109,8 +109,9 @@ struct ServeOptions {
   bool port_given = false;
   std::string page;
   std::vector<std::string> allowed_hosts;
+  std::string certificate, key;  ///< PEM files
   int threads = 1, clients = 64;
-  bool open = false, json = false, quiet = false;
+  bool tls = false, open = false, json = false, quiet = false;
 };
 int serve(const ServeOptions& options);
 

@@ -167,13 +167,20 @@ int main(int count, char** arguments) {
   serve_command->add_option("--threads,-t", serve_options.threads, "worker threads of each world; 0: all processors")
       ->check(CLI::Range(0, 64));
   serve_command->add_option("--clients", serve_options.clients, "pages at once (64)")->check(CLI::Range(1, 1024));
+  auto* tls = serve_command->add_flag(
+      "--tls", serve_options.tls, "https, with a certificate of its own making: phones give sensors to nothing else");
+  auto* certificate = serve_command->add_option("--certificate", serve_options.certificate, "PEM file instead of it");
+  auto* key = serve_command->add_option("--key", serve_options.key, "its key, a PEM file without a password");
+  certificate->needs(tls)->needs(key);
+  key->needs(certificate);
   serve_command->add_flag("--open", serve_options.open, "open a browser where there is a desktop");
   serve_command->add_flag("--json", serve_options.json, "say where it is as one line of JSON");
   serve_command->add_flag("--quiet,-q", serve_options.quiet, "say nothing");
   serve_command->footer(with_examples(
       "  carom serve\n"
       "  carom serve --port 9000 --open\n"
-      "  carom serve --address 0.0.0.0 --allow-host mybox.local   (others on the network may drive it)\n"));
+      "  carom serve --address 0.0.0.0 --allow-host mybox.local   (others on the network may drive it)\n"
+      "  carom serve --address 0.0.0.0 --tls   (for a phone's sensors; its browser asks once whether to trust it)\n"));
   serve_command->callback([&] {
     serve_options.port_given = port->count() > 0;
     serve_options.threads = threads_of(serve_options.threads);

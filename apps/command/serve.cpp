@@ -14,6 +14,7 @@
 #if CAROM_WITH_SERVER
 #include "apps/server/server.h"
 #include "apps/server/shared_files.h"
+#include "apps/server/tls.h"
 #endif
 
 namespace carom::command {
@@ -52,6 +53,13 @@ int serve(const ServeOptions& options) {
   server.threads = int(std::clamp(std::thread::hardware_concurrency(), 2u, 8u));
   const std::vector<host::MenuScene> scenes = menu_scenes();
   const scene::Resolver files = server::shared_files(data_folders("scenes"), data_folders("presets"));
+  if (options.tls) {
+    core::Result<server::TlsIdentity> identity = options.certificate.empty()
+                                                     ? server::user_identity(options.allowed_hosts)
+                                                     : server::read_identity(options.certificate, options.key);
+    if (!identity.ok()) return fail(exit_input, identity.error().message);
+    server.tls = std::move(identity).value();
+  }
   server.host_options = [&scenes, &files, threads = options.threads] {
     host::HostOptions out;
     out.threads = threads;
@@ -72,16 +80,23 @@ int serve(const ServeOptions& options) {
   }
   if (!started.ok()) return fail(exit_system, started.error().message);
   const std::string url = (*started)->url();
+  std::string fingerprint;
+  if (server.tls)
+    if (const core::Result<std::string> found = server::fingerprint(*server.tls); found.ok()) fingerprint = *found;
   if (options.json)
-    std::printf(
-        "%s\n",
-        nlohmann::json({{"url", url}, {"port", (*started)->port()}, {"page", server.root}, {"scenes", scenes.size()}})
-            .dump()
-            .c_str());
+    std::printf("%s\n", nlohmann::json({{"url", url},
+                                        {"port", (*started)->port()},
+                                        {"page", server.root},
+                                        {"scenes", scenes.size()},
+                                        {"fingerprint", fingerprint}})
+                            .dump()
+                            .c_str());
   else if (!options.quiet)
     std::printf(
         "Carom is at %s   (Ctrl-C ends it)\n%s", url.c_str(),
         server.root.empty() ? "the page has not been built: ./play builds it; the WebSocket at /ws works\n" : "");
+  if (!options.json && !options.quiet && !fingerprint.empty())
+    std::printf("its certificate's SHA-256 is %s\n", fingerprint.c_str());
   std::fflush(stdout);
   watch_for_interrupts();
   if (options.open) open_browser(url);

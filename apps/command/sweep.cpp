@@ -16,6 +16,7 @@
 #include "apps/command/canvas.h"
 #include "apps/command/chart.h"
 #include "apps/command/command.h"
+#include "apps/command/sweep_report.h"
 #include "apps/host/simulation.h"
 
 namespace carom::command {
@@ -26,11 +27,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr std::size_t most_cases = 1'000'000;
-
-struct Varied {
-  std::size_t parameter = 0;   ///< its place in the declaration
-  std::vector<double> values;  ///< SI
-};
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> out{""};
@@ -157,10 +153,13 @@ class Sweep {
       if (!done_[i].is_object()) todo.push_back(i);
     const std::string file =
         path("cases-" + std::to_string(options_.shard) + "-of-" + std::to_string(options_.shards) + ".jsonl");
-    const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+    const int out = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND, 0644);
     if (out < 0) return fail(exit_system, file + ": cannot be written");
     // After a line that was cut off, a new one begins.
-    if (::lseek(out, 0, SEEK_END) > 0) (void)!::write(out, "\n", 1);
+    if (const off_t size = ::lseek(out, 0, SEEK_END); size > 0) {
+      char last = 0;
+      if (::pread(out, &last, 1, size - 1) != 1 || last != '\n') (void)!::write(out, "\n", 1);
+    }
     Progress progress("sweep of " + d_.title, !options_.quiet);
     std::mutex mutex;
     std::size_t next = 0, ready = 0;
@@ -224,8 +223,8 @@ class Sweep {
       row[label + ", most" + unit] = curve.most;
     }
     const host::Budget budget = simulation.budget();
-    row["kinetic energy"] = budget.kinetic;
-    row["potential energy"] = budget.potential;
+    row["kinetic energy (J)"] = budget.kinetic;
+    row["potential energy (J)"] = budget.potential;
     row["message"] = simulation.base().state.message;
     row["state hash"] = hex(simulation.state_hash());
     return row;
@@ -261,12 +260,6 @@ class Sweep {
     return exit_ok;
   }
 
-  static std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : c == '>' ? "&gt;" : std::string(1, c);
-    return out;
-  }
-
   /// Every number over the first parameter, a curve for each value of the second; the other parameters at their first.
   core::Status report(const std::vector<std::string>& columns) const {
     const Varied& across = varied_[0];
@@ -274,8 +267,9 @@ class Sweep {
     std::string page =
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>" + escaped(d_.title) +
         "</title><body style=\"font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em\"><h1>" +
-        escaped(d_.title) + "</h1><p>" + std::to_string(count_) + " cases of " + std::to_string(steps_) +
-        " steps. <a href=\"table.csv\">CSV</a> <a href=\"table.json\">JSON</a></p>";
+        escaped(d_.title) + "</h1><p>" + std::to_string(count_) + " cases of " + std::to_string(steps_) + " steps of " +
+        short_number(d_.dt * 1e3) + " ms. <a href=\"table.csv\">CSV</a> <a href=\"table.json\">JSON</a></p>" +
+        sweep_settings(d_, varied_, values_of(0), done_);
     int number = 0;
     for (const std::string& column : columns) {
       const bool result = column != "case" && std::none_of(varied_.begin(), varied_.end(),
@@ -304,7 +298,7 @@ class Sweep {
       page += "<h2>" + escaped(column) + "</h2><img src=\"" + file + ".svg\" alt=\"" + escaped(column) +
               "\" width=\"100%\">";
     }
-    return write_file(path("report.html"), page + "</body></html>\n");
+    return write_file(path("report.html"), page + sweep_table(columns, done_) + "</body></html>\n");
   }
 
   const SweepOptions& options_;

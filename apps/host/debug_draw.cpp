@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "apps/host/stage.h"
+#include "apps/host/debug_pen.h"
+#include "apps/host/debug_water.h"
 
 namespace carom::host {
 
@@ -20,14 +21,14 @@ template <class D>
 class Drawing {
  public:
   Drawing(const rigid::World<D>& world, double size, ArrowScale scale, std::vector<Line>& out)
-      : world_(world), mark_(0.012 * size), scale_(scale), out_(out) {}
+      : world_(world), pen_(0.012 * size, D::dimension == 2, out), mark_(0.012 * size), size_(size), scale_(scale) {}
 
   void bodies(std::uint32_t layers) {
     std::vector<rigid::BodyId> all;
     world_.bodies(all);
     if (layers & layer_islands) find_islands(all);
     std::vector<rigid::ShapeId> shapes;
-    for (std::size_t i = 0; i < all.size() && out_.size() < max_lines; ++i) {
+    for (std::size_t i = 0; i < all.size() && !pen_.full(); ++i) {
       const auto state = world_.state(all[i]);
       if (!state.ok()) continue;
       const bool moves = state->type == rigid::BodyType::dynamic;
@@ -38,14 +39,15 @@ class Drawing {
         for (const rigid::ShapeId shape : shapes) bounds(shape, state->pose, pen);
       }
       const Vec3d center = in_space(state->center_of_mass);
-      if ((layers & layer_centers) && moves) cross(center, 0x17212bff);
+      if ((layers & layer_centers) && moves) pen_.cross(center, 0x17212bff);
       if ((layers & layer_velocities) && state->type != rigid::BodyType::fixed && state->awake) {
-        arrow(center, scale_.velocity * in_space(state->linear_velocity), velocity_pen);
-        if constexpr (D::dimension == 3) arrow(center, scale_.velocity * in_space(state->angular_velocity), spin_pen);
+        pen_.arrow(center, scale_.velocity * in_space(state->linear_velocity), velocity_pen);
+        if constexpr (D::dimension == 3)
+          pen_.arrow(center, scale_.velocity * in_space(state->angular_velocity), spin_pen);
       }
       if ((layers & layer_forces) && moves && state->awake) {
         const double weight = double(state->mass) * scale_.force;
-        arrow(center, weight * in_space(world_.definition().gravity), weight_pen);
+        pen_.arrow(center, weight * in_space(world_.definition().gravity), weight_pen);
       }
     }
   }
@@ -55,7 +57,7 @@ class Drawing {
     world_.contacts(all);
     const double scale = layers & layer_forces ? scale_.force / double(dt) : scale_.impulse;
     for (const rigid::ContactView<D>& contact : all) {
-      if (out_.size() >= max_lines) return;
+      if (pen_.full()) return;
       const Vec3d normal = in_space(contact.normal);
       const std::uint32_t color =
           contact.color < 0 ? 0x17212bff : palette[std::size_t(contact.color) % std::size(palette)];
@@ -63,15 +65,21 @@ class Drawing {
       for (int i = 0; i < contact.count; ++i) {
         const Vec3d at = in_space(contact.points[i].point);
         middle = middle + at * (1.0 / contact.count);
+        if (layers & layer_errors) {
+          const double deep = -double(contact.points[i].separation) / (1e-3 * size_);
+          const Vec3d x =
+              D::dimension == 2 ? Vec3d{1, 0, 0} : math::normalize(math::cross(normal, Vec3d{0.3, 0.1, 0.95}));
+          error_mark(at, deep, x, D::dimension == 2 ? Vec3d{0, 1, 0} : math::cross(normal, x));
+        }
         if (layers & layer_colors)
-          arrow(at, mark_ * 2.5 * normal, color);
-        else
-          dot(at, normal_pen);
+          pen_.arrow(at, mark_ * 2.5 * normal, color);
+        else if (layers & (layer_contacts | layer_forces))
+          pen_.dot(at, normal_pen);
         if (layers & (layer_contacts | layer_forces))
-          arrow(at, scale * double(contact.points[i].normal_impulse) * normal, normal_pen);
+          pen_.arrow(at, scale * double(contact.points[i].normal_impulse) * normal, normal_pen);
       }
       if (contact.count > 0 && (layers & (layer_contacts | layer_forces)))
-        arrow(middle, scale * in_space(contact.friction_impulse), friction_pen);
+        pen_.arrow(middle, scale * in_space(contact.friction_impulse), friction_pen);
     }
   }
 
@@ -79,7 +87,7 @@ class Drawing {
     std::vector<rigid::JointId> all;
     world_.joints(all);
     for (const rigid::JointId id : all) {
-      if (out_.size() >= max_lines) return;
+      if (pen_.full()) return;
       const auto definition = world_.joint_definition(id);
       if (!definition.ok()) continue;
       std::visit([&](const auto& d) { joint(id, d, layers); }, *definition);
@@ -91,20 +99,39 @@ class Drawing {
   void joint(rigid::JointId id, const Joint& d, std::uint32_t layers) {
     const Place a = place(d.body_a, d.frame_a), b = place(d.body_b, d.frame_b);
     if (layers & layer_joints) {
-      dot(a.origin, joint_pen);
-      dot(b.origin, joint_pen);
-      line(a.origin, b.origin, joint_pen);
+      pen_.dot(a.origin, joint_pen);
+      pen_.dot(b.origin, joint_pen);
+      pen_.line(a.origin, b.origin, joint_pen);
       if (const auto body = world_.state(d.body_a); body.ok())
-        line(in_space(body->center_of_mass), a.origin, 0x9b6dd680);
+        pen_.line(in_space(body->center_of_mass), a.origin, 0x9b6dd680);
       if (const auto body = world_.state(d.body_b); body.ok())
-        line(in_space(body->center_of_mass), b.origin, 0x9b6dd680);
-      if constexpr (requires { d.limit; }) limit(d, a, b);
-      if constexpr (std::is_same_v<Joint, rigid::BallJointDef<D>>)
-        if (D::dimension == 3 && d.cone_angle >= 0) cone(a, double(d.cone_angle));
+        pen_.line(in_space(body->center_of_mass), b.origin, 0x9b6dd680);
+      limits(d, a, b);
     }
+    if (layers & layer_errors)
+      if (const auto state = world_.joint_state(id); state.ok()) {
+        // Pulled apart by a thousandth of the picture, or turned by a tenth of a radian, is the worst that is told
+        // apart.
+        const double apart = double(state->linear_error) / (1e-3 * size_), turned = double(state->angular_error) / 0.1;
+        error_mark(b.origin, std::max(apart, turned), a.x, a.y);
+        pen_.line(a.origin, b.origin, error_pen(apart));
+      }
     if (layers & layer_forces)
       if (const auto state = world_.joint_state(id); state.ok())
-        arrow(b.origin, scale_.force * in_space(state->force), joint_pen);
+        pen_.arrow(b.origin, scale_.force * in_space(state->force), joint_pen);
+  }
+
+  /// Green where a constraint holds, over yellow to red where it fails by all that is told apart.
+  static std::uint32_t error_pen(double share) {
+    const double t = math::clamp(share, 0.0, 1.0);
+    const auto red = std::uint32_t(math::min(1.0, 2 * t) * 229), green = std::uint32_t(math::min(1.0, 2 - 2 * t) * 170);
+    return red << 24 | green << 16 | 0x30ff;
+  }
+  /// A square standing on its corner, the larger the worse.
+  void error_mark(Vec3d at, double share, Vec3d x, Vec3d y) {
+    const double r = (0.4 + 2.6 * math::clamp(share, 0.0, 1.0)) * mark_;
+    const Vec3d corners[] = {at + r * x, at + r * y, at - r * x, at - r * y};
+    for (int i = 0; i < 4; ++i) pen_.line(corners[i], corners[(i + 1) % 4], error_pen(share));
   }
 
   struct Place {
@@ -130,26 +157,59 @@ class Drawing {
     return out;
   }
 
-  /// A hinge's range as an arc, a slider's and a rope's as a bar.
+  /// A range of turning as an arc with both ends, and where it is now.
+  void range_of_turn(const Place& a, Vec3d x, Vec3d y, const rigid::JointLimit& d, Vec3d now) {
+    const double radius = 4 * mark_, low = double(d.lower), high = double(d.upper);
+    const auto at = [&](double angle) { return a.origin + radius * (math::cos(angle) * x + math::sin(angle) * y); };
+    pen_.arc(a.origin, x, y, radius, low, high, joint_pen);
+    pen_.line(a.origin, at(low), joint_pen);
+    pen_.line(a.origin, at(high), joint_pen);
+    pen_.line(a.origin, a.origin + 1.2 * radius * now, normal_pen);
+  }
+  /// A range of sliding as a bar with both ends.
+  void range_of_way(Vec3d from, Vec3d along, Vec3d across, const rigid::JointLimit& d) {
+    const double low = double(d.lower), high = double(d.upper);
+    pen_.line(from + low * along, from + high * along, joint_pen);
+    for (const double end : {low, high})
+      pen_.line(from + end * along - 2 * mark_ * across, from + end * along + 2 * mark_ * across, joint_pen);
+  }
+
   template <class Joint>
-  void limit(const Joint& d, const Place& a, const Place& b) {
-    if (!d.limit.enabled) return;
-    const double low = double(d.limit.lower), high = double(d.limit.upper);
+  void limits(const Joint& d, const Place& a, const Place& b) {
     if constexpr (std::is_same_v<Joint, rigid::HingeJointDef<D>>) {
-      const double radius = 4 * mark_;
-      const auto at = [&](double angle) {
-        return a.origin + radius * (math::cos(angle) * a.x + math::sin(angle) * a.y);
-      };
-      constexpr int pieces = 16;
-      for (int i = 0; i < pieces; ++i)
-        line(at(low + (high - low) * i / pieces), at(low + (high - low) * (i + 1) / pieces), joint_pen);
-      line(a.origin, at(low), joint_pen);
-      line(a.origin, at(high), joint_pen);
-      line(a.origin, b.origin + 1.2 * radius * b.x, normal_pen);
+      if (d.limit.enabled) range_of_turn(a, a.x, a.y, d.limit, b.x);
     } else if constexpr (std::is_same_v<Joint, rigid::SliderJointDef<D>>) {
-      line(a.origin + low * a.x, a.origin + high * a.x, joint_pen);
-      for (const double end : {low, high})
-        line(a.origin + end * a.x - 2 * mark_ * a.y, a.origin + end * a.x + 2 * mark_ * a.y, joint_pen);
+      if (d.limit.enabled) range_of_way(a.origin, a.x, a.y, d.limit);
+    } else if constexpr (std::is_same_v<Joint, rigid::DistanceJointDef<D>>) {
+      const Vec3d way = b.origin - a.origin;
+      const double length = math::length(way);
+      if (!(length > 0)) return;
+      const Vec3d along = way * (1 / length);
+      Vec3d across = math::cross(along, D::dimension == 2 ? Vec3d{0, 0, 1} : Vec3d{0.3, 0.1, 0.95});
+      across = across * (1 / std::max(1e-9, math::length(across)));
+      if (d.limit.enabled) range_of_way(a.origin, along, across, d.limit);
+      if (d.rope) range_of_way(a.origin, along, across, {true, 0, d.length});
+    } else if constexpr (std::is_same_v<Joint, rigid::BallJointDef<D>>) {
+      if constexpr (D::dimension == 3) {
+        if (d.cone_angle >= 0) cone(a, double(d.cone_angle));
+        if (d.twist.enabled) range_of_turn(a, a.x, a.y, d.twist, b.x);
+      }
+    } else if constexpr (std::is_same_v<Joint, rigid::GenericJointDef<D>>) {
+      const Vec3d axes[] = {a.x, a.y, a.z};
+      for (int i = 0; i < D::dimension; ++i)
+        if (d.linear[i].free && d.linear[i].limit.enabled)
+          range_of_way(a.origin, axes[i], axes[(i + 1) % D::dimension], d.linear[i].limit);
+      if constexpr (D::dimension == 2) {
+        if (d.angular[0].free && d.angular[0].limit.enabled) range_of_turn(a, a.x, a.y, d.angular[0].limit, b.x);
+      } else {
+        const Vec3d turned[] = {b.x, b.y, b.z};
+        for (int i = 0; i < 3; ++i)
+          if (d.angular[i].free && d.angular[i].limit.enabled)
+            range_of_turn(a, axes[(i + 1) % 3], axes[(i + 2) % 3], d.angular[i].limit, turned[(i + 1) % 3]);
+      }
+    } else if constexpr (requires { d.limit; }) {
+      // A path shows its way (Simulation::lines); its ends are where that way is cut.
+      (void)a, (void)b;
     }
   }
 
@@ -161,8 +221,8 @@ class Drawing {
         const double turn = 2 * math::pi * k / pieces;
         return a.origin + height * a.z + radius * (math::cos(turn) * a.x + math::sin(turn) * a.y);
       };
-      line(at(i), at(i + 1), joint_pen);
-      if (i % 4 == 0) line(a.origin, at(i), joint_pen);
+      pen_.line(at(i), at(i + 1), joint_pen);
+      if (i % 4 == 0) pen_.line(a.origin, at(i), joint_pen);
     }
   }
 
@@ -209,7 +269,7 @@ class Drawing {
       const auto box = geometry::bounds(*shape, math::Transform2f{{}, pose.rotation} * definition->local);
       const Vec3d at = in_space(pose.position), low = at + in_space(box.low), high = at + in_space(box.high);
       const Vec3d corners[] = {low, {high.x, low.y, 0}, high, {low.x, high.y, 0}};
-      for (int i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4], pen);
+      for (int i = 0; i < 4; ++i) pen_.line(corners[i], corners[(i + 1) % 4], pen);
     } else {
       if (shape->type == geometry::ShapeType3::plane) return;
       const auto box = geometry::bounds(*shape, math::Transform3f{{}, pose.rotation} * definition->local);
@@ -220,36 +280,14 @@ class Drawing {
       };
       for (int i = 0; i < 8; ++i)
         for (const int bit : {1, 2, 4})
-          if (!(i & bit)) line(corner(i), corner(i | bit), pen);
+          if (!(i & bit)) pen_.line(corner(i), corner(i | bit), pen);
     }
   }
 
-  void line(Vec3d a, Vec3d b, std::uint32_t pen) {
-    if (out_.size() < max_lines && math::is_finite(a) && math::is_finite(b)) out_.push_back({a, b, pen});
-  }
-  void dot(Vec3d at, std::uint32_t pen) { cross(at, pen, 0.5); }
-  void cross(Vec3d at, std::uint32_t pen, double share = 1) {
-    const double r = share * mark_;
-    line(at - Vec3d{r, 0, 0}, at + Vec3d{r, 0, 0}, pen);
-    line(at - Vec3d{0, r, 0}, at + Vec3d{0, r, 0}, pen);
-    if (D::dimension == 3) line(at - Vec3d{0, 0, r}, at + Vec3d{0, 0, r}, pen);
-  }
-  void arrow(Vec3d from, Vec3d way, std::uint32_t pen) {
-    const double length = math::length(way);
-    if (!(length > 0.25 * mark_)) return;
-    const Vec3d to = from + way, along = way * (1 / length);
-    Vec3d side = math::cross(along, D::dimension == 2 ? Vec3d{0, 0, 1} : Vec3d{0.3, 0.1, 0.95});
-    side = side * (1 / std::max(1e-9, math::length(side)));
-    const double head = std::min(0.35 * length, mark_);
-    line(from, to, pen);
-    line(to, to - head * along + 0.5 * head * side, pen);
-    line(to, to - head * along - 0.5 * head * side, pen);
-  }
-
   const rigid::World<D>& world_;
-  double mark_;
+  DebugPen pen_;
+  double mark_, size_;
   ArrowScale scale_;
-  std::vector<Line>& out_;
   std::vector<std::size_t> parent_;
 };
 
@@ -273,8 +311,9 @@ template <class D>
 void debug_lines(const rigid::World<D>& world, std::uint32_t layers, float dt, double size, std::vector<Line>& out) {
   Drawing<D> drawing(world, size, arrow_scale(world, dt, size), out);
   if (layers & (layer_bounds | layer_centers | layer_islands | layer_velocities | layer_forces)) drawing.bodies(layers);
-  if (layers & (layer_contacts | layer_colors | layer_forces)) drawing.contacts(layers, dt);
-  if (layers & (layer_joints | layer_forces)) drawing.joints(layers);
+  if (layers & (layer_contacts | layer_colors | layer_forces | layer_errors)) drawing.contacts(layers, dt);
+  if (layers & (layer_joints | layer_forces | layer_errors)) drawing.joints(layers);
+  if (layers & layer_water) water_lines(world, size, out);
 }
 
 template ArrowScale arrow_scale(const rigid::World2&, float, double);

@@ -9,17 +9,16 @@ namespace carom::host {
 namespace {
 
 using Json = nlohmann::json;
-using Form = SpawnRequest::Form;
 
-constexpr const char* kinds[] = {"set", "input", "grab", "drag", "release", "release_all", "spawn"};
-constexpr const char* forms[] = {"ball", "box", "capsule"};
+constexpr const char* deed_names[] = {"set", "input", "grab", "drag", "release", "release_all", "spawn"};
+constexpr const char* spawn_forms[] = {"ball", "box", "capsule"};
 
-Json list(math::Vec3d v) { return Json::array({v.x, v.y, v.z}); }
+Json vector_list(math::Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
 }  // namespace
 
 bool is_deed(const std::string& type) {
-  for (const char* kind : kinds)
+  for (const char* kind : deed_names)
     if (type == kind) return true;
   return false;
 }
@@ -29,8 +28,8 @@ core::Result<Deed> read_deed(const Json& message) {
   const std::string type = field.text("type");
   Deed deed;
   std::size_t kind = 0;
-  while (kind < std::size(kinds) && type != kinds[kind]) ++kind;
-  if (kind == std::size(kinds)) field.wrong("type", "something that is done to a run");
+  while (kind < std::size(deed_names) && type != deed_names[kind]) ++kind;
+  if (kind == std::size(deed_names)) field.wrong("type", "something that is done to a run");
   deed.kind = Deed::Kind(kind);
   switch (deed.kind) {
     case Deed::Kind::set:
@@ -59,9 +58,9 @@ core::Result<Deed> read_deed(const Json& message) {
       deed.spawned.position = field.vector("position");
       deed.spawned.velocity = field.vector("velocity");
       std::size_t known = 0;
-      while (known < std::size(forms) && form != forms[known]) ++known;
-      if (known == std::size(forms)) field.wrong("form", "ball, box or capsule");
-      deed.spawned.form = Form(known);
+      while (known < std::size(spawn_forms) && form != spawn_forms[known]) ++known;
+      if (known == std::size(spawn_forms)) field.wrong("form", "ball, box or capsule");
+      deed.spawned.form = SpawnRequest::Form(known);
       break;
     }
   }
@@ -70,7 +69,7 @@ core::Result<Deed> read_deed(const Json& message) {
 }
 
 Json deed_json(const Deed& deed) {
-  Json out = {{"type", kinds[std::size_t(deed.kind)]}};
+  Json out = {{"type", deed_names[std::size_t(deed.kind)]}};
   switch (deed.kind) {
     case Deed::Kind::set:
     case Deed::Kind::input:
@@ -79,12 +78,12 @@ Json deed_json(const Deed& deed) {
       break;
     case Deed::Kind::grab:
       out["pointer"] = deed.pointer;
-      out["origin"] = list(deed.at);
-      out["direction"] = list(deed.along);
+      out["origin"] = vector_list(deed.at);
+      out["direction"] = vector_list(deed.along);
       break;
     case Deed::Kind::drag:
       out["pointer"] = deed.pointer;
-      out["target"] = list(deed.at);
+      out["target"] = vector_list(deed.at);
       break;
     case Deed::Kind::release:
       out["pointer"] = deed.pointer;
@@ -92,11 +91,11 @@ Json deed_json(const Deed& deed) {
     case Deed::Kind::release_all:
       break;
     case Deed::Kind::spawn:
-      out["form"] = forms[std::size_t(deed.spawned.form)];
+      out["form"] = spawn_forms[std::size_t(deed.spawned.form)];
       out["size"] = deed.spawned.size;
       out["density"] = deed.spawned.density;
-      out["position"] = list(deed.spawned.position);
-      out["velocity"] = list(deed.spawned.velocity);
+      out["position"] = vector_list(deed.spawned.position);
+      out["velocity"] = vector_list(deed.spawned.velocity);
       break;
   }
   return out;

@@ -181,6 +181,7 @@ struct SimulationHost::Handlers {
     if (host.restart_wanted_) host.restart();
     if (host.simulation_->recorded()) {
       if (const core::Status shown = host.simulation_->show(std::uint64_t(step)); !shown.ok()) return shown;
+      host.send_changes();
       host.send_status();
       host.key_wanted_ = true;
       return {};

@@ -249,6 +249,7 @@ void SimulationHost::send_status() {
     fields.first = options_.game ? fields.step : recorded ? recorded->first : history_.first();
     fields.last = options_.game ? fields.step : recorded ? recorded->last : history_.last();
     fields.recording = recorder_ != nullptr;
+    fields.playing = recorded.has_value();
     fields.message = simulation_->base().state.message;
     simulation_->base().state.message_changed = false;
   }
@@ -301,7 +302,7 @@ void SimulationHost::frame(bool key) {
     fields.stats = &stats;
     since_stats_ = 0;
     send(numbers_message({simulation_->profile(), budget, simulation_->arrows(), simulation_->hand_force(),
-                          simulation_->worst_joint_error(), counters.bytes}));
+                          simulation_->worst_joint_error(), counters.bytes, simulation_->legend()}));
     send_inspection();
   }
   send_drawn(key);

@@ -46,6 +46,11 @@ core::Status SimulationHost::start_recording() {
 }
 
 void SimulationHost::record() {
+  // Before there is no room for the index either: a file with all its parts is better than a longer one.
+  if (recorded_.size() > options_.max_recording - options_.max_recording / 8) {
+    complain("the recording ends here: it is full");
+    return finish_recording();
+  }
   // A step that is shown again ends the recording rather than spoil it, and so does its size.
   if (const core::Status status = recorder_->add(*simulation_, simulation_->base().state.samples); !status.ok()) {
     complain("the recording ends here: " + status.error().message);
@@ -71,6 +76,8 @@ core::Status SimulationHost::start_replay() {
   if (!opened.ok()) return opened.error();
   replay_ = std::make_unique<Replay>(std::move(opened).value());
   since_told_ = 0;
+  running_ = false;  // who plays and who compares would turn the pages of one file against each other
+  send_status();
   send(verified_message(replay_->report()));
   return {};
 }

@@ -29,6 +29,7 @@ struct NumbersFields {
   ArrowScale arrows;
   double hand_force = 0, worst_joint_error = 0;
   std::size_t bytes = 0;
+  std::vector<LegendEntry> legend{};
 };
 std::string numbers_message(const NumbersFields& fields);
 std::string probed_message(std::string_view kind, const ProbeAnswer& answer);
@@ -41,7 +42,7 @@ struct StatusFields {
   bool running = false;
   double speed = 1, time = 0;
   std::uint64_t step = 0, first = 0, last = 0;
-  bool recording = false;
+  bool recording = false, playing = false;  ///< is made; is shown
   std::string_view message;
 };
 std::string status_message(const StatusFields& fields);

@@ -20,7 +20,7 @@ constexpr const char* engine_name = "wasm";
 constexpr const char* engine_name = "native";
 #endif
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json json_of(const DeedAtStep& done) { return {{"step", done.step}, {"action", deed_json(done.deed)}}; }
 
@@ -67,12 +67,12 @@ scene::RecordingHeader recording_header(Simulation& simulation, const Origin& or
   for (std::size_t i = 0; i < d.parameters.size() && i < origin.values.size(); ++i)
     values[d.parameters[i].name] = origin.values[i];
   for (const DeedAtStep& done : origin.past) past.push_back(json_of(done));
-  header.origin = text_of({{"demo", d.id},
-                           {"version", build.version},
-                           {"engine", build.engine},
-                           {"compiler", build.compiler},
-                           {"values", std::move(values)},
-                           {"past", std::move(past)}});
+  header.origin = json_text({{"demo", d.id},
+                             {"version", build.version},
+                             {"engine", build.engine},
+                             {"compiler", build.compiler},
+                             {"values", std::move(values)},
+                             {"past", std::move(past)}});
   return header;
 }
 
@@ -112,7 +112,7 @@ RunRecorder::RunRecorder(scene::Recorder recorder, Simulation& simulation) : rec
   meshes_known_ = simulation.meshes().meshes().size();
 }
 
-void RunRecorder::note(const DeedAtStep& deed) { frame_.actions.push_back(text_of(json_of(deed))); }
+void RunRecorder::note(const DeedAtStep& deed) { frame_.actions.push_back(json_text(json_of(deed))); }
 
 core::Status RunRecorder::introduce(Simulation& simulation) {
   std::vector<std::uint32_t> fresh;

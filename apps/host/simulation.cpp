@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "apps/host/debug_draw.h"
+#include "apps/host/debug_effectors.h"
 #include "apps/host/hands.h"
 #include "apps/host/inspect.h"
 #include "apps/host/messages.h"
@@ -202,6 +203,7 @@ class SimulationOf final : public Simulation {
     for (const Grab& held : grabs_)
       if (const auto state = world.state(held.body); state.ok())
         out.push_back({in_space(world_point(state->pose, held.local)), in_space(held.target), 0xffd54fff});
+    if (layers_ & layer_effectors) effectors_.lines(world, float(declaration_.dt), scale(), out);
     if (layers_ != 0) debug_lines(world, layers_, float(declaration_.dt), scale(), out);
     // Ropes, rods and springs hold at a distance: without a line one would not see them.
     std::vector<rigid::JointId> joints;
@@ -214,6 +216,9 @@ class SimulationOf final : public Simulation {
         out.push_back({anchor(rod->body_a, rod->frame_a.p), anchor(rod->body_b, rod->frame_b.p), 0x6b7682ff});
       if (const auto* path = std::get_if<rigid::PathJointDef<D>>(&*definition)) draw_path(*path, out);
     }
+  }
+  std::vector<LegendEntry> legend() const override {
+    return layers_ & layer_effectors ? effectors_.legend() : std::vector<LegendEntry>();
   }
   bool take_changes(std::vector<std::uint32_t>& added, std::vector<std::uint32_t>& removed) override {
     if (!stage_.changed()) return false;
@@ -308,6 +313,7 @@ class SimulationOf final : public Simulation {
   DemoOf<D>& demo_;
   Stage<D> stage_;
   std::vector<Grab> grabs_;
+  mutable EffectorForces<D> effectors_;
   SimulationOptions options_;
 };
 

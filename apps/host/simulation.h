@@ -107,6 +107,8 @@ class Simulation {
   virtual void describe(const std::vector<std::uint32_t>* only, std::vector<BodyView>& out) = 0;  ///< null: all
   /// What to draw beside the bodies: the demo's lines, ropes and rods, the springs of pointers.
   virtual void lines(std::vector<Line>& out) const = 0;
+  /// What colours of debug drawing stand for in this scene.
+  virtual std::vector<LegendEntry> legend() const { return {}; }
   virtual bool take_changes(std::vector<std::uint32_t>& added, std::vector<std::uint32_t>& removed) = 0;
   const MeshLibrary& meshes() const { return meshes_; }
 

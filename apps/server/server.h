@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,17 @@
 
 namespace carom::server {
 
+/// What a server proves itself with, as PEM texts (tls.h).
+struct TlsIdentity {
+  std::string certificate, key;
+};
+
 struct ServerOptions {
   std::string address = "127.0.0.1";
   unsigned short port = 0;                 ///< 0: any free one
   std::string root;                        ///< folder of the page; empty or missing: a page that says how to build it
   std::vector<std::string> allowed_hosts;  ///< names beyond loopback that may stand in a Host header
+  std::optional<TlsIdentity> tls;          ///< https and wss instead of http and ws
   int max_clients = 64;
   int threads = 2;                                  ///< that serve all connections together
   double frame_interval = 1.0 / 60;                 ///< s

@@ -37,6 +37,19 @@ void play(std::vector<std::uint8_t> bytes) {
   if (!recording->complete() && recording->damage().empty()) std::abort();
   for (std::size_t i = 0; i < count && i < 40; ++i) (void)recording->frame(i);
   for (std::size_t i = count < 20 ? count : 20; i-- > 0;) (void)recording->frame(i);
+  for (const RecordedArrival& arrival : recording->arrivals())
+    if (arrival.meshes.size() > 1u << 20) std::abort();
+  for (std::size_t i = 0; i < count && i < 10; ++i) {
+    const Result<RecordedFrame> frame = recording->frame(i);
+    if (!frame) continue;
+    // What is given out must be safe to draw.
+    const RecordedPicture& picture = frame->picture;
+    if (picture.radii.size() != picture.points.size() || picture.point_rgbas.size() != picture.points.size())
+      std::abort();
+    for (const RecordedSurface& surface : picture.surfaces)
+      for (const std::uint32_t corner : surface.triangles)
+        if (corner >= surface.corners.size()) std::abort();
+  }
   for (const double t : {-1.0, 0.0, 0.5, 1e300})
     if (count > 0 && recording->index_at_time(t) >= count) std::abort();
 }

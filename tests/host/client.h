@@ -162,7 +162,7 @@ class Page {
   }
   Json last(const std::string& type) const {
     for (std::size_t i = texts.size(); i-- > 0;)
-      if (texts[i]["type"] == type) return texts[i];
+      if (texts[i].value("type", std::string()) == type) return texts[i];
     return nullptr;
   }
   int count(const std::string& type) const {

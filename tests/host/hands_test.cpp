@@ -1,7 +1,9 @@
 // What a page asks of a scene: bodies thrown in, probes, reports on a body, layers of debug drawing.
+#include <algorithm>
 #include <cmath>
 
 #include "apps/host/debug_draw.h"
+#include "apps/host/debug_effectors.h"
 #include "apps/host/scene_demo.h"
 #include "tests/host/client.h"
 
@@ -123,7 +125,8 @@ TEST_F(Scene, EveryLayerDrawsAndUnknownOnesAreNamed) {
   advance();
   const std::size_t plain = page.frames.back().lines;
   for (const DebugLayer& layer : debug_layers) {
-    if (layer.bit == layer_joints || layer.bit == layer_velocities) continue;  // nothing to show in this scene
+    // Nothing to show in this scene:
+    if (layer.bit & (layer_joints | layer_velocities | layer_effectors | layer_water)) continue;
     page.send({{"type", "draw"}, {"layers", {layer.name}}});
     advance();
     EXPECT_GT(page.frames.back().lines, plain) << layer.name;
@@ -133,6 +136,105 @@ TEST_F(Scene, EveryLayerDrawsAndUnknownOnesAreNamed) {
   page.send({{"type", "draw"}, {"layers", Json::array()}});
   advance();
   EXPECT_EQ(page.frames.back().lines, plain);
+}
+
+TEST(Layers, ForcesAreToldApartByEffector) {
+  rigid::World3 world(rigid::WorldDef<rigid::Dim3>{});
+  rigid::BodyDef<rigid::Dim3> body;
+  body.linear_velocity = {3, 0, 0};
+  const rigid::BodyId box = *world.create_body(body);
+  ASSERT_TRUE(world.add_shape(box, geometry::Box{{0.5f, 0.5f, 0.5f}}, {.density = 500}).ok());
+  rigid::Thrust<rigid::Dim3> thrust;
+  thrust.body = box;
+  thrust.force = {0, 0, 120};
+  ASSERT_TRUE(world.add_effector(thrust).ok());
+  rigid::LinearDrag<rigid::Dim3> drag;
+  drag.body = box;
+  drag.coefficient = 10;
+  ASSERT_TRUE(world.add_effector(drag).ok());
+  rigid::Buoyancy<rigid::Dim3> water;
+  water.density = 1000;
+  water.level = 0;
+  ASSERT_TRUE(world.add_effector(water).ok());
+  const std::uint64_t before = world.state_hash();
+  EffectorForces<rigid::Dim3> forces;
+  std::vector<Line> lines;
+  forces.lines(world, 1.0f / 60, 10, lines);
+  EXPECT_EQ(world.state_hash(), before);
+  EXPECT_EQ(lines.size(), 9u) << "three arrows of three lines";
+  std::map<std::string, double> found;
+  for (const LegendEntry& entry : forces.legend()) {
+    const std::size_t comma = entry.label.find(", up to ");
+    ASSERT_NE(comma, std::string::npos) << entry.label;
+    found[entry.label.substr(0, comma)] = std::stod(entry.label.substr(comma + 8));
+  }
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_NEAR(found["thrust"], 120, 0.5);
+  EXPECT_NEAR(found["linear drag"], 30, 0.5) << "10 N·s/m at 3 m/s";
+  // Half of a cubic metre is under water at mid-step, but for what it sinks in 1/120 s.
+  EXPECT_NEAR(found["buoyancy"], 1000 * 9.80665 * 0.5, 20);
+}
+
+TEST(Layers, WhatIsUnderWaterIsCutAtTheSurface) {
+  rigid::World3 world(rigid::WorldDef<rigid::Dim3>{});
+  rigid::BodyDef<rigid::Dim3> body;
+  body.position = {5, 0.25, 0};  // a quarter of it under water
+  const rigid::BodyId box = *world.create_body(body);
+  ASSERT_TRUE(world.add_shape(box, geometry::Box{{0.5f, 0.5f, 0.5f}}, {.density = 500}).ok());
+  rigid::Buoyancy<rigid::Dim3> water;
+  water.density = 1000;
+  ASSERT_TRUE(world.add_effector(water).ok());
+  std::vector<Line> lines;
+  debug_lines(world, layer_water, 1.0f / 60, 10, lines);
+  ASSERT_FALSE(lines.empty());
+  double around = 0, lowest = 1;
+  math::Vec3d lift{};
+  for (const Line& line : lines) {
+    lowest = std::min({lowest, line.a.y, line.b.y});
+    if (line.rgba == 0x7fe3ffff) {
+      EXPECT_NEAR(line.a.y, 0, 1e-6);
+      EXPECT_NEAR(line.b.y, 0, 1e-6);
+      around += math::distance(line.a, line.b);
+    } else if (line.rgba == 0x00a6c7ff && line.b.y - line.a.y > 0.2) {
+      lift = line.a;
+    }
+  }
+  EXPECT_NEAR(around, 4, 1e-5) << "the waterline of a cube of 1 m";
+  EXPECT_NEAR(lowest, -0.25, 0.2);
+  EXPECT_NEAR(lift.x, 5, 1e-6) << "from the centre of what is wet";
+  EXPECT_NEAR(lift.y, -0.125, 1e-6);
+  rigid::World2 flat(rigid::WorldDef<rigid::Dim2>{});
+  rigid::BodyDef<rigid::Dim2> ball;
+  ASSERT_TRUE(flat.add_shape(*flat.create_body(ball), geometry::Circle{1}, {.density = 500}).ok());
+  ASSERT_TRUE(flat.add_effector(rigid::Buoyancy<rigid::Dim2>{}).ok());
+  lines.clear();
+  debug_lines(flat, layer_water, 1.0f / 60, 10, lines);
+  around = 0;
+  for (const Line& line : lines)
+    if (line.rgba == 0x7fe3ffff) around += math::distance(line.a, line.b);
+  EXPECT_NEAR(around, 2, 1e-3);
+}
+
+TEST(Layers, AJointApartIsMarkedLargerAndRedder) {
+  rigid::World3 world(rigid::WorldDef<rigid::Dim3>{});
+  rigid::BodyDef<rigid::Dim3> body;
+  const rigid::BodyId a = *world.create_body(body);
+  ASSERT_TRUE(world.add_shape(a, geometry::Sphere{0.1f}).ok());
+  rigid::BallJointDef<rigid::Dim3> joint;
+  joint.body_b = a;
+  const rigid::JointId id = *world.create_joint(joint);
+  const auto widest = [&] {
+    std::vector<Line> lines;
+    debug_lines(world, layer_errors, 1.0f / 60, 10, lines);
+    double most = 0;
+    for (const Line& line : lines) most = std::max(most, math::distance(line.a, line.b));
+    return most;
+  };
+  const double small = widest();
+  EXPECT_GT(small, 0);
+  ASSERT_TRUE(world.set_pose(a, {0.05, 0, 0}, {}).ok());
+  EXPECT_NEAR(world.joint_state(id)->linear_error, 0.05, 1e-6);
+  EXPECT_GT(widest(), 3 * small);
 }
 
 TEST_F(Scene, ThePastIsShownAndGoneOnFrom) {

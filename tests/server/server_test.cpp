@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include <boost/asio/connect.hpp>
@@ -12,10 +13,15 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#if CAROM_WITH_TLS
+#include <boost/asio/ssl.hpp>
+#include <boost/beast/websocket/ssl.hpp>
+#endif
 
 #include "apps/server/requests.h"
 #include "apps/server/server.h"
 #include "apps/server/shared_files.h"
+#include "apps/server/tls.h"
 
 namespace carom::server {
 namespace {
@@ -254,6 +260,123 @@ TEST_F(LiveServer, StopSaysGoodbyeAndIsQuick) {
   EXPECT_EQ(error, websocket::error::closed);
   EXPECT_LT(std::chrono::steady_clock::now() - started, std::chrono::seconds(3));
 }
+
+#if CAROM_WITH_TLS
+/// A client that trusts one certificate and nothing else, and looks at the name in it.
+class Trusting {
+ public:
+  Trusting(asio::io_context& context, const std::string& certificate, const std::string& name, unsigned short port)
+      : tls_(asio::ssl::context::tls_client), stream_(context, tls_) {
+    tls_.add_certificate_authority(asio::buffer(certificate));
+    stream_.set_verify_mode(asio::ssl::verify_peer);
+    stream_.set_verify_callback(asio::ssl::host_name_verification(name));
+    stream_.next_layer().connect({asio::ip::make_address("127.0.0.1"), port});
+    stream_.handshake(asio::ssl::stream_base::client, error);
+  }
+  asio::ssl::stream<tcp::socket>& stream() { return stream_; }
+  beast::error_code error;
+
+ private:
+  asio::ssl::context tls_;
+  asio::ssl::stream<tcp::socket> stream_;
+};
+
+TEST_F(LiveServer, SpeaksTlsWithACertificateOfItsOwn) {
+  const std::vector<std::string> names{"mybox.example"};
+  const auto identity = user_identity(names, (folder_ / "tls").string());
+  ASSERT_TRUE(identity.ok()) << identity.error().message;
+  EXPECT_EQ(fs::status(folder_ / "tls/tls-key.pem").permissions() & fs::perms::all,
+            fs::perms::owner_read | fs::perms::owner_write);
+  ServerOptions options;
+  options.tls = *identity;
+  options.allowed_hosts = names;
+  start(std::move(options));
+  EXPECT_EQ(server_->url().substr(0, 8), "https://");
+  for (const char* name : {"localhost", "127.0.0.1", "mybox.example"}) {
+    Trusting client(context_, identity->certificate, name, server_->port());
+    EXPECT_FALSE(client.error) << name << ": " << client.error.message();
+  }
+  EXPECT_TRUE(Trusting(context_, identity->certificate, "elsewhere.example", server_->port()).error);
+  const auto stranger = make_identity({});
+  ASSERT_TRUE(stranger.ok());
+  EXPECT_TRUE(Trusting(context_, stranger->certificate, "localhost", server_->port()).error);
+
+  // Files, one after another on one connection.
+  const std::string authority = "localhost:" + std::to_string(server_->port());
+  Trusting client(context_, identity->certificate, "localhost", server_->port());
+  for (int i = 0; i < 3; ++i) {
+    http::request<http::empty_body> request{http::verb::get, "/", 11};
+    request.set(http::field::host, authority);
+    http::write(client.stream(), request);
+    http::response<http::string_body> response;
+    beast::flat_buffer buffer;
+    http::read(client.stream(), buffer, response);
+    EXPECT_EQ(response.result_int(), 200u);
+    EXPECT_NE(response.body().find("page"), std::string::npos);
+    EXPECT_EQ(response["Cross-Origin-Opener-Policy"], "same-origin");
+  }
+  // A page at https drives the engine over wss.
+  Trusting page(context_, identity->certificate, "localhost", server_->port());
+  websocket::stream<asio::ssl::stream<tcp::socket>&> socket(page.stream());
+  socket.set_option(websocket::stream_base::decorator(
+      [&](websocket::request_type& request) { request.set(http::field::origin, "https://" + authority); }));
+  socket.handshake(authority, "/ws");
+  socket.write(asio::buffer(std::string("{\"type\":\"hello\",\"protocol\":1}")));
+  beast::flat_buffer buffer;
+  socket.read(buffer);
+  EXPECT_NE(beast::buffers_to_string(buffer.data()).find("welcome"), std::string::npos);
+
+  // Who comes without TLS is told where to go; who sends nonsense is let go, and the server lives on.
+  const auto plain = get("/main.js");
+  EXPECT_EQ(plain.result_int(), 308u);
+  EXPECT_NE(std::string(plain[http::field::location]).find("https://"), std::string::npos);
+  for (const std::string& nonsense : {std::string("\x16\x03\x01\xff\xff\x01", 6), std::string(3000, '\x16')}) {
+    tcp::socket raw = connect();
+    asio::write(raw, asio::buffer(nonsense));
+    beast::error_code ignored;
+    raw.shutdown(tcp::socket::shutdown_send, ignored);
+    char byte[256];
+    while (!ignored) raw.read_some(asio::buffer(byte), ignored);
+  }
+  EXPECT_FALSE(Trusting(context_, identity->certificate, "localhost", server_->port()).error);
+}
+
+TEST_F(LiveServer, ACertificateIsKeptAndWrongFilesAreNamed) {
+  const std::string folder = (folder_ / "tls").string();
+  const auto first = user_identity({}, folder), again = user_identity({}, folder);
+  ASSERT_TRUE(first.ok() && again.ok());
+  EXPECT_EQ(first->certificate, again->certificate) << "a browser that trusts it need not be asked again";
+  const auto print = fingerprint(*first);
+  ASSERT_TRUE(print.ok());
+  EXPECT_EQ(print->size(), 32u * 3 - 1);
+  const std::vector<std::string> names{"another.example"};
+  const auto wider = user_identity(names, folder);
+  ASSERT_TRUE(wider.ok());
+  EXPECT_NE(wider->certificate, first->certificate) << "a name is new";
+  const std::string certificate = folder + "/tls-certificate.pem", key = folder + "/tls-key.pem";
+  EXPECT_TRUE(read_identity(certificate, key).ok());
+  const auto other = make_identity({});
+  ASSERT_TRUE(other.ok());
+  write("other.pem", other->key);
+  for (const auto& [c, k, said] : {std::tuple{folder + "/none.pem", key, "there is no such file"},
+                                   {certificate, (folder_ / "secret.txt").string(), "found no key"},
+                                   {(folder_ / "secret.txt").string(), key, "found no certificate"},
+                                   {certificate, (folder_ / "other.pem").string(), "does not belong"}}) {
+    const auto wrong = read_identity(c, k);
+    ASSERT_FALSE(wrong.ok()) << said;
+    EXPECT_NE(wrong.error().message.find(said), std::string::npos) << wrong.error().message;
+  }
+  write("tls/tls-key.pem", "nonsense");
+  const auto broken = user_identity({}, folder);
+  ASSERT_FALSE(broken.ok());
+  EXPECT_NE(broken.error().message.find("remove both files"), std::string::npos) << broken.error().message;
+  ServerOptions options;
+  options.tls = TlsIdentity{"nonsense", "nonsense"};
+  const auto refused = Server::start(std::move(options));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("certificate"), std::string::npos);
+}
+#endif
 
 TEST_F(LiveServer, ATakenPortIsAClearError) {
   ServerOptions options;

@@ -147,6 +147,7 @@ class Page implements Listener {
     switch (message.type) {
       case 'welcome': {
         this.demos = message.demos;
+        this.tools.offer(message.layers);
         document.body.classList.toggle('game', message.engine === 'game');  // a running game keeps its own time
         this.gallery.list(this.demos);
         // A connection that was lost comes back to where it was: a run is made by its demo, its values and its steps.
@@ -172,7 +173,9 @@ class Page implements Listener {
       case 'numbers':
         this.timing.add(message.stages);
         this.panel.budget(message);
+        this.tools.explain(message.legend);
         break;
+      case 'verified': this.share.verified(message); break;
       case 'source': void this.editing.fill(message.name, message.text || undefined); break;
       case 'probed': this.tools.probed(message); break;
       case 'inspected': showReport(message, this.opened?.dt ?? 1 / 60); break;
@@ -188,6 +191,7 @@ class Page implements Listener {
         this.timeline.status(message.step, message.first, message.last);
         this.share.step = message.step;
         this.share.recorded(message.recording);
+        this.share.playing(message.playing === true);
         byId('clock').textContent = `${message.time.toFixed(2)} s · step ${message.step}`;
         break;
       case 'values':

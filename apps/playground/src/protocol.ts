@@ -26,6 +26,12 @@ export interface Body {
 export interface Numbers {
   type: 'numbers'; stages: Record<string, number>; mass: number; momentum: number[]; angular_momentum: number[]; joint_error: number;
   hand_force: number; bytes: number; arrows: {velocity: number; force: number; impulse: number};
+  legend: LegendEntry[];
+}
+export interface Layer { name: string; label: string; legend: string }
+export interface LegendEntry { label: string; color: string }
+export interface Verified {
+  type: 'verified'; done: boolean; equal: boolean; step: number; first: number; last: number; frames: number; hashes: number; message: string; differs?: number;
 }
 export interface Probed { type: 'probed'; kind: string; body: number; point: number[]; normal: number[]; distance: number }
 export interface Inspected {
@@ -35,12 +41,13 @@ export interface Inspected {
   joints: {type: string; with: string; force: number; torque: number; error: number; direct: boolean}[];
 }
 export type HostMessage =
-  | {type: 'welcome'; protocol: number; version: string; engine: string; demos: DemoSummary[]}
+  | {type: 'welcome'; protocol: number; version: string; engine: string; demos: DemoSummary[]; layers: Layer[]}
   | Opened
+  | Verified
   | {type: 'scene'; bodies: Body[]; ground?: {level: number}}
   | {type: 'bodies'; add: Body[]; remove: number[]}
   | {type: 'grabbed'; pointer: number; body: number; point: number[]}
-  | {type: 'status'; running: boolean; speed: number; time: number; step: number; first: number; last: number; recording: boolean; message?: string}
+  | {type: 'status'; running: boolean; speed: number; time: number; step: number; first: number; last: number; recording: boolean; playing?: boolean; message?: string}
   | Probed
   | Numbers
   | Inspected

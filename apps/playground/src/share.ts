@@ -1,6 +1,6 @@
 // What leaves the page and what comes into it: links, pictures, recordings, files dropped on it.
 import {byId, download, element} from './dom';
-import type {Opened} from './protocol';
+import type {Opened, Verified} from './protocol';
 import type {Source} from './source';
 import type {Viewer} from './viewer';
 
@@ -40,6 +40,10 @@ const PART = 1 << 20;  // bytes of a message that carries a part of a file
 
 export class Share {
   private recording = false;
+  private check = element('button', {
+    type: 'button', textContent: 'Check recording', hidden: true, title: 'Run it again from what opened it, and compare every step',
+    onclick: () => this.source.send({type: 'verify'}),
+  });
   opened?: Opened;
   step = 0;
   /** The text of the scene that is open, where it came from a file; for a new connection and for errors. */
@@ -54,7 +58,7 @@ export class Share {
       button('Picture', 'Save what the view shows', () => { void this.picture(); }),
       button('Record', 'Write a recording from now on; again: save it', () => this.source.send({type: 'record', on: !this.recording})),
       button('Open file', 'A scene (JSON) or a recording; it can also be dropped on the page', () => chooser.click()),
-      button('Edit scene', 'The scene as a file beside the view; edits act at once (E)', edit),
+      this.check, button('Edit scene', 'The scene as a file beside the view; edits act at once (E)', edit),
       button('Compare', 'Two settings side by side, in step (C)', compare), chooser);
     addEventListener('dragover', (event) => { event.preventDefault(); document.body.classList.add('dropping'); });
     addEventListener('dragleave', (event) => { if (!event.relatedTarget) document.body.classList.remove('dropping'); });
@@ -84,6 +88,10 @@ export class Share {
     const data = await this.viewer.picture();
     if (data) download(this.name('png'), data);
   }
+
+  /** A recording that is open can be run again and compared. */
+  playing(is: boolean): void { this.check.hidden = !is; }
+  verified(report: Verified): void { this.say(`Run again: ${report.message}.`, report.done); }
 
   /** The host says whether it records with the file that ends it. */
   recorded(on: boolean): void {

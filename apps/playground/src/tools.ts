@@ -1,6 +1,6 @@
 // What a pointer does on the view besides pulling, and what is drawn over the scene.
 import {byId, element} from './dom';
-import type {Probed} from './protocol';
+import type {Layer, LegendEntry, Probed} from './protocol';
 import {short} from './quantities';
 import type {Viewer} from './viewer';
 
@@ -10,18 +10,11 @@ const TOOLS: [Tool, string, string][] = [
   ['ray', 'Ray', 'Point to cast a ray'], ['sphere', 'Sphere', 'Point to cast a sphere'], ['closest', 'Closest', 'Point to find the closest other body'],
   ['why', 'Why', 'Click a body to read why it does what it does'],
 ];
-const LAYERS: [string, string][] = [
-  ['bounds', 'Bounds'], ['centers', 'Centres of mass'], ['contacts', 'Contact impulses'], ['joints', 'Joints and limits'],
-  ['islands', 'Islands and sleep'], ['colors', 'Graph colours'], ['velocities', 'Velocities'], ['forces', 'Forces'],
-];
-const LEGEND: Record<string, string> = {
-  contacts: 'normal impulses red, friction yellow', velocities: 'velocity green, spin violet', forces: 'weight blue, contacts red, friction yellow, joints violet',
-  islands: 'one colour an island, asleep grey', colors: 'arrows in the colour in which the solver takes them', joints: 'limits as arcs, cones and bars',
-};
-
 export class Tools {
   tool: Tool = 'pull';
   private layers = new Set<string>();
+  private offered = element('div');
+  private legend = element('ul', {className: 'legend'});
   private asked = 0;
 
   constructor(private viewer: Viewer, private send: (message: object) => void) {
@@ -31,13 +24,18 @@ export class Tools {
       button.onclick = () => this.choose(tool);
       return button;
     }));
-    byId('layers').replaceChildren(...LAYERS.map(([name, label]) => this.toggle(label, LEGEND[name] ?? '', false, (on) => {
-      if (on) this.layers.add(name); else this.layers.delete(name);
-      this.draw();
-    }, name)), this.toggle('Shapes', '', true, (on) => { this.viewer.showShapes(on); }),
+    byId('layers').replaceChildren(this.offered, this.legend, this.toggle('Shapes', '', true, (on) => { this.viewer.showShapes(on); }),
     this.toggle('Shadows', '', true, (on) => { this.viewer.showShadows(on); }),
     this.toggle('Trails', 'of the chosen body, or of all that move', false, (on) => { this.viewer.showTrails(on); }),
     this.toggle('Heat colours', 'bodies coloured by their speed', false, (on) => { this.viewer.showHeat(on); }));
+  }
+
+  /** Toggles for the layers of debug drawing that the host has. */
+  offer(layers: Layer[]): void {
+    this.offered.replaceChildren(...layers.map(({name, label, legend}) => this.toggle(label, legend, this.layers.has(name), (on) => {
+      if (on) this.layers.add(name); else this.layers.delete(name);
+      this.draw();
+    }, name)));
   }
 
   private toggle(label: string, legend: string, on: boolean, change: (on: boolean) => void, layer?: string): HTMLElement {
@@ -53,6 +51,15 @@ export class Tools {
     byId('throw-options').hidden = tool !== 'throw';
     this.viewer.showMark();
     byId('probe').textContent = '';
+  }
+
+  /** What colours stand for in this scene. */
+  explain(legend: LegendEntry[]): void {
+    this.legend.replaceChildren(...legend.map(({label, color}) => {
+      const swatch = element('span', {className: 'swatch'});
+      swatch.style.background = color;
+      return element('li', {}, swatch, label);
+    }));
   }
 
   /** After an open or a reconnect the host knows of no layers. */
