@@ -108,7 +108,10 @@ class Drawing {
         pen_.line(in_space(body->center_of_mass), b.origin, 0x9b6dd680);
       limits(d, a, b);
     }
-    if (layers & layer_errors)
+    // Motors and hands pull toward a place; to be away from it is no error.
+    constexpr bool pulls =
+        std::is_same_v<Joint, rigid::MotorJointDef<D>> || std::is_same_v<Joint, rigid::MouseJointDef<D>>;
+    if ((layers & layer_errors) && !pulls)
       if (const auto state = world_.joint_state(id); state.ok()) {
         // Pulled apart by a thousandth of the picture, or turned by a tenth of a radian, is the worst that is told
         // apart.

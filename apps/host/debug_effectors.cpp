@@ -119,6 +119,7 @@ void EffectorForces<D>::lines(const rigid::World<D>& world, float dt, double siz
       most = math::max(most, math::length(force));
       pen.arrow(in_space(state->center_of_mass), scale.force * force, effector_kinds[k].color << 8 | 0xff);
     }
+    if (!(most > 1e-9)) continue;
     char text[40];
     std::snprintf(text, sizeof text, ", up to %.3g N", most);
     legend_.push_back({effector_kinds[k].label + std::string(text), effector_kinds[k].color});

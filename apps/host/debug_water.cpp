@@ -84,21 +84,18 @@ class WaterDrawing {
       depths_.push_back(water.height(at.x, at.z) - at.y);
     }
     if (corners_.empty() || *std::max_element(depths_.begin(), depths_.end()) <= 0) return;
-    const bool edges = shape.indices.size() <= 3 * most_edges;
     for (std::size_t t = 0; t + 2 < shape.indices.size() && !pen_.full(); t += 3) {
       const std::uint32_t* const corner = &shape.indices[t];
       Vec3d cut[3];
       int cuts = 0;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t i = corner[k], j = corner[(k + 1) % 3];
-        Vec3d a = corners_[i], b = corners_[j];
         const double da = depths_[i], db = depths_[j];
-        if ((da > 0) != (db > 0)) cut[cuts++] = a + (b - a) * (da / (da - db));
-        // Either triangle of an edge would draw it: the one that has it in rising order does.
-        if (edges && i < j && wet_part(a, da, b, db)) pen_.line(a, b, wet_pen);
+        if ((da > 0) != (db > 0)) cut[cuts++] = corners_[i] + (corners_[j] - corners_[i]) * (da / (da - db));
       }
       if (cuts == 2) pen_.line(cut[0], cut[1], waterline_pen);
     }
+    if (shape.indices.size() <= 3 * most_edges) wet_edges(shape.indices);
     // Volume and centre as the engine has them, relative to the first corner: far away places stay exact.
     std::vector<Vec3d> near;
     for (const Vec3d at : corners_) near.push_back(at - corners_[0]);
@@ -139,6 +136,33 @@ class WaterDrawing {
   }
 
  private:
+  /// The wet parts of all edges but those within a flat face.
+  void wet_edges(const std::vector<std::uint32_t>& indices) {
+    struct Edge {
+      std::uint32_t i, j;
+      Vec3d normal;
+    };
+    std::vector<Edge> edges;
+    for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+      const Vec3d a = corners_[indices[t]], b = corners_[indices[t + 1]], c = corners_[indices[t + 2]];
+      const Vec3d across = math::cross(b - a, c - a);
+      const Vec3d normal = across * (1 / math::max(1e-300, math::length(across)));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t i = indices[t + k], j = indices[t + (k + 1) % 3];
+        edges.push_back({std::min(i, j), std::max(i, j), normal});
+      }
+    }
+    std::sort(edges.begin(), edges.end(),
+              [](const Edge& a, const Edge& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
+    for (std::size_t k = 0; k < edges.size() && !pen_.full(); ++k) {
+      const Edge& edge = edges[k];
+      const bool shared = k + 1 < edges.size() && edges[k + 1].i == edge.i && edges[k + 1].j == edge.j;
+      if (shared) ++k;
+      if (shared && math::dot(edge.normal, edges[k].normal) > 0.9999) continue;
+      Vec3d a = corners_[edge.i], b = corners_[edge.j];
+      if (wet_part(a, depths_[edge.i], b, depths_[edge.j])) pen_.line(a, b, wet_pen);
+    }
+  }
   void lift(Vec3d center, double volume, double density) {
     pen_.cross(center, lift_pen);
     pen_.arrow(center, Vec3d{0, scale_.force * forces::buoyant_force(density, gravity_, volume), 0}, lift_pen);
