@@ -35,7 +35,18 @@ Extent extent_of_many(const Many& many) {
   return out;
 }
 
-enum Field { count_field, mass, kinetic_energy, center, lower, upper, length_field, tension, area, volume };
+enum MatterField {
+  of_count,
+  of_mass,
+  of_kinetic_energy,
+  of_center,
+  of_lower,
+  of_upper,
+  of_length,
+  of_tension,
+  of_area,
+  of_volume
+};
 struct FieldName {
   std::string_view name, unit;
   bool vector;
@@ -47,11 +58,11 @@ constexpr FieldName fields[] = {{"count", "", false},    {"mass", "kg", false}, 
 enum List { rope_list, cloth_list, soft_list, liquid_list, grain_list, particle_list, list_count };
 constexpr std::string_view list_names[] = {"rope", "cloth", "soft_body", "liquid", "grains", "particles"};
 constexpr unsigned common =
-    1u << count_field | 1u << mass | 1u << kinetic_energy | 1u << center | 1u << lower | 1u << upper;
-constexpr unsigned has[] = {common | 1u << length_field | 1u << tension,
-                            common | 1u << tension | 1u << area,
-                            common | 1u << volume,
-                            common | 1u << volume,
+    1u << of_count | 1u << of_mass | 1u << of_kinetic_energy | 1u << of_center | 1u << of_lower | 1u << of_upper;
+constexpr unsigned has[] = {common | 1u << of_length | 1u << of_tension,
+                            common | 1u << of_tension | 1u << of_area,
+                            common | 1u << of_volume,
+                            common | 1u << of_volume,
                             common,
                             common};
 
@@ -73,7 +84,7 @@ void each_name(const Matter& m, const See& see) {
 }
 
 double component(const Extent& e, const Probe::Source& s) {
-  const Vec3d v = s.field == center ? e.middle() : s.field == lower ? e.low : e.high;
+  const Vec3d v = s.field == of_center ? e.middle() : s.field == of_lower ? e.low : e.high;
   return v[s.component];
 }
 double rope_kinetic_energy(const particles::RopeSet& set, int rope) {
@@ -84,15 +95,15 @@ double rope_kinetic_energy(const particles::RopeSet& set, int rope) {
 }
 double read_rope(const particles::RopeSet& set, int rope, const Probe::Source& s) {
   switch (s.field) {
-    case count_field:
+    case of_count:
       return double(set.positions(rope).size());
-    case mass:
+    case of_mass:
       return set.mass(rope);
-    case kinetic_energy:
+    case of_kinetic_energy:
       return rope_kinetic_energy(set, rope);
-    case length_field:
+    case of_length:
       return set.length(rope);
-    case tension: {
+    case of_tension: {
       double most = 0;
       for (const double t : set.tensions(rope)) most = math::max(most, t);
       return most;
@@ -103,15 +114,15 @@ double read_rope(const particles::RopeSet& set, int rope, const Probe::Source& s
 }
 double read_cloth(const particles::Cloth& cloth, const Probe::Source& s) {
   switch (s.field) {
-    case count_field:
+    case of_count:
       return cloth.vertex_count();
-    case mass:
+    case of_mass:
       return cloth.mass();
-    case kinetic_energy:
+    case of_kinetic_energy:
       return cloth.kinetic_energy();
-    case tension:
+    case of_tension:
       return cloth.greatest_tension();
-    case area:
+    case of_area:
       return cloth.area();
     default:
       return component(extent_of(cloth.positions()), s);
@@ -119,15 +130,15 @@ double read_cloth(const particles::Cloth& cloth, const Probe::Source& s) {
 }
 double read_soft(const particles::SoftBody& body, const Probe::Source& s) {
   switch (s.field) {
-    case count_field:
+    case of_count:
       return body.vertex_count();
-    case mass:
+    case of_mass:
       return body.mass();
-    case kinetic_energy:
+    case of_kinetic_energy:
       return body.kinetic_energy();
-    case volume:
+    case of_volume:
       return body.volume();
-    case center:
+    case of_center:
       return body.center()[s.component];
     default:
       return component(extent_of(body.positions()), s);
@@ -138,23 +149,23 @@ double read_many(const MatterOf<D>& m, const Probe::Source& s) {
   const auto place = std::size_t(s.item);
   if (s.list == liquid_list) {
     const particles::Fluid<D>& fluid = m.liquids[place].thing;
-    if (s.field == count_field) return fluid.size();
-    if (s.field == mass) return double(fluid.particle_mass()) * fluid.size();
-    if (s.field == kinetic_energy) return fluid.kinetic_energy();
-    if (s.field == volume) return fluid.volume();
+    if (s.field == of_count) return fluid.size();
+    if (s.field == of_mass) return double(fluid.particle_mass()) * fluid.size();
+    if (s.field == of_kinetic_energy) return fluid.kinetic_energy();
+    if (s.field == of_volume) return fluid.volume();
     return component(extent_of_many(fluid), s);
   }
   if (s.list == grain_list) {
     const particles::Granular<D>& grains = m.grains[place].thing;
-    if (s.field == count_field) return grains.size();
-    if (s.field == mass) return grains.mass();
-    if (s.field == kinetic_energy) return grains.kinetic_energy();
+    if (s.field == of_count) return grains.size();
+    if (s.field == of_mass) return grains.mass();
+    if (s.field == of_kinetic_energy) return grains.kinetic_energy();
     return component(extent_of_many(grains), s);
   }
   const particles::ParticleSystem& system = m.particles[place].thing.system;
-  if (s.field == count_field) return system.size();
-  if (s.field == mass) return system.totals().mass;
-  if (s.field == kinetic_energy) return system.totals().kinetic_energy;
+  if (s.field == of_count) return system.size();
+  if (s.field == of_mass) return system.totals().mass;
+  if (s.field == of_kinetic_energy) return system.totals().kinetic_energy;
   return component(extent_of_many(system), s);
 }
 
@@ -265,8 +276,8 @@ bool Matter::find(std::string_view text, int dimension, Probe::Source& source, s
       source.field = f;
       source.component = fields[f].vector ? end[1] - 'x' : 0;
       unit = fields[f].unit;
-      if (list == cloth_list && f == tension) unit = "N/m";
-      if (dimension == 2 && f == volume) unit = "m^2";
+      if (list == cloth_list && f == of_tension) unit = "N/m";
+      if (dimension == 2 && f == of_volume) unit = "m^2";
     }
   });
   return found;

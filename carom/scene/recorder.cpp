@@ -6,14 +6,30 @@
 #include "carom/scene/recording.h"
 
 namespace carom::scene {
-using namespace detail;
+namespace {
+using detail::ByteWriter;
+using detail::check_picture;
+using detail::chunk_hash;
+using detail::chunk_header_size;
+using detail::FrameEntry;
+using detail::max_payload;
+using detail::preamble_magic;
+using detail::recording_version;
+using detail::Tag;
+using detail::tag_bodies;
+using detail::tag_delta;
+using detail::tag_header;
+using detail::tag_index;
+using detail::tag_key;
+using detail::trailer_magic;
+}  // namespace
 
 struct Recorder::Implementation {
   Sink sink;
   std::FILE* file = nullptr;
   std::string path;
   RecorderOptions options;
-  FrameCodec codec;
+  detail::FrameCodec codec;
   std::uint64_t written = 0;
   std::vector<FrameEntry> index;
   std::vector<std::uint64_t> arrivals;  ///< where their chunks are
@@ -47,7 +63,7 @@ struct Recorder::Implementation {
     if (header.dimension != 2 && header.dimension != 3)
       return core::Error{"dimension: found " + std::to_string(header.dimension) + ", expected 2 or 3"};
     if (!math::is_finite(header.dt) || !(header.dt > 0)) return core::Error{"dt: expected a finite time above zero"};
-    codec = FrameCodec(header.dimension);
+    codec = detail::FrameCodec(header.dimension);
     ByteWriter preamble;
     preamble.bytes.assign(preamble_magic, preamble_magic + 8);
     preamble.fixed(recording_version);

@@ -7,9 +7,22 @@
 #include "carom/scene/detail/recording_chunks.h"
 
 namespace carom::scene {
-using namespace detail;
-
 namespace {
+using detail::ByteReader;
+using detail::chunk_hash;
+using detail::chunk_header_size;
+using detail::FrameEntry;
+using detail::max_payload;
+using detail::preamble_magic;
+using detail::preamble_size;
+using detail::recording_version;
+using detail::tag_bodies;
+using detail::tag_delta;
+using detail::tag_header;
+using detail::tag_index;
+using detail::tag_key;
+using detail::trailer_magic;
+using detail::trailer_size;
 
 /// Bytes in memory or in an open file.
 class Source {
@@ -46,7 +59,7 @@ struct Recording::Implementation {
   std::vector<FrameEntry> frames;
   bool complete = false;
   std::string damage;
-  FrameCodec codec;
+  detail::FrameCodec codec;
   std::size_t decoded = 0;  ///< frames [.., decoded) are in the codec; 0: none
   RecordedFrame current;
 
@@ -200,7 +213,7 @@ struct Recording::Implementation {
     std::string why;
     if (!read_chunk(preamble_size, tag, bytes, why)) return error(why);
     if (tag != tag_header || !read_header(bytes)) return error("byte 16: found no whole header");
-    codec = FrameCodec(header.dimension);
+    codec = detail::FrameCodec(header.dimension);
     const std::uint64_t first = preamble_size + chunk_header_size + bytes.size();
     complete = read_index(first);
     if (!complete) scan(first);
