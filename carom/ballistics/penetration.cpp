@@ -13,10 +13,10 @@ double poncelet_depth(const Penetrator& bullet, const Medium& medium) {
 
 double poncelet_residual(const Penetrator& bullet, const Medium& medium, double thickness) {
   const double v2 = bullet.speed * bullet.speed, k = 2 * bullet.area * thickness / bullet.mass;
-  if (!(medium.inertia > 0)) return math::sqrt(math::max(v2 - k * medium.strength, 0.0));
-  // v² + a/b falls as e^{−2Abx/m}.
-  const double strength = medium.strength / medium.inertia;
-  return math::sqrt(math::max((v2 + strength) * math::exp(-k * medium.inertia) - strength, 0.0));
+  const double worn = k * medium.inertia;
+  if (!(worn > 1e-12)) return math::sqrt(math::max(v2 - k * medium.strength, 0.0));
+  // v² + a/b falls as e^{−2Abx/m}; apart, so that a great a/b gives no speed by rounding.
+  return math::sqrt(math::max(v2 * math::exp(-worn) + medium.strength / medium.inertia * math::expm1(-worn), 0.0));
 }
 
 double recht_ipson_residual(double speed, double limit_speed, double mass, double plug_mass) {

@@ -153,6 +153,15 @@ TEST(Penetration, Formulas) {
   EXPECT_NEAR(water_ricochet_angle(11.34) * 180 / math::pi, 5.4, .06);
 }
 
+TEST(Penetration, StrongMediaWithHardlyAnyInertiaGiveNoSpeed) {
+  for (const double inertia : {1e-300, 1e-14, 1e-10, 1e-6, 1e-3})
+    for (const double thickness : {1e-15, 1e-12, 1e-9, 1e-3}) {
+      const double out = poncelet_residual({.speed = 800}, {.strength = 1e7, .inertia = inertia}, thickness);
+      EXPECT_LE(out, 800) << inertia << ' ' << thickness;
+      EXPECT_GE(out, 0);
+    }
+}
+
 TEST(Penetration, LayersNeverGiveEnergy) {
   math::Random random(4);
   for (int i = 0; i < 500; ++i) {
