@@ -47,7 +47,10 @@ function makeHost(module, files) {
     fd_write: () => 8, fd_close: () => 8, fd_seek: () => 8,
   };
   host = new WebAssembly.Instance(module, {wasi_snapshot_preview1: system}).exports;
-  const put = (bytes) => new Uint8Array(host.memory.buffer, host.carom_room(bytes.length), bytes.length).set(bytes);
+  const put = (bytes) => {
+    const at = host.carom_room(bytes.length);  // first: the memory may grow
+    new Uint8Array(host.memory.buffer, at, bytes.length).set(bytes);
+  };
   const send = (message) => { put(encode.encode(JSON.stringify(message))); host.carom_receive(); drain(); };
   const drain = () => {
     for (let size = host.carom_take(); size >= 0; size = host.carom_take()) {
