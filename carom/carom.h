@@ -7,6 +7,7 @@
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/rigid/advice.h"
+#include "carom/rigid/articulation.h"
 #include "carom/rigid/character.h"
 #include "carom/rigid/dynamic_character.h"
 #include "carom/rigid/path.h"

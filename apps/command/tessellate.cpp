@@ -112,6 +112,17 @@ void tessellate(const host::ShapeView& shape, const host::MeshLibrary& meshes, c
       box(b, Vec3d(shape.size) + Vec3d{r, r, r});
       break;
     case ShapeKind::cylinder:
+      if (const double e = double(shape.size.x); e > 0) {
+        std::vector<Builder::Ring> rings{{0, -h - e, 0, -1}};
+        const int steps = detail / 4;
+        for (int i = 0; i <= 2 * steps + 1; ++i) {
+          const double a = -pi / 2 + pi / 2 * (i <= steps ? i : i - 1) / steps, c = std::cos(a), up = std::sin(a);
+          rings.push_back({r + e * c, (i <= steps ? -h : h) + e * up, c, up});
+        }
+        rings.push_back({0, h + e, 0, 1});
+        b.revolve(rings, detail);
+        break;
+      }
       b.revolve({{r, -h, 1, 0}, {r, h, 1, 0}}, detail);
       b.revolve({{0, -h, 0, -1}, {r, -h, 0, -1}}, detail);
       b.revolve({{r, h, 0, 1}, {0, h, 0, 1}}, detail);

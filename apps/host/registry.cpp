@@ -28,8 +28,9 @@ std::span<const DemoFactory> demos() {
   static const std::vector<DemoFactory> all = [] {
     std::vector<DemoFactory> list(std::begin(engine), std::end(engine));
     for (const std::span<const DemoFactory> group :
-         {demo::particle_demos(), demo::fluid_demos(), demo::rope_demos(), demo::environment_demos(),
-          demo::ballistics_demos(), demo::blast_demos(), demo::sports_demos(), demo::billiards_demos()})
+         {demo::figure_demos(), demo::terrain_demos(), demo::particle_demos(), demo::fluid_demos(), demo::rope_demos(),
+          demo::environment_demos(), demo::ballistics_demos(), demo::blast_demos(), demo::sports_demos(),
+          demo::billiards_demos()})
       list.insert(list.end(), group.begin(), group.end());
     return list;
   }();

@@ -213,7 +213,7 @@ void view_shape(const Shape3& shape, const math::Transform3f& local, bool sensor
     case ShapeType3::cylinder:
       view.kind = ShapeKind::cylinder;
       view.radius = shape.cylinder.radius;
-      view.size.y = shape.cylinder.half_height;
+      view.size = {shape.cylinder.rounding, shape.cylinder.half_height, 0};
       break;
     case ShapeType3::cone:
       view.kind = ShapeKind::cone;

@@ -51,10 +51,21 @@ MassProperties3 mass_of_box(const Box& box, double density) {
   return detail::mass_of_diagonal(density * volume, {}, {yy + zz, zz + xx, xx + yy});
 }
 
+// A solid of revolution of radius R(y): V = π∫R², I_axial = (π/2)∫R⁴, ∫y²dV = π∫y²R². Beyond the core R = a + s with
+// s² = r² − u² at the height h + u; the integrals of uᵏsᵐ from 0 to r are closed.
 MassProperties3 mass_of_cylinder(const Cylinder& cylinder, double density) {
-  const double h = 2.0 * cylinder.half_height, r = cylinder.radius, mass = density * pi * r * r * h;
-  const double transverse = mass * (3 * r * r + h * h) / 12;
-  return detail::mass_of_diagonal(mass, {}, {transverse, mass * r * r / 2, transverse});
+  const double h = cylinder.half_height, a = cylinder.radius, r = cylinder.rounding, outer = a + r,
+               outer2 = outer * outer;
+  const double r2 = r * r, r3 = r2 * r, r4 = r2 * r2, r5 = r4 * r, a2 = a * a;
+  const double squares = a2 * r + a * pi * r2 / 2 + 2 * r3 / 3;
+  const double fourths = a2 * a2 * r + a2 * a * pi * r2 + 4 * a2 * r3 + 3 * a * pi * r4 / 4 + 8 * r5 / 15;
+  const double first = a2 * r2 / 2 + 2 * a * r3 / 3 + r4 / 4;         // ∫u (a + s)²
+  const double second = a2 * r3 / 3 + a * pi * r4 / 8 + 2 * r5 / 15;  // ∫u² (a + s)²
+  const double mass = density * 2 * pi * (h * outer2 + squares);
+  const double axial = density * pi * (h * outer2 * outer2 + fourths);
+  const double along = density * 2 * pi * (outer2 * h * h * h / 3 + h * h * squares + 2 * h * first + second);
+  const double transverse = axial / 2 + along;
+  return detail::mass_of_diagonal(mass, {}, {transverse, axial, transverse});
 }
 
 MassProperties3 mass_of_cone(const Cone& cone, double density) {

@@ -137,6 +137,18 @@ Triangles box_mesh(const Box& box, int detail) {
   return hull.ok() ? rounded_hull(**hull, detail) : make_box_mesh(h);
 }
 
+Triangles cylinder_mesh(const Cylinder& c, int detail) {
+  if (!(c.rounding > 0)) return make_prism_mesh(c.radius, c.half_height, detail);
+  std::vector<Vec2f> profile;
+  const int steps = max(2, detail / 4);
+  for (const float side : {-1.0f, 1.0f})
+    for (int i = 0; i <= steps; ++i) {
+      const auto turn = math::sincos(pi / 2 * (side < 0 ? i - steps : i) / steps);
+      profile.push_back({c.radius + c.rounding * float(turn.cos), side * c.half_height + c.rounding * float(turn.sin)});
+    }
+  return make_lathe_mesh(profile, detail);
+}
+
 Triangles height_field_mesh(const HeightField& field) {
   Triangles out;
   const std::uint32_t columns = std::uint32_t(field.columns), rows = std::uint32_t(field.rows);
@@ -269,7 +281,7 @@ Triangles to_triangles(const Shape3& shape, int detail) {
     case ShapeType3::box:
       return mesh_building::box_mesh(shape.box, detail);
     case ShapeType3::cylinder:
-      return make_prism_mesh(shape.cylinder.radius, shape.cylinder.half_height, detail);
+      return mesh_building::cylinder_mesh(shape.cylinder, detail);
     case ShapeType3::cone: {
       const Vec2f profile[] = {{shape.cone.radius, -shape.cone.half_height}, {0, shape.cone.half_height}};
       return make_lathe_mesh(profile, detail);

@@ -373,6 +373,7 @@ CastHit3 ray_cast(const Shape3& s, Vec3f origin, Vec3f translation) {
       if (s.box.radius > 0) return detail::cast_point(s, origin, translation);
       return ray3::on_box(s.box, o, d);
     case ShapeType3::cylinder:
+      if (s.cylinder.rounding > 0) return detail::cast_point(s, origin, translation);
       return ray3::on_cylinder(s.cylinder, o, d);
     case ShapeType3::cone:
       return ray3::on_cone(s.cone, o, d);

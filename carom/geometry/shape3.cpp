@@ -126,7 +126,11 @@ core::Status validate(const Shape3& shape) {
     case ShapeType3::box:
       return check_box(shape.box);
     case ShapeType3::cylinder:
-      return check_round("cylinder.half_height", shape.cylinder.half_height, "cylinder.radius", shape.cylinder.radius);
+      if (auto s =
+              check_round("cylinder.half_height", shape.cylinder.half_height, "cylinder.radius", shape.cylinder.radius);
+          !s)
+        return s;
+      return detail::check_range("cylinder.rounding", shape.cylinder.rounding, 0, max_shape_size);
     case ShapeType3::cone:
       return check_round("cone.half_height", shape.cone.half_height, "cone.radius", shape.cone.radius);
     case ShapeType3::plane:
@@ -163,7 +167,7 @@ Bounds3f bounds(const Shape3& shape, const Transform3f& t) {
     case ShapeType3::cylinder: {
       const Vec3f axis = rotate(t.q, Vec3f{0, 1, 0});
       const Vec3f e = abs(axis) * shape.cylinder.half_height + disc_extents(axis) * shape.cylinder.radius;
-      return {t.p - e, t.p + e};
+      return grow(Bounds3f{t.p - e, t.p + e}, shape.cylinder.rounding);
     }
     case ShapeType3::cone: {
       const Vec3f axis = rotate(t.q, Vec3f{0, 1, 0});
@@ -217,7 +221,8 @@ Vec3f support(const Shape3& shape, Vec3f direction) {
     }
     case ShapeType3::cylinder: {
       const float y = direction.y < 0 ? -shape.cylinder.half_height : shape.cylinder.half_height;
-      return support_of_disc(shape.cylinder.radius, y, direction);
+      const Vec3f rim = support_of_disc(shape.cylinder.radius, y, direction);
+      return shape.cylinder.rounding > 0 ? rim + normalize(direction) * shape.cylinder.rounding : rim;
     }
     case ShapeType3::cone: {
       const Vec3f apex{0, shape.cone.half_height, 0};

@@ -31,10 +31,12 @@ struct Box {
   Vec3f half_extents{0.5f, 0.5f, 0.5f};  ///< m, > 0
   float radius = 0;                      ///< m, ≥ 0
 };
-/// Axis along local y, from −half_height to +half_height.
+/// Axis along local y, from −half_height to +half_height, swept by a sphere of `rounding` (0: sharp): outside it is
+/// larger by that.
 struct Cylinder {
   float half_height = 0.5f;  ///< m, > 0
   float radius = 0.5f;       ///< m, > 0
+  float rounding = 0;        ///< m, ≥ 0
 };
 /// Axis along local y: base of `radius` at −half_height, apex at +half_height. Its centre of mass is at −half_height/2.
 struct Cone {

@@ -109,6 +109,7 @@ void ParticleSystem::prepare_surfaces(double dt) {
         break;
       case cylinder:
         s.form = detail::Form::cylinder;
+        s.radius = c.shape.cylinder.rounding;
         s.half[0] = c.shape.cylinder.radius;
         s.half[1] = c.shape.cylinder.half_height;
         break;

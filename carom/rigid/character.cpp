@@ -36,16 +36,10 @@ float spin_of(const Vec3f& w) { return math::length(w); }
 template <class D>
 Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>& d, Position feet) {
   detail::Complaint complaint("Character::create");
-  detail::check_range(complaint, "radius", double(d.radius), 1e-3, 1e3);
-  detail::check_range(complaint, "half_length", double(d.half_length), 0, 1e3);
-  detail::check_range(complaint, "max_slope", double(d.max_slope), 0, double(math::pi_f) / 2);
-  detail::check_range(complaint, "step_height", double(d.step_height), 0, 1e3);
+  const float size = detail::check_character(complaint, d, feet);
   detail::check_range(complaint, "skin", double(d.skin), 1e-4, double(d.radius));
   detail::check_range(complaint, "mass", double(d.mass), 0, detail::max_body_mass);
   detail::check_range(complaint, "push_force", double(d.push_force), 0, detail::max_force);
-  const float size = math::length(d.up);
-  if (!(math::abs(size - 1) < 1e-3f)) complaint.say("up is not a unit vector, expected a length of 1");
-  detail::check_size(complaint, "feet", feet, detail::max_coordinate);
   if (!complaint.none_yet()) return complaint.error();
 
   Character c;
@@ -60,17 +54,10 @@ Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>
   body.position = c.position_;
   body.rotation = c.rotation_;
   body.user_data = d.user_data;
-  const Result<BodyId> id = world.create_body(body);
-  if (!id.ok()) return id.error();
-  c.body_ = id.value();
   ShapeDef<D> shape;
   shape.filter = d.filter;
-  const Result<ShapeId> made = world.add_shape(c.body_, c.capsule_, shape);
-  if (!made.ok()) {
-    (void)world.destroy_body(c.body_);
-    return made.error();
-  }
-  c.shape_ = made.value();
+  if (const Status s = detail::make_character(world, body, c.capsule_, shape, c.body_, c.shape_); !s.ok())
+    return s.error();
   c.planes_.reserve(64);
   c.nearby_.reserve(64);
   return c;

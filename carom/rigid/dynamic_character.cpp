@@ -18,16 +18,10 @@ template <class D>
 Result<DynamicCharacter<D>> DynamicCharacter<D>::create(World<D>& world, const DynamicCharacterDef<D>& d,
                                                         Position feet) {
   detail::Complaint complaint("DynamicCharacter::create");
-  detail::check_range(complaint, "radius", double(d.radius), 1e-3, 1e3);
-  detail::check_range(complaint, "half_length", double(d.half_length), 0, 1e3);
-  detail::check_range(complaint, "max_slope", double(d.max_slope), 0, double(math::pi_f) / 2);
-  detail::check_range(complaint, "step_height", double(d.step_height), 0, 1e3);
+  const float size = detail::check_character(complaint, d, feet);
   detail::check_range(complaint, "mass", double(d.mass), 1e-6, detail::max_body_mass);
   detail::check_range(complaint, "leg_force", double(d.leg_force), 0, detail::max_force);
   detail::check_range(complaint, "air_force", double(d.air_force), 0, detail::max_force);
-  const float size = math::length(d.up);
-  if (!(math::abs(size - 1) < 1e-3f)) complaint.say("up is not a unit vector, expected a length of 1");
-  detail::check_size(complaint, "feet", feet, detail::max_coordinate);
   if (!complaint.none_yet()) return complaint.error();
 
   DynamicCharacter c;
@@ -42,20 +36,13 @@ Result<DynamicCharacter<D>> DynamicCharacter<D>::create(World<D>& world, const D
   body.locks.rotation_x = body.locks.rotation_y = body.locks.rotation_z = true;
   body.allow_sleep = false;
   body.user_data = d.user_data;
-  const Result<BodyId> id = world.create_body(body);
-  if (!id.ok()) return id.error();
-  c.body_ = id.value();
   ShapeDef<D> shape;
   shape.filter = d.filter;
   shape.material.friction = 0;
   const typename D::Shape capsule = detail::make_capsule(D{}, d.half_length, d.radius);
   shape.density = float(double(d.mass) / geometry::mass_properties(capsule, 1).mass);
-  const Result<ShapeId> made = world.add_shape(c.body_, capsule, shape);
-  if (!made.ok()) {
-    (void)world.destroy_body(c.body_);
-    return made.error();
-  }
-  c.shape_ = made.value();
+  if (const Status s = detail::make_character(world, body, capsule, shape, c.body_, c.shape_); !s.ok())
+    return s.error();
   c.contacts_.reserve(16);
   return c;
 }

@@ -91,6 +91,7 @@ class ShapeWriter {
       case geometry::ShapeType3::cylinder:
         body = "\"kind\":\"cylinder\",\"half_height\":" + shortest(s.cylinder.half_height) +
                ",\"radius\":" + shortest(s.cylinder.radius);
+        if (s.cylinder.rounding > 0) body += ",\"rounding\":" + shortest(s.cylinder.rounding);
         break;
       case geometry::ShapeType3::cone:
         body = "\"kind\":\"cone\",\"half_height\":" + shortest(s.cone.half_height) +

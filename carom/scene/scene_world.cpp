@@ -220,6 +220,19 @@ SceneWorld::SceneWorld(SceneWorld&&) noexcept = default;
 SceneWorld& SceneWorld::operator=(SceneWorld&&) noexcept = default;
 
 Status SceneWorld::step() {
+  for (SceneCharacter& c : characters) {
+    const math::Vec3f v(c.velocity);
+    const auto walk = [&](auto& walker) -> Status {
+      using T = std::decay_t<decltype(walker)>;
+      if constexpr (std::is_same_v<T, rigid::Character2> || std::is_same_v<T, rigid::DynamicCharacter2>)
+        return walker.move(*world2, {v.x, v.y}, float(dt));
+      else if constexpr (!std::is_same_v<T, std::monostate>)
+        return walker.move(*world3, v, float(dt));
+      else
+        return {};
+    };
+    if (const Status s = std::visit(walk, c.walker); !s.ok()) return s;
+  }
   if (matter && world2) return matter->step(*world2, dt, environment_of(*world2, environment).get());
   if (matter && world3) return matter->step(*world3, dt, environment_of(*world3, environment).get());
   if (world2) return world2->step(float(dt));

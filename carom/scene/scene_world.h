@@ -5,9 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "carom/rigid/world.h"
+#include "carom/rigid/dynamic_character.h"
 
 namespace carom::scene {
 using core::Result;
@@ -42,6 +43,15 @@ struct SceneJoint {
 struct SceneEffector {
   std::string name;
   rigid::EffectorId id{};
+};
+
+/// Its body is among the scene's bodies too. `step` lets it walk.
+struct SceneCharacter {
+  std::string name;
+  rigid::BodyId body{};
+  math::Vec3d velocity{};  ///< m/s, wanted
+  std::variant<std::monostate, rigid::Character2, rigid::Character3, rigid::DynamicCharacter2, rigid::DynamicCharacter3>
+      walker;
 };
 
 /// A quantity of the world, compiled once and read every step. See docs/scene-files.md for what it may say.
@@ -80,6 +90,7 @@ class CAROM_API SceneWorld {
   std::vector<SceneBody> bodies;   ///< in creation order
   std::vector<SceneJoint> joints;
   std::vector<SceneEffector> effectors;
+  std::vector<SceneCharacter> characters;
   rigid::EffectorId environment{};  ///< of the key "environment"; null where the scene has none
 
   Status step();  ///< by dt

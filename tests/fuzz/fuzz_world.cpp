@@ -157,7 +157,7 @@ struct Player {
         case 1:
           return geometry::Capsule3{in.size(), in.size()};
         case 2:
-          return geometry::Cylinder{in.size(), in.size()};
+          return geometry::Cylinder{in.size(), in.size(), in.flag() ? in.size() : 0.0f};
         case 3:
           return geometry::Cone{in.size(), in.size()};
         case 4: {
@@ -249,12 +249,54 @@ struct Player {
     if constexpr (requires { d.motor; }) d.motor = {in.flag(), in.number(), in.number(100)};
     if constexpr (requires { d.target; }) d.target = position();
     if constexpr (requires { d.length; }) d.length = in.number();
+    if constexpr (requires { d.ratio; }) d.ratio = in.number();
+    if constexpr (requires { d.radius; }) d.radius = in.number();
+    if constexpr (requires { d.pitch; }) d.pitch = in.number();
+    if constexpr (requires { d.ground_a; }) d.ground_a = position(), d.ground_b = position();
+    if constexpr (requires { d.points; }) {
+      const Vector points[] = {vector(), vector(), vector(4), vector(4)};
+      d.points = std::span(points).first(in.byte() % 5u);
+      d.closed = in.flag(), d.straight = in.flag(), d.follow = in.flag();
+      const auto made = world.create_joint(d);
+      if (made.ok()) joints.push_back(*made);
+      return made.ok();
+    }
+    if constexpr (requires { d.angular[0]; }) {
+      for (JointAxis& axis : d.linear) axis = any_axis();
+      for (JointAxis& axis : d.angular) axis = any_axis();
+    }
     const auto made = world.create_joint(d);
     if (made.ok()) joints.push_back(*made);
     return made.ok();
   }
+  JointAxis any_axis() {
+    if (in.flag()) return {};
+    JointAxis a;
+    a.free = true;
+    a.limit = {in.flag(), in.number(), in.number()};
+    a.spring = {in.number(4), in.number()};
+    a.target = in.number(), a.friction = in.number();
+    return a;
+  }
   bool add_joint() {
-    switch (in.byte() % 7) {
+    const std::uint8_t kind = in.byte();
+    if (kind >= 200) {
+      switch (kind % 6) {
+        case 0:
+          return make_joint(GenericJointDef<D>{});
+        case 1:
+          return make_joint(GearJointDef<D>{});
+        case 2:
+          return make_joint(RackJointDef<D>{});
+        case 3:
+          return make_joint(PulleyJointDef<D>{});
+        case 4:
+          return make_joint(PathJointDef<D>{});
+        default:
+          if constexpr (D::dimension == 3) return make_joint(ScrewJointDef<D>{});
+      }
+    }
+    switch (kind % 7) {
       case 0:
         return make_joint(DistanceJointDef<D>{});
       case 1:
@@ -448,9 +490,45 @@ struct Player {
     return false;
   }
 
+  /// What stands on the world's public face alone: figures with muscles, and characters.
+  bool mechanism() {
+    auto figure = Articulation<D>::create(world, body());
+    if (!figure.ok()) return false;
+    (void)figure->set_muscles({double(in.number()), double(in.number()), double(in.number(100))});
+    for (int j = 0; j < int(figure->joints().size()) && j < 4; ++j) {
+      (void)figure->set_target(j, double(in.number()), double(in.number()), double(in.number()));
+      (void)figure->set_target(j, Quatf{in.number(), in.number(), in.number(), in.number()});
+      if (in.flag()) (void)figure->set_muscle(j, {double(in.number()), double(in.number()), 0});
+    }
+    std::vector<double> accelerations(std::size_t(figure->degrees()), double(in.number())),
+        torques(accelerations.size());
+    (void)figure->inverse_dynamics(accelerations, torques);
+    return figure->drive(world, in.byte() < 245 ? 1.0f / 60 : in.number()).ok();
+  }
+  template <class Walker, class Definition>
+  bool walk() {
+    Definition d;
+    d.radius = in.size(), d.half_length = in.size(), d.mass = in.size() * 100;
+    d.max_slope = in.number(), d.step_height = in.size();
+    if (in.byte() > 200) d.up = vector();
+    auto made = Walker::create(world, d, position());
+    if (!made.ok()) return false;
+    for (int i = in.byte() % 4; i >= 0; --i) {
+      (void)made->move(world, vector(4), in.byte() < 245 ? 1.0f / 60 : in.number());
+      if (steps < 40) ++steps, (void)world.step(1.0f / 60);
+    }
+    if (in.flag()) (void)made->teleport(world, position());
+    if (in.flag()) require(made->destroy(world).ok(), "a character goes as it came");
+    return true;
+  }
+
   /// False where the call was refused.
   bool act() {
-    switch (in.byte() % 34) {
+    const std::uint8_t call = in.byte();
+    if (call >= 250) return walk<Character<D>, CharacterDef<D>>();
+    if (call >= 246) return walk<DynamicCharacter<D>, DynamicCharacterDef<D>>();
+    if (call >= 238) return mechanism();
+    switch (call % 34) {
       case 0:
       case 1:
         return bodies.size() < 40 && add_body();

@@ -25,6 +25,12 @@ TEST(RayCast, ClosedForms) {
   const CastHit3 c = ray_cast(Shape3(Cylinder{1, 0.5f}), {2, 0.5f, 0.3f}, {-4, 0, 0});
   ASSERT_TRUE(c.hit);
   EXPECT_NEAR(c.point.x, 0.4, 1e-6);
+  // A rounded cylinder: its rim is a torus; 45° up the rim of radius 0.2 the normal is level and upward alike.
+  const CastHit3 rim = ray_cast(Shape3(Cylinder{1, 0.5f, 0.2f}), {1.5f, 2, 0}, {-2, -2, 0});
+  ASSERT_TRUE(rim.hit);
+  EXPECT_NEAR(rim.point.x, 0.5 + 0.2 / math::sqrt(2.0), 1e-4);
+  EXPECT_NEAR(rim.point.y, 1 + 0.2 / math::sqrt(2.0), 1e-4);
+  EXPECT_NEAR(rim.normal.y, 1 / math::sqrt(2.0), 1e-3);
   // A cone of half angle atan(1/2): at height y its radius is (h − y)/2.
   const CastHit3 k = ray_cast(Shape3(Cone{1, 1}), {2, 0, 0}, {-4, 0, 0});
   ASSERT_TRUE(k.hit);
@@ -214,7 +220,7 @@ TEST(ShapeCast, OnATriangleFromTheFrontEndsTouchingIt) {
     const Shape3 moving = k % 4 == 0   ? Shape3(Sphere{draw.in(0.1, 0.6)})
                           : k % 4 == 1 ? Shape3(Capsule3{draw.in(0.1, 0.8), draw.in(0.1, 0.5)})
                           : k % 4 == 2 ? Shape3(Box{{draw.in(0.1, 0.6), draw.in(0.1, 0.6), draw.in(0.1, 0.6)}})
-                                       : Shape3(Cylinder{draw.in(0.1, 0.6), draw.in(0.1, 0.6)});
+                                       : Shape3(Cylinder{draw.in(0.1, 0.6), draw.in(0.1, 0.6), k % 8 == 3 ? 0.1f : 0});
     Transform3f x{draw.vector(1.5, 6), draw.rotation()};
     const Vec3f way = (draw.vector(0, 1.3) - x.p) * draw.in(0.4, 2);
     if (dot(normal, x.p - a) <= 0 || dot(normal, way) >= 0) {

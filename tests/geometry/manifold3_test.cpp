@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "carom/geometry/detail/gjk.h"
+#include "carom/math/rotation.h"
 #include "manifold_test_support.h"
 
 namespace {
@@ -196,6 +197,31 @@ TEST(Manifold3, CylinderStandsOnItsCapAndLiesOnItsSide) {
       EXPECT_NEAR(distance(lies.points[0].point, lies.points[1].point), 1, 1e-3);
     }
   }
+}
+
+// Its outside is the core's and the rounding's: it stands on a disc of the core's radius and lies on a line of the
+// core's length, and tilted by 45° it touches with one point of its rim.
+TEST(Manifold3, RoundedCylinderStandsLiesAndLeans) {
+  const Cylinder c{0.4f, 0.3f, 0.1f};
+  const Box ground{{5, 1, 5}};
+  const Manifold3 stands = contact(ground, c, {{0.2f, 1.499f, 0.1f}, {}}, 0.02f);
+  ASSERT_EQ(stands.count, 4);
+  float widest = 0;
+  for (const ManifoldPoint3& p : stands.points) {
+    EXPECT_NEAR(p.separation, -0.001f, 1e-5f);
+    widest = max(widest, distance(p.point, stands.points[0].point));
+  }
+  EXPECT_NEAR(widest, 0.6f, 0.02f);
+  const Manifold3 lies = contact(ground, c, {{0, 1.399f, 0}, normalize(Quatf{1, 1, 0, 0})}, 0.02f);
+  ASSERT_EQ(lies.count, 2);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(lies.points[i].separation, -0.001f, 1e-5f);
+  EXPECT_NEAR(distance(lies.points[0].point, lies.points[1].point), 0.8f, 1e-3f);
+  const float height = 0.7f / math::sqrt(2.0f) + 0.1f;
+  const Manifold3 leans =
+      contact(ground, c, {{0, 1 + height - 0.001f, 0}, from_axis_angle(Vec3f{0, 0, 1}, pi_f / 4)}, 0.005f);
+  ASSERT_EQ(leans.count, 1);
+  EXPECT_NEAR(leans.points[0].separation, -0.001f, 1e-4f);
+  EXPECT_NEAR(leans.normal.y, 1, 1e-4f);
 }
 
 TEST(Manifold3, ConeRestsOnItsBaseAndOnItsSide) {

@@ -51,7 +51,7 @@ inline std::shared_ptr<const Hull> random_hull(Draw& draw, int points, float siz
   return make_hull(cloud, options).value();
 }
 
-/// Sphere, capsule, box, cylinder, cone, hull; sizes about `size`.
+/// Sphere, capsule, box, cylinder, cone, hull, rounded box and cylinder; sizes about `size`.
 inline Shape3 random_convex(Draw& draw, int kind, float size = 1) {
   const auto r = [&] { return size * draw.in(0.3, 1); };
   switch (kind) {
@@ -67,13 +67,16 @@ inline Shape3 random_convex(Draw& draw, int kind, float size = 1) {
       return Cone{r(), r()};
     case 5:
       return random_hull(draw, 6 + draw.below(14), size);
-    default:
+    case 6:
       return Box{{r(), r(), r()}, 0.2f * size};
+    default:
+      return Cylinder{r(), r(), 0.2f * size};
   }
 }
-inline constexpr int convex_kinds = 7;
+inline constexpr int convex_kinds = 8;
 inline const char* kind_name(int kind) {
-  constexpr const char* names[] = {"sphere", "capsule", "box", "cylinder", "cone", "hull", "rounded box"};
+  constexpr const char* names[] = {"sphere", "capsule", "box",         "cylinder",
+                                   "cone",   "hull",    "rounded box", "rounded cylinder"};
   return names[kind];
 }
 

@@ -54,9 +54,9 @@ Vec3f rock[] = {{1, 0, 0}, {-1, 0.2f, 0}, {0, 1, 0.3f}, {0, -1, 0}, {0, 0, 1}, {
 // Every shape against the divergence theorem over the triangles that are drawn for it. The mesh of a curved shape of n
 // segments lies inside it, with an error of order n⁻²; extrapolating from n and n/2 leaves n⁻⁴.
 TEST(MassTest, ShapesAgreeWithTheirTriangles) {
-  const Shape3 shapes[] = {Sphere{0.7f},           Capsule3{0.4f, 0.3f}, Box{{0.3f, 0.5f, 0.9f}, 0},
-                           Cylinder{0.6f, 0.4f},   Cone{0.6f, 0.5f},     Ellipsoid{{0.3f, 0.5f, 0.9f}},
-                           make_hull(rock).value()};
+  const Shape3 shapes[] = {
+      Sphere{0.7f},     Capsule3{0.4f, 0.3f},          Box{{0.3f, 0.5f, 0.9f}, 0},  Cylinder{0.6f, 0.4f},
+      Cone{0.6f, 0.5f}, Ellipsoid{{0.3f, 0.5f, 0.9f}}, Cylinder{0.6f, 0.4f, 0.25f}, make_hull(rock).value()};
   for (const Shape3& shape : shapes) {
     const MassProperties3 exact = mass_properties(shape, 700);
     const MassProperties3 fine = mesh_mass(to_triangles(shape, 256), 700).properties;
@@ -76,6 +76,19 @@ TEST(MassTest, RoundedBoxHasSteinersVolume) {
   const double steiner =
       a * b * c + 2 * (a * b + b * c + c * a) * r + pi * (a + b + c) * r * r + 4.0 / 3 * pi * r * r * r;
   EXPECT_NEAR(m.mass, steiner, 1e-7);
+}
+
+// The same for a cylinder of radius a and height 2h: S = 2πa² + 4πah, M = π²a + 2πh. Swept from a disc so thin that it
+// is none, it is a torus with its hole filled; swept from a point, a ball.
+TEST(MassTest, RoundedCylinderHasSteinersVolume) {
+  const double a = double(0.4f), h = double(0.6f), r = 0.25;
+  const MassProperties3 m = mass_properties(Shape3(Cylinder{0.6f, 0.4f, 0.25f}), 1);
+  const double steiner = 2 * pi * a * a * h + (2 * pi * a * a + 4 * pi * a * h) * r +
+                         (pi * pi * a + 2 * pi * h) * r * r + 4.0 / 3 * pi * r * r * r;
+  EXPECT_NEAR(m.mass, steiner, 1e-7);
+  const MassProperties3 ball = mass_properties(Shape3(Cylinder{1e-4f, 1e-4f, 1}), 1);
+  EXPECT_NEAR(ball.mass / (4.0 / 3 * pi), 1, 1e-3);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(ball.inertia(i, i) / (8.0 / 15 * pi), 1, 1e-3) << i;
 }
 
 // The general rounded hull (faces, edges and corners by exact integrals) against the rounded box's own formula.

@@ -35,6 +35,7 @@ std::vector<Shape3> convex_shapes() {
           Box{{0.3f, 0.5f, 0.9f}, 0},
           Box{{0.3f, 0.5f, 0.9f}, 0.1f},
           Cylinder{0.6f, 0.4f},
+          Cylinder{0.6f, 0.4f, 0.15f},
           Cone{0.6f, 0.5f},
           make_hull(points).value(),
           make_hull(points, {.radius = 0.2f}).value()};

@@ -21,6 +21,8 @@ std::span<const DemoFactory> ballistics_demos();
 std::span<const DemoFactory> blast_demos();
 std::span<const DemoFactory> sports_demos();
 std::span<const DemoFactory> billiards_demos();
+std::span<const DemoFactory> figure_demos();
+std::span<const DemoFactory> terrain_demos();
 
 std::unique_ptr<Demo> make_wrecking_ball();
 std::unique_ptr<Demo> make_pyramids();

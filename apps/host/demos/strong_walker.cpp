@@ -1,6 +1,5 @@
 // A character that is a body, pushed and pushing: stairs, a ferry, and a crate as heavy as it is.
-#include "apps/host/demos/demos.h"
-#include "carom/rigid/dynamic_character.h"
+#include "apps/host/demos/walking.h"
 
 namespace carom::host::demo {
 namespace {
@@ -35,11 +34,7 @@ class StrongWalker final : public Repeatable<StrongWalker, Demo3> {
     };
     d.plots = {{"Speed along the course", {"time", "s"}, {"speed", "m/s"}, {{"walker"}, {"crate"}}},
                {"Height of the feet", {"time", "s"}, {"height", "m"}, {{"walker"}}}};
-    d.inputs = {{"right", "Right", {"ArrowRight", "KeyD"}, false, 1},
-                {"left", "Left", {"ArrowLeft", "KeyA"}, false, 1},
-                {"away", "Away", {"ArrowUp", "KeyW"}, false, 1},
-                {"near", "Near", {"ArrowDown", "KeyS"}, false, 1},
-                {"jump", "Jump", {"Space"}, true, 1}};
+    d.inputs = walking_inputs();
     return d;
   }
 
@@ -75,22 +70,12 @@ class StrongWalker final : public Repeatable<StrongWalker, Demo3> {
     if (!two.ok()) return stage.fail(two.error());
     walker_.emplace(std::move(one).value());
     rider_.emplace(std::move(two).value());
-    stage.adopt_all();
-    stage.set_color(walker_->body(), orange);
-    stage.set_color(rider_->body(), violet);
-    for (const auto& actor : stage.actors())
-      if (actor.body == walker_->body()) stage.follow(int(actor.id));
+    show_walkers(stage, walker_->body(), rider_->body());
   }
 
   void before_step(Stage3& stage) override {
-    const double x = stage.input("right") - stage.input("left"), z = stage.input("near") - stage.input("away");
-    const bool jump = stage.presses("jump") > 0;
-    driven_ = driven_ || x != 0 || z != 0 || jump;
     const float dt = float(stage.declaration().dt);
-    const Vec3d wanted = driven_ ? Vec3d{x, 0, z} : Vec3d{1, 0, 0};
-    Vec3f velocity(wanted * (stage.value("speed") / max(1.0, length(wanted))));
-    if (jump) velocity.y = stage.valuef("jump");
-    stage.check(walker_->move(stage.world(), velocity, dt));
+    stage.check(walker_->move(stage.world(), wanted_walk(stage, driven_), dt));
     stage.check(rider_->move(stage.world(), {}, dt));
     const double phase = 0.6 * (stage.world().time() + stage.declaration().dt);
     stage.check(stage.world().set_target_pose(ferry_, {3 * sin(phase), 0.1, 5 - 1.5 * cos(phase)}, {}, dt));
@@ -107,8 +92,7 @@ class StrongWalker final : public Repeatable<StrongWalker, Demo3> {
     slowest_ = min(slowest_, speed);
     trail_.add(feet + Vec3d{0, 0.02, 0});
     trail_.draw(stage, pen(orange, 0xa0));
-    constexpr const char* states[] = {"on the ground", "on a slope too steep", "in the air"};
-    stage.say(states[int(walker_->ground().state)]);
+    say_ground(stage, walker_->ground().state);
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {

@@ -1,6 +1,5 @@
 // A character that walks: stairs, slopes, a ferry, crates in the way, and another one who comes along.
-#include "apps/host/demos/demos.h"
-#include "carom/rigid/character.h"
+#include "apps/host/demos/walking.h"
 
 namespace carom::host::demo {
 namespace {
@@ -35,11 +34,7 @@ class Walker final : public Repeatable<Walker, Demo3> {
     };
     d.plots = {{"Height of the feet", {"time", "s"}, {"height", "m"}, {{"walker"}}},
                {"Speed", {"time", "s"}, {"speed along the course", "m/s"}, {{"walker"}}}};
-    d.inputs = {{"right", "Right", {"ArrowRight", "KeyD"}, false, 1},
-                {"left", "Left", {"ArrowLeft", "KeyA"}, false, 1},
-                {"away", "Away", {"ArrowUp", "KeyW"}, false, 1},
-                {"near", "Near", {"ArrowDown", "KeyS"}, false, 1},
-                {"jump", "Jump", {"Space"}, true, 1}};
+    d.inputs = walking_inputs();
     return d;
   }
 
@@ -55,23 +50,12 @@ class Walker final : public Repeatable<Walker, Demo3> {
     if (!two.ok()) return stage.fail(two.error());
     walker_.emplace(std::move(one).value());
     other_.emplace(std::move(two).value());
-    stage.adopt_all();
-    stage.set_color(walker_->body(), orange);
-    stage.set_color(other_->body(), violet);
-    for (const auto& actor : stage.actors())
-      if (actor.body == walker_->body()) stage.follow(int(actor.id));
+    show_walkers(stage, walker_->body(), other_->body());
   }
 
   void before_step(Stage3& stage) override {
-    const double x = stage.input("right") - stage.input("left"), z = stage.input("near") - stage.input("away");
-    const bool jump = stage.presses("jump") > 0;
-    driven_ = driven_ || x != 0 || z != 0 || jump;
     const float dt = float(stage.declaration().dt);
-    const Vec3d wanted = driven_ ? Vec3d{x, 0, z} : Vec3d{1, 0, 0};
-    const double size = max(1.0, length(wanted));
-    Vec3f velocity(wanted * (stage.value("speed") / size));
-    if (jump) velocity.y = stage.valuef("jump");
-    stage.check(walker_->move(stage.world(), velocity, dt));
+    stage.check(walker_->move(stage.world(), wanted_walk(stage, driven_), dt));
     // The other one paces to and fro.
     const double t = stage.world().time();
     stage.check(other_->move(stage.world(), {t - 6 * floor(t / 6) < 3 ? 1.5f : -1.5f, 0, 0}, dt));
@@ -88,8 +72,7 @@ class Walker final : public Repeatable<Walker, Demo3> {
     highest_ = max(highest_, feet.y);
     trail_.add(feet + Vec3d{0, 0.02, 0});
     trail_.draw(stage, pen(orange, 0xa0));
-    constexpr const char* states[] = {"on the ground", "on a slope too steep", "in the air"};
-    stage.say(states[int(walker_->ground().state)]);
+    say_ground(stage, walker_->ground().state);
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {

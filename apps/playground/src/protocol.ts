@@ -15,7 +15,7 @@ export interface Opened {
   parameters: Parameter[]; plots: PlotDeclaration[]; inputs: Input[];
 }
 export interface Shape {
-  kind: string; local: number[]; radius?: number; half_length?: number; half_height?: number; half_extents?: number[]; radii?: number[];
+  kind: string; local: number[]; radius?: number; rounding?: number; half_length?: number; half_height?: number; half_extents?: number[]; radii?: number[];
   normal?: number[]; mesh?: number; points?: number[][]; loop?: boolean;
   color?: string; opacity?: number; sensor?: boolean;
 }

@@ -61,6 +61,18 @@ export function drawable3(shape: Shape, meshes: Map<number, Mesh>): Drawable | u
     case 'capsule':
       return {key: `capsule ${(h / r).toFixed(3)}`, scale: new THREE.Vector3(r, r, r), build: (fine) => quartered(new THREE.CapsuleGeometry(1, 2 * h / r, Math.max(3, Math.round(8 * fine)), cut(24, fine)))};
     case 'cylinder':
+      if (shape.rounding) {
+        const e = shape.rounding;
+        return {key: `rounded cylinder ${r} ${h} ${e}`, scale: one(), build: (fine) => {
+          const steps = Math.max(2, Math.round(6 * fine));
+          const rim = (from: number, y: number) => Array.from({length: steps + 1}, (_, i) => {
+            const a = from + 0.5 * Math.PI * i / steps;
+            return new THREE.Vector2(r + e * Math.cos(a), y + e * Math.sin(a));
+          });
+          const profile = [new THREE.Vector2(0, -h - e), ...rim(-0.5 * Math.PI, -h), ...rim(0, h), new THREE.Vector2(0, h + e)];
+          return quartered(new THREE.LatheGeometry(profile, cut(40, fine)));
+        }};
+      }
       return {key: 'cylinder', scale: new THREE.Vector3(r, 2 * h, r), build: (fine) => quartered(new THREE.CylinderGeometry(1, 1, 1, cut(40, fine)))};
     case 'cone':
       return {key: 'cone', scale: new THREE.Vector3(r, 2 * h, r), build: (fine) => quartered(new THREE.ConeGeometry(1, 1, cut(40, fine)))};

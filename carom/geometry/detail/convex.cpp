@@ -23,6 +23,7 @@ Convex convex_of(const Shape3& s) {
     case ShapeType3::cylinder:
       c.kind = CoreKind::cylinder;
       c.half = {s.cylinder.radius, s.cylinder.half_height, s.cylinder.radius};
+      c.radius = s.cylinder.rounding;
       break;
     case ShapeType3::cone:
       c.kind = CoreKind::cone;
@@ -61,7 +62,7 @@ float inner_size(const Convex& c) {
       return min(c.half.x, min(c.half.y, c.half.z)) + c.radius;
     case CoreKind::cylinder:
     case CoreKind::cone:
-      return min(c.half.x, c.half.y);
+      return min(c.half.x, c.half.y) + c.radius;
     case CoreKind::hull:
       return c.hull->inner_radius + c.radius;
     case CoreKind::triangle:

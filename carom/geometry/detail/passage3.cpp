@@ -35,13 +35,13 @@ int guards_of(const Shape3& s, float inner, Guard (&out)[2]) {
     case ShapeType3::capsule:
       c.radius -= by;
       break;
-    case ShapeType3::box: {
+    case ShapeType3::box:
+    case ShapeType3::cylinder: {
       const float least = c.radius - by;
       c.half = c.half + Vec3f{least, least, least};
       c.radius = 0;
       break;
     }
-    case ShapeType3::cylinder:
     case ShapeType3::ellipsoid:
       c.half = c.half - Vec3f{by, by, by};
       break;

@@ -109,7 +109,8 @@ float signed_distance(const Shape3& s, Vec3f p, float thickness) {
       return length(o) + math::min(math::max(dx, math::max(dy, dz)), 0.0f) - s.box.radius;
     }
     case ShapeType3::cylinder:
-      return distance_to_rectangle(math::sqrt(p.x * p.x + p.z * p.z), p.y, s.cylinder.radius, s.cylinder.half_height);
+      return distance_to_rectangle(math::sqrt(p.x * p.x + p.z * p.z), p.y, s.cylinder.radius, s.cylinder.half_height) -
+             s.cylinder.rounding;
     case ShapeType3::cone: {
       const float h = 2 * s.cone.half_height, slant = math::sqrt(h * h + s.cone.radius * s.cone.radius);
       const float side = (math::sqrt(p.x * p.x + p.z * p.z) * h + (p.y - s.cone.half_height) * s.cone.radius) / slant;

@@ -1,7 +1,8 @@
 // What both kinds of characters are made of.
 #pragma once
 
-#include "carom/rigid/dimension.h"
+#include "carom/rigid/detail/check.h"
+#include "carom/rigid/world.h"
 
 namespace carom::rigid::detail {
 
@@ -15,6 +16,34 @@ inline geometry::Shape2 make_capsule(Dim2, float half_length, float radius) {
 }
 inline geometry::Shape3 make_capsule(Dim3, float half_length, float radius) {
   return geometry::Capsule3{half_length, radius};
+}
+
+/// What both definitions have, and where it is to stand. Returns the length of `up`.
+template <class Definition, class Position>
+float check_character(Complaint& complaint, const Definition& d, const Position& feet) {
+  check_range(complaint, "radius", double(d.radius), 1e-3, 1e3);
+  check_range(complaint, "half_length", double(d.half_length), 0, 1e3);
+  check_range(complaint, "max_slope", double(d.max_slope), 0, double(math::pi_f) / 2);
+  check_range(complaint, "step_height", double(d.step_height), 0, 1e3);
+  const float size = math::length(d.up);
+  if (!(math::abs(size - 1) < 1e-3f)) complaint.say("up is not a unit vector, expected a length of 1");
+  check_size(complaint, "feet", feet, max_coordinate);
+  return size;
+}
+
+/// A body with one shape, or neither.
+template <class D>
+Status make_character(World<D>& world, const BodyDef<D>& body, const typename D::Shape& capsule,
+                      const ShapeDef<D>& definition, BodyId& id, ShapeId& shape) {
+  const Result<BodyId> made = world.create_body(body);
+  if (!made.ok()) return made.error();
+  const Result<ShapeId> added = world.add_shape(made.value(), capsule, definition);
+  if (!added.ok()) {
+    (void)world.destroy_body(made.value());
+    return added.error();
+  }
+  id = made.value(), shape = added.value();
+  return {};
 }
 
 }  // namespace carom::rigid::detail

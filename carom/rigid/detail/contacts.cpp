@@ -78,7 +78,7 @@ float round_radius(const geometry::Shape3& s) {
     case geometry::ShapeType3::capsule:
       return s.capsule.radius;
     case geometry::ShapeType3::cylinder:
-      return s.cylinder.radius;
+      return s.cylinder.radius + s.cylinder.rounding;
     case geometry::ShapeType3::cone:
       return s.cone.radius;
     case geometry::ShapeType3::box:

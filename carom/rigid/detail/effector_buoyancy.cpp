@@ -137,6 +137,12 @@ forces::Submerged3 wet_in_waves(EffectorStore<Dim3>& store, const environment::S
   return forces::submerged_mesh(store.vertices, store.indices, store.depths, inverse_rotate(q, Vec3d{0, 1, 0}));
 }
 
+/// What is wet of a shape with rounded edges, from the sharp one about it: its share of that one's whole volume.
+forces::Submerged3 rounded(forces::Submerged3 part, const geometry::Shape3& shape, double rounding, double sharp) {
+  if (rounding > 0) part.volume *= geometry::mass_properties(shape, 1).mass / sharp;
+  return part;
+}
+
 forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& shape,
                             const forces::WaterPlane& water) {
   using geometry::ShapeType3;
@@ -150,11 +156,14 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
     }
     case ShapeType3::box: {
       const double r = double(shape.box.radius);
-      return forces::submerged_box(Vec3d(shape.box.half_extents) + Vec3d{r, r, r}, water);
+      const Vec3d half = Vec3d(shape.box.half_extents) + Vec3d{r, r, r};
+      return rounded(forces::submerged_box(half, water), shape, r, 8 * half.x * half.y * half.z);
     }
     case ShapeType3::cylinder: {
-      const double h = double(shape.cylinder.half_height), r = double(shape.cylinder.radius);
-      return forces::submerged_revolution({{0, -h, 0}, {0, h, 0}, r, r, false}, water);
+      const double rounding = double(shape.cylinder.rounding), h = double(shape.cylinder.half_height) + rounding,
+                   r = double(shape.cylinder.radius) + rounding;
+      return rounded(forces::submerged_revolution({{0, -h, 0}, {0, h, 0}, r, r, false}, water), shape, rounding,
+                     2 * pi * r * r * h);
     }
     case ShapeType3::cone: {
       const double h = double(shape.cone.half_height);

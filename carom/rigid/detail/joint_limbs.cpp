@@ -7,14 +7,6 @@ namespace {
 constexpr std::uint32_t limb_mask2 = part_pin | part_twist;
 constexpr std::uint32_t limb_mask3 = part_pin | part_friction | part_cone | part_twist | part_angular | part_hinge;
 
-/// Calls f.operator()<W>() for the width of the kernels.
-template <class F>
-void for_width(int width, F&& f) {
-  if (width == 16) return f.template operator()<16>();
-  if (width == 8) return f.template operator()<8>();
-  f.template operator()<4>();
-}
-
 template <std::size_t N, int W, class V>
 void put(float (&lanes)[N][W], int lane, const V& v) {
   for (std::size_t i = 0; i < N; ++i) lanes[i][lane] = v[int(i)];

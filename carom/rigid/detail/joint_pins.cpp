@@ -4,14 +4,6 @@
 namespace carom::rigid::detail {
 namespace {
 
-/// Calls f.operator()<W>() for the width of the kernels.
-template <class F>
-void for_width(int width, F&& f) {
-  if (width == 16) return f.template operator()<16>();
-  if (width == 8) return f.template operator()<8>();
-  f.template operator()<4>();
-}
-
 template <class D, int W>
 void fill_lane(PinLanes<D, W>& block, int lane, std::int32_t slot, const WorldImplementation<D>& world) {
   block.joint[lane] = slot;

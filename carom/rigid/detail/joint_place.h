@@ -6,6 +6,14 @@
 
 namespace carom::rigid::detail {
 
+/// Calls f.operator()<W>() for the width of the kernels.
+template <class F>
+void for_width(int width, F&& f) {
+  if (width == 16) return f.template operator()<16>();
+  if (width == 8) return f.template operator()<8>();
+  f.template operator()<4>();
+}
+
 /// Is there anything on this coordinate of a generic joint?
 inline bool acts(const JointAxis& axis) {
   return !axis.free || axis.spring.hertz > 0 || axis.limit.enabled || axis.motor.enabled || axis.friction > 0;

@@ -13,12 +13,22 @@ struct TreeEnergy {
   JointTrees<D>& trees;
   const TreeRange& range;
 
+  /// Of a free tree, that of its inner motion: joints change nothing of the rest, whose rounding would drown a slow
+  /// one.
   double kinetic() const {
+    double rigid[dofs] = {};
+    typename D::Position center{};
+    if (range.free) rigid_motion(rigid, center);
     double sum = 0;
     for (int i = range.first_body; i < range.body_end; ++i) {
       const TreeBody<D>& body = trees.bodies[std::size_t(i)];
       double v[dofs];
       velocity_of(v, context.bodies[body.body]);
+      if (range.free) {
+        double r[dofs];
+        rigid_velocity(rigid, position_of(body) - center, r);
+        for (int c = 0; c < dofs; ++c) v[c] -= r[c];
+      }
       sum += energy_of(body, v);
     }
     return sum;
@@ -41,30 +51,24 @@ struct TreeEnergy {
   /// Slows the motion against the ground; of a free tree, the motion within it, so that its momenta stay.
   void take(double excess, double energy) const {
     if (range.moving_ground) return;
+    if (!(energy > 0)) return;
     double rigid[dofs] = {};
     typename D::Position center{};
     if (range.free) rigid_motion(rigid, center);
-    double rigid_energy = 0;
-    const auto rigid_velocity = [&](const TreeBody<D>& body, double(&v)[dofs]) {
-      for (int c = 0; c < dofs; ++c) v[c] = rigid[c];
-      if (range.free) add_turn(v, rigid, position_of(body) - center);
-    };
-    for (int i = range.first_body; i < range.body_end && range.free; ++i) {
-      double v[dofs];
-      rigid_velocity(trees.bodies[std::size_t(i)], v);
-      rigid_energy += energy_of(trees.bodies[std::size_t(i)], v);
-    }
-    const double inner = energy - rigid_energy;
-    if (!(inner > 0)) return;
-    const double scale = math::sqrt(max(0.0, 1 - excess / inner));
+    const double scale = math::sqrt(max(0.0, 1 - excess / energy));
     for (int i = range.first_body; i < range.body_end; ++i) {
       const TreeBody<D>& body = trees.bodies[std::size_t(i)];
       double v[dofs], r[dofs];
       velocity_of(v, context.bodies[body.body]);
-      rigid_velocity(body, r);
+      rigid_velocity(rigid, position_of(body) - center, r);
       for (int c = 0; c < dofs; ++c) v[c] = (scale - 1) * (v[c] - r[c]);
       add_velocity(context.bodies[body.body], v);
     }
+  }
+  /// Of a body that moves with the whole tree; zero where the tree is held.
+  void rigid_velocity(const double (&rigid)[dofs], const typename D::Position& arm, double (&v)[dofs]) const {
+    for (int c = 0; c < dofs; ++c) v[c] = rigid[c];
+    if (range.free) add_turn(v, rigid, arm);
   }
   typename D::Position position_of(const TreeBody<D>& body) const {
     return context.world.bodies.motion[std::size_t(body.body)].center +

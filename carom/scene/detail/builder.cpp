@@ -1,6 +1,7 @@
 #include "carom/scene/detail/builder.h"
 
 #include "carom/core/spelling.h"
+#include "carom/scene/detail/characters.h"
 #include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/joints.h"
 #include "carom/scene/detail/matter.h"
@@ -108,6 +109,9 @@ MotionLocks read_locks(Reader& reader, const Object& o) {
   return locks;
 }
 
+/// What of a scene is in its world, in the order in which it is made.
+constexpr const char* world_lists[] = {"bodies", "joints", "effectors", "characters"};
+
 template <class D>
 class Builder final : public BodyNames {
  public:
@@ -122,7 +126,7 @@ class Builder final : public BodyNames {
   }
 
   bool run() {
-    for (const char* what : {"bodies", "joints", "effectors"}) {
+    for (const char* what : world_lists) {
       what_ = what;
       next_ = 0;
       visit_parts();
@@ -167,8 +171,8 @@ class Builder final : public BodyNames {
       into[map->keys[i]] = {&map->children[i], std::string(key) + "." + map->keys[i]};
   }
 
-  static constexpr const char* lists[] = {"bodies",      "joints",  "effectors", "ropes",    "cloths",
-                                          "soft_bodies", "liquids", "grains",    "particles"};
+  static constexpr const char* lists[] = {"bodies", "joints",      "effectors", "characters", "ropes",
+                                          "cloths", "soft_bodies", "liquids",   "grains",     "particles"};
   void visit_parts() {
     for (const Node& part : document_.parts)
       for (const char* list : lists)
@@ -257,14 +261,17 @@ class Builder final : public BodyNames {
       body(node, path);
     else if (what_ == "joints")
       joint(node, path);
-    else
+    else if (what_ == "effectors")
       effector(node, path);
+    else
+      character(node, path);
   }
 
   void check_count(std::string_view what) {
-    const std::size_t had = what == "bodies"   ? own_bodies()
-                            : what == "joints" ? out_.joints.size()
-                                               : out_.effectors.size();
+    const std::size_t had = what == "bodies"      ? own_bodies()
+                            : what == "joints"    ? out_.joints.size()
+                            : what == "effectors" ? out_.effectors.size()
+                                                  : out_.characters.size();
     if (next_ != had) count_changed(what);
   }
   void count_changed(std::string_view what) {
@@ -272,9 +279,21 @@ class Builder final : public BodyNames {
                  "this value changes how many " + std::string(what) + " there are: restart the scene");
   }
   std::size_t own_bodies() const {
-    // The body "world" that joints may have made is not in any list.
-    const bool made = !out_.bodies.empty() && out_.bodies.back().name == "world" && next_ + 1 == out_.bodies.size();
-    return out_.bodies.size() - (made ? 1 : 0);
+    // The body "world" that joints may have made is not in any list, and characters come last.
+    const std::size_t own = out_.bodies.size() - out_.characters.size();
+    const bool made = own > 0 && out_.bodies[own - 1].name == "world" && next_ + 1 == own;
+    return own - (made ? 1 : 0);
+  }
+
+  /// Tiles have several outlines: each is a shape of its own.
+  void spread(std::vector<ReadShape<D>>& shapes) {
+    const std::vector<typename D::Shape> more = std::move(shapes.back().more);
+    for (const typename D::Shape& shape : more) {
+      ReadShape<D> next = shapes.back();
+      next.shape = shape;
+      next.more.clear();
+      shapes.push_back(std::move(next));
+    }
   }
 
   bool read_shapes(const Object& o, std::vector<ReadShape<D>>& out) {
@@ -283,6 +302,7 @@ class Builder final : public BodyNames {
     if (o.has("shape")) {
       out.emplace_back();
       if (!read_shape<D>(reader_, library_, *o.find("shape"), o.path_of("shape"), defaults, out.back())) return false;
+      spread(out);
     }
     if (const Node* list = o.find("shapes")) {
       const std::string path = o.path_of("shapes");
@@ -296,6 +316,7 @@ class Builder final : public BodyNames {
         out.emplace_back();
         if (!read_shape<D>(reader_, library_, list->children[i], index_path(path, i), defaults, out.back()))
           return false;
+        spread(out);
       }
     }
     if (!o.has("mass")) return !reader_.failed();
@@ -429,6 +450,29 @@ class Builder final : public BodyNames {
     std::string name = reader_.text(o, "name");
     if (name.empty()) name = "effector_" + std::to_string(out_.effectors.size());
     out_.effectors.push_back({std::move(name), *id});
+  }
+
+  void character(const Node& node, const std::string& path) {
+    Object o;
+    if (!reader_.open(node, path, *tables().character, o) || !reader_.wanted(o)) return;
+    const math::Vec3d velocity = reader_.vector(o, "velocity");
+    if (update_) {
+      if (next_ >= out_.characters.size()) return count_changed("characters");
+      out_.characters[next_++].velocity = velocity;
+      return;
+    }
+    std::string name = reader_.text(o, "name");
+    if (name.empty()) name = "character_" + std::to_string(out_.characters.size());
+    if (names_.count(name) != 0)
+      return reader_.fail(node, path, "found the name " + quote(name) + " a second time, expected one that nobody has");
+    SceneCharacter made;
+    if (!read_character<D>(reader_, o, world(), made)) return;
+    made.name = name, made.velocity = velocity;
+    const auto color = reader_.color(o, "color");
+    const bool trail = reader_.flag(o, "trail", false);
+    names_.emplace(name, out_.bodies.size());
+    out_.bodies.push_back({std::move(name), made.body, color.value_or(0), color.has_value(), trail});
+    out_.characters.push_back(std::move(made));
   }
 
   Reader& reader_;

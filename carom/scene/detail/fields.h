@@ -55,9 +55,9 @@ struct ObjectKind {
 
 struct FieldTables {
   const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *surface, *shape, *body,
-      *mass_properties, *group, *joint, *joint_axis, *joint_axes, *frame, *spring, *limit, *motor, *effector, *wave,
-      *camera, *plot, *axis, *series, *expectation, *rotation, *preset, *flight, *earth, *vehicle, *initial,
-      *rope, *cloth, *soft_body, *liquid, *grains, *particles;
+      *character, *mass_properties, *group, *joint, *joint_axis, *joint_axes, *frame, *spring, *limit, *motor,
+      *effector, *wave, *camera, *plot, *axis, *series, *expectation, *rotation, *preset, *flight, *earth, *vehicle,
+      *initial, *rope, *cloth, *soft_body, *liquid, *grains, *particles;
   std::span<const ObjectKind* const> all;
 };
 const FieldTables& tables();

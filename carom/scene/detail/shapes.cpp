@@ -6,6 +6,7 @@
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/geometry/voxels.h"
+#include "carom/rigid/tile_ground.h"
 #include "carom/scene/detail/joints.h"
 
 namespace carom::scene::detail {
@@ -33,7 +34,8 @@ enum ShapeChoice {
   circle,
   polygon,
   segment,
-  chain
+  chain,
+  tiles
 };
 
 const Node* look_up(Reader& reader, const std::map<std::string, std::pair<const Node*, std::string>, std::less<>>& all,
@@ -135,7 +137,47 @@ bool put(Reader& reader, const Object& o, const core::Result<T>& result, auto& o
   return true;
 }
 
-bool read_geometry(Reader& reader, const Library&, const Object& o, int type, geometry::Shape2& out) {
+/// "runs": how many cells, and of what, one after another.
+bool read_runs(Reader& reader, const Object& o, std::size_t total, std::vector<std::uint8_t>& cells) {
+  const std::vector<double> runs = reader.numbers(o, "runs");
+  for (std::size_t i = 0; i + 1 < runs.size() && !reader.failed(); i += 2) {
+    const bool whole = runs[i] == __builtin_floor(runs[i]) && runs[i + 1] == __builtin_floor(runs[i + 1]);
+    if (!whole || !(runs[i] >= 0 && runs[i] <= double(total - cells.size())) ||
+        !(runs[i + 1] >= 0 && runs[i + 1] <= 255))
+      return reader.fail(*o.find("runs"), o.path_of("runs"),
+                         "found a run of " + shortest(runs[i]) + " cells of " + shortest(runs[i + 1]) +
+                             ", expected whole numbers, no more cells than the grid has, and 0 (empty) to 255"),
+             false;
+    cells.insert(cells.end(), std::size_t(runs[i]), std::uint8_t(runs[i + 1]));
+  }
+  if (!reader.failed() && (runs.size() % 2 != 0 || cells.size() != total))
+    return reader.fail(*o.find("runs"), o.path_of("runs"),
+                       "found runs of " + std::to_string(cells.size()) +
+                           " cells, expected pairs of a count and a cell for " + std::to_string(total)),
+           false;
+  return !reader.failed();
+}
+
+/// The outlines of square tiles, each a chain.
+bool read_tiles(Reader& reader, const Object& o, geometry::Shape2& out, std::vector<geometry::Shape2>& more) {
+  if (!needs(reader, o, "runs", "tiles") || !needs(reader, o, "cell_size", "tiles")) return false;
+  const int columns = reader.integer(o, "columns", 1, 1, 4096), rows = reader.integer(o, "rows", 1, 1, 4096);
+  const float cell = float(reader.number(o, "cell_size", 1));
+  std::vector<std::uint8_t> cells;
+  if (!read_runs(reader, o, std::size_t(columns) * std::size_t(rows), cells)) return false;
+  auto outlines = rigid::outline_tiles(columns, rows, cell, cells);
+  if (!outlines.ok()) return reader.fail(*o.node, o.path, outlines.error().message), false;
+  if (outlines->empty()) return reader.fail(*o.find("runs"), o.path_of("runs"), "every tile is empty"), false;
+  for (std::size_t i = 0; i < outlines->size(); ++i)
+    if (i == 0)
+      out = (*outlines)[i];
+    else
+      more.emplace_back((*outlines)[i]);
+  return true;
+}
+
+bool read_geometry(Reader& reader, const Library&, const Object& o, int type, geometry::Shape2& out,
+                   std::vector<geometry::Shape2>& more) {
   switch (type) {
     case circle:
       out = geometry::Circle{radius_of(reader, o, 0.5)};
@@ -176,6 +218,8 @@ bool read_geometry(Reader& reader, const Library&, const Object& o, int type, ge
       return !reader.failed() &&
              put(reader, o, geometry::make_chain(std::move(points), loop, std::move(materials)), out);
     }
+    case tiles:
+      return read_tiles(reader, o, out, more);
     default:
       return wrong_dimension(reader, o), false;
   }
@@ -232,35 +276,18 @@ bool read_height_field(Reader& reader, const Object& o, geometry::Shape3& out) {
              out);
 }
 
-/// "runs": how many cells, and of what, one after another.
 bool read_voxels(Reader& reader, const Object& o, geometry::Shape3& out) {
   if (!needs(reader, o, "runs", "voxels") || !needs(reader, o, "cell_size", "voxels")) return false;
   const int columns = reader.integer(o, "columns", 1, 1, 1024), layers = reader.integer(o, "layers", 1, 1, 1024),
             rows = reader.integer(o, "rows", 1, 1, 1024);
-  const std::size_t total = std::size_t(columns) * std::size_t(layers) * std::size_t(rows);
   const float cell = float(reader.number(o, "cell_size", 1));
-  const std::vector<double> runs = reader.numbers(o, "runs");
   std::vector<std::uint8_t> cells;
-  for (std::size_t i = 0; i + 1 < runs.size() && !reader.failed(); i += 2) {
-    const bool whole = runs[i] == __builtin_floor(runs[i]) && runs[i + 1] == __builtin_floor(runs[i + 1]);
-    if (!whole || !(runs[i] >= 0 && runs[i] <= double(total - cells.size())) ||
-        !(runs[i + 1] >= 0 && runs[i + 1] <= 255))
-      return reader.fail(*o.find("runs"), o.path_of("runs"),
-                         "found a run of " + shortest(runs[i]) + " cells of " + shortest(runs[i + 1]) +
-                             ", expected whole numbers, no more cells than the grid has, and 0 (empty) to 255"),
-             false;
-    cells.insert(cells.end(), std::size_t(runs[i]), std::uint8_t(runs[i + 1]));
-  }
-  if (!reader.failed() && (runs.size() % 2 != 0 || cells.size() != total))
-    return reader.fail(*o.find("runs"), o.path_of("runs"),
-                       "found runs of " + std::to_string(cells.size()) +
-                           " cells, expected pairs of a count and a cell for " + std::to_string(total)),
-           false;
-  return !reader.failed() &&
+  return read_runs(reader, o, std::size_t(columns) * std::size_t(layers) * std::size_t(rows), cells) &&
          put(reader, o, geometry::make_voxel_grid(columns, layers, rows, cell, std::move(cells)), out);
 }
 
-bool read_geometry(Reader& reader, const Library& library, const Object& o, int type, geometry::Shape3& out) {
+bool read_geometry(Reader& reader, const Library& library, const Object& o, int type, geometry::Shape3& out,
+                   std::vector<geometry::Shape3>&) {
   switch (type) {
     case sphere:
       out = geometry::Sphere{radius_of(reader, o, 0.5)};
@@ -274,7 +301,8 @@ bool read_geometry(Reader& reader, const Library& library, const Object& o, int 
       break;
     }
     case cylinder:
-      out = geometry::Cylinder{half_of(reader, o, "height", "half_height", 0.5), radius_of(reader, o, 0.5)};
+      out = geometry::Cylinder{half_of(reader, o, "height", "half_height", 0.5), radius_of(reader, o, 0.5),
+                               float(reader.number(o, "rounding", 0))};
       break;
     case cone:
       out = geometry::Cone{half_of(reader, o, "height", "half_height", 0.5), radius_of(reader, o, 0.5)};
@@ -338,16 +366,19 @@ void read_local(Reader& reader, const Object& o, math::Transform3f& out) {
 
 }  // namespace
 
+void read_filter(Reader& reader, const Object& o, rigid::Filter& filter) {
+  Object f;
+  if (!o.has("filter") || !reader.open(*o.find("filter"), o.path_of("filter"), *tables().filter, f)) return;
+  filter.category = reader.bits(f, "category", filter.category);
+  filter.mask = reader.bits(f, "mask", filter.mask);
+  filter.group = reader.integer(f, "group", filter.group, -0x7FFFFFFF, 0x7FFFFFFF);
+}
+
 SurfaceDefaults read_surface(Reader& reader, const Library& library, const Object& o, SurfaceDefaults defaults) {
   if (const Node* material = o.find("material"))
     read_material(reader, library, *material, o.path_of("material"), defaults);
   defaults.density = reader.number(o, "density", defaults.density);
-  Object f;
-  if (o.has("filter") && reader.open(*o.find("filter"), o.path_of("filter"), *tables().filter, f)) {
-    defaults.filter.category = reader.bits(f, "category", defaults.filter.category);
-    defaults.filter.mask = reader.bits(f, "mask", defaults.filter.mask);
-    defaults.filter.group = reader.integer(f, "group", defaults.filter.group, -0x7FFFFFFF, 0x7FFFFFFF);
-  }
+  read_filter(reader, o, defaults.filter);
   return defaults;
 }
 
@@ -388,7 +419,7 @@ bool read_shape(Reader& reader, const Library& library, const Node& node, const 
   if (!reader.open(*source, at, *tables().shape, o)) return false;
   if (!o.has("type")) return reader.fail(*source, at, "the key \"type\" is missing in a shape"), false;
   const int type = reader.choice(o, "type", 0);
-  if (reader.failed() || !read_geometry(reader, library, o, type, out.shape)) return false;
+  if (reader.failed() || !read_geometry(reader, library, o, type, out.shape, out.more)) return false;
   if (!reader.accept(geometry::validate(out.shape), *source, at)) return false;
 
   const SurfaceDefaults surface = read_surface(reader, library, o, defaults);

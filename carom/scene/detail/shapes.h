@@ -23,9 +23,12 @@ template <class D>
 struct ReadShape {
   typename D::Shape shape;
   rigid::ShapeDef<D> definition{};
-  bool density_given = false;  ///< or mass
+  bool density_given = false;             ///< or mass
+  std::vector<typename D::Shape> more{};  ///< further outlines of tiles, with the same definition
 };
 
+/// From "filter", over what is there.
+void read_filter(Reader& reader, const Object& o, rigid::Filter& filter);
 /// From "material", "filter" and "density" of a body, over what it inherits.
 SurfaceDefaults read_surface(Reader& reader, const Library& library, const Object& o, SurfaceDefaults defaults);
 template <class D>

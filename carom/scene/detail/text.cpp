@@ -110,7 +110,10 @@ void put_geometry(const geometry::Shape3& s, Fields& f) {
           .unless("radius", s.box.radius, 0.0f);
       return;
     case geometry::ShapeType3::cylinder:
-      f.put("type", quote("cylinder")).put("half_height", s.cylinder.half_height).put("radius", s.cylinder.radius);
+      f.put("type", quote("cylinder"))
+          .put("half_height", s.cylinder.half_height)
+          .put("radius", s.cylinder.radius)
+          .unless("rounding", s.cylinder.rounding, 0.0f);
       return;
     case geometry::ShapeType3::cone:
       f.put("type", quote("cone")).put("half_height", s.cone.half_height).put("radius", s.cone.radius);
