@@ -112,8 +112,8 @@ async function runAll(data, sets) {
  * first demo and many sets call, and whatever takes vectors, because a call that loads a part goes through JavaScript,
  * which has none. What nobody calls (errors, tools, what a hand does) is the `rest`.
  */
-function assign(functions, first, sets, called) {
-  const many = 8, small = 40e3;  // sets; bytes that are worth a request of their own
+function assign(functions, first, sets, called, many) {
+  const small = 40e3;  // bytes that are worth a request of their own
   const part = functions.map((f, i) => {
     const users = sets.filter((_, s) => called[s][i]);
     if (f.vector || first[i] || users.length >= many) return 'main';
@@ -126,13 +126,24 @@ function assign(functions, first, sets, called) {
   return part.map((name) => (size[name] < small ? 'small' : name));
 }
 
+/** The assignment with as much in `main` as a first file of `most` bytes gzipped has room for. */
+function fill(module, functions, first, sets, called, most) {
+  const packed = (parts) => gzipSync(Buffer.concat(parts)).length;
+  const data = packed([module]) - packed(functions.map((f) => f.code));
+  const seams = 40e3;  // what cutting adds: exports and imports, ways round through the table
+  for (let many = 4;; ++many) {
+    const part = assign(functions, first, sets, called, many);
+    if (many > sets.length || data + seams + packed(functions.flatMap((f, i) => (part[i] === 'main' ? [f.code] : []))) <= most) return part;
+  }
+}
+
 /** Splits `modulePath` into OUT/carom.wasm and its parts; returns what was made, by name: file and bytes gzipped. */
 export async function split(modulePath, files, out) {
   const scratch = mkdtempSync(join(tmpdir(), 'carom-split-'));
   const path = (name) => join(scratch, name);
   const wasmSplit = (...args) => execFileSync('wasm-split', [...features, ...args], {stdio: 'inherit'});
   try {
-    const functions = functionsOf(readFileSync(modulePath));
+    const whole = readFileSync(modulePath), functions = functionsOf(whole);
     wasmSplit('--instrument', modulePath, '-o', path('instrumented.wasm'));
     const module = await WebAssembly.compile(readFileSync(path('instrumented.wasm')));
     const data = {module, files, count: functions.length};
@@ -144,7 +155,7 @@ export async function split(modulePath, files, out) {
       set.demos.push(id);
     }
     const [first, ...called] = await runAll(data, [{demos: [demos[0].id], seconds: 20, patience: 20}, ...sets]);
-    const part = assign(functions, first, sets, called);
+    const part = fill(whole, functions, first, sets, called, 580e3);
     const names = [...new Set(part)].filter((name) => name !== 'main').sort();
     const made = {}, listed = {};
     let primary = modulePath;
