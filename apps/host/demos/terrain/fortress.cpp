@@ -24,7 +24,7 @@ class Fortress final : public Repeatable<Fortress, Demo2> {
         "one body each, with their mass.";
     d.dimension = 2;
     d.duration = 12;
-    d.camera.position = {0, 6, 0};
+    d.camera.target = {0, 6, 0};
     d.camera.height = 16;
     d.parameters = {
         {"pace", "Time between shots", "s", "s", "", 0.3, 4, 0.1, 1.2, true},
