@@ -178,8 +178,7 @@ TYPED_TEST(QualityBullets, EachOther) {
     }
     passed += int(std::count(through.begin(), through.end(), 1));
   }
-  Gate(15, "2 × 2 000 bullets at 400 m/s, head on: passed through each other", D::dimension)
-      .exactly(passed, 0);
+  Gate(15, "2 × 2 000 bullets at 400 m/s, head on: passed through each other", D::dimension).exactly(passed, 0);
 }
 
 // Rods of 1 m that turn at 50 rad/s as they fly at 30 m/s at a wall: neither their middle nor an end goes through.

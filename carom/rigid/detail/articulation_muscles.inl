@@ -4,7 +4,6 @@
 namespace carom::rigid {
 namespace {
 
-
 void check_muscle(detail::Complaint& c, const Muscle& m) {
   detail::check_range(c, "hertz", m.hertz, 0, 1000);
   detail::check_range(c, "damping_ratio", m.damping_ratio, 0, 1000);
