@@ -205,8 +205,7 @@ TYPED_TEST(QualityStacks, CardTentStandsIffTheLawSays) {
     add_tent<D>(world, cards, 0, 0, theta, friction);
     const double moved = furthest_moved(world, cards, 60);
     if (factor > 1)
-      Gate(18, "card tent at 1.2 of the least friction, 60 s: moved", D::dimension, "m")
-          .at_most(moved, 0.01);
+      Gate(18, "card tent at 1.2 of the least friction, 60 s: moved", D::dimension, "m").at_most(moved, 0.01);
     else
       Gate(18, "card tent at .8 of the least friction: falls (1)", D::dimension).exactly(moved > 0.1, 1);
   }
@@ -232,8 +231,7 @@ TYPED_TEST(QualityStacks, CardHouseStands) {
   world.add_shape(id, box_shape<D>(1.0f, 0.01f, 0.3f), def).value();
   cards.push_back(id);
   add_tent<D>(world, cards, 0, top + 0.02, theta, 0.6f);
-  Gate(18, "card house of two storeys, 60 s: moved", D::dimension, "m")
-      .at_most(furthest_moved(world, cards, 60), 0.01);
+  Gate(18, "card house of two storeys, 60 s: moved", D::dimension, "m").at_most(furthest_moved(world, cards, 60), 0.01);
 }
 
 // Gate 16: half inside each other and half inside a wall. What touches parts no faster than the push speed.
