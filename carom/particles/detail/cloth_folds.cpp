@@ -19,7 +19,8 @@ struct FoldGrid {
     return c > 0 ? (c < cells[axis] ? int(c) : cells[axis] - 1) : 0;
   }
   std::size_t place(Vec3d p) const {
-    return std::size_t(along(p.x, 0) + cells[0] * (along(p.y, 1) + cells[1] * along(p.z, 2)));
+    const auto x = std::size_t(along(p.x, 0)), y = std::size_t(along(p.y, 1)), z = std::size_t(along(p.z, 2));
+    return x + std::size_t(cells[0]) * (y + std::size_t(cells[1]) * z);
   }
   std::size_t count() const { return std::size_t(cells[0]) * std::size_t(cells[1]) * std::size_t(cells[2]); }
 };

@@ -141,7 +141,7 @@ Status Articulation<D>::drive(World<D>& world, float dt) {
     // The target is that of the end of the step; here it is where it comes from.
     Vec3d error{}, drift{};
     for (int k = 0; k < joint.degrees; ++k) {
-      drift[k] = speeds_[std::size_t(joint.first + k)] - (target.speed[k] - target.acceleration[k] * step);
+      drift[k] = speeds_[std::size_t(joint.first) + std::size_t(k)] - (target.speed[k] - target.acceleration[k] * step);
       error[k] = (target.speed[k] - 0.5 * target.acceleration[k] * step) * step;
     }
     if (joint.degrees == 3) {  // in the axes of A: the turn that takes the target to where B is
@@ -152,7 +152,7 @@ Status Articulation<D>::drive(World<D>& world, float dt) {
       if (frames_[j].type == JointType::hinge) error.x = wrap_angle(error.x);
     }
     for (int k = 0; k < joint.degrees; ++k)
-      accelerations_[std::size_t(joint.first + k)] =
+      accelerations_[std::size_t(joint.first) + std::size_t(k)] =
           target.acceleration[k] +
           detail::settling_acceleration(error[k], drift[k], 2 * pi * muscle.hertz, muscle.damping_ratio, step);
   }

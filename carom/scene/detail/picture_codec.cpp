@@ -144,7 +144,10 @@ bool PictureCodec::decode_places(Places& places, std::size_t count, bool key, By
                                  std::vector<math::Vec3d>& out) {
   out.resize(0);
   if (count == 0) return places.clear(), true;
-  if (key) places.exponent = std::int8_t(in.fixed<std::uint8_t>());
+  if (key) {
+    const int byte = in.fixed<std::uint8_t>();
+    places.exponent = byte < 128 ? byte : byte - 256;
+  }
   if (places.exponent < -60 || places.exponent > 60) return false;
   StreamCodec* const streams[] = {&places.x, &places.y, &places.z};
   for (int k = 0; k < 3; ++k) {

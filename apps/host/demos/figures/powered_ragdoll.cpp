@@ -87,7 +87,7 @@ class PoweredRagdoll final : public Repeatable<PoweredRagdoll, Demo3> {
     for (int k = 0; k < 3; ++k) {
       const rigid::ArticulationJoint& j = m.joints()[std::size_t(m.find(left[k]))];
       double size = 0;
-      for (int i = 0; i < j.degrees; ++i) size += square(m.torques()[std::size_t(j.first + i)]);
+      for (int i = 0; i < j.degrees; ++i) size += square(m.torques()[std::size_t(j.first) + std::size_t(i)]);
       stage.sample(1, k, t, sqrt(size));
     }
     constexpr const char* names[] = {"at ease", "arms out", "hands up", "seated"};

@@ -37,7 +37,7 @@ class Craters final : public Repeatable<Craters, Demo3> {
 
   void build(Stage3& stage) override {
     stage.start({});
-    heights_.assign(std::size_t(side_ * side_), 0);
+    heights_.assign(std::size_t(side_) * std::size_t(side_), 0);
     for (int z = 0; z < side_; ++z)
       for (int x = 0; x < side_; ++x) heights_[at(x, z)] = 0.25f * sin(0.13f * float(x)) * cos(0.11f * float(z));
     rigid::BodyDef<Dim3> ground;
@@ -57,7 +57,8 @@ class Craters final : public Repeatable<Craters, Demo3> {
     volume_ = volume();
     const int stacks = stage.count("stacks"), along = int(ceil(sqrt(double(stacks))));
     for (int s = 0; s < stacks; ++s) {
-      const double x = 5.0 * (s % along - 0.5 * (along - 1)), z = 5.0 * (s / along - 0.5 * (along - 1));
+      const int column = s % along, row = s / along;
+      const double x = 5.0 * (column - 0.5 * (along - 1)), z = 5.0 * (row - 0.5 * (along - 1));
       targets_.push_back({x, 0, z});
       const double floor = height(x, z);
       for (int k = 0; k < 4; ++k) {
@@ -126,7 +127,7 @@ class Craters final : public Repeatable<Craters, Demo3> {
   static constexpr int side_ = 97;
   static constexpr float cell_ = 0.25f;
   static constexpr double half() { return 0.5 * double(cell_) * (side_ - 1); }
-  static std::size_t at(int x, int z) { return std::size_t(z * side_ + x); }
+  static std::size_t at(int x, int z) { return std::size_t(z) * std::size_t(side_) + std::size_t(x); }
   double height(double x, double z) const {
     const int i = clamp(int((x + half()) / double(cell_) + 0.5), 0, side_ - 1),
               j = clamp(int((z + half()) / double(cell_) + 0.5), 0, side_ - 1);

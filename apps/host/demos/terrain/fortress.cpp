@@ -137,7 +137,7 @@ class Fortress final : public Repeatable<Fortress, Demo2> {
   static constexpr int columns_ = 80, rows_ = 32, ground_rows_ = 4;
   static constexpr float cell_ = 0.35f;
   static constexpr std::uint32_t colors_[3] = {0x7a6a45, 0x8d949c, 0xb0614a};
-  static std::size_t index(int i, int j) { return std::size_t(j * columns_ + i); }
+  static std::size_t index(int i, int j) { return std::size_t(j) * std::size_t(columns_) + std::size_t(i); }
   int count() const {
     int n = 0;
     for (int j = ground_rows_; j < rows_; ++j)

@@ -124,7 +124,9 @@ class Quarry final : public Repeatable<Quarry, Demo3> {
   static constexpr int side_ = 40, layers_ = 14;
   static constexpr float cell_ = 0.5f;
   static constexpr double half() { return 0.5 * double(cell_) * side_; }
-  static std::size_t index(int i, int j, int k) { return std::size_t((k * layers_ + j) * side_ + i); }
+  static std::size_t index(int i, int j, int k) {
+    return (std::size_t(k) * std::size_t(layers_) + std::size_t(j)) * std::size_t(side_) + std::size_t(i);
+  }
   double started_() const { return full_ + gone_; }
   void blow(Stage3& stage, Vec3d place) {
     const int ci = clamp(int((place.x + half()) / double(cell_)), 0, side_ - 1),
