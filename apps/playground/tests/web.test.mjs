@@ -2,7 +2,8 @@
 // WEB names the folder.
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
-import {existsSync, readFileSync, readdirSync} from 'node:fs';
+import {existsSync, mkdtempSync, readFileSync, readdirSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
@@ -12,13 +13,14 @@ import {at, beyond, bodies, carom, holding, paused, picture, place, root, screen
 
 const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
 const steps = Number(process.env.HASH_STEPS ?? 600);
+const scratch = mkdtempSync(join(tmpdir(), 'carom-hashes-'));
 
 let server;
 before(async () => {
   assert.ok(existsSync(join(web, 'carom.wasm')), `${web} holds no built page: ./play --web makes one`);
   server = await serveFolder(web);
 });
-after(() => server?.close());
+after(() => { server?.close(); rmSync(scratch, {recursive: true, force: true}); });
 
 const packed = (name) => gzipSync(readFileSync(join(web, name)), {level: 9}).length;
 
@@ -40,7 +42,7 @@ test('the page is small enough for a phone', () => {
   assert.ok(page <= 400e3, `the page takes ${page} bytes`);
   // All that the gallery has: nobody waits for it, but it is all fetched in the end.
   const engine = readdirSync(web).filter((n) => n.endsWith('.wasm')).reduce((sum, n) => sum + packed(n), 0);
-  assert.ok(engine <= 1500e3, `the engine and its parts take ${engine} bytes`);
+  assert.ok(engine <= 1650e3, `the engine and its parts take ${engine} bytes`);
 });
 
 test('the first demo runs with the first file of the engine alone, at most 600 kB', async () => {
@@ -128,7 +130,7 @@ test(`state hashes after ${steps} steps: native and WebAssembly in Chromium`, {t
   const nativeOf = async (some) => {
     const native = [];
     for (const name of some) {
-      const {stdout} = await run(carom, ['run', name.replace(/^scene:/, ''), '--steps', String(steps), '--json', '--no-record', '--no-pictures', '--out', '/tmp/carom_page_hash'], limits)
+      const {stdout} = await run(carom, ['run', name.replace(/^scene:/, ''), '--steps', String(steps), '--json', '--no-record', '--no-pictures', '--out', scratch], limits)
         .catch((error) => error);  // a failed expectation is not this test's matter
       native.push(JSON.parse(stdout));
     }
