@@ -50,7 +50,7 @@ newest_clang() {
   fail "no clang with a WebAssembly C++ library (libc++-NN-dev-wasm32) in this distribution"
 }
 
-build_packages=(g++ cmake ninja-build make pkg-config ca-certificates libboost-dev libcairo2-dev libcli11-dev libgif-dev nlohmann-json3-dev
+build_packages=(g++ cmake ninja-build make pkg-config ca-certificates libboost-dev libcairo2-dev libcli11-dev libgif-dev libssl-dev nlohmann-json3-dev
   libtinygltf-dev)
 node_ready() { command -v node >/dev/null && command -v npm >/dev/null && [ "$(node -p 'process.versions.node.split(".")[0]')" -ge 18 ]; }
 
