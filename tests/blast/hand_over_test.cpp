@@ -6,6 +6,7 @@
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
 #include "carom/math/rotation.h"
+#include "tests/blast/block.h"
 
 namespace blast_hand_over_test {
 using namespace carom;
@@ -14,11 +15,8 @@ using math::Vec2d;
 using math::Vec3d;
 using rigid::Dim2;
 using rigid::Dim3;
+using test::block;
 
-Fracture block(Vec3d half, int count, std::uint64_t seed) {
-  const ConvexCell box(geometry::Bounds3d{-half, half});
-  return fracture_convex(voronoi_pattern(box, uniform_sites(box, count, seed)).value(), {.meshes = false}).value();
-}
 rigid::BodyId ball(rigid::World3& world, Vec3d position, math::Vec3f velocity, float radius, float density,
                    float restitution = 0) {
   rigid::BodyDef<Dim3> body;

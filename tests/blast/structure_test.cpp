@@ -7,6 +7,7 @@
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
 #include "carom/math/rotation.h"
+#include "tests/blast/block.h"
 
 namespace blast_test {
 using namespace carom;
@@ -15,11 +16,8 @@ using math::Vec2d;
 using math::Vec3d;
 using rigid::Dim2;
 using rigid::Dim3;
+using test::block;
 
-Fracture block(Vec3d half, int count, std::uint64_t seed) {
-  const ConvexCell box(geometry::Bounds3d{-half, half});
-  return fracture_convex(voronoi_pattern(box, uniform_sites(box, count, seed)).value(), {.meshes = false}).value();
-}
 template <class D>
 void floor_of(rigid::World<D>& world) {
   rigid::BodyDef<D> body;

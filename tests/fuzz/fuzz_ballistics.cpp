@@ -1,21 +1,10 @@
 // Drag tables and motor files from anybody: curves whose every value is finite, or a clear error that names the place.
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
 #include "carom/ballistics/drag_curve.h"
 #include "carom/ballistics/motor.h"
-
-namespace {
-
-void require(bool true_of_all, const char* what) {
-  if (true_of_all) return;
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
-
-}  // namespace
+#include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace carom;

@@ -1,21 +1,10 @@
 // Billiard presets from anybody: a table that can be played on, or a clear error that names the place.
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
 #include "carom/scene/billiards.h"
 #include "carom/sports/billiards_engine.h"
-
-namespace {
-
-void require(bool true_of_all, const char* what) {
-  if (true_of_all) return;
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
-
-}  // namespace
+#include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace carom;

@@ -1,21 +1,10 @@
 // Presets of balls, surfaces and clubs from anybody: numbers that can be, or a clear error that names the file.
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
 #include "carom/math/elementary.h"
 #include "carom/scene/sports_presets.h"
-
-namespace {
-
-void require(bool true_of_all, const char* what) {
-  if (true_of_all) return;
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
-
-}  // namespace
+#include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace carom;

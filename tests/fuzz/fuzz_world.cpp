@@ -1,22 +1,15 @@
 // Calls of the interface in any order with any numbers: valid, invalid, stale, foreign, huge, not finite. A refused
 // call leaves the world as it was, nothing ever stops being finite, and snapshots go there and back.
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 
 #include "carom/carom.h"
 #include "carom/environment/environment.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 using namespace carom;
 using namespace carom::rigid;
-
-void require(bool truth, const char* what) {
-  if (truth) return;
-  std::fprintf(stderr, "fuzz_world: %s\n", what);
-  std::abort();
-}
 
 class Source {
  public:
