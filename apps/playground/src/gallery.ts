@@ -52,10 +52,10 @@ export class Gallery {
     const ordered = [...this.groups].sort((a, b) => place(a[1]) - place(b[1]));
     byId('demo-count').textContent = `${demos.length} demos of ${this.groups.size} kinds.`;
     byId('demo-list').replaceChildren(...ordered.map(([group, list], i) => section(i, place(list),
-      element('h2', {}, group, element('small', {textContent: chaptersOf(list)})), element('ul', {}, ...list.map((demo) => this.card(demo))))));
-    this.fit();
+      element('ul', {}, ...list.map((demo) => this.card(demo))), element('h2', {}, group, ' ', element('small', {textContent: chaptersOf(list)})))));
+    this.head();
     byId('chapters').replaceChildren(...ordered.map(([group], i) => element('button', {type: 'button', textContent: group, onclick: () => {
-      byId(`group-${i}`).scrollIntoView({behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth'});
+      byId(`group-${i}`).querySelector('h2')!.scrollIntoView({behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth'});
       byId(`group-${i}`).querySelector('a')?.focus({preventScroll: true});
     }})));
   }
@@ -73,9 +73,9 @@ export class Gallery {
     return element('li', {}, link);
   }
 
-  /** A section is as wide as the cards that it shows. */
-  private fit(): void {
-    for (const section of byId('demo-list').querySelectorAll('section')) section.style.setProperty('--count', String(section.querySelectorAll('li:not([hidden])').length));
+  /** The cards of all groups follow each other without a gap: a group's name stands in the first that is shown. */
+  private head(): void {
+    for (const section of byId('demo-list').querySelectorAll('section')) section.querySelector('li:not([hidden])')?.prepend(section.querySelector('h2')!);
   }
 
   mark(demo: string): void {
@@ -96,7 +96,7 @@ export class Gallery {
       section.hidden = shown === 0;
       found += shown;
     }
-    this.fit();
+    this.head();
     byId('nothing-found').hidden = found > 0;
   }
 }

@@ -63,8 +63,18 @@ export class Ground {
   showGround(level: number | undefined): void { this.level = level; this.plane = undefined; this.stale = true; }
   showPlane(height: number, aspect: number, target: number[]): void { this.plane = {height, aspect, target}; this.stale = true; }
 
-  /** Before drawing: builds anew what has changed. */
-  update(): void {
+  /** Before drawing from there: builds anew what has changed. */
+  update(camera: THREE.Camera): void {
+    this.build();
+    // A label that lies before one's feet would fill the picture: it fades as one comes near.
+    if (!this.plane) for (const mark of this.marks.children) {
+      const shown = THREE.MathUtils.smoothstep(mark.position.distanceTo(camera.position) / this.spacing, 4.5, 8);
+      ((mark as THREE.Mesh).material as THREE.Material).opacity = shown;
+      mark.visible = shown > 0;
+    }
+  }
+
+  private build(): void {
     if (!this.stale) return;
     this.stale = false;
     for (const child of [...this.marks.children]) {

@@ -80,6 +80,10 @@ class Page implements Listener {
     byId<HTMLSelectElement>('speed').onchange = (event) => this.send({type: 'speed', value: Number((event.target as HTMLSelectElement).value)});
     byId('help-button').onclick = () => byId<HTMLDialogElement>('help').showModal();
     byId<HTMLSelectElement>('theme').onchange = (event) => this.theme((event.target as HTMLSelectElement).value);
+    byId<HTMLSelectElement>('text-size').onchange = (event) => {
+      document.documentElement.dataset.text = (event.target as HTMLSelectElement).value;
+      this.plots.redraw();
+    };
     this.canvas.addEventListener('dblclick', (event) => this.choose(this.viewer.bodyAt(event.clientX, event.clientY)));
     byId('menu').onclick = () => { if (!this.gallery.shown) this.toggle('menu', 'no-demos'); };
     byId('panel-toggle').onclick = () => this.toggle('panel-toggle', 'no-panel');
@@ -310,4 +314,10 @@ class Page implements Listener {
 }
 
 // The tests drive the page through this object; nothing in the page reads it.
-(window as unknown as {caromPage: Page}).caromPage = new Page();
+try {
+  (window as unknown as {caromPage: Page}).caromPage = new Page();
+} catch (error) {
+  byId('notice').textContent = `This browser cannot show the page: it needs WebGL2 (${error instanceof Error ? error.message : String(error)}).`;
+  byId('notice').hidden = false;
+  throw error;
+}

@@ -2,7 +2,7 @@
 // in the module's table stand functions that load them. A Worker may wait for a file, and so does the call.
 
 /** So long after the start the other parts are fetched quietly, lest a click has to wait for one. */
-const QUIET = 5000;  // ms
+const QUIET = 1500;  // ms
 
 export class Parts {
   private files: Record<string, string> = {};
@@ -55,7 +55,7 @@ export class Parts {
   private async fetchAll(): Promise<void> {
     for (const [part, file] of Object.entries(this.files)) {
       if (this.loaded.has(part)) continue;
-      const answer = await fetch(file);
+      const answer = await fetch(file, {priority: 'low'});
       if (!answer.ok) return;  // whoever needs it will say so
       const module = await WebAssembly.compile(await answer.arrayBuffer());
       if (!this.loaded.has(part)) this.compiled.set(part, module);

@@ -132,9 +132,10 @@ export class Plots {
     if (!d || this.host.clientWidth < 50) return;
     const style = getComputedStyle(document.documentElement);
     const ink = style.getPropertyValue('--ink-soft'), grid = style.getPropertyValue('--line');
+    const scale = parseFloat(style.fontSize) / 16, font = `${12 * scale}px system-ui`;  // as large as the page's text
     const axis = (a: {label: string; unit: string}, wide: boolean): uPlot.Axis => ({
       label: a.unit ? `${a.label} (${a.unit})` : a.label, stroke: ink, grid: {stroke: grid, width: 1}, ticks: {stroke: grid, width: 1},
-      size: wide ? (_, labels) => 20 + 7 * Math.max(3, ...(labels ?? []).map((l) => l.length)) : 46, labelSize: 20, font: '12px system-ui', labelFont: '12px system-ui', values: (_, ticks, _axis, _space, increment) => tickLabels(ticks, increment),
+      size: wide ? (_, labels) => scale * (20 + 7 * Math.max(3, ...(labels ?? []).map((l) => l.length))) : 46 * scale, labelSize: 20 * scale, font, labelFont: font, values: (_, ticks, _axis, _space, increment) => tickLabels(ticks, increment),
     });
     const range = (k: 'x' | 'y') => (): [number, number] => {
       if (this.zoom) return this.zoom[k];
@@ -161,7 +162,7 @@ export class Plots {
       return {stroke: path, fill: marks ? path : undefined, clip: null as unknown as Path2D, flags: 1 | 2} as uPlot.Series.Paths;
     };
     this.chart = new uPlot({
-      mode: 2, width: this.host.clientWidth, height: 230,
+      mode: 2, width: this.host.clientWidth, height: 230 * scale,
       scales: {x: {time: false, range: range('x')}, y: {range: range('y')}},
       legend: {show: true, live: false}, cursor: {drag: {x: true, y: true, setScale: false}, bind: {dblclick: () => () => { this.zoom = undefined; this.dirty = true; return null; }}},
       hooks: {

@@ -353,7 +353,7 @@ export class Viewer {
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).add(new THREE.Vector3(0.45, 1, 0.35).normalize().multiplyScalar(3 * reach));
     this.camera.updateMatrixWorld();
-    this.ground.update();
+    this.ground.update(this.camera);
     this.cloud.view(this.camera, this.renderer.domElement.height / 2, this.sun.position.clone().sub(center));
     this.renderer.render(this.scene, this.camera);
   }

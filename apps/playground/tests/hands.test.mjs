@@ -1,8 +1,8 @@
-// What one does to a scene and asks of it: going back in time, shooting, probing, asking why, layers, three fingers, a
-// gamepad, the keyboard alone.
+// What one does to a scene and asks of it: going back in time, slow motion, cameras, shooting, probing, asking why, three
+// fingers, a gamepad, the keyboard alone.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {at, beyond, bodies, drawn, hashAt, movedFrom, paused, picture, place, runFor, screen, serve, slide, stepOf, until, visit} from './harness.mjs';
+import {at, beyond, bodies, hashAt, movedFrom, paused, picture, place, runFor, screen, serve, slide, stepOf, until, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
@@ -67,55 +67,50 @@ test('probes tell what lies under the pointer', async () => {
   await page.done();
 });
 
-test('every layer of debug drawing, in space and in the plane', async () => {
-  for (const demo of ['joints', 'card-house']) {
-    const page = await open(demo);
-    const lines = () => page.evaluate(() => window.caromPage.viewer.lineCount);
-    await beyond(page, 40);
-    await paused(page);
-    const layers = page.locator('#layers input[data-layer]'), bare = await lines();
-    const without = [];  // which need what this scene lacks
-    for (let i = 0; i < await layers.count(); ++i) {
-      const name = await layers.nth(i).getAttribute('data-layer');
-      await layers.nth(i).check();
-      const now = await stepOf(page);
-      await page.click('#step');
-      await at(page, now + 1);
-      if (await lines() <= bare) without.push(name);
-      await layers.nth(i).uncheck();
-    }
-    for (const needed of ['bounds', 'centers', 'islands']) assert.ok(!without.includes(needed), `${demo}: no lines of ${without}`);
-    assert.ok(!without.includes(demo === 'joints' ? 'joints' : 'contacts'), `${demo}: no lines of ${without}`);
-    for (const box of await layers.all()) await box.check();
-    await page.click('#run');
-    await runFor(page, 20);
-    await picture(page, `layers ${demo}`);
-    await page.locator('#timing').scrollIntoViewIfNeeded();
-    await picture(page, `numbers ${demo}`);
-    await page.done();
-  }
+test('slow motion shows a tenth of what passes', async () => {
+  const page = await open('chain');
+  await page.selectOption('#speed', '0.1');
+  const before = await page.evaluate(() => { window.since = performance.now(); return window.caromPage.shown; });
+  await beyond(page, before + 12);
+  const {steps, seconds} = await page.evaluate((n) => ({steps: window.caromPage.shown - n, seconds: (performance.now() - window.since) / 1000}), before);
+  assert.ok(steps / 60 < 0.15 * seconds + 0.1, `${steps} steps in ${seconds} s`);
+  await page.done();
 });
 
-test('heat colours tell speeds, trails tell ways', async () => {
-  const page = await open('wrecking-ball');
-  await beyond(page, 30);
-  const colors = () => page.evaluate(() => {
-    const seen = new Set();
-    for (const batch of window.caromPage.viewer.bodies.batches.values()) for (let i = 0; i < batch.mesh.count; ++i) seen.add([...batch.mesh.instanceColor.array.slice(3 * i, 3 * i + 3)].map((x) => x.toFixed(3)).join());
-    return seen.size;
-  });
-  const own = await colors();
-  await page.check('#layers >> text=Heat colours');
-  await page.check('#layers >> text=Trails');
-  await page.waitForSelector('#legend', {state: 'visible'});
-  await runFor(page, 20);
-  assert.match(await page.textContent('#legend-top'), /^(1|2|5|10|20) m\/s$/);
-  assert.ok(own < 40 && await colors() > 3, 'fast and slow bodies differ');
-  assert.ok(await page.evaluate(() => [...window.caromPage.viewer.bodies.drawn.values()].some((d) => d.heat > 1)));
-  assert.ok(await page.evaluate(() => window.caromPage.viewer.bodies.trails.group.children.some((line) => line.geometry.drawRange.count > 5)));
-  await picture(page, 'heat and trails');
-  await page.uncheck('#layers >> text=Heat colours');
-  assert.ok(await colors() < 40, 'their own colours again');
+test('a drag beside bodies looks around, the wheel comes closer, Home goes back; in the plane a drag moves the paper', async () => {
+  const page = await open('joints');
+  await paused(page);
+  await page.emulateMedia({reducedMotion: 'reduce'});
+  await page.keyboard.press('Home');
+  const view = () => page.evaluate(() => window.caromPage.viewer.viewpoint);
+  const distance = (v) => Math.hypot(v[0] - v[3], v[1] - v[4], v[2] - v[5]);
+  const settled = (from, what) => page.waitForFunction(([v, w]) => {
+    const now = window.caromPage.viewer.viewpoint, moved = now.some((x, i) => Math.abs(x - v[i]) > 0.05);
+    return w ? moved : !moved;
+  }, [from, what]);
+  const home = await view(), box = await page.locator('#view').boundingBox(), sky = {x: box.x + 60, y: box.y + 90};
+  await page.mouse.move(sky.x, sky.y);
+  await page.mouse.down();
+  await page.mouse.move(sky.x + 120, sky.y + 40, {steps: 5});
+  await page.mouse.up();
+  await settled(home, true);
+  const turned = await view();
+  assert.ok(Math.abs(distance(turned) / distance(home) - 1) < 1e-3, 'as far away as before');
+  assert.deepEqual(turned.slice(3), home.slice(3), 'and at the same place');
+  await page.mouse.wheel(0, -400);
+  await page.waitForFunction((d) => { const v = window.caromPage.viewer.viewpoint; return Math.hypot(v[0] - v[3], v[1] - v[4], v[2] - v[5]) < 0.9 * d; }, distance(home));
+  await page.keyboard.press('Home');
+  await settled(home, false);
+  await page.evaluate(() => { location.hash = 'card-house'; });
+  await page.waitForFunction(() => window.caromPage.opened.demo === 'card-house' && window.caromPage.shown >= 0);
+  const flat = await view();
+  await page.mouse.move(sky.x, sky.y);
+  await page.mouse.down();
+  await page.mouse.move(sky.x + 100, sky.y, {steps: 5});
+  await page.mouse.up();
+  await settled(flat, true);
+  const moved = await view();
+  assert.ok(moved[3] < flat[3] - 0.1 && Math.abs(moved[4] - flat[4]) < 1e-6, `${flat} became ${moved}`);
   await page.done();
 });
 

@@ -63,15 +63,42 @@ afterEach(async () => {
 });
 after(async () => { await browser?.close(); });
 
-/** A page at an address; `done` fails the test on any error that the page had. */
-export async function visit(address, {viewport = {width: 1000, height: 700}, ...options} = {}, shows = true) {
+/**
+ * In the page, before it: it draws when a test asks for a picture, and otherwise no sooner than `pause` ms after the
+ * last one. Without a GPU a picture costs more than all else together, and most tests ask for numbers. What is drawn is
+ * drawn as finely as ever.
+ */
+function drawSparingly(pause) {
+  let made;
+  Object.defineProperty(window, 'caromPage', {get: () => made, set: (page) => {
+    made = page;
+    const {viewer} = page, render = viewer.render.bind(viewer);
+    let last = -Infinity;
+    viewer.nextChange = Infinity;  // few pictures a second are this test's wish, not a slow machine's
+    viewer.render = (now) => {
+      if (now - last < pause && !window.drawNow) return;
+      last = now;
+      window.drawNow = false;
+      render(now);
+    };
+  }});
+}
+
+/** A page at an address; `done` fails the test on any error that the page had. `pause`: between its pictures, ms; 0: as many as it can. */
+export async function visit(address, {viewport = {width: 1000, height: 700}, pause = 500, ...options} = {}, shows = true) {
   const context = await (await launched()).newContext({viewport, ...options});
   contexts.push(context);
+  if (pause > 0) await context.addInitScript(drawSparingly, pause);
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE);
   page.problems = [];
   page.on('pageerror', (error) => page.problems.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
+  // Nobody else is asked for anything.
+  page.on('request', (request) => {
+    const {protocol, origin} = new URL(request.url());
+    if (protocol.startsWith('http') && address !== 'about:blank' && origin !== new URL(address).origin) page.problems.push(`a request to ${origin}`);
+  });
   page.done = async () => assert.deepEqual(page.problems, []);
   await page.goto(address);
   if (shows) await page.waitForFunction(() => window.caromPage?.shown >= 0);
@@ -101,7 +128,10 @@ export const movedFrom = (page, id, before, metres) => page.waitForFunction(([i,
 /** A pointer holds a body. */
 export const holding = (page) => page.waitForFunction(() => [...window.caromPage.hands.holds.values()].some((h) => h.held));
 /** The picture of what has come is drawn. */
-export const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+export const drawn = (page) => page.evaluate(() => new Promise((resolve) => {
+  window.drawNow = true;
+  requestAnimationFrame(() => requestAnimationFrame(resolve));
+}));
 export const until = (page, text) => page.waitForFunction((t) => document.querySelector('#run').textContent === t, text);
 export const bodies = (page, type) => page.evaluate((t) => window.caromPage.viewer.bodyIds(t), type);
 export const place = (page, id) => page.evaluate((i) => window.caromPage.viewer.bodyPosition(i), id);

@@ -1,9 +1,9 @@
 // What leaves the page and comes into it: links, recordings, scene files, plots as tables.
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
+import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {at, beyond, bodies, carom, paused, picture, place, root, serve, slide, until, visit} from './harness.mjs';
 
@@ -51,6 +51,10 @@ test('a recording is made, saved, opened again and scrubbed', async () => {
   await slide(page, start + 10);
   await at(page, start + 10);
   await picture(page, 'recording');
+  // Run again from what opened it: the same poses and hashes at every step.
+  await page.click('#share button:has-text("Check recording")');
+  await page.waitForFunction(() => /^Run again: /.test(document.querySelector('#notice').textContent) && /equal|same|agree/.test(document.querySelector('#notice').textContent));
+  await picture(page, 'checked recording');
   await page.done();
 });
 
@@ -90,6 +94,51 @@ test('a scene file opens, and a wrong one is shown at its line', async () => {
   await picture(page, 'wrong scene');
   assert.match(await page.title(), /Two balls/);
   await page.done();
+});
+
+test('a scene is dropped on the page; what the view shows is saved as a picture', async () => {
+  const page = await open('chain');
+  const scene = {name: 'Dropped', dimension: 3, bodies: [{name: 'ball', position: [0, '2 m', 0], shape: {type: 'sphere', radius: '0.5 m'}}]};
+  await page.evaluate((text) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], 'dropped.json'));
+    for (const type of ['dragover', 'drop']) document.querySelector('#view').dispatchEvent(new DragEvent(type, {dataTransfer, bubbles: true, cancelable: true}));
+  }, JSON.stringify(scene));
+  await page.waitForFunction(() => document.title.includes('Dropped') && window.caromPage.viewer.bodyIds('dynamic').length === 1);
+  const [png] = await Promise.all([page.waitForEvent('download'), page.click('#share button:has-text("Picture")')]);
+  await png.saveAs(join(folder, 'view.png'));
+  const bytes = readFileSync(join(folder, 'view.png'));
+  assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+  assert.ok(bytes.readUInt32BE(16) > 300 && bytes.length > 8000, `${bytes.readUInt32BE(16)} pixels wide, ${bytes.length} bytes`);
+  await page.done();
+});
+
+test('a running game is attached to: its bodies are pulled, it is paused and stepped', async () => {
+  const game = spawn(join(dirname(carom), '../../examples/example_debugged_game'), ['0'], {stdio: ['ignore', 'pipe', 'pipe']});
+  try {
+    const url = await new Promise((resolve, reject) => {
+      let text = '';
+      for (const out of [game.stdout, game.stderr]) out.on('data', (bytes) => {
+        text += bytes;
+        const match = text.match(/http:\/\/[\w.:[\]]+\//);
+        if (match) resolve(match[0]);
+      });
+      game.on('error', reject).on('exit', (code) => reject(new Error(`the game ended with ${code}: ${text}`)));
+    });
+    const page = await visit(url);
+    await page.waitForFunction(() => document.title.includes('Eight balls') && window.caromPage.viewer.bodyIds('dynamic').length === 8);
+    await beyond(page, 5);
+    const held = await paused(page);
+    await page.click('#step');
+    await at(page, held + 1);
+    await page.evaluate((id) => window.caromPage.choose(id), (await bodies(page, 'dynamic'))[0]);
+    await page.waitForSelector('#why-section:not([hidden])');
+    await picture(page, 'game');
+    assert.ok(await page.isHidden('#restart'), 'a game keeps its own time');
+    await page.done();
+  } finally {
+    game.kill();
+  }
 });
 
 test('a plot is saved as a table and as a picture, and read at the cursor', async () => {

@@ -1,0 +1,140 @@
+// What one sees: layers of debug drawing, heat, trails, shadows, themes, sizes of text, numbers and warnings.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {at, barriers, beyond, bodies, drawn, paused, picture, runFor, serve, stepOf, visit} from './harness.mjs';
+
+let server;
+before(async () => { server = await serve(); });
+after(() => server?.close());
+const open = (demo, options) => visit(`${server.url}#${demo}`, options);
+
+/** What the layers of debug drawing must show where: each has something of its kind somewhere. */
+const SHOWN = {
+  joints: ['bounds', 'centers', 'joints', 'errors', 'islands', 'velocities', 'forces'],
+  'card-house': ['bounds', 'centers', 'contacts', 'colors', 'errors', 'islands', 'forces'],
+  'scene:floating_boxes': ['bounds', 'velocities', 'effectors', 'water'],
+};
+
+test('every layer of debug drawing, in space and in the plane', async () => {
+  const all = new Set();
+  let names;
+  for (const [demo, shown] of Object.entries(SHOWN)) {
+    const page = await open(demo);
+    const lines = () => page.evaluate(() => window.caromPage.viewer.lineCount);
+    await beyond(page, 40);
+    await paused(page);
+    const layers = page.locator('#layers input[data-layer]'), bare = await lines();
+    const without = [];  // which need what this scene lacks
+    for (let i = 0; i < await layers.count(); ++i) {
+      const name = await layers.nth(i).getAttribute('data-layer');
+      await layers.nth(i).check();
+      const now = await stepOf(page);
+      await page.click('#step');
+      await at(page, now + 1);
+      if (await lines() <= bare) without.push(name);
+      await layers.nth(i).uncheck();
+    }
+    for (const needed of shown) { assert.ok(!without.includes(needed), `${demo}: no lines of ${without}`); all.add(needed); }
+    names = await layers.evaluateAll((boxes) => boxes.map((box) => box.dataset.layer));
+    for (const box of await layers.all()) await box.check();
+    await page.click('#run');
+    await runFor(page, 20);
+    await picture(page, `layers ${demo}`);
+    await page.locator('#timing').scrollIntoViewIfNeeded();
+    await picture(page, `numbers ${demo}`);
+    await page.done();
+  }
+  assert.deepEqual(names.filter((name) => !all.has(name)), [], 'layers that no scene shows');
+});
+
+test('heat colours tell speeds, trails tell ways', async () => {
+  const page = await open('wrecking-ball');
+  await beyond(page, 30);
+  const colors = () => page.evaluate(() => {
+    const seen = new Set();
+    for (const batch of window.caromPage.viewer.bodies.batches.values()) for (let i = 0; i < batch.mesh.count; ++i) seen.add([...batch.mesh.instanceColor.array.slice(3 * i, 3 * i + 3)].map((x) => x.toFixed(3)).join());
+    return seen.size;
+  });
+  const own = await colors();
+  await page.check('#layers >> text=Heat colours');
+  await page.check('#layers >> text=Trails');
+  await page.waitForSelector('#legend', {state: 'visible'});
+  await runFor(page, 20);
+  assert.match(await page.textContent('#legend-top'), /^(1|2|5|10|20) m\/s$/);
+  assert.ok(own < 40 && await colors() > 3, 'fast and slow bodies differ');
+  assert.ok(await page.evaluate(() => [...window.caromPage.viewer.bodies.drawn.values()].some((d) => d.heat > 1)));
+  assert.ok(await page.evaluate(() => window.caromPage.viewer.bodies.trails.group.children.some((line) => line.geometry.drawRange.count > 5)));
+  await picture(page, 'heat and trails');
+  await page.uncheck('#layers >> text=Heat colours');
+  assert.ok(await colors() < 40, 'their own colours again');
+  await page.done();
+});
+
+test('a theme of one\'s own, text for the last row, shadows, and a wall of pixels', async () => {
+  const page = await open('pyramids', {colorScheme: 'light'});
+  await beyond(page, 5);
+  await paused(page);
+  const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await paper();
+  await page.selectOption('#theme', 'dark');
+  assert.notEqual(await paper(), light);
+  assert.deepEqual(await barriers(page, {exclude: ['#demos']}), []);
+  await picture(page, 'dark by choice');
+  await page.selectOption('#theme', '');
+  const size = () => page.$eval('#about .summary', (e) => parseFloat(getComputedStyle(e).fontSize));
+  const small = await size();
+  await page.selectOption('#text-size', 'largest');
+  assert.ok(await size() > 1.5 * small && await size() >= 22, `${await size()} px`);
+  assert.ok(await page.evaluate(() => document.querySelector('#panel').scrollWidth <= document.querySelector('#panel').clientWidth + 1), 'nothing sticks out of the panel');
+  await page.waitForSelector('#plot canvas');
+  await picture(page, 'last row');
+  await page.selectOption('#text-size', '');
+  // A shadow darkens the ground.
+  const brightness = () => page.evaluate(async () => {
+    const view = await createImageBitmap(await window.caromPage.viewer.picture()), canvas = new OffscreenCanvas(100, 70);
+    const ink = canvas.getContext('2d');
+    ink.drawImage(view, 0, 0, 100, 70);
+    return ink.getImageData(0, 0, 100, 70).data.reduce((sum, x) => sum + x, 0) / 28000;
+  });
+  const shaded = await brightness();
+  await page.uncheck('#layers >> text=Shadows');
+  await drawn(page);
+  assert.ok(await brightness() > shaded + 0.3, 'without shadows it is brighter');
+  await page.setViewportSize({width: 3840, height: 2160});
+  assert.ok(await size() > 1.4 * small, 'larger on a wall');
+  await picture(page, 'demo 4k');
+  await page.done();
+});
+
+test('numbers: budget, stages, warnings with advice', async () => {
+  const page = await open('chain');
+  const scene = {name: 'Heavy on light', dimension: 3, ground: '0 m', bodies: [
+    {name: 'floor', type: 'fixed', shape: {type: 'plane'}},
+    {name: 'light', position: [0, '0.5 m', 0], density: '1 kg/m^3', shape: {type: 'box', size: [1, 1, 1]}},
+    {name: 'heavy', position: [0, '1.5 m', 0], density: '5000 kg/m^3', shape: {type: 'box', size: [1, 1, 1]}}]};
+  await page.evaluate((text) => window.caromPage.send({type: 'open_scene', name: 'heavy.json', text}), JSON.stringify(scene));
+  await page.waitForFunction(() => document.title.includes('Heavy on light'));
+  await beyond(page, 40);
+  await page.waitForFunction(() => document.querySelectorAll('#timing-legend li').length > 3);
+  const rows = await page.$$eval('#numbers dt, #budget dt', (all) => all.map((e) => `${e.textContent}: ${e.nextElementSibling.textContent}`));
+  for (const wanted of [/^Bodies: 3 /, /^Contacts: [1-9]/, /^Kinetic energy: .* J/, /^Momentum: .* kg·m\/s/, /^Angular momentum: /, /^Mass: 5001 kg/, /^State hash: [0-9a-f]{16}$/, /^Memory: /])
+    assert.ok(rows.some((row) => wanted.test(row)), `${wanted}: ${rows.join('; ')}`);
+  const [light] = await bodies(page, 'dynamic');
+  await page.evaluate((id) => window.caromPage.choose(id), light);
+  await page.waitForSelector('#why .warning');
+  assert.match(await page.textContent('#why'), /light.*(awake|asleep|rest)/);
+  assert.match((await page.$$eval('#why .warning', (all) => all.map((e) => e.textContent))).join(' '), /mass|heav|sag/i);
+  await picture(page, 'warning');
+  await page.done();
+});
+
+test('a browser without WebGL2 is told what it lacks', async () => {
+  const page = await visit('about:blank', {pause: 0}, false);
+  await page.addInitScript(() => {
+    const own = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) { return kind.startsWith('webgl') ? null : own.call(this, kind, ...rest); };
+  });
+  await page.goto(server.url);
+  await page.waitForSelector('#notice:not([hidden])');
+  assert.match(await page.textContent('#notice'), /needs WebGL2/);
+});

@@ -1,0 +1,83 @@
+// Every demo and scene leads to the same bits natively and as WebAssembly in Chromium. WEB names the folder that
+// `./play --web` builds; HASH_STEPS and HASH_DEMOS (names with commas between them) ask for other runs.
+import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
+import {mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {dirname, join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {promisify} from 'node:util';
+import {carom, root, serveFolder, visit} from './harness.mjs';
+
+const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
+const steps = Number(process.env.HASH_STEPS ?? 600);
+const scratch = mkdtempSync(join(tmpdir(), 'carom-hashes-'));
+
+let server;
+before(async () => { server = await serveFolder(web); });
+after(() => { server?.close(); rmSync(scratch, {recursive: true, force: true}); });
+
+/** In the page: state hashes of demos after so many steps, one after another, in one engine of its own. */
+function hashesAfter(runs) {
+  return new Promise((resolve, reject) => {
+    const worker = new Worker('worker.js', {type: 'module'}), hashes = [];
+    const send = (message) => worker.postMessage(JSON.stringify(message));
+    let asked = 0, opened = false, demo, count;
+    const next = () => {
+      if (hashes.length === runs.length) { worker.terminate(); resolve(hashes); return; }
+      [demo, count] = runs[hashes.length];
+      asked = 0;
+      opened = false;
+      send({type: 'open', demo});
+    };
+    worker.onerror = (event) => reject(new Error(`${demo}: ${event.message}`));
+    worker.onmessage = ({data}) => {
+      if (typeof data === 'string') {
+        const message = JSON.parse(data);
+        if (message.type === 'error') reject(new Error(`${demo}: ${message.message}`));
+        if (message.type === 'opened') { opened = true; send({type: 'pause'}); }
+        // A status comes whenever a demo has something to say, also in the midst of the steps asked for.
+        if (!opened || message.type !== 'status' || message.running || message.step < asked || message.step >= count) return;
+        asked = Math.min(count, message.step + 100);
+        send({type: 'step', count: asked - message.step});
+        return;
+      }
+      const view = new DataView(data);
+      if (view.getUint8(0) !== 2) return;
+      send({type: 'ack', sequence: view.getUint32(4, true)});
+      if (!opened || view.getUint32(8, true) < count || !(view.getUint8(1) & 2)) return;
+      hashes.push(view.getBigUint64(view.byteLength - 16, true).toString(16).padStart(16, '0'));
+      next();
+    };
+    send({type: 'hello', protocol: 1});
+    next();
+  });
+}
+
+test(`state hashes after ${steps} steps: native and WebAssembly in Chromium`, {timeout: 1800e3}, async () => {
+  const run = promisify(execFile), limits = {maxBuffer: 1 << 26, cwd: root};
+  const listed = JSON.parse((await run(carom, ['list', '--json'], limits)).stdout);
+  const only = process.env.HASH_DEMOS?.split(',');
+  const names = [...listed.demos.map((d) => d.demo), ...listed.scenes.map((d) => `scene:${d.demo}`), ...(only ? listed.stress.map((d) => d.demo) : [])]
+    .filter((name) => !only || only.includes(name));
+  // A page without a demo of its own: nothing else takes the processors.
+  const page = await visit(`${server.url}worker.js`, {}, false);
+  const nativeOf = async (some) => {
+    const native = [];
+    for (const name of some) {
+      const {stdout} = await run(carom, ['run', name.replace(/^scene:/, ''), '--steps', String(steps), '--json', '--no-record', '--no-pictures', '--out', scratch], limits)
+        .catch((error) => error);  // a failed expectation is not this test's matter
+      native.push(JSON.parse(stdout));
+    }
+    return native;
+  };
+  const parts = Array.from({length: Math.ceil(names.length / 12)}, (_, i) => names.slice(12 * i, 12 * i + 12));
+  let next = nativeOf(parts[0]);
+  for (const [i, some] of parts.entries()) {
+    const native = await next;
+    if (i + 1 < parts.length) next = nativeOf(parts[i + 1]);  // while the page is at work
+    const found = await page.evaluate(hashesAfter, some.map((name, k) => [name, native[k].steps]));
+    some.forEach((name, k) => assert.equal(found[k], native[k].state_hash, name));
+  }
+});
