@@ -72,7 +72,8 @@ class Fortress final : public Repeatable<Fortress, Demo2> {
         rigid::TileGround::create(stage.world(), body_, columns_, rows_, cell_, cells, definition_);
     if (!made.ok()) return stage.fail(made.error());
     tiles_ = std::move(made).value();
-    stage.redraw(body_);
+    for (const std::uint32_t color : colors_) (void)stage.add_surface({}, color << 8 | 0xff);
+    show(stage);
     for (int n = 0; n < 6; ++n) {
       rigid::BodyDef<Dim2> barrel;
       barrel.name = "barrel";
@@ -165,7 +166,7 @@ class Fortress final : public Repeatable<Fortress, Demo2> {
     });
     const std::size_t broken = std::min(near.size(), std::size_t(min(energy / stage.value("strength"), 12.0) + 1));
     for (std::size_t n = 0; n < broken; ++n) clear(stage, near[n].i, near[n].j);
-    if (broken > 0) stage.redraw(body_);
+    if (broken > 0) show(stage);
   }
   /// Groups of tiles that no way over edges joins to the bottom row.
   std::vector<std::vector<int>> loose() const {
@@ -224,7 +225,30 @@ class Fortress final : public Repeatable<Fortress, Demo2> {
       for (const int m : members) clear(stage, m % columns_, m / columns_);
       stage.adopt(id);
     }
+    show(stage);
+  }
+  /// The outlines anew, and the tiles within them: stones with a joint between them, earth by the row.
+  void show(Stage2& stage) {
     stage.redraw(body_);
+    for (int what = earth; what <= brick; ++what) {
+      std::vector<math::Vec3f> corners;
+      std::vector<std::uint32_t> triangles;
+      for (int j = 0; j < rows_; ++j)
+        for (int i = 0; i < columns_; ++i) {
+          if (tiles_->at(i, j) != what) continue;
+          const int first = i;
+          while (what == earth && i + 1 < columns_ && tiles_->at(i + 1, j) == earth) ++i;
+          const float half = (what == earth ? 0.5f : 0.455f) * cell_;
+          const Vec2f low = Vec2f(middle(first, j)) - Vec2f{half, half}, high = Vec2f(middle(i, j)) + Vec2f{half, half};
+          for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u})
+            triangles.push_back(static_cast<std::uint32_t>(corners.size()) + k);
+          corners.insert(corners.end(),
+                         {{low.x, low.y, 0}, {high.x, low.y, 0}, {high.x, high.y, 0}, {low.x, high.y, 0}});
+        }
+      // (Without corners the host would keep what it showed last.)
+      if (corners.empty()) corners.resize(1);
+      stage.set_surface(what - earth, corners, std::move(triangles));
+    }
   }
 
   BodyId body_;
