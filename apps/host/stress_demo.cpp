@@ -38,16 +38,62 @@ std::string suite_title(std::string_view suite) {
   return "common";
 }
 
+/// What is in it, in a sentence.
+const char* what_of(const SceneInfo& info) {
+  struct What {
+    const char *path, *text;
+  };
+  static constexpr What all[] = {
+      {"common/twenty_pyramids", "Twenty pyramids of 55 cubes side by side; nothing may sleep."},
+      {"common/heap", "2 000 cubes, balls and capsules fall into a walled pit; nothing may sleep."},
+      {"box3d/convex_pile", "5 120 hulls of 32 points drop in a block of 8 by 8 columns."},
+      {"box3d/joint_grid", "A net of 10 000 balls on 19 701 ball joints hangs from its upper edge."},
+      {"box3d/junkyard", "10 584 rocks fall into a yard in which a pillar goes round."},
+      {"box3d/large_pyramid", "5 050 cubes in one pyramid of a hundred rows."},
+      {"box3d/many_pyramids", "196 pyramids of 55 cubes."},
+      {"box3d/rain", "Ragdolls of fourteen bodies rain on a hundred grids with a torus each."},
+      {"box3d/trees25", "Fifty trunks of 22 prisms fall over on a wavy mesh, four cells of it a metre."},
+      {"box3d/trees50", "Fifty trunks of 22 prisms fall over on a wavy mesh, two cells of it a metre."},
+      {"box3d/trees100", "Fifty trunks of 22 prisms fall over on a wavy mesh, one cell of it a metre."},
+      {"box3d/washer", "8 000 cubes in a turning drum with four paddles."},
+      {"box3d/wide_pyramid", "A pyramid on a square base: 1 240 cubes in fifteen layers that fall onto each other."},
+      {"box2d/compounds", "3 000 bodies of two triangles each fall into a bin."},
+      {"box2d/joint_grid", "A net of 10 000 discs on hinges hangs from seven of them."},
+      {"box2d/junkyard", "8 000 pentagons on a floor that a box sweeps."},
+      {"box2d/large_pyramid", "5 050 boxes in one pyramid of a hundred rows."},
+      {"box2d/many_pyramids", "400 pyramids of 55 boxes, one floor above another."},
+      {"box2d/rain", "Ragdolls of eleven bodies rain on five grounds of small boxes."},
+      {"box2d/smash", "A block of 9 600 sleeping boxes is hit by a big one, without gravity."},
+      {"box2d/spinner", "A rounded bar of 40 m turns in a ring full of small bodies."},
+      {"box2d/tumbler", "2 025 small boxes in a box that a motor turns."},
+      {"box2d/washer", "8 100 small boxes in a turning ring with four paddles."},
+      {"jolt/pyramid", "A pyramid on a square base: 1 240 cubes of 8 t in fifteen layers."},
+      {"jolt/convex_vs_mesh", "1 764 boxes, spheres, capsules and small hulls drop onto a wavy mesh."},
+      {"jolt/high_speed", "5 000 bodies at 250 m/s in a hollow cube of thin walls."},
+      {"jolt/character_virtual", "A hundred characters walk to and fro over a wavy mesh with stairs and pillars."},
+      {"jolt/ragdoll", "160 humanoids of 23 parts in sixteen piles, held in a pose by motors."},
+      {"jolt/ragdoll_single_pile", "160 humanoids of 23 parts in one pile, held in a pose by motors."},
+      {"jolt/large_mesh_500", "4 410 boxes drop onto a mountainous mesh of half a million triangles."},
+      {"jolt/large_mesh_1000", "4 410 boxes drop onto a mountainous mesh of two million triangles."},
+  };
+  const std::string path = info.path();
+  for (const What& what : all)
+    if (path == what.path) return what.text;
+  return "";
+}
+
 Declaration declaration_of(const SceneInfo& info) {
   Declaration d;
   const std::string peer = suite_title(info.suite);
   d.id = id_of(info);
   d.title = title_of(info);
-  d.summary = peer == "common" ? "A benchmark scene that every engine can build."
-                               : "A benchmark scene of " + peer + ", rebuilt from its recipe.";
+  d.summary = what_of(info);
+  if (d.summary.empty()) d.summary = "A benchmark scene.";
   d.group = peer == "common" ? "Stress: common scenes" : "Stress: scenes of " + peer;
   d.dimension = info.dimension();
   d.text =
+      (peer == "common" ? "A benchmark scene that every engine can build. "
+                        : "A benchmark scene of " + peer + ", rebuilt from its recipe. ") +
       "The same bodies, masses, friction and steps of 1/60 s as `carom bench " + info.path() +
       "` times, and as docs/benchmarks.md compares with other engines. The plot shows how long a step takes now, and "
       "in which stage; the page and this machine's other work are in those numbers.\n\nThe ids of bodies and the order "

@@ -38,7 +38,7 @@ class Page implements Listener {
   private hands = new Hands(this.canvas, this.viewer, this.tools, this.send);
   private timeline = new Timeline(this.send);
   private timing = new Timing(byId('timing'));
-  private share = new Share(this.viewer, this.source, (text) => this.notice(text, 4000), () => { void this.editing.open(); }, () => this.compare?.toggle());
+  private share = new Share(this.viewer, this.source, (text, wrong) => this.notice(text, wrong ? 8000 : 4000, wrong), () => { void this.editing.open(); }, () => this.compare?.toggle());
   private editing = new Editing(this.send, (name, text) => {
     // An edit changes the scene, not where one looks from, nor whether it runs.
     this.share.scene = {name, text};
@@ -138,9 +138,11 @@ class Page implements Listener {
     this.hands.releaseAll();
   }
 
-  private notice(text: string, milliseconds = 0): void {
+  /** `wrong`: something failed; otherwise something is done. */
+  private notice(text: string, milliseconds = 0, wrong = true): void {
     const notice = byId('notice');
     notice.textContent = text;
+    notice.classList.toggle('done', !wrong);
     notice.hidden = text === '';
     clearTimeout(this.noticeTimer);
     if (milliseconds > 0) this.noticeTimer = setTimeout(() => this.notice(''), milliseconds);

@@ -48,7 +48,7 @@ export class Panel {
   /** The C++ that makes the demo, as it was compiled; fetched when somebody wants to see it. */
   private source(demo: string): HTMLElement {
     const code = element('pre', {className: 'source', tabIndex: 0, textContent: '…'});
-    const details = element('details', {open: false, hidden: demo.startsWith('scene:') || demo.endsWith('.json')}, element('summary', {textContent: 'The C++ that makes it'}), code);
+    const details = element('details', {id: 'source', open: false, hidden: demo.startsWith('scene:') || demo.endsWith('.json')}, element('summary', {textContent: 'The C++ that makes it'}), code);
     details.addEventListener('toggle', () => {
       void fetch('sources.json').then((answer) => answer.json() as Promise<Record<string, {file: string; code: string} | undefined>>).then((all) => {
         const found = all[demo];

@@ -49,7 +49,7 @@ export class Share {
   /** The text of the scene that is open, where it came from a file; for a new connection and for errors. */
   scene?: {name: string; text: string};
 
-  constructor(private viewer: Viewer, private source: Source, private say: (text: string, lasting?: boolean) => void, edit: () => void, compare: () => void) {
+  constructor(private viewer: Viewer, private source: Source, private say: (text: string, wrong?: boolean) => void, edit: () => void, compare: () => void) {
     const button = (label: string, title: string, act: () => void) => element('button', {type: 'button', textContent: label, title, onclick: act});
     const chooser = element('input', {type: 'file', hidden: true, accept: '.json,.carom-rec', onchange: () => { for (const file of chooser.files ?? []) void this.openFile(file); }});
     chooser.setAttribute('aria-label', 'A scene or a recording');
@@ -91,7 +91,7 @@ export class Share {
 
   /** A recording that is open can be run again and compared. */
   playing(is: boolean): void { this.check.hidden = !is; }
-  verified(report: Verified): void { this.say(`Run again: ${report.message}.`, report.done); }
+  verified(report: Verified): void { this.say(`Run again: ${report.message}.`, !report.equal); }
 
   /** The host says whether it records with the file that ends it. */
   recorded(on: boolean): void {
@@ -106,7 +106,7 @@ export class Share {
   }
 
   async openFile(file: File): Promise<void> {
-    if (file.size > 64 << 20) { this.say(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; expected at most 67 MB.`); return; }
+    if (file.size > 64 << 20) { this.say(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; expected at most 67 MB.`, true); return; }
     const bytes = new Uint8Array(await file.arrayBuffer());
     if (new TextDecoder().decode(bytes.subarray(0, 8)) !== 'CAROMREC') {
       const text = new TextDecoder().decode(bytes);

@@ -18,7 +18,7 @@ test('every demo opens, moves or stands, shows its numbers, and is accessible', 
     await picture(page, demo);
     await page.evaluate(() => window.caromPage.send({type: 'pause'}));  // what follows needs no picture
     assert.notEqual(await page.textContent('#numbers'), '', demo);
-    assert.ok((await page.textContent('#about')).length > 20, `${demo} says what it shows`);
+    assert.ok((await page.textContent('#about .summary')).length > 25, `${demo} says what it shows`);
     // All of the page once; then what differs from demo to demo.
     assert.deepEqual(await barriers(page, demo === demos[0] ? undefined : {exclude: ['#demos']}), [], demo);
   }
