@@ -1,6 +1,9 @@
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <unistd.h>
 
-#include <fcntl.h>
 #include <sys/wait.h>
 #include <algorithm>
 #include <chrono>
@@ -39,6 +42,22 @@ void open_browser(const std::string& url) {
     _exit(0);
   }
   if (child > 0) waitpid(child, nullptr, 0);
+}
+
+/// The IPv4 addresses by which other devices of the network reach this machine.
+std::vector<std::string> network_addresses() {
+  std::vector<std::string> out;
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return out;
+  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    if ((one->ifa_flags & IFF_UP) == 0 || (one->ifa_flags & IFF_LOOPBACK) != 0) continue;
+    char text[INET_ADDRSTRLEN];
+    const auto* address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) out.emplace_back(text);
+  }
+  freeifaddrs(all);
+  return out;
 }
 
 }  // namespace
@@ -95,6 +114,10 @@ int serve(const ServeOptions& options) {
     std::printf(
         "Carom is at %s   (Ctrl-C ends it)\n%s", url.c_str(),
         server.root.empty() ? "the page has not been built: ./play builds it; the WebSocket at /ws works\n" : "");
+  if (!options.json && !options.quiet && options.address == "0.0.0.0")
+    for (const std::string& address : network_addresses())
+      std::printf("for other devices: %s://%s:%d/\n", server.tls ? "https" : "http", address.c_str(),
+                  int((*started)->port()));
   if (!options.json && !options.quiet && !fingerprint.empty())
     std::printf("its certificate's SHA-256 is %s\n", fingerprint.c_str());
   std::fflush(stdout);
