@@ -38,8 +38,8 @@ function functionsOf(bytes) {
   return functions;
 }
 
-/** A simulation host of a compiled module in Node: what worker.ts is in a page. */
-function makeHost(module, files) {
+/** A simulation host of a compiled module in Node: what worker.ts is in a page. `frame` is told of every frame. */
+export function makeHost(module, files, frame = () => {}) {
   const encode = new TextEncoder(), decode = new TextDecoder(), said = [];
   let host, clock = 0;
   const system = {
@@ -56,14 +56,17 @@ function makeHost(module, files) {
     for (let size = host.carom_take(); size >= 0; size = host.carom_take()) {
       const bytes = new Uint8Array(host.memory.buffer, host.carom_message(), size >> 1).slice();
       if (size & 1) said.push(JSON.parse(decode.decode(bytes)));
-      else if (bytes[0] === 2) send({type: 'ack', sequence: new DataView(bytes.buffer).getUint32(4, true)});
+      else if (bytes[0] === 2) {
+        frame(new DataView(bytes.buffer));
+        send({type: 'ack', sequence: new DataView(bytes.buffer).getUint32(4, true)});
+      }
     }
   };
   host._initialize();
   for (const [name, file] of Object.entries(files)) { put(encode.encode(name + file)); host.carom_file(encode.encode(name).length); }
   host.carom_start();
   send({type: 'hello', protocol: 1});
-  return {send, demos: said[0].demos, advance(seconds) { host.carom_advance(seconds); drain(); }, called(count) {
+  return {send, said, demos: said[0].demos, advance(seconds) { host.carom_advance(seconds); drain(); }, called(count) {
     const size = 8 + 4 * count, at = host.carom_room(size);
     if (host.__write_profile(at, size) !== size) throw new Error('the profile is not of this module');
     return new Uint32Array(host.memory.buffer.slice(at + 8, at + size)).map((when) => (when ? 1 : 0));
@@ -87,7 +90,7 @@ function runDemos({module, files, count}, {demos, seconds, patience}) {
   return host.called(count);
 }
 
-if (!isMainThread) parentPort.on('message', (set) => parentPort.postMessage(runDemos(workerData, set)));
+if (!isMainThread && workerData?.module) parentPort.on('message', (set) => parentPort.postMessage(runDemos(workerData, set)));
 
 /** Runs the sets of demos side by side, each by a host of its own; gives what each called. */
 async function runAll(data, sets) {

@@ -1,5 +1,6 @@
 // Every demo and scene leads to the same bits natively and as WebAssembly in Chromium. WEB names the folder that
-// `./play --web` builds; HASH_STEPS and HASH_DEMOS (names with commas between them) ask for other runs.
+// `./play --web` builds, MODULE the whole engine before it is cut; HASH_STEPS and HASH_DEMOS (names with commas between them)
+// ask for other runs. Scenes run in Node too; there tools/check_determinism.sh runs the demos.
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
@@ -11,6 +12,7 @@ import {promisify} from 'node:util';
 import {carom, root, serveFolder, visit} from './harness.mjs';
 
 const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
+const whole = process.env.MODULE ?? join(root, 'build/wasm/apps/wasm/carom.wasm');
 const steps = Number(process.env.HASH_STEPS ?? 600);
 const scratch = mkdtempSync(join(tmpdir(), 'carom-hashes-'));
 
@@ -55,7 +57,7 @@ function hashesAfter(runs) {
   });
 }
 
-test(`state hashes after ${steps} steps: native and WebAssembly in Chromium`, {timeout: 1800e3}, async () => {
+test(`state hashes after ${steps} steps: native and WebAssembly, in Chromium and in Node`, {timeout: 1800e3}, async () => {
   const run = promisify(execFile), limits = {maxBuffer: 1 << 26, cwd: root};
   const listed = JSON.parse((await run(carom, ['list', '--json'], limits)).stdout);
   const only = process.env.HASH_DEMOS?.split(',');
@@ -74,10 +76,16 @@ test(`state hashes after ${steps} steps: native and WebAssembly in Chromium`, {t
   };
   const parts = Array.from({length: Math.ceil(names.length / 12)}, (_, i) => names.slice(12 * i, 12 * i + 12));
   let next = nativeOf(parts[0]);
+  const scenes = [];
   for (const [i, some] of parts.entries()) {
     const native = await next;
     if (i + 1 < parts.length) next = nativeOf(parts[i + 1]);  // while the page is at work
     const found = await page.evaluate(hashesAfter, some.map((name, k) => [name, native[k].steps]));
     some.forEach((name, k) => assert.equal(found[k], native[k].state_hash, name));
+    some.forEach((name, k) => { if (name.startsWith('scene:')) scenes.push({name, ...native[k]}); });
   }
+  const {stdout} = await run(process.execPath, ['--no-warnings', '--liftoff-only', fileURLToPath(new URL('node_hashes.mjs', import.meta.url)), whole, join(web, 'files.json'),
+    ...scenes.map((s) => `${s.name}=${s.steps}`)], limits);
+  const inNode = stdout.trim().split('\n');
+  scenes.forEach((s, k) => assert.equal(inNode[k], s.state_hash, `${s.name} in Node`));
 });
