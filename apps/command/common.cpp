@@ -204,9 +204,14 @@ core::Result<std::vector<double>> parse_settings(const host::Declaration& declar
     const math::QuantityResult value = bare || !unit.ok ? any : math::parse_quantity(text, unit.dimension);
     if (!value.ok) return core::Error{"--set " + setting + ": " + value.error};
     if (!(value.si >= p.minimum && value.si <= p.maximum)) {
+      // In the unit that the demo shows.
+      const std::string& shown = p.display_unit.empty() ? p.unit : p.display_unit;
+      const math::QuantityResult zero = math::parse_quantity("0 " + shown), one = math::parse_quantity("1 " + shown);
+      const bool known_unit = zero.ok && one.ok && one.si != zero.si;
+      const auto in_unit = [&](double si) { return known_unit ? (si - zero.si) / (one.si - zero.si) : si; };
       char range[160];
-      std::snprintf(range, sizeof range, ": found %g, expected %g to %g %s", value.si, p.minimum, p.maximum,
-                    p.unit.c_str());
+      std::snprintf(range, sizeof range, ": found %g, expected %g to %g %s", in_unit(value.si), in_unit(p.minimum),
+                    in_unit(p.maximum), (known_unit ? shown : p.unit).c_str());
       return core::Error{"--set " + setting + range};
     }
     values[i] = value.si;
