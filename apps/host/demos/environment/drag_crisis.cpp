@@ -35,7 +35,7 @@ class DragCrisis final : public Repeatable<DragCrisis, Demo3> {
         "for the disc. The points are what the angles say, all over log₁₀ Re.";
     d.dt = 1.0 / 120;
     d.duration = 40;
-    d.camera = {{0.7, -0.4, 5.4}, {0, -0.75, 0}};
+    d.camera = {{2.7, 0.3, 2.9}, {0.15, -0.75, 0}};
     d.parameters = {
         {"speed", "Speed of the wind at the end", "m/s", "m/s", "grows evenly from nothing", 5, 70, 0, 45, false},
         {"ramp", "Time until then", "s", "s", "", 10, 120, 0, 40, false},

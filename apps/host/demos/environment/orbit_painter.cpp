@@ -33,7 +33,7 @@ class OrbitPainter final : public Repeatable<OrbitPainter, Demo3> {
         "what it meets round and lets it out.";
     d.dt = 1.0 / 120;
     d.duration = 24;
-    d.camera = {.position = {3, 21, 29}, .target = {3, 0, 0.5}, .width = 46};
+    d.camera = {.position = {3, 17, 22}, .target = {3, 0, 0.3}, .width = 36};
     d.parameters = {
         {"eccentricity", "Eccentricity", "", "", "of both orbits", 0, 0.7, 0, 0.3, false},
         {"inclination", "Inclination", "rad", "deg", "of both orbits", 0, 1.57, 0, 0.7, false},

@@ -366,7 +366,7 @@ class Hail final : public Repeatable<Hail, Demo2> {
     d.planar = true;
     d.radius = 0.5f * stage.valuef("diameter");
     d.mass = ball_mass(double(d.radius), ice);
-    d.color_over_age = particles::Gradient(0xcfe6f7);
+    d.color_over_age = particles::Gradient(0x3d86c6);
     d.opacity_over_age = stage.keep(particles::Curve::make({{0, 1}, {0.9f, 1}, {1, 0}}));
     d.contacts = {.enabled = true, .restitution = stage.valuef("restitution"), .friction = 0.2f, .substeps = 4};
     system_ = make_system(stage, d);
