@@ -20,6 +20,8 @@ function chaptersOf(demos: DemoSummary[]): string {
 }
 const pictures = new Set(document.querySelector<HTMLMetaElement>('meta[name=thumbnails]')?.content.split(' ').filter((id) => id));
 const pictureOf = (id: string) => `thumbnails/${id.replace(/[^\w-]/g, '-')}.png`;
+/** What a visitor may begin with: one of each kind of wonder. */
+const HIGHLIGHTS = ['wrecking-ball', 'glass-pane', 'fluid-tank', 'pool-table', 'powered_ragdoll', 'trebuchet'];
 export const narrow = () => matchMedia('(max-width: 800px)').matches;
 
 function section(i: number, chapter: number, ...children: Node[]): HTMLElement {
@@ -50,6 +52,8 @@ export class Gallery {
     this.groups.clear();
     for (const demo of demos) this.groups.set(demo.group, [...(this.groups.get(demo.group) ?? []), demo]);
     const ordered = [...this.groups].sort((a, b) => place(a[1]) - place(b[1]));
+    const first = HIGHLIGHTS.flatMap((id) => demos.filter((demo) => demo.id === id && pictures.has(id)));
+    byId('highlights').replaceChildren(...first.map((demo) => element('li', {}, this.link(demo, element('img', {src: pictureOf(demo.id), alt: '', width: 400, height: 250}), element('span', {className: 'name', textContent: demo.title})))));
     byId('demo-count').textContent = `${demos.length} demos of ${this.groups.size} kinds.`;
     byId('demo-list').replaceChildren(...ordered.map(([group, list], i) => section(i, place(list),
       element('ul', {}, ...list.map((demo) => this.card(demo))), element('h2', {}, group, ' ', element('small', {textContent: chaptersOf(list)})))));
@@ -60,17 +64,20 @@ export class Gallery {
     }})));
   }
 
-  private card(demo: DemoSummary): HTMLElement {
-    const link = element('a', {href: `#${encodeURIComponent(demo.id)}`});
+  private link(demo: DemoSummary, ...children: Node[]): HTMLAnchorElement {
+    const link = element('a', {href: `#${encodeURIComponent(demo.id)}`}, ...children);
     link.dataset.demo = demo.id;
-    const picture = pictures.has(demo.id) ? element('img', {src: pictureOf(demo.id), alt: '', loading: 'lazy', decoding: 'async', width: 400, height: 250}) : element('span', {className: 'no-picture'});
-    link.append(picture, element('span', {className: 'name', textContent: demo.title}), element('small', {textContent: demo.summary}));
     link.onclick = (event) => {
       if (event.ctrlKey || event.metaKey || event.shiftKey) return;  // a tab of its own
       event.preventDefault();
       this.open(demo.id);
     };
-    return element('li', {}, link);
+    return link;
+  }
+
+  private card(demo: DemoSummary): HTMLElement {
+    const picture = pictures.has(demo.id) ? element('img', {src: pictureOf(demo.id), alt: '', loading: 'lazy', decoding: 'async', width: 400, height: 250}) : element('span', {className: 'no-picture'});
+    return element('li', {}, this.link(demo, picture, element('span', {className: 'name', textContent: demo.title}), element('small', {textContent: demo.summary})));
   }
 
   /** The cards of all groups follow each other without a gap: a group's name stands in the first that is shown. */
@@ -96,6 +103,7 @@ export class Gallery {
       section.hidden = shown === 0;
       found += shown;
     }
+    byId('highlights').hidden = words.length > 0;
     this.head();
     byId('nothing-found').hidden = found > 0;
   }

@@ -33,7 +33,7 @@ export class Panel {
     const details = element('details', {id: 'lesson', open: false}, element('summary', {textContent: 'What this shows, what to try'}), text);
     details.addEventListener('toggle', () => {
       void fetch('lessons.json').then((answer) => answer.json() as Promise<Record<string, Lesson | undefined>>).then((all) => {
-        const found = all[demo.demo];
+        const found = all[demo.demo] ?? (/^(common|box3d|box2d|jolt)-/.test(demo.demo) ? all.stress : undefined);
         if (!found) return;
         const symbols = Object.entries(found.symbols);
         if (symbols.length > 0) text.append(element('h3', {textContent: 'Symbols'}), element('dl', {className: 'symbols'}, ...symbols.flatMap(([sign, meaning]) => [element('dt', {textContent: sign}), element('dd', {textContent: meaning})])));
