@@ -265,6 +265,28 @@ static bool turns_far(float spin, float dt) { return math::abs(spin) * dt > 0.5f
 static bool turns_far(const Vec3f& spin, float dt) { return math::length_squared(spin) * dt * dt > 0.25f; }
 
 template <class D>
+void learn_bounce(WorldImplementation<D>& world) {
+  ShapeStore<D>& shapes = world.shapes;
+  if (shapes.bounce != Bounce::unknown) return;
+  const auto rebounds = [](const auto& x) { return x.restitution >= least_bounce; };
+  bool any = false;
+  for (const PairRuleEntry& entry : world.pair_rules) any = any || rebounds(entry.rule);
+  for (const ShapeExtra<D>& extra : shapes.extras) any = any || extra.modify;  // who may ask for it
+  for (const PartSurface<D>& part : shapes.surfaces) any = any || rebounds(part.surface.material);
+  for (std::size_t i = 0; i < shapes.record.size() && !any; ++i) any = rebounds(shapes.record[i].material);
+  shapes.bounce = any ? Bounce::some : Bounce::none;
+}
+
+template <class D>
+typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  using V = typename D::Vector;
+  V way = world.bodies.solver[std::size_t(shape.body)].linear_velocity * world.last_dt;
+  const float most = 0.5f * shape.inner_extent, length_squared = math::length_squared(way);
+  if (world.shapes.bounce == Bounce::none && length_squared > most * most) way *= most / math::sqrt(length_squared);
+  return typename D::Position(way);
+}
+
+template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   using P = typename D::Position;
   const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
@@ -275,7 +297,7 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
     box = merge(box, geometry::grow(typename D::Bounds{m.center, m.center}, reach));
   }
   box = geometry::grow(box, double(shape.margin));
-  const P ahead = P(s.linear_velocity) * double(world.last_dt);
+  const P ahead = way_ahead(world, shape);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 
@@ -286,6 +308,7 @@ void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
   if (shape.leaf != none || !record.enabled()) return;
   shape.tree = record.type == BodyType::fixed ? tree_fixed
                                               : (record.type == BodyType::kinematic ? tree_kinematic : tree_dynamic);
+  learn_bounce(world);
   shape.leaf = world.shapes.trees[shape.tree].insert(fat_bounds(world, shape), std::uint32_t(s));
   world.bodies.motion[std::size_t(shape.body)].slack = 0;
   world.scratch.old_bounds.clear();  // its pairs have not been looked for
@@ -306,6 +329,7 @@ void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
 
 template <class D>
 void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
+  learn_bounce(world);
   world.bodies.motion[std::size_t(body)].slack = 0;
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
@@ -387,6 +411,8 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
   template void center_from_pose<D>(WorldImplementation<D>&, std::int32_t);                 \
   template void update_mass<D>(WorldImplementation<D>&, std::int32_t);                      \
   template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&); \
+  template void learn_bounce<D>(WorldImplementation<D>&);                                   \
+  template D::Position way_ahead<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);  \
   template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);   \
   template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
   template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                 \

@@ -54,6 +54,12 @@ typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const Shape
 /// Tight bounds grown by the margin, and along the motion of one step where that is more.
 template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
+/// Finds out what ShapeStore::bounce says.
+template <class D>
+void learn_bounce(WorldImplementation<D>& world);
+/// How far fat bounds reach ahead along the velocity: for a step where anything rebounds; else as far as contacts look.
+template <class D>
+typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
 /// Puts the shape into the tree of its body's type (disabled bodies: none) and lets the broad phase look at it.
 template <class D>
 void insert_into_tree(WorldImplementation<D>& world, std::int32_t shape);

@@ -32,6 +32,7 @@ struct alignas(64) ContactBlock<Dim2, W> {
   float friction[W];
   float patch_r_a[2][W];  ///< where friction acts
   float tangent_mass[W], tangent_target[W], tangent_impulse[W], tangent_total[W];
+  float settles[W];  ///< 1: takes part in the passes that settle what is pushed out
 };
 
 template <int W>
@@ -56,6 +57,7 @@ struct alignas(64) ContactBlock<Dim3, W> {
   float tangent_mass[3][W];  ///< inverse of the 2×2 matrix of both tangents: 11, 22, 12
   float tangent_target[2][W], tangent_impulse[2][W], tangent_total[2][W];
   float twist_mass[W], twist_radius[W], twist_impulse[W];
+  float settles[W];
 };
 
 /// What the preparation of a block starts from, as the records hold it; the points, the normal (both in A's shape
@@ -99,7 +101,8 @@ struct ContactKernels {
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
                 int order) = nullptr;
-  /// counted: 1 where the impulses are those of the substep, 0 where another relaxing pass follows.
+  /// counted: 1 where the impulses are those of the substep, 0 where another relaxing pass follows; then only lanes
+  /// that settle take part.
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h,
                 float counted) = nullptr;
   void (*restitute)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;

@@ -84,6 +84,13 @@ CAROM_SIMD_INLINE WideFloat<W> inverse_or_zero(WideFloat<W> flag, WideFloat<W> k
   return keep(k > zero, flag / select(k > zero, k, WideFloat<W>::splat(1)));
 }
 
+/// Of the lanes' bodies those of the lanes that settle.
+template <int W>
+CAROM_SIMD_INLINE void who_settles(const float (&settles)[W], const std::int32_t (&bodies)[W],
+                                   std::int32_t (&chosen)[W]) {
+  for (int i = 0; i < W; ++i) chosen[i] = settles[i] > 0 ? bodies[i] : none;
+}
+
 template <int W, int Columns, class Body>
 CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int offset,
                               WideFloat<W> (&columns)[Columns]) {

@@ -76,7 +76,7 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
 template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
                                       Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
-                                      WideFloat<W> push_speed, WideFloat<W> counted, int order) {
+                                      WideFloat<W> push_speed, WideFloat<W> counted, WideFloat<W> share, int order) {
   using F = WideFloat<W>;
   order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
@@ -106,7 +106,7 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
       bias = keep(apart, s * inverse_h);
     }
     const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
-    const F mass = F::load(point.normal_mass);
+    const F mass = share * F::load(point.normal_mass);
     const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
@@ -124,7 +124,7 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed), F::splat(1),
-                            order);
+                            F::splat(1), order);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -141,10 +141,13 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     const WideVec2<W> n = load2<W>(c.normal);
     const WideVec2<W> t = {F::splat(0) - n.y, n.x};
     const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
+    const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
+    const auto takes_part = share > F::splat(0);
     if (extra != nullptr) {
       ContactExtra<Dim2, W>& e = static_cast<ContactExtra<Dim2, W>*>(extra)[k];
       const F old = F::load(e.rolling_impulse[0]), limit = F::load(e.rolling_lever) * load;
-      const F lambda = clamp(old - F::load(e.rolling_mass[0]) * (b.w - a.w), F::splat(0) - limit, limit);
+      const F lambda =
+          select(takes_part, clamp(old - F::load(e.rolling_mass[0]) * (b.w - a.w), F::splat(0) - limit, limit), old);
       lambda.store(e.rolling_impulse[0]);
       a.w -= ia * (lambda - old);
       b.w += ib * (lambda - old);
@@ -154,8 +157,8 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
       const F turn_a = cross(ra, t), turn_b = cross(rb, t);
       const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
       const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
-      const F lambda =
-          clamp(old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target)), F::splat(0) - limit, limit);
+      const F wanted = old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target));
+      const F lambda = select(takes_part, clamp(wanted, F::splat(0) - limit, limit), old);
       const F delta = lambda - old;
       lambda.store(c.tangent_impulse);
       (F::load(c.tangent_total) + lambda * F::splat(counted)).store(c.tangent_total);
@@ -163,9 +166,17 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
       push_back(a, ma, ia, p, delta * turn_a);
       push(b, mb, ib, p, delta * turn_b);
     }
-    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), 0);
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+    if (counted > 0) {
+      write_velocity<W>(bodies, c.write_a, a);
+      write_velocity<W>(bodies, c.write_b, b);
+    } else {
+      std::int32_t to_a[W], to_b[W];
+      who_settles<W>(c.settles, c.write_a, to_a);
+      who_settles<W>(c.settles, c.write_b, to_b);
+      write_velocity<W>(bodies, to_a, a);
+      write_velocity<W>(bodies, to_b, b);
+    }
   }
 }
 

@@ -77,7 +77,7 @@ template <int W, bool UseBias>
 CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
                                       Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
                                       const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed,
-                                      WideFloat<W> counted, int order) {
+                                      WideFloat<W> counted, WideFloat<W> share, int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -104,7 +104,7 @@ CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlo
       bias = keep(apart, s * inverse_h);
     }
     const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
-    const F mass = F::load(point.normal_mass);
+    const F mass = share * F::load(point.normal_mass);
     const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
@@ -123,7 +123,7 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
                             load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed),
-                            F::splat(1), order);
+                            F::splat(1), F::splat(1), order);
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -131,14 +131,14 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
 
 template <int W>
 CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a, Velocity3<W>& b, WideFloat<W> load,
-                                      const WideSymmetric<W>& ia, const WideSymmetric<W>& ib) {
+                                      WideMask<W> takes_part, const WideSymmetric<W>& ia, const WideSymmetric<W>& ib) {
   using F = WideFloat<W>;
   const WideVec3<W> old = load3<W>(e.rolling_impulse);
   const WideVec3<W> step = multiply(load_symmetric<W>(e.rolling_mass), subtract(b.w, a.w));
   WideVec3<W> lambda = subtract(old, step);
   const F limit = F::load(e.rolling_lever) * load, size = sqrt(dot(lambda, lambda));
   const F scale = select(size > limit, limit / max(size, F::splat(1e-30f)), F::splat(1));
-  lambda = multiply(lambda, scale);
+  lambda = select(takes_part, multiply(lambda, scale), old);
   lambda.x.store(e.rolling_impulse[0]);
   lambda.y.store(e.rolling_impulse[1]);
   lambda.z.store(e.rolling_impulse[2]);
@@ -158,11 +158,15 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     const WideVec3<W> n = load3<W>(c.normal);
     const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse) + F::load(c.point[2].impulse) +
                    F::load(c.point[3].impulse);
-    if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, ia, ib);
+    const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
+    const auto takes_part = share > F::splat(0);
+    if (extra != nullptr)
+      solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, takes_part, ia, ib);
     const F cone = F::load(c.friction) * load;
     {
       const F old = F::load(c.twist_impulse), limit = cone * F::load(c.twist_radius);
-      const F lambda = clamp(old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n), F::splat(0) - limit, limit);
+      const F wanted = old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n);
+      const F lambda = select(takes_part, clamp(wanted, F::splat(0) - limit, limit), old);
       lambda.store(c.twist_impulse);
       const WideVec3<W> turn = multiply(n, lambda - old);
       a.w = subtract(a.w, multiply(ia, turn));
@@ -178,8 +182,8 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
       const F size = sqrt(l1 * l1 + l2 * l2);
       const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
-      l1 *= scale;
-      l2 *= scale;
+      l1 = select(takes_part, l1 * scale, old1);
+      l2 = select(takes_part, l2 * scale, old2);
       l1.store(c.tangent_impulse[0]);
       l2.store(c.tangent_impulse[1]);
       (F::load(c.tangent_total[0]) + l1 * F::splat(counted)).store(c.tangent_total[0]);
@@ -188,9 +192,17 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       push_back(a, ma, ia, p, cross(ra, p));
       push(b, mb, ib, p, cross(rb, p));
     }
-    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), F::splat(counted), 0);
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+    if (counted > 0) {
+      write_velocity<W>(bodies, c.write_a, a);
+      write_velocity<W>(bodies, c.write_b, b);
+    } else {
+      std::int32_t to_a[W], to_b[W];
+      who_settles<W>(c.settles, c.write_a, to_a);
+      who_settles<W>(c.settles, c.write_b, to_b);
+      write_velocity<W>(bodies, to_a, a);
+      write_velocity<W>(bodies, to_b, b);
+    }
   }
 }
 

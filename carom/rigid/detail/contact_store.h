@@ -17,12 +17,13 @@ enum ContactFlag : std::uint16_t {
   contact_known = 64,     ///< `base`, `gap` and the manifolds are of a full update
   contact_in_use = 128,
   contact_round = 256,       ///< a sphere or circle takes part: always computed anew, it costs little
-  contact_bouncy = 512,      ///< restitution above zero: looks ahead along the velocity
+  contact_bouncy = 512,      ///< restitution of least_bounce at the least: looks ahead along the velocity
   contact_at_origin = 1024,  ///< both shapes stand unmoved in their bodies
   contact_special = 2048,    ///< one of the shapes has a ShapeExtra
   contact_decided = 4096,    ///< a one-way surface has decided on which side the other came
   contact_passing = 8192,    ///< and lets it through
   contact_on_disc = 16384,   ///< a cylinder or cone takes part: its patches may be discs
+  contact_dynamic = 32768,   ///< both bodies are dynamic
 };
 
 /// A pair of shapes. `shape[0]` is A: normals point from it to B.

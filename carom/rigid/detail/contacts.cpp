@@ -154,6 +154,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   if (flags & shape_round) c.flags |= contact_round;
   if (has_round_base(a->geometry) || has_round_base(b->geometry)) c.flags |= contact_on_disc;
   if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
+  if (world.bodies.is_dynamic(a->body) && world.bodies.is_dynamic(b->body)) c.flags |= contact_dynamic;
   update_contact_flags(world, index);
   c.extent = ball_about(*b).radius;
   const float inner = min(a->inner_extent, b->inner_extent);
@@ -247,7 +248,7 @@ void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact) {
   for (const std::int32_t shape : c.shape)
     if (const ShapeExtra<D>* extra = world.shapes.extra(shape); extra != nullptr && extra->modify)
       restitution = 1;  // a contact modifier may ask for it
-  if (restitution > 0) c.flags |= contact_bouncy;
+  if (restitution >= least_bounce) c.flags |= contact_bouncy;
 }
 
 template <class D>

@@ -86,6 +86,12 @@ struct ShapeExtra {
   }
 };
 
+/// From this restitution on contacts are foreseen as far as their bodies go in a step, so that a blow falls at the
+/// surface, with the energy a body has there. Of what keeps less than 4 % of that energy, none would be seen.
+inline constexpr float least_bounce = 0.2f;
+/// Whether anything in a world rebounds with it.
+enum class Bounce : std::uint8_t { unknown, none, some };
+
 /// What a material number of a shape's parts stands for.
 template <class D>
 struct PartSurface {
@@ -100,6 +106,7 @@ struct ShapeStore {
   std::vector<ShapeExtra<D>> extras;                     ///< in the order of their slots
   std::vector<PartSurface<D>> surfaces;                  ///< in the order of their slots and numbers
   std::int32_t moving_surfaces = 0;                      ///< meshes on bodies that are not fixed
+  Bounce bounce = Bounce::unknown;                       ///< follows from materials, rules and modifiers: learn_bounce
   geometry::DynamicTree<typename D::Position> trees[3];  ///< items are slots of shapes
   std::vector<typename D::Shape> originals;              ///< geometries of which the world changed a copy
   /// Of all records, shared with the snapshots that were taken since a shape last came or went; else null.
@@ -133,6 +140,7 @@ struct ShapeStore {
   }
   /// Before the slot is given to another.
   void forget_extra(std::int32_t slot) {
+    if (at(slot).material.restitution >= least_bounce) bounce = Bounce::unknown;
     if (const ShapeExtra<D>* e = extra(slot); e != nullptr && e->surface_count > 0)
       std::erase_if(surfaces, [&](const PartSurface<D>& p) { return p.shape == slot; });
     set_extra({slot});
@@ -142,6 +150,7 @@ struct ShapeStore {
                                     [](const ShapeExtra<D>& e, std::int32_t s) { return e.shape < s; });
     const bool known = i != extras.end() && i->shape == extra.shape;
     ShapeRecord<D>& shape = at(extra.shape);
+    if (extra.any() || known) bounce = Bounce::unknown;
     shape.flags = std::uint8_t(extra.any() ? shape.flags | shape_special : shape.flags & ~shape_special);
     if (extra.any() && known)
       *i = extra;

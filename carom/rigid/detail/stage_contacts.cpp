@@ -35,7 +35,8 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const std::int32_t a = c.body[0], b = c.body[1];
   const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
-  const bool dynamic_a = world.bodies.is_dynamic(a), dynamic_b = world.bodies.is_dynamic(b);
+  const bool both = (c.flags & contact_dynamic) != 0;
+  const bool dynamic_a = both || world.bodies.is_dynamic(a), dynamic_b = both || world.bodies.is_dynamic(b);
   const bool at_origin = (c.flags & contact_at_origin) != 0;
   put(raw.rotation_a, lane, world.bodies.pose[std::size_t(a)].rotation);
   put(raw.rotation_b, lane, world.bodies.pose[std::size_t(b)].rotation);
@@ -81,6 +82,7 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
     point.total[lane] = 0;
   }
   block.friction[lane] = m.friction;
+  block.settles[lane] = 0;
   if constexpr (D::dimension == 2) {
     block.tangent_total[lane] = 0;
   } else {
@@ -102,10 +104,10 @@ void set_anchor(const StepContext<D>& context, std::int32_t index, const Contact
   m.anchor_b = inverse_rotate(pose[std::size_t(c.body[1])].rotation, center + offset);
 }
 
-/// After the kernel: how fast the surfaces close, and with what speed they are to part.
+/// After the kernel: how fast the surfaces close, and with what speed they are to part. Returns the lane's mark.
 template <class D, int W>
-void find_approach(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
-                   ContactExtra<D, W>* extra, int lane) {
+std::uint8_t find_approach(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
+                           ContactExtra<D, W>* extra, int lane) {
   using V = typename D::Vector;
   const WorldImplementation<D>& world = context.world;
   ManifoldRecord<D>& m = context.world.contacts.manifold(index);
@@ -132,6 +134,8 @@ void find_approach(const StepContext<D>& context, std::int32_t index, const Cont
     }
     if (extra != nullptr) extra->bounce_speed[i][lane] = speed;
   }
+  const bool told = (c.flags & contact_hit_events) != 0;
+  return told && m.approach_speed >= world.definition.restitution_threshold ? mark_hits : 0;
 }
 
 template <class D, int W>
@@ -281,8 +285,9 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
 /// of the one before it waits.
 template <class D>
-void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i) {
-  constexpr std::size_t manifold_lanes = 40, contact_lanes = 26, body_lanes = 12;
+void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i,
+                       bool velocities) {
+  constexpr std::size_t manifold_lanes = 64, contact_lanes = 40, body_lanes = 18;
   if (i + manifold_lanes < list.size())
     prefetch_lines(&world.contacts.manifold(list[i + manifold_lanes]), sizeof(ManifoldRecord<D>));
   if (i + contact_lanes < list.size())
@@ -293,8 +298,8 @@ void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std:
     for (const std::int32_t body : c.body) {
       prefetch_lines(&world.bodies.motion[std::size_t(body)], sizeof(BodyMotion<D>));
       __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
-      __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
-      __builtin_prefetch(&world.bodies.record[std::size_t(body)]);
+      if (velocities) __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
+      if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(&world.bodies.record[std::size_t(body)]);
     }
   }
 }
@@ -346,8 +351,9 @@ void prepare_blocks(StepContext<D>& context) {
                    [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
                        ContactExtra<D, W>* extra, std::uint8_t* marks) {
                      ContactRaw<D, W> raw;
+                     const bool approaches = extra != nullptr || world.hit_event_shapes > 0;
                      for (int lane = 0; lane < lanes; ++lane) {
-                       prefetch_manifold(world, manifolds, first + std::size_t(lane));
+                       prefetch_manifold(world, manifolds, first + std::size_t(lane), approaches);
                        marks[lane] = gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
                      }
                      for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
@@ -355,13 +361,57 @@ void prepare_blocks(StepContext<D>& context) {
                      for (int lane = 0; lane < lanes; ++lane) {
                        const std::int32_t m = manifolds[first + std::size_t(lane)];
                        if (raw.anchor_state[lane] > 0) set_anchor(context, m, block, lane);
-                       if (extra != nullptr || world.hit_event_shapes > 0)
-                         find_approach(context, m, block, extra, lane);
+                       if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
                        if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
                        if (any_special) prepare_special(context, m, block, extra, lane);
                        if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
                      }
                    });
+}
+
+/// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves.
+template <class D, int W>
+void mark_settling(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  std::vector<std::uint8_t>& pushed = world.scratch.pushed;
+  std::vector<std::int32_t>& bodies = world.scratch.pushed_bodies;
+  if (pushed.size() < world.bodies.record.size()) pushed.resize(world.bodies.record.size());
+  if (bodies.capacity() < world.bodies.record.size()) bodies.reserve(world.bodies.record.size());
+  bodies.clear();
+  for (int color = 0; color <= overflow_color; ++color)
+    for_marked(world, color, mark_pushed, [&](std::int32_t manifold) {
+      for (const std::int32_t body : world.contacts.at(world.contacts.manifold(manifold).contact).body)
+        if (world.bodies.is_dynamic(body) && pushed[std::size_t(body)] == 0) {
+          pushed[std::size_t(body)] = 1;
+          bodies.push_back(body);
+        }
+    });
+  if (bodies.empty()) return;
+  for_blocks<D, W>(context, Overflow::at_once,
+                   [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
+                       ContactExtra<D, W>*, std::uint8_t* marks) {
+                     for (int lane = 0; lane < lanes; ++lane)
+                       for (const std::int32_t body : {block.write_a[lane], block.write_b[lane]})
+                         if (body != none && pushed[std::size_t(body)] != 0) {
+                           block.settles[lane] = 1;
+                           marks[lane] |= mark_settles;
+                         }
+                   });
+  for (const std::int32_t body : bodies) pushed[std::size_t(body)] = 0;
+}
+
+template <class D, int W>
+void prepare_and_mark(StepContext<D>& context) {
+  prepare_blocks<D, W>(context);
+  mark_settling<D, W>(context);
+  WorldImplementation<D>& world = context.world;
+  if (world.hit_event_shapes == 0) return;
+  std::vector<std::int32_t>& hits = world.scratch.hits;
+  if (hits.capacity() < world.contacts.awake.size()) hits.reserve(world.contacts.awake.capacity());
+  for (int color = 0; color <= overflow_color; ++color)
+    for_marked(world, color, mark_hits, [&](std::int32_t manifold) {
+      hits.push_back(world.contacts.at(world.contacts.manifold(manifold).contact).awake_index);
+    });
 }
 
 template <class D, int W>
@@ -392,10 +442,10 @@ void store_blocks(StepContext<D>& context) {
 template <class D>
 void prepare_contacts(StepContext<D>& context) {
   if constexpr (math::widest_lanes > 4) {
-    if (context.world.kernels.width == 16) return prepare_blocks<D, 16>(context);
-    if (context.world.kernels.width == 8) return prepare_blocks<D, 8>(context);
+    if (context.world.kernels.width == 16) return prepare_and_mark<D, 16>(context);
+    if (context.world.kernels.width == 8) return prepare_and_mark<D, 8>(context);
   }
-  prepare_blocks<D, 4>(context);
+  prepare_and_mark<D, 4>(context);
 }
 template <class D>
 void store_contacts(StepContext<D>& context) {

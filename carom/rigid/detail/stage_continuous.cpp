@@ -121,6 +121,22 @@ void carry_on(WorldImplementation<D>& world, std::int32_t body, std::int32_t mes
   pose_from_center(world, body);
 }
 
+/// Is nothing that forces do not move anywhere near the way of a body?
+template <class D>
+bool goes_freely(const WorldImplementation<D>& world, const BodyMotion<D>& motion, const typename D::Position& start) {
+  const typename D::Bounds box =
+      geometry::grow(typename D::Bounds{math::min(start, motion.center), math::max(start, motion.center)},
+                     double(motion.outer_extent));
+  bool any = false;
+  for (const int tree : {tree_fixed, tree_kinematic})
+    if (!any && world.shapes.trees[tree].size() > 0)
+      world.shapes.trees[tree].query(box, [&](std::uint32_t) {
+        any = true;
+        return false;
+      });
+  return !any;
+}
+
 /// Stops a body at what is not moved by forces; lists what it may meet of the rest.
 template <class D>
 void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t place, bool any_bullets,
@@ -129,6 +145,9 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   const BodyRecord& record = world.bodies.record[std::size_t(body)];
   const bool bullet = (record.flags & body_bullet) != 0;
   const SweepStart<D>& start = world.scratch.swept[place];
+  if (!any_bullets && world.shapes.moving_surfaces == 0 &&
+      goes_freely(world, world.bodies.motion[std::size_t(body)], start.center))
+    return;
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
   float fraction = 1;

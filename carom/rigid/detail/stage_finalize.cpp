@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -44,16 +46,24 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   using P = typename D::Position;
   // What moves far in a step must have its next way within its bounds, so that its contacts are foreseen.
   const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
-  P ahead = P(world.bodies.solver[std::size_t(body)].linear_velocity) * double(world.last_dt);
-  const double quick = quick_share * double(motion.inner_extent);
-  if (!(math::length_squared(ahead) > quick * quick)) ahead = {};
+  const P way = P(world.bodies.solver[std::size_t(body)].linear_velocity) * double(world.last_dt);
+  const double most_slow = quick_share * double(motion.inner_extent);
+  const bool quick = math::length_squared(way) > most_slow * most_slow;
+  double farthest = 0;
+  for (int k = 0; k < D::dimension && quick; ++k) farthest = max(farthest, math::abs(way[k]));
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
+    if (farthest > double(shape.margin)) {  // with the way of the next step it has left them, or nearly so
+      shape.flags |= shape_outgrown;
+      any = true;
+      continue;
+    }
     const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf),
                              tight = shape_bounds(world, shape);
     const typename D::Position below = tight.low - fat.low, above = fat.high - tight.high;
     for (int k = 0; k < D::dimension; ++k) slack = min(slack, min(below[k], above[k]));
+    const P ahead = quick ? way_ahead(world, shape) : P{};
     const typename D::Bounds next{tight.low + math::min(ahead, P{}), tight.high + math::max(ahead, P{})};
     if (geometry::contains(fat, next)) continue;
     shape.flags |= shape_outgrown;
@@ -158,15 +168,11 @@ template <class D>
 void gather_hit_events(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
-  const std::vector<std::int32_t>& awake = world.contacts.awake;
-  for (std::size_t i = 0; i < awake.size(); ++i) {
-    if (i + 24 < awake.size()) __builtin_prefetch(&world.contacts.at(awake[i + 24]).first_manifold);
-    if (i + 12 < awake.size()) {
-      const std::int32_t soon = world.contacts.at(awake[i + 12]).first_manifold;
-      if (soon != none) prefetch_lines(&world.contacts.manifold(soon), sizeof(ManifoldRecord<D>));
-    }
-    const ContactRecord<D>& c = world.contacts.at(awake[i]);
-    if ((c.flags & contact_hit_events) == 0) continue;
+  std::vector<std::int32_t>& hits = world.scratch.hits;
+  std::sort(hits.begin(), hits.end());
+  hits.erase(std::unique(hits.begin(), hits.end()), hits.end());
+  for (const std::int32_t hit : hits) {
+    const ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(hit)]);
     ContactHitEvent<D> event{};
     for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
       const ManifoldRecord<D>& record = world.contacts.manifold(m);
@@ -200,6 +206,7 @@ void gather_hit_events(StepContext<D>& context) {
     event.shape_b = world.shapes.slots.handle_at(c.shape[1]);
     world.scratch.contact_hit.push_back(event);
   }
+  hits.clear();
 }
 
 #define CAROM_INSTANTIATE(D)                                          \

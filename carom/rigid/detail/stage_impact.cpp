@@ -240,6 +240,7 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
   }
   for (auto& rolling : extra.rolling_impulse) rolling[lane] = 0;
   m.approach_speed = max(m.approach_speed, fastest);
+  if ((contact.flags & contact_hit_events) != 0) context.world.scratch.hits.push_back(contact.awake_index);
   return true;
 }
 

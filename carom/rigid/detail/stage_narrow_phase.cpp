@@ -464,9 +464,15 @@ void update_contacts(WorldImplementation<D>& world) {
     while (begin < end) {
       const int stop = min(begin + contact_grain, end);
       int number = 0;
-      for (; begin < stop; ++begin)
+      for (; begin < stop; ++begin) {
+        if (const std::int32_t* soon = scratch.watches[std::size_t(min(begin + 12, stop - 1))].body; soon[0] != none)
+          for (int side = 0; side < 2; ++side) {
+            __builtin_prefetch(&world.bodies.pose[std::size_t(soon[side])]);
+            __builtin_prefetch(&scratch.sweeps[std::size_t(soon[side])]);
+          }
         if (!nothing_new(scratch.watches[std::size_t(begin)], world.bodies.pose, scratch.sweeps, world.last_dt))
           due[number++] = begin;
+      }
       for (int k = 0; k < number; ++k) {
         if (k + 16 < number)
           prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(due[k + 16])]), sizeof(ContactRecord<D>));

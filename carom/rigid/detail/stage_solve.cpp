@@ -110,6 +110,19 @@ void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b
                   stage.pass == SolverPass::relax ? 1.0f : 0.0f);
 }
 
+/// The blocks in which something settles; the others are left alone.
+template <class D>
+void run_settling(StepContext<D>& context, SolverStage stage, int color, int begin, int end) {
+  const ColorBlocks& blocks = context.world.scratch.blocks[color];
+  const int lanes = color == overflow_color ? 1 : context.world.kernels.width;
+  const int count = int(context.world.graph.colors[color].manifolds.size());
+  for (int k = begin; k < end; ++k) {
+    bool any = false;
+    for (int i = k * lanes; i < min((k + 1) * lanes, count); ++i) any = any || (blocks.marks[i] & mark_settles) != 0;
+    if (any) run_blocks(context, stage, blocks, k, k + 1);
+  }
+}
+
 template <class D>
 void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
@@ -118,8 +131,14 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   if (is_of_trees(stage.pass)) return run_trees(context, stage.pass, begin, end);
   const bool whole = context.world.scratch.solver_loops[std::size_t(index)].count == 1;
   for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank) {
-    const ColorBlocks& blocks = context.world.scratch.blocks[color_of_rank(rank)];
-    if (blocks.count > 0) run_blocks(context, stage, blocks, whole ? 0 : begin, whole ? blocks.count : end);
+    const int color = color_of_rank(rank);
+    const ColorBlocks& blocks = context.world.scratch.blocks[color];
+    if (blocks.count == 0) continue;
+    const int first = whole ? 0 : begin, last = whole ? blocks.count : end;
+    if (stage.pass == SolverPass::settle)
+      run_settling(context, stage, color, first, last);
+    else
+      run_blocks(context, stage, blocks, first, last);
   }
 }
 

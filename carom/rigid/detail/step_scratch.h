@@ -28,6 +28,8 @@ struct FoundPair {
 enum ContactMark : std::uint8_t {
   mark_bounces = 1,  ///< may bounce in this step
   mark_pushed = 2,   ///< so deep that it is pushed out with the push speed
+  mark_settles = 4,  ///< that, or beside it: a body of both is the same
+  mark_hits = 8,     ///< closes so fast that a hit may have to be told
 };
 /// Where a colour's contacts are in the arena of the step.
 struct ColorBlocks {
@@ -58,7 +60,7 @@ struct SolverStage {
 };
 
 /// Where something is pushed out with the push speed, so many more relaxing passes take that speed from it again: what
-/// many overlaps push from all sides would keep some of it.
+/// many overlaps push from all sides would keep some of it. Contacts of bodies that nothing pushes need none of them.
 inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
@@ -112,6 +114,9 @@ template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
   std::vector<BodyLoad<D>> loads;                   ///< by slot of the body; nothing between steps
+  std::vector<std::int32_t> hits;                   ///< places in ContactStore::awake of what may be told as a hit
+  std::vector<std::uint8_t> pushed;                 ///< by slot of the body: is something pushed out of it? Or empty
+  std::vector<std::int32_t> pushed_bodies;          ///< those of which it is so
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
   std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now
   std::vector<SolverStage> solver_stages;

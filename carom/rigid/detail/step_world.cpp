@@ -240,6 +240,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   begin_events(world);
   world.arena.reset();
   world.last_dt = dt;
+  learn_bounce(world);
 
   std::optional<core::ParallelRegion> region;
   if (worth_a_region(world)) region.emplace(*world.scheduler);

@@ -246,6 +246,7 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   s.body = *slot;
   s.density = d.density;
   s.material = d.material;
+  if (d.material.restitution >= least_bounce && self_->shapes.bounce == Bounce::none) self_->shapes.bounce = Bounce::unknown;
   s.filter = d.filter;
   s.user_data = d.user_data;
   s.inner_extent = extents.inner;
@@ -358,6 +359,7 @@ Status World<D>::set_material(ShapeId shape, const Material& material) {
   if (!complaint.none_yet()) return complaint.error();
   ShapeRecord<D>& s = self_->shapes.at(*slot);
   s.material = material;
+  self_->shapes.bounce = Bounce::unknown;
   wake_body(*self_, s.body);
   wake_touching(*self_, s.body);
   for (std::int32_t key = self_->bodies.record[std::size_t(s.body)].first_contact; key != none;) {

@@ -187,6 +187,7 @@ Status World<D>::set_pair_rule(std::uint32_t material_a, std::uint32_t material_
     if (!complaint.none_yet()) return complaint.error();
   }
   const std::uint64_t key = PairRuleEntry::key_of(material_a, material_b);
+  self_->shapes.bounce = Bounce::unknown;
   std::vector<PairRuleEntry>& rules = self_->pair_rules;
   const auto i = std::lower_bound(rules.begin(), rules.end(), key,
                                   [](const PairRuleEntry& e, std::uint64_t k) { return e.key < k; });
