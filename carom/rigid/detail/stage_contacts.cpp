@@ -369,35 +369,33 @@ void prepare_blocks(StepContext<D>& context) {
                    });
 }
 
-/// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves.
+/// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves;
+/// all, where these are many, because then the blow that pressed them into each other goes through all.
 template <class D, int W>
 void mark_settling(StepContext<D>& context) {
+  constexpr std::size_t many = 64;  ///< one in so many bodies
   WorldImplementation<D>& world = context.world;
-  std::vector<std::uint8_t>& pushed = world.scratch.pushed;
-  std::vector<std::int32_t>& bodies = world.scratch.pushed_bodies;
-  if (pushed.size() < world.bodies.record.size()) pushed.resize(world.bodies.record.size());
-  if (bodies.capacity() < world.bodies.record.size()) bodies.reserve(world.bodies.record.size());
-  bodies.clear();
+  std::uint8_t* pushed = nullptr;  // by slot of the body
+  std::size_t count = 0;
   for (int color = 0; color <= overflow_color; ++color)
     for_marked(world, color, mark_pushed, [&](std::int32_t manifold) {
+      if (pushed == nullptr)
+        pushed = context.arena.template allocate_zeroed<std::uint8_t>(world.bodies.record.size()).data();
       for (const std::int32_t body : world.contacts.at(world.contacts.manifold(manifold).contact).body)
-        if (world.bodies.is_dynamic(body) && pushed[std::size_t(body)] == 0) {
-          pushed[std::size_t(body)] = 1;
-          bodies.push_back(body);
-        }
+        if (world.bodies.is_dynamic(body) && pushed[body] == 0) pushed[body] = 1, ++count;
     });
-  if (bodies.empty()) return;
+  if (count == 0) return;
+  const bool all = many * count > world.bodies.awake.size();
   for_blocks<D, W>(context, Overflow::at_once,
                    [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
                        ContactExtra<D, W>*, std::uint8_t* marks) {
-                     for (int lane = 0; lane < lanes; ++lane)
-                       for (const std::int32_t body : {block.write_a[lane], block.write_b[lane]})
-                         if (body != none && pushed[std::size_t(body)] != 0) {
-                           block.settles[lane] = 1;
-                           marks[lane] |= mark_settles;
-                         }
+                     for (int lane = 0; lane < lanes; ++lane) {
+                       const std::int32_t a = block.write_a[lane], b = block.write_b[lane];
+                       if (!all && (a == none || pushed[a] == 0) && (b == none || pushed[b] == 0)) continue;
+                       block.settles[lane] = 1;
+                       marks[lane] |= mark_settles;
+                     }
                    });
-  for (const std::int32_t body : bodies) pushed[std::size_t(body)] = 0;
 }
 
 template <class D, int W>

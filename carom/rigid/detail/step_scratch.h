@@ -115,8 +115,6 @@ struct StepScratch {
   ColorBlocks blocks[color_count + 1];
   std::vector<BodyLoad<D>> loads;                   ///< by slot of the body; nothing between steps
   std::vector<std::int32_t> hits;                   ///< places in ContactStore::awake of what may be told as a hit
-  std::vector<std::uint8_t> pushed;                 ///< by slot of the body: is something pushed out of it? Or empty
-  std::vector<std::int32_t> pushed_bodies;          ///< those of which it is so
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
   std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now
   std::vector<SolverStage> solver_stages;
