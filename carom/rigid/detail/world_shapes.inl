@@ -246,7 +246,8 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   s.body = *slot;
   s.density = d.density;
   s.material = d.material;
-  if (d.material.restitution >= least_bounce && self_->shapes.bounce == Bounce::none) self_->shapes.bounce = Bounce::unknown;
+  if (d.material.restitution >= least_bounce && self_->shapes.bounce == Bounce::none)
+    self_->shapes.bounce = Bounce::unknown;
   s.filter = d.filter;
   s.user_data = d.user_data;
   s.inner_extent = extents.inner;
