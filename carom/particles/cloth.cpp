@@ -115,7 +115,7 @@ Status Cloth::pin(int vertex, rigid::BodyId body, Vec3d point, const rigid::Worl
     return core::Error{core::text("pin of vertex ", vertex, ": the world has no such body")};
   detail::ClothState& s = *state_;
   s.pin_of[std::size_t(vertex)] = int(s.pins.size());
-  s.pins.push_back({body, point, -1, 0});
+  s.pins.push_back({body, point, -1});
   s.pinned.push_back(vertex);
   s.pin_impulse.push_back({});
   return {};
@@ -125,7 +125,7 @@ Status Cloth::pin(int vertex) {
   if (Status status = unpin(vertex); !status.ok()) return status;
   detail::ClothState& s = *state_;
   s.pin_of[std::size_t(vertex)] = int(s.pins.size());
-  s.pins.push_back({{}, s.position[std::size_t(vertex)], -1, 0});
+  s.pins.push_back({{}, s.position[std::size_t(vertex)], -1});
   s.pinned.push_back(vertex);
   s.pin_impulse.push_back({});
   return {};

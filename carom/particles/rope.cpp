@@ -115,6 +115,7 @@ Result<int> RopeSet::add(const RopeDef& def) {
   rope.material = def.material;
   rope.filter = def.filter;
   rope.collide = def.collide;
+  rope.touch_ropes = def.touch_ropes;
   rope.segment = rest / def.segments;
   rope.resize(std::size_t(def.segments) + 1);
   detail::lay(def.points, way, def.segments, rope.position);
@@ -276,6 +277,11 @@ Vec3d RopeSet::attachment_force(int index, int node) const {
     if (grip.attachment.node == node) return grip.force;
   return {};
 }
+int RopeSet::rope_contact_count() const {
+  int count = 0;
+  for (const detail::RopePair& pair : pairs_) count += pair.push > 0;
+  return count;
+}
 int RopeSet::contact_count(int index) const {
   int count = 0;
   for (const detail::RopeContact& contact : detail::rope_at(ropes_, index).contacts)
@@ -320,8 +326,10 @@ double RopeSet::elastic_energy() const {
   for (const Rope& rope : ropes_) {
     for (std::size_t i = 0; i + 1 < rope.position.size(); ++i) {
       if (rope.broken[i]) continue;
+      const double stiffness = rope.material.axial_stiffness / rope.rest[i];
       const double stretch = distance(rope.position[i], rope.position[i + 1]) - rope.rest[i];
-      sum += 0.5 * rope.material.axial_stiffness / rope.rest[i] * stretch * stretch;
+      const double least = rope.least_tension(i) / stiffness, elastic = math::max(stretch, least);
+      sum += 0.5 * stiffness * elastic * elastic + stiffness * least * (stretch - elastic);
     }
     sum += detail::bending_energy(rope);
     sum +=

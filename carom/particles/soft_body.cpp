@@ -211,7 +211,7 @@ Status SoftBody::pin(int vertex) {
   if (Status status = unpin(vertex); !status.ok()) return status;
   detail::SoftState& s = *state_;
   s.pin_of[std::size_t(vertex)] = int(s.pins.size());
-  s.pins.push_back({{}, s.position[std::size_t(vertex)], -1, 0});
+  s.pins.push_back({{}, s.position[std::size_t(vertex)], -1});
   s.pinned.push_back(vertex);
   return {};
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/math/elementary.h"
+#include "carom/ode/methods.h"
 #include "carom/rigid/world.h"
 
 namespace carom::published {
@@ -283,6 +284,49 @@ TEST(Chapter13, CatenaryOfALinkedChain) {
   for (const BodyId lump : lumps) lowest = math::min(lowest, position(world, lump).y);
   RecordProperty("sag", std::to_string(-lowest));
   EXPECT_NEAR(-lowest, 2.92344, 0.005 * 2.92344);
+}
+
+struct Row {
+  double x[60] = {};
+  friend Row operator+(const Row& a, const Row& b) {
+    Row out;
+    for (int i = 0; i < 60; ++i) out.x[i] = a.x[i] + b.x[i];
+    return out;
+  }
+  friend Row operator*(double s, const Row& a) {
+    Row out;
+    for (int i = 0; i < 60; ++i) out.x[i] = s * a.x[i];
+    return out;
+  }
+};
+
+TEST(Chapter13, SemiImplicitLimitsOfSpringsAndChains) {
+  // dt < 2/ω_max: 63.2 ms for one mass on a spring (k = 1000 N/m, m = 1 kg), 31.6 ms for a long chain of them. Half a
+  // millisecond less stays bounded, half a millisecond more grows; explicit Euler grows at any step.
+  const auto largest = [](int masses, double dt, bool explicit_step) {
+    const auto rates = [&](double, const ode::Motion<Row>& y) {
+      ode::Motion<Row> out{y.velocity, {}};
+      for (int i = 0; i < masses; ++i) {
+        const double here = y.position.x[i], left = i > 0 ? y.position.x[i - 1] : 0,
+                     right = i + 1 < masses ? y.position.x[i + 1] : here;
+        out.velocity.x[i] = 1000 * (left - here + right - here);
+      }
+      return out;
+    };
+    ode::Motion<Row> y;
+    for (int i = 0; i < masses; ++i) y.position.x[i] = i % 2 == 0 ? 0.1 : -0.1;
+    double most = 0;
+    for (int i = 0; i < 400; ++i) {
+      y = explicit_step ? ode::euler(rates, 0, y, dt) : ode::semi_implicit_euler(rates, 0, y, dt);
+      for (int k = 0; k < masses; ++k) most = math::max(most, math::abs(y.position.x[k]));
+    }
+    return most;
+  };
+  EXPECT_LT(largest(1, 0.0627, false), 2);
+  EXPECT_GT(largest(1, 0.0637, false), 1e3);
+  EXPECT_LT(largest(60, 0.0311, false), 2);
+  EXPECT_GT(largest(60, 0.0321, false), 1e3);
+  EXPECT_GT(largest(1, 0.02, true), 1e3);
 }
 
 }  // namespace chapter_13_test

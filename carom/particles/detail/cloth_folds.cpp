@@ -100,9 +100,7 @@ void ClothState::keep_apart(float h) {
         }
       }
   }
-  const auto lightness = [&](std::uint32_t i) {
-    return pin_of[i] >= 0 && pins[std::size_t(pin_of[i])].mass == 0 ? 0.0f : 1 / mass[i];
-  };
+  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
   const float friction = float(fabric.friction);
   for (int sweep = 0; sweep < 3; ++sweep)
     for (const ClothPair& pair : pairs) {

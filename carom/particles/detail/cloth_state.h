@@ -73,8 +73,8 @@ struct ClothState {
   void step(rigid::World3& world, double dt);
   void stretch();                         ///< triangles: strains, stresses, wind
   void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
-  void hold(float h, Vec3f gravity);
-  bool revise(float h);      ///< contacts that begin and end; true: solve again
+  void hold(float h);
+  SoftTouching touching() { return {touches, pins, pinned, position, velocity}; }
   void keep_apart(float h);  ///< folds
   void tear();
 };

@@ -111,20 +111,8 @@ void ClothState::assemble(float h, Vec3f gravity) {
   solver.begin(matrix, velocity, tasks);
 }
 
-void ClothState::hold(float h, Vec3f gravity) {
-  for (std::size_t k = 0; k < pins.size(); ++k) {
-    const std::size_t i = std::size_t(pinned[k]);
-    const SoftPin& pin = pins[k];
-    if (pin.mass > 0) {  // the body's point goes along as a lump
-      solver.diagonal[i] = solver.diagonal[i] + Mat3f::diagonal({pin.mass, pin.mass, pin.mass});
-      solver.right[i] += (h * pin.mass) * gravity;
-      continue;
-    }
-    solver.holds[i].rank = 3;
-    Vec3d target{};
-    if (pin.index >= 0) target = obstacles.bodies[std::size_t(pin.index)].velocity_at(position[i]);
-    solver.change[i] = Vec3f(target) - velocity[i];
-  }
+void ClothState::hold(float h) {
+  hold_pins(touching(), solver);
   if (!collide || obstacles.empty()) {
     for (SoftTouch& touch : touches) touch = {};
     return;
@@ -148,8 +136,6 @@ void ClothState::hold(float h, Vec3f gravity) {
   });
 }
 
-bool ClothState::revise(float h) { return revise_touches(touches, position, velocity, h, obstacles, solver); }
-
 void ClothState::step(rigid::World3& world, double dt) {
   const float h = float(dt / substeps);
   last_step = dt;
@@ -159,17 +145,16 @@ void ClothState::step(rigid::World3& world, double dt) {
   place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
   pin_impulse.assign(pins.size(), Vec3d{});
   if (collide) gather_near(fabric.thickness, dt, world, filter, pins, position, velocity, obstacles);
+  obstacles.find_pulls(world, dt);
   iterations = 0;
   greatest_tension = 0;
   wind_impulse = {};
   for (int s = 0; s < substeps; ++s) {
     stretch();
     assemble(h, gravity);
-    hold(h, gravity);
-    for (int round = 0; round < 3; ++round) {
-      iterations += solver.solve(matrix, 2e-3, h * 2, 200, tasks);
-      if (round == 2 || !revise(h)) break;
-    }
+    obstacles.enter(h, solver);
+    hold(h);
+    iterations += solve_touches(touching(), matrix, h, obstacles, solver, tasks);
     wind_force = {};
     for (const ClothTriangle& t : triangles) {
       wind_force += 3.0 * Vec3d(t.wind);
@@ -178,34 +163,11 @@ void ClothState::step(rigid::World3& world, double dt) {
           math::sqrt(0.25f * (t.stress[0] - t.stress[1]) * (t.stress[0] - t.stress[1]) + t.stress[2] * t.stress[2]);
       greatest_tension = math::max(greatest_tension, double(mean + spread));
     }
-    for (std::size_t k = 0; k < pins.size(); ++k) {
-      const std::size_t i = std::size_t(pinned[k]);
-      const SoftPin& pin = pins[k];
-      const Vec3d impulse =
-          pin.mass > 0 ? Vec3d(pin.mass * (solver.change[i] - h * gravity)) : -Vec3d(solver.reaction[i]);
-      pin_impulse[k] += impulse;
-      obstacles.push(pin.index, position[i], impulse);
-    }
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      SoftTouch& touch = touches[i];
-      if (!touch.near) continue;
-      const Vec3f n(touch.plane.normal);
-      const float before = touch.push;
-      touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
-      Vec3d impulse = touch.active ? Vec3d(solver.reaction[i]) : Vec3d{};
-      if (before > 0) {  // what friction did, as the system had it
-        const Vec3f surface(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
-        const Vec3f old = velocity[i] - surface, slide = old - dot(n, old) * n;
-        const float mu = math::sqrt(float(fabric.friction * touch.plane.friction));
-        const float c = h * mu * before / math::max(length(slide), soft_slip);
-        const Vec3f now = old + solver.change[i];
-        impulse -= Vec3d(c * (now - dot(n, now) * n));
-      }
-      obstacles.push(touch.plane.body, position[i] - fabric.thickness * touch.plane.normal, -impulse);
-    }
+    react_touches(touching(), h, obstacles, solver, pin_impulse.data());
     for (std::size_t i = 0; i < position.size(); ++i) velocity[i] += solver.change[i];
     if (self_collide) keep_apart(h);
     for (std::size_t i = 0; i < position.size(); ++i) position[i] += Vec3d(h * velocity[i]);
+    obstacles.advance(double(h), solver);
   }
   tear();
   obstacles.hand_over(world, dt, double(length(gravity)));

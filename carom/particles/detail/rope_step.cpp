@@ -195,7 +195,7 @@ void RopeSolver::hold_grips(Rope& rope) {
   }
 }
 
-void RopeSolver::assemble(Rope& rope) {
+void RopeSolver::assemble(Rope& rope, int index) {
   const std::size_t n = rope.position.size();
   for (std::size_t i = 0; i < n; ++i) {
     rope.diagonal[i] = Mat3d::diagonal({rope.mass[i], rope.mass[i], rope.mass[i]});
@@ -215,7 +215,9 @@ void RopeSolver::assemble(Rope& rope) {
     const Vec3d g = normalize_or(reach, Vec3d{0, 1, 0}, 1e-12), way = normalize_or(aim, g, 1e-12);
     const double damping = rope.material.axial_damping / rope.rest[i];
     const double wound = (i == 0 ? rope.winch[0] : 0) + (i + 2 == n ? rope.winch[1] : 0);  // m/s off the rest length
-    const double tension = stiffness * (l - rope.rest[i]) + damping * (dot(g, closing) + wound * l / rope.rest[i]);
+    const double asked = stiffness * (l - rope.rest[i]) + damping * (dot(g, closing) + wound * l / rope.rest[i]);
+    const double tension = math::max(asked, rope.least_tension(i));
+    // Where it buckles it keeps the stiffness in the matrix: what is pressed together gives way without springing back.
     Mat3d c = (h * (axial * h * stiffness + damping)) * math::outer(way, g);
     if (lateral > 0) {
       const double turn = h * h * lateral * rope.pull[i] / math::max(length(aim), 1e-9);
@@ -230,6 +232,7 @@ void RopeSolver::assemble(Rope& rope) {
     rope.momentum[i + 1] -= pull;
   }
   add_edges(rope);
+  if (rope.touch_ropes) add_pairs(rope, index);
 }
 
 void RopeSolver::solve(Rope& rope) {
@@ -358,7 +361,7 @@ void RopeSolver::advance(Rope& rope, int index) {
   for (std::size_t i = 0; i + 1 < n; ++i) {
     if (rope.broken[i]) continue;
     const double stretch = distance(rope.position[i], rope.position[i + 1]) - rope.rest[i];
-    const double tension = rope.material.axial_stiffness * stretch / rope.rest[i];
+    const double tension = math::max(rope.material.axial_stiffness * stretch / rope.rest[i], rope.least_tension(i));
     rope.tension[i] = tension;
     rope.peak = math::max(rope.peak, tension);
     if (rope.material.break_tension > 0 && tension > rope.material.break_tension) {
@@ -387,6 +390,7 @@ Status RopeSolver::run() {
     wind_winches(rope);
     find_contacts(rope);
   }
+  find_pairs();
   find_mobility();
   for (Rope& rope : set.ropes_) prepare(rope);
   for (int s = 0; s < substeps; ++s) {
@@ -403,14 +407,16 @@ Status RopeSolver::run() {
       place_contacts(rope);
       place_edges(rope);
     }
+    place_pairs();
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      for (Rope& rope : set.ropes_) {
-        assemble(rope);
+      for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
+        Rope& rope = set.ropes_[r];
+        assemble(rope, int(r));
         solve(rope);
         react(rope, false);
       }
       couple();
-      bool again = false;
+      bool again = iteration + 1 < most_iterations && update_pairs();
       for (Rope& rope : set.ropes_) {
         react(rope, true);
         if (iteration + 1 == most_iterations) continue;

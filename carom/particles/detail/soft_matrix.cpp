@@ -7,6 +7,7 @@ namespace carom::particles::detail {
 namespace {
 constexpr int rows_at_once = 128;
 using Lanes = SoftBlock::Lanes;
+using math::Vec3d;
 Lanes lanes(Vec3f v) { return Lanes{v.x, v.y, v.z, 0}; }
 Vec3f vector(Lanes v) { return {v[0], v[1], v[2]}; }
 }  // namespace
@@ -64,6 +65,22 @@ void SoftMatrix::build(int vertices, std::span<const std::uint32_t> elements, in
     far_first_[std::size_t(i) + 1] = int(far_column_.size());
     if (far_middle_[std::size_t(i)] < 0) far_middle_[std::size_t(i)] = int(far_column_.size());
   }
+  find_order();
+}
+
+/// A sweep in this order gives what one in the order of rows gives, but a row need not wait for the one before it.
+void SoftMatrix::find_order() {
+  const std::size_t n = diagonal_.size();
+  std::vector<int> level(n, 0);
+  order_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    order_[i] = int(i);
+    for (int k = first_[i]; k < diagonal_[i]; ++k) level[i] = math::max(level[i], level[column_[std::size_t(k)]] + 1);
+    for (int k = far_first_[i]; k < far_middle_[i]; ++k)
+      level[i] = math::max(level[i], level[far_column_[std::size_t(k)]] + 1);
+  }
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](int a, int b) { return level[std::size_t(a)] < level[std::size_t(b)]; });
 }
 
 int SoftMatrix::slot(std::uint32_t i, std::uint32_t j) const {
@@ -93,7 +110,7 @@ void SoftMatrix::multiply(const Vec3f* x, Vec3f* y, core::TaskScheduler& schedul
 
 void SoftSolver::resize(std::size_t n) {
   for (auto* list : {&right, &change, &guess, &reaction, &residual_, &weighted_residual_, &direction_, &back_,
-                     &forward_, &image_, &weighted_image_})
+                     &forward_, &image_, &weighted_image_, &field_, &pull_})
     list->resize(n);
   diagonal.resize(n);
   full_.resize(n);
@@ -154,7 +171,8 @@ void SoftSolver::scale_guess(const SoftMatrix& matrix, core::TaskScheduler& sche
 /// x ← (D + L)⁻¹ x, `weighted` = D x; returns x·D x.
 double SoftSolver::start_sweep(const SoftMatrix& matrix, std::vector<Vec3f>& x, std::vector<Vec3f>& weighted) {
   double size = 0;
-  for (std::size_t i = 0; i < right.size(); ++i) {
+  for (const int row : matrix.order_) {
+    const std::size_t i = std::size_t(row);
     const Lanes lower =
         matrix.side(matrix.first_[i], matrix.diagonal_[i], matrix.far_first_[i], matrix.far_middle_[i], x.data());
     const Lanes here = inverse_[i].times(lanes(x[i]) - lower);
@@ -167,8 +185,9 @@ double SoftSolver::start_sweep(const SoftMatrix& matrix, std::vector<Vec3f>& x, 
 
 int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, int most,
                       core::TaskScheduler& scheduler) {
-  const std::size_t n = right.size();
+  const std::size_t n = right.size(), bodies = ties.empty() ? 0 : movers.size();
   prepare(matrix);
+  prepare_movers(matrix);
   scale_guess(matrix, scheduler);
   // Against the right-hand side, not the first residual: a good guess needs fewer iterations. At rest nothing is left
   // to be relative to: a change of `least` for every particle is what does not matter.
@@ -178,24 +197,41 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
     const Lanes push = lanes(holds[i].filter(diagonal[i] * Vec3f{least, least, least}));
     small += double(dot(vector(push), vector(inverse_[i].times(push))));
   }
-  const double scale = math::max(start_sweep(matrix, residual_, weighted_residual_), small);
+  double scale = start_sweep(matrix, residual_, weighted_residual_);
+  if (bodies > 0) {
+    right_of_movers(mover_residual_);
+    scale += start_movers(matrix, residual_);
+  }
+  scale = math::max(scale, small);
 
   matrix.multiply(change.data(), image_.data(), scheduler);
-  for (std::size_t i = 0; i < n; ++i) residual_[i] = holds[i].filter(right[i] - image_[i] - diagonal[i] * change[i]);
+  for (std::size_t i = 0; i < n; ++i) residual_[i] = right[i] - image_[i] - diagonal[i] * change[i];
+  if (bodies > 0) residual_of_movers(mover_residual_);
+  for (std::size_t i = 0; i < n; ++i) residual_[i] = holds[i].filter(residual_[i]);
   double size = start_sweep(matrix, residual_, weighted_residual_);
+  if (bodies > 0) size += start_movers(matrix, residual_);
   int iterations = 0;
   float keep = 0;
   while (iterations < most && size > tolerance * tolerance * scale && size > 1e-30) {
     // q ← r + β q, t = (D + Lᵀ)⁻¹ D q
-    for (std::size_t i = n; i-- > 0;) {
+    if (bodies > 0) {
+      for (std::size_t b = 0; b < bodies; ++b)
+        mover_direction_[b] =
+            iterations == 0 ? mover_residual_[b] : mover_residual_[b] + double(keep) * mover_direction_[b];
+      sweep_up(matrix, mover_direction_, mover_back_);
+    }
+    for (std::size_t k = n; k-- > 0;) {
+      const std::size_t i = std::size_t(matrix.order_[k]);
       direction_[i] = iterations == 0 ? residual_[i] : residual_[i] + keep * direction_[i];
-      const Lanes upper = matrix.side(matrix.diagonal_[i] + 1, matrix.first_[i + 1], matrix.far_middle_[i],
-                                      matrix.far_first_[i + 1], back_.data());
+      Lanes upper = matrix.side(matrix.diagonal_[i] + 1, matrix.first_[i + 1], matrix.far_middle_[i],
+                                matrix.far_first_[i + 1], back_.data());
+      if (bodies > 0) upper += lanes(pull_[i]);
       back_[i] = vector(lanes(direction_[i]) - inverse_[i].times(upper));
     }
     // w = t + u, u = (D + L)⁻¹ D (q − t)
     double curvature = 0;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (const int row : matrix.order_) {
+      const std::size_t i = std::size_t(row);
       const Lanes lower = matrix.side(matrix.first_[i], matrix.diagonal_[i], matrix.far_first_[i],
                                       matrix.far_middle_[i], forward_.data());
       const Lanes t = lanes(back_[i]), u = lanes(direction_[i]) - t - inverse_[i].times(lower), w = t + u;
@@ -204,19 +240,30 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
       weighted_image_[i] = vector(full_[i].times(w));
       curvature += double(dot(direction_[i], weighted_image_[i]));
     }
+    if (bodies > 0) curvature += finish_movers(matrix);
     ++iterations;
     if (!(curvature > 0)) break;
-    const float along = float(size / curvature);
+    const double along = size / curvature;
     double next = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      change[i] += along * back_[i];
-      residual_[i] -= along * image_[i];
-      weighted_residual_[i] -= along * weighted_image_[i];
+      change[i] += float(along) * back_[i];
+      residual_[i] -= float(along) * image_[i];
+      weighted_residual_[i] -= float(along) * weighted_image_[i];
       next += double(dot(residual_[i], weighted_residual_[i]));
+    }
+    for (std::size_t b = 0; b < bodies; ++b) {
+      if (movers[b].from == movers[b].to) continue;
+      movers[b].change = movers[b].change + along * mover_back_[b];
+      mover_residual_[b] = mover_residual_[b] - along * mover_image_[b];
+      next += dot(mover_residual_[b], times(movers[b].full, mover_residual_[b]));
     }
     keep = float(next / size);
     size = next;
   }
+  if (bodies > 0)
+    for (const SoftTie& tie : ties)
+      change[std::size_t(tie.node)] +=
+          carried(tie, movers[std::size_t(tie.body)].change - mover_start_[std::size_t(tie.body)]);
   settle_momentum(matrix, scheduler);
   guess = change;
   return iterations;
@@ -226,18 +273,29 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
 /// a shift of the whole, which the elements do not feel. And what the holds had to give.
 void SoftSolver::settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler) {
   matrix.multiply(change.data(), image_.data(), scheduler);
-  for (int pass = 0; pass < 3; ++pass) {
+  const std::size_t bodies = ties.empty() ? 0 : movers.size();
+  bool pinned = false;
+  for (std::size_t i = 0; i < right.size(); ++i) pinned |= holds[i].rank == 3;
+  for (int pass = 0; pass < 3 && !pinned; ++pass) {
     Vec3f lost{};
     float all = 0;
-    bool pinned = false;
     for (std::size_t i = 0; i < right.size(); ++i) {
-      pinned |= holds[i].rank == 3;
-      lost += holds[i].filter(right[i] - image_[i] - diagonal[i] * change[i]);
+      reaction[i] = right[i] - image_[i] - diagonal[i] * change[i];
       all += (1.0f / 3) * trace(diagonal[i]);
     }
-    if (pinned || !(all > 0)) break;
+    if (bodies > 0)  // which go along with the shift, so that nothing rubs more
+      for (const SoftTie& tie : ties) {
+        if (!(tie.grip > 0)) continue;
+        all -= (2.0f / 3) * tie.grip;
+        const Vec3f body(movers[std::size_t(tie.body)].change.at(tie.arm));
+        reaction[std::size_t(tie.node)] += tie.grip * (body - dot(tie.normal, body) * tie.normal);
+      }
+    for (std::size_t i = 0; i < right.size(); ++i) lost += holds[i].filter(reaction[i]);
+    if (!(all > 0)) break;
     const Vec3f shift = lost * (1 / all);
     for (Vec3f& x : change) x += shift;
+    for (std::size_t b = 0; b < bodies; ++b)
+      if (movers[b].from != movers[b].to) movers[b].change.linear += Vec3d(shift);
     if (pass == 0) matrix.multiply(change.data(), image_.data(), scheduler);
   }
   for (std::size_t i = 0; i < right.size(); ++i) {

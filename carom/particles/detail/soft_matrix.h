@@ -92,17 +92,55 @@ class SoftMatrix {
     }
     return sum + link_scale * far;
   }
+  void find_order();
   std::vector<int> first_, diagonal_;
   std::vector<std::uint32_t> column_;
+  std::vector<int> order_;  ///< of a sweep: rows after what they hang on, and beside each other where they are apart
   std::vector<int> far_first_, far_middle_;  ///< links of a row; the first of them above the diagonal
   std::vector<std::uint32_t> far_column_;
   std::vector<float> far_value_;
 };
 
+/// A motion of a rigid body: of its centre of mass, and about it.
+struct SoftTwist {
+  math::Vec3d linear{}, angular{};
+  math::Vec3d at(math::Vec3d arm) const { return linear + cross(angular, arm); }
+  void push(math::Vec3d arm, math::Vec3d impulse) {
+    linear += impulse;
+    angular += cross(arm, impulse);
+  }
+};
+inline double dot(const SoftTwist& a, const SoftTwist& b) {
+  return math::dot(a.linear, b.linear) + math::dot(a.angular, b.angular);
+}
+inline SoftTwist operator+(SoftTwist a, const SoftTwist& b) { return {a.linear + b.linear, a.angular + b.angular}; }
+inline SoftTwist operator-(SoftTwist a, const SoftTwist& b) { return {a.linear - b.linear, a.angular - b.angular}; }
+inline SoftTwist operator*(double s, SoftTwist a) { return {s * a.linear, s * a.angular}; }
+
+/// A rigid body among the unknowns: what it is to the particles that touch it.
+struct SoftMover {
+  double mass[6][6] = {};  ///< kg, kg m, kg m²; about the centre of mass
+  SoftTwist right{};       ///< N·s: what else acts on it in this substep
+  SoftTwist change{};      ///< of its velocity; at the start a guess
+  int from = 0, to = 0;    ///< its ties
+  // Of a solve:
+  double full[6][6] = {}, factor[6][6] = {};  ///< its part of the system, and Cholesky's factor of it
+};
+
+/// A particle that moves with a body where it is held, and is rubbed by it across `normal`.
+struct SoftTie {
+  int node = 0, body = 0;
+  math::Vec3d arm{};  ///< m, from the body's centre of mass
+  Vec3f normal{};
+  float grip = 0;  ///< kg: impulse on the body = grip (slip + what the solve changes of it)
+  Vec3f slip{};    ///< m/s, before the solve
+};
+
 /// (D + K) x = b for particles that are free, b + reaction for those that are held, by conjugate gradients with the
 /// holds projected out (Baraff and Witkin 1998, "Large steps in cloth simulation"; Ascher and Boxerman 2003).
 /// Preconditioned by a symmetric sweep of block Gauss–Seidel in Eisenstat's form (SIAM J. Sci. Stat. Comput. 2 (1981)
-/// 1): an iteration goes through every block once.
+/// 1): an iteration goes through every block once. The bodies that they touch are six unknowns each, after the
+/// particles: held particles take their motion over, so that light and heavy ones are as stable as what does not move.
 class SoftSolver {
  public:
   std::vector<Mat3f> diagonal;  ///< D, by particle
@@ -111,6 +149,8 @@ class SoftSolver {
   std::vector<Vec3f> guess;     ///< x of the last solve
   std::vector<SoftHold> holds;
   std::vector<Vec3f> reaction;  ///< (D + K) x − b
+  std::vector<SoftMover> movers;
+  std::vector<SoftTie> ties;  ///< by body, then by particle
 
   void resize(std::size_t n);
   /// Takes the forces at the end of the step, −K v, to the right-hand side, and starts from the last solution, nothing
@@ -122,11 +162,25 @@ class SoftSolver {
 
  private:
   void prepare(const SoftMatrix& matrix);
+  // soft_movers.cpp
+  Vec3f carried(const SoftTie& tie, const SoftTwist& motion) const;  ///< of the tie's particle, where it is held
+  Vec3f row(const SoftMatrix& matrix, int node, const Vec3f* x) const;
+  void prepare_movers(const SoftMatrix& matrix);
+  void answer(const SoftMatrix& matrix, const SoftTie& tie, const Vec3f* x, SoftTwist& out) const;
+  void right_of_movers(std::vector<SoftTwist>& out) const;
+  void residual_of_movers(std::vector<SoftTwist>& out);
+  void sweep_down(const SoftMatrix& matrix, const std::vector<Vec3f>& x, std::vector<SoftTwist>& motions);
+  void sweep_up(const SoftMatrix& matrix, const std::vector<SoftTwist>& from, std::vector<SoftTwist>& to);
+  static SoftTwist times(const double (&m)[6][6], const SoftTwist& x);
+  double finish_movers(const SoftMatrix& matrix);  ///< images; their share of the curvature
+  double start_movers(const SoftMatrix& matrix, const std::vector<Vec3f>& x);
   void scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
   double start_sweep(const SoftMatrix& matrix, std::vector<Vec3f>& x, std::vector<Vec3f>& weighted);
   void settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
 
   std::vector<Vec3f> residual_, weighted_residual_, direction_, back_, forward_, image_, weighted_image_;
+  std::vector<Vec3f> field_, pull_;  ///< of the particles, by the bodies' motion
+  std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_;
   std::vector<SoftBlock> full_, inverse_;  ///< of the diagonal: as it is, and inverted within what is free
 };
 

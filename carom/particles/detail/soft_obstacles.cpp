@@ -1,5 +1,8 @@
 #include "carom/particles/detail/soft_obstacles.h"
 
+#include "carom/geometry/mass_properties.h"
+#include "carom/math/elementary.h"
+
 namespace carom::particles::detail {
 
 bool nearest_plane(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
@@ -37,12 +40,13 @@ int SoftObstacles::body_index(rigid::World3& world, rigid::BodyId id) {
   body.id = id;
   body.dynamic = state->type == rigid::BodyType::dynamic;
   body.awake = state->awake;
-  body.position = state->pose.position;
   body.center = state->center_of_mass;
   body.rotation = Quatd(state->pose.rotation);
+  body.local_center = inverse_rotate(body.rotation, body.center - state->pose.position);
   body.velocity = Vec3d(state->linear_velocity);
   body.spin = Vec3d(state->angular_velocity);
   body.mass = double(state->mass);
+  body.start = {body.velocity, body.spin};
   bodies.push_back(body);
   return int(bodies.size()) - 1;
 }
@@ -65,8 +69,10 @@ void SoftObstacles::gather(rigid::World3& world, const geometry::Bounds3d& bound
     const int index = body_index(world, *owner);
     if (!shape || index < 0) continue;
     const Body& body = bodies[std::size_t(index)];
-    shapes_.push_back({*shape, geometry::bounds(*shape, {}), index, body.rotation * Quatd(definition->local.q),
-                       body.place(Vec3d(definition->local.p)), double(definition->material.friction)});
+    const Quatd turn(definition->local.q);
+    const Vec3d place(definition->local.p);
+    shapes_.push_back({*shape, geometry::bounds(*shape, {}), index, body.rotation * turn, turn, body.place(place),
+                       place, double(definition->material.friction)});
   }
 }
 
@@ -85,10 +91,122 @@ bool SoftObstacles::nearest(Vec3d point, double radius, double margin, SoftPlane
   return found;
 }
 
-void SoftObstacles::hand_over(rigid::World3& world, double dt, double gravity) const {
+/// Of the bodies that a body is pressed against by a push on it, one behind the other; negative: it stands against what
+/// does not move.
+double SoftObstacles::mass_behind(rigid::World3& world, const Body& body, Vec3d push) {
+  constexpr std::size_t most = 32;
+  double sum = 0;
+  behind_.assign(1, body.id);
+  for (std::size_t k = 0; k < behind_.size() && k < most; ++k) {
+    const rigid::BodyId here = behind_[k];
+    world.contacts(here, contacts_);
+    for (const auto& contact : contacts_) {
+      float pressed = 0;
+      for (int p = 0; p < contact.count; ++p) pressed += contact.points[p].normal_impulse;
+      const auto a = world.body_of(contact.shape_a), b = world.body_of(contact.shape_b);
+      if (!(pressed > 0) || !a || !b) continue;
+      const bool first = *a == here;
+      const rigid::BodyId other = first ? *b : *a;
+      if ((first ? 1.0 : -1.0) * dot(Vec3d(contact.normal), push) < 0.3 * length(push)) continue;
+      const auto state = world.state(other);
+      if (!state) continue;
+      if (state->type != rigid::BodyType::dynamic) return -1;
+      bool known = false;
+      for (const rigid::BodyId id : behind_) known |= id == other;
+      if (known) continue;
+      behind_.push_back(other);
+      sum += double(state->mass);
+    }
+  }
+  return sum;
+}
+
+void SoftObstacles::find_pulls(rigid::World3& world, double dt) {
+  const Vec3d gravity(world.definition().gravity);
+  for (Body& body : bodies) {
+    if (!body.dynamic || !body.awake || !(body.mass > 0)) continue;
+    const auto properties = world.mass_properties3(body.id);
+    const auto definition = world.body_definition(body.id);
+    if (!properties || !definition) continue;
+    const rigid::MotionLocks& locks = definition->locks;
+    body.moves = true;
+    body.locked = {locks.x ? 1.0 : 0.0, locks.y ? 1.0 : 0.0, locks.z ? 1.0 : 0.0};
+    body.locked_turn = {locks.rotation_x ? 1.0 : 0.0, locks.rotation_y ? 1.0 : 0.0, locks.rotation_z ? 1.0 : 0.0};
+    body.inertia = geometry::rotate_inertia(properties->inertia, to_matrix(body.rotation));
+    body.inverse_inertia = math::inverse(body.inertia);
+    body.pull.linear = double(definition->gravity_scale) * gravity;
+    for (const SoftMemory& memory : memory_) {
+      if (memory.id != body.id) continue;
+      if (length_squared(memory.impulse) > 0) {
+        const double behind = mass_behind(world, body, memory.impulse);
+        body.moves = behind >= 0;
+        body.heavier = 1 + math::max(behind, 0.0) / body.mass;
+        if (!body.moves) break;
+      }
+      // Floors, joints and other ropes answer to a load with no more than it and the weight in all but blows.
+      const SoftTwist seen = SoftTwist{body.velocity, body.spin} - memory.velocity - memory.change;
+      const double most = length(body.pull.linear) * dt + length(memory.change.linear);
+      const double most_turn = length(memory.change.angular);
+      const double size = length(seen.linear), turn = length(seen.angular);
+      body.pull.linear = seen.linear * ((size > most ? most / size : 1) / dt);
+      body.pull.angular = seen.angular * ((turn > most_turn ? most_turn / turn : 1) / dt);
+      break;
+    }
+  }
+}
+
+void SoftObstacles::enter(float h, SoftSolver& solver) const {
+  solver.ties.clear();
+  solver.movers.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Body& body = bodies[b];
+    SoftMover& mover = solver.movers[b];
+    mover = {};
+    if (!body.moves) continue;
+    constexpr double still = 1e9;  // times the mass: a lock
+    for (int i = 0; i < 3; ++i) {
+      mover.mass[i][i] = body.heavier * body.mass * (1 + still * body.locked[i]);
+      for (int k = 0; k < 3; ++k) mover.mass[3 + i][3 + k] = body.heavier * body.inertia.column(k)[i];
+      mover.mass[3 + i][3 + i] += still * body.locked_turn[i] * math::trace(body.inertia);
+    }
+    const SoftTwist fall = double(h) * body.pull;
+    mover.right = body.heavier * SoftTwist{body.mass * fall.linear, body.inertia * fall.angular};
+    mover.change = body.touched ? body.change : fall;
+  }
+}
+
+void SoftObstacles::advance(double h, const SoftSolver& solver) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Body& body = bodies[b];
+    const SoftMover& mover = solver.movers[b];
+    body.touched = mover.from != mover.to;
+    body.change = mover.change;
+    if (body.moves) {
+      body.velocity += body.change.linear;
+      body.spin += body.change.angular;
+    }
+    if (body.dynamic && !body.moves) continue;
+    body.center += h * body.velocity;
+    body.rotation = integrate(body.rotation, h * body.spin);
+  }
+  for (Shape& shape : shapes_) {
+    const Body& body = bodies[std::size_t(shape.body)];
+    shape.turn = body.rotation * shape.local_turn;
+    shape.place = body.place(shape.local_place);
+  }
+}
+
+void SoftObstacles::hand_over(rigid::World3& world, double dt, double gravity) {
   const float per_step = float(1 / dt);
+  memory_.clear();
   for (const Body& body : bodies) {
-    if (!body.dynamic || (length_squared(body.impulse) == 0 && length_squared(body.turn) == 0)) continue;
+    if (!body.dynamic) continue;
+    if (body.awake && body.mass > 0) {
+      const double lightness = 1 / (body.heavier * body.mass), turn = 1 / body.heavier;
+      memory_.push_back(
+          {body.id, body.start, {lightness * body.impulse, turn * (body.inverse_inertia * body.turn)}, body.impulse});
+    }
+    if (length_squared(body.impulse) == 0 && length_squared(body.turn) == 0) continue;
     // What sleeps is not woken by what only lies on it.
     if (!body.awake && length(body.impulse) < 0.02 * body.mass * gravity * dt) continue;
     (void)world.add_force(body.id, Vec3f(body.impulse) * per_step);

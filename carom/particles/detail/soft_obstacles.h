@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "carom/math/quat.h"
+#include "carom/particles/detail/soft_matrix.h"
 #include "carom/rigid/world.h"
 
 namespace carom::particles::detail {
@@ -23,25 +24,37 @@ struct SoftPlane {
   double friction = 0;    ///< of the shape
 };
 
-/// A point of a body and how it answers to an impulse there.
+/// A point of a body that a vertex is held to.
 struct SoftPin {
   rigid::BodyId body{};
   Vec3d point{};  ///< body's frame, or the world
   int index = -1;
-  float mass = 0;  ///< kg by which the point resists, 0: it moves as it does
+};
+
+/// What is remembered of a body from step to step: its velocity, and how this was to change it.
+struct SoftMemory {
+  rigid::BodyId id{};
+  SoftTwist velocity{}, change{};
+  Vec3d impulse{};
 };
 
 class SoftObstacles {
  public:
   struct Body {
     rigid::BodyId id{};
-    bool dynamic = false, awake = false;
-    Vec3d position{}, center{}, velocity{}, spin{};
+    bool dynamic = false, awake = false, moves = false;  ///< moves: takes part with its mass
+    Vec3d center{}, local_center{}, velocity{}, spin{};
     Quatd rotation{};
     double mass = 0;
+    double heavier = 1;  ///< times the mass: with what it is pressed against
+    math::Mat3d inertia = math::Mat3d::zero(), inverse_inertia = math::Mat3d::zero();  ///< world axes
+    math::Vec3d locked{}, locked_turn{};                                               ///< 1: along this axis
+    SoftTwist start{}, pull{};  ///< velocity before the step; acceleration by all else
+    SoftTwist change{};         ///< of velocity in the last substep, where it was touched
+    bool touched = false;
     Vec3d impulse{}, turn{};  ///< over the step, about the centre of mass
     Vec3d velocity_at(Vec3d point) const { return velocity + cross(spin, point - center); }
-    Vec3d place(Vec3d local) const { return position + rotate(rotation, local); }
+    Vec3d place(Vec3d local) const { return center + rotate(rotation, local - local_center); }
   };
   std::vector<Body> bodies;
 
@@ -60,17 +73,27 @@ class SoftObstacles {
     b.impulse += impulse;
     b.turn += cross(point - b.center, impulse);
   }
-  void hand_over(rigid::World3& world, double dt, double gravity) const;
+  /// What all else does to the bodies in this step, by what they did in the last one.
+  void find_pulls(rigid::World3& world, double dt);
+  /// The bodies as unknowns of a substep, not yet tied to anything.
+  void enter(float h, SoftSolver& solver) const;
+  /// Moves the bodies on by a substep, as the solver has it.
+  void advance(double h, const SoftSolver& solver);
+  void hand_over(rigid::World3& world, double dt, double gravity);
 
  private:
   struct Shape {
     geometry::Shape3 shape{};
     geometry::Bounds3f tight{};
     int body = -1;
-    Quatd turn{};
-    Vec3d place{};
+    Quatd turn{}, local_turn{};
+    Vec3d place{}, local_place{};
     double friction = 0;
   };
+  double mass_behind(rigid::World3& world, const Body& body, Vec3d push);
+  std::vector<SoftMemory> memory_;
+  std::vector<rigid::BodyId> behind_;
+  std::vector<rigid::ContactView<rigid::Dim3>> contacts_;
   std::vector<Shape> shapes_;
   std::vector<rigid::ShapeId> found_;
 };

@@ -43,9 +43,8 @@ struct SoftState {
   void step(rigid::World3& world, double dt);
   void strain();
   void assemble(float h, Vec3f gravity);
-  void hold(float h, Vec3f gravity);
-  bool revise(float h);
-  void finish(float h, Vec3f gravity);
+  void hold(float h);
+  SoftTouching touching() { return {touches, pins, pinned, position, velocity}; }
 };
 
 }  // namespace carom::particles::detail

@@ -98,19 +98,8 @@ void SoftState::assemble(float h, Vec3f gravity) {
   solver.begin(matrix, velocity, tasks);
 }
 
-void SoftState::hold(float h, Vec3f gravity) {
-  for (std::size_t k = 0; k < pins.size(); ++k) {
-    const std::size_t i = std::size_t(pinned[k]);
-    const SoftPin& pin = pins[k];
-    if (pin.mass > 0) {
-      solver.diagonal[i] = solver.diagonal[i] + Mat3f::diagonal({pin.mass, pin.mass, pin.mass});
-      solver.right[i] += (h * pin.mass) * gravity;
-      continue;
-    }
-    solver.holds[i].rank = 3;
-    const Vec3d target = pin.index >= 0 ? obstacles.bodies[std::size_t(pin.index)].velocity_at(position[i]) : Vec3d{};
-    solver.change[i] = Vec3f(target) - velocity[i];
-  }
+void SoftState::hold(float h) {
+  hold_pins(touching(), solver);
   for (std::size_t i = 0; i < position.size(); ++i) {
     SoftTouch& touch = touches[i];
     touch.near =
@@ -125,36 +114,6 @@ void SoftState::hold(float h, Vec3f gravity) {
   }
 }
 
-bool SoftState::revise(float h) { return revise_touches(touches, position, velocity, h, obstacles, solver); }
-
-void SoftState::finish(float h, Vec3f gravity) {
-  for (std::size_t k = 0; k < pins.size(); ++k) {
-    const std::size_t i = std::size_t(pinned[k]);
-    const SoftPin& pin = pins[k];
-    obstacles.push(pin.index, position[i],
-                   pin.mass > 0 ? Vec3d(pin.mass * (solver.change[i] - h * gravity)) : -Vec3d(solver.reaction[i]));
-  }
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    SoftTouch& touch = touches[i];
-    if (touch.near) {
-      const Vec3f n(touch.plane.normal);
-      const float before = touch.push;
-      touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
-      Vec3d impulse = touch.active ? Vec3d(solver.reaction[i]) : Vec3d{};
-      if (before > 0) {
-        const Vec3f old = velocity[i] - Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
-        const float c = h * math::sqrt(float(material.friction * touch.plane.friction)) * before /
-                        math::max(length(old - dot(n, old) * n), soft_slip);
-        const Vec3f now = old + solver.change[i];
-        impulse -= Vec3d(c * (now - dot(n, now) * n));
-      }
-      obstacles.push(touch.plane.body, position[i] - material.skin * touch.plane.normal, -impulse);
-    }
-    velocity[i] += solver.change[i];
-    position[i] += Vec3d(h * velocity[i]);
-  }
-}
-
 void SoftState::step(rigid::World3& world, double dt) {
   const float h = float(dt / substeps);
   const Vec3f gravity = world.definition().gravity;
@@ -162,16 +121,20 @@ void SoftState::step(rigid::World3& world, double dt) {
   obstacles.clear();
   place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
   if (collide) gather_near(material.skin, dt, world, filter, pins, position, velocity, obstacles);
+  obstacles.find_pulls(world, dt);
   iterations = 0;
   for (int s = 0; s < substeps; ++s) {
     strain();
     assemble(h, gravity);
-    hold(h, gravity);
-    for (int round = 0; round < 3; ++round) {
-      iterations += solver.solve(matrix, 2e-3, h * 2, 200, tasks);
-      if (round == 2 || !revise(h)) break;
+    obstacles.enter(h, solver);
+    hold(h);
+    iterations += solve_touches(touching(), matrix, h, obstacles, solver, tasks);
+    react_touches(touching(), h, obstacles, solver, nullptr);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      velocity[i] += solver.change[i];
+      position[i] += Vec3d(h * velocity[i]);
     }
-    finish(h, gravity);
+    obstacles.advance(double(h), solver);
   }
   obstacles.hand_over(world, dt, double(length(gravity)));
 }

@@ -1,35 +1,80 @@
 #include "carom/particles/detail/soft_touch.h"
 
+#include <algorithm>
+
 #include "carom/math/elementary.h"
 
 namespace carom::particles::detail {
 
 using math::Mat3f;
 
+namespace {
+
+/// Velocity of what a touch lies on: before the solve, and how the solve changes it.
+Vec3f surface_velocity(const SoftTouch& touch, Vec3d at, const SoftObstacles& obstacles) {
+  return Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(at));
+}
+Vec3f surface_change(const SoftTouch& touch, Vec3d at, const SoftObstacles& obstacles, const SoftSolver& solver) {
+  const std::size_t b = std::size_t(touch.plane.body);
+  if (!obstacles.bodies[b].moves) return {};
+  return Vec3f(solver.movers[b].change.at(at - obstacles.bodies[b].center));
+}
+
+}  // namespace
+
 void hold_touch(SoftTouch& touch, std::size_t i, Vec3d position, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver) {
   const Vec3f n(touch.plane.normal);
-  const Vec3f against = velocity - Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position));
+  const Vec3f against = velocity - surface_velocity(touch, position, obstacles);
+  touch.grip = 0;
   if (touch.push > 0) {
-    const Vec3f slide = against - dot(n, against) * n;
-    const float c =
-        h * math::sqrt(float(friction * touch.plane.friction)) * touch.push / math::max(length(slide), soft_slip);
-    solver.diagonal[i] = solver.diagonal[i] + c * (Mat3f::identity() - math::outer(n, n));
-    solver.right[i] -= c * slide;
+    touch.slip = against - dot(n, against) * n;
+    touch.grip =
+        h * math::sqrt(float(friction * touch.plane.friction)) * touch.push / math::max(length(touch.slip), soft_slip);
+    solver.diagonal[i] = solver.diagonal[i] + touch.grip * (Mat3f::identity() - math::outer(n, n));
+    solver.right[i] -= touch.grip * touch.slip;
   }
   const float deep = float(touch.plane.separation);
   touch.active = touch.active || deep < 0;
   if (!touch.active) return;
   solver.holds[i] = {1, n};
   const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, 1.0f);
-  solver.change[i] = (target - dot(n, against)) * n;
+  touch.given = target - dot(n, against);
 }
 
-bool revise_touches(std::vector<SoftTouch>& touches, const std::vector<Vec3d>& position,
-                    const std::vector<Vec3f>& velocity, float h, const SoftObstacles& obstacles, SoftSolver& solver) {
+void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSolver& solver) {
+  solver.ties.clear();
+  for (std::size_t i = 0; i < all.touches.size(); ++i) {
+    const SoftTouch& touch = all.touches[i];
+    if (!touch.near) continue;
+    if (touch.active)
+      solver.change[i] = solver.holds[i].filter(solver.change[i]) + touch.given * Vec3f(touch.plane.normal);
+    const SoftObstacles::Body& body = obstacles.bodies[std::size_t(touch.plane.body)];
+    if (body.moves && (touch.active || touch.grip > 0))
+      solver.ties.push_back(
+          {int(i), touch.plane.body, all.position[i] - body.center, Vec3f(touch.plane.normal), touch.grip, touch.slip});
+  }
+  for (std::size_t k = 0; k < all.pins.size(); ++k) {
+    const std::size_t i = std::size_t(all.pinned[k]);
+    const int index = all.pins[k].index;
+    const SoftObstacles::Body* body = index >= 0 ? &obstacles.bodies[std::size_t(index)] : nullptr;
+    solver.change[i] = (body ? Vec3f(body->velocity_at(all.position[i])) : Vec3f{}) - all.velocity[i];
+    if (body && body->moves) solver.ties.push_back({int(i), index, all.position[i] - body->center, {}, 0, {}});
+  }
+  std::sort(solver.ties.begin(), solver.ties.end(),
+            [](const SoftTie& a, const SoftTie& b) { return a.body != b.body ? a.body < b.body : a.node < b.node; });
+  for (SoftMover& mover : solver.movers) mover.from = mover.to = 0;
+  for (std::size_t k = 0; k < solver.ties.size(); ++k) {
+    SoftMover& mover = solver.movers[std::size_t(solver.ties[k].body)];
+    if (mover.to == 0) mover.from = int(k);
+    mover.to = int(k) + 1;
+  }
+}
+
+bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obstacles, SoftSolver& solver) {
   bool again = false;
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    SoftTouch& touch = touches[i];
+  for (std::size_t i = 0; i < all.position.size(); ++i) {
+    SoftTouch& touch = all.touches[i];
     if (!touch.near) continue;
     const Vec3f n(touch.plane.normal);
     if (touch.active) {
@@ -39,14 +84,51 @@ bool revise_touches(std::vector<SoftTouch>& touches, const std::vector<Vec3d>& p
       again = true;
       continue;
     }
-    const Vec3f surface(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(position[i]));
-    const float closing = dot(n, velocity[i] + solver.change[i] - surface);
-    if (float(touch.plane.separation) + h * closing >= -1e-6f) continue;
+    const Vec3f before = all.velocity[i] - surface_velocity(touch, all.position[i], obstacles);
+    const Vec3f change = solver.change[i] - surface_change(touch, all.position[i], obstacles, solver);
+    if (float(touch.plane.separation) + h * dot(n, before + change) >= -1e-6f) continue;
     touch.active = again = true;
     solver.holds[i] = {1, n};
-    solver.change[i] += (-math::max(float(touch.plane.separation), 0.0f) / h - closing) * n;
+    touch.given = -math::max(float(touch.plane.separation), 0.0f) / h - dot(n, before);
   }
   return again;
+}
+
+int solve_touches(const SoftTouching& all, const SoftMatrix& matrix, float h, const SoftObstacles& obstacles,
+                  SoftSolver& solver, core::TaskScheduler& scheduler) {
+  int iterations = 0;
+  for (int round = 0; round < 3; ++round) {
+    tie_touches(all, obstacles, solver);
+    iterations += solver.solve(matrix, 2e-3, h * 2, 200, scheduler);
+    if (round == 2 || !revise_touches(all, h, obstacles, solver)) break;
+  }
+  return iterations;
+}
+
+void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, const SoftSolver& solver,
+                   Vec3d* pin_impulse) {
+  for (std::size_t k = 0; k < all.pins.size(); ++k) {
+    const std::size_t i = std::size_t(all.pinned[k]);
+    const Vec3d impulse = -Vec3d(solver.reaction[i]);
+    if (pin_impulse) pin_impulse[k] += impulse;
+    obstacles.push(all.pins[k].index, all.position[i], impulse);
+  }
+  for (std::size_t i = 0; i < all.position.size(); ++i) {
+    SoftTouch& touch = all.touches[i];
+    if (!touch.near) continue;
+    const Vec3f n(touch.plane.normal);
+    touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
+    Vec3f impulse = touch.active ? solver.reaction[i] : Vec3f{};
+    if (touch.grip > 0) {  // as the system had it
+      const Vec3f change = solver.change[i] - surface_change(touch, all.position[i], obstacles, solver);
+      impulse -= touch.grip * (touch.slip + change - dot(n, change) * n);
+    }
+    obstacles.push(touch.plane.body, all.position[i], -Vec3d(impulse));
+  }
+}
+
+void hold_pins(const SoftTouching& all, SoftSolver& solver) {
+  for (const int i : all.pinned) solver.holds[std::size_t(i)].rank = 3;
 }
 
 void place_pins(std::vector<SoftPin>& pins, std::vector<int>& pinned, std::vector<int>& pin_of, rigid::World3& world,
@@ -62,14 +144,9 @@ void place_pins(std::vector<SoftPin>& pins, std::vector<int>& pinned, std::vecto
     SoftPin& pin = pins[k];
     const std::size_t i = std::size_t(pinned[k]);
     pin.index = pin.body == rigid::BodyId{} ? -1 : obstacles.body_index(world, pin.body);
-    pin.mass = 0;
     const SoftObstacles::Body* body = pin.index >= 0 ? &obstacles.bodies[std::size_t(pin.index)] : nullptr;
     position[i] = body ? body->place(pin.point) : pin.point;
     velocity[i] = body ? Vec3f(body->velocity_at(position[i])) : Vec3f{};
-    if (!body || !body->dynamic || !body->awake) continue;
-    int sharing = 0;
-    for (const SoftPin& other : pins) sharing += other.body == pin.body;
-    pin.mass = float(body->mass / sharing);
   }
 }
 

@@ -14,21 +14,41 @@ inline constexpr float soft_slip = 0.002f;  ///< m/s: friction grows up to here
 struct SoftTouch {
   bool near = false, active = false;
   SoftPlane plane{};
-  float push = 0;  ///< N, in the last substep
+  float push = 0;   ///< N, in the last substep
+  float given = 0;  ///< m/s: change along the normal where it is held, beside the surface's own
+  float grip = 0;   ///< kg: friction of this substep, times what slips
+  Vec3f slip{};     ///< m/s, before the solve
+};
+
+/// What touches or is pinned in a substep.
+struct SoftTouching {
+  std::vector<SoftTouch>& touches;
+  const std::vector<SoftPin>& pins;
+  const std::vector<int>& pinned;
+  const std::vector<math::Vec3d>& position;
+  const std::vector<Vec3f>& velocity;
 };
 
 /// Enters the touch of particle i, which is near, into the system. `friction`: of the particles' material.
 void hold_touch(SoftTouch& touch, std::size_t i, math::Vec3d position, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver);
 
+/// Enters the bodies of what is held or rubbed into the system. Before every solve.
+void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSolver& solver);
 /// After a solve: lets go of what is pulled, holds what would pass through. True: solve again.
-bool revise_touches(std::vector<SoftTouch>& touches, const std::vector<math::Vec3d>& position,
-                    const std::vector<Vec3f>& velocity, float h, const SoftObstacles& obstacles, SoftSolver& solver);
+bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obstacles, SoftSolver& solver);
+/// Solves with contacts that begin and end; iterations.
+int solve_touches(const SoftTouching& all, const SoftMatrix& matrix, float h, const SoftObstacles& obstacles,
+                  SoftSolver& solver, core::TaskScheduler& scheduler);
+/// Hands the bodies what the solution has for them. `pin_impulse`: by pin, may be null.
+void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, const SoftSolver& solver,
+                   Vec3d* pin_impulse);
 
-/// Drops pins of bodies that are gone, puts pinned vertices to their places, and says by what mass a body resists
-/// there: one that moves as a lump of about its effective mass, shared among its pins.
+/// Drops pins of bodies that are gone, puts pinned vertices to their places.
 void place_pins(std::vector<SoftPin>& pins, std::vector<int>& pinned, std::vector<int>& pin_of, rigid::World3& world,
                 SoftObstacles& obstacles, std::vector<Vec3d>& position, std::vector<Vec3f>& velocity);
+/// Holds pinned vertices for a substep.
+void hold_pins(const SoftTouching& all, SoftSolver& solver);
 /// What is within reach of a step of the vertices, kept `apart` m from shapes.
 void gather_near(double apart, double dt, rigid::World3& world, const rigid::Filter& filter,
                  const std::vector<SoftPin>& pins, const std::vector<Vec3d>& position,
