@@ -141,7 +141,7 @@ struct Rope {
   std::vector<int> reach;      ///< two a body: particles from … to that its motion moves
   std::vector<Vec3d> columns;  ///< 6 a body, as many as particles
   std::vector<double> theta, pull;
-  std::vector<Mat3d> inverse;  ///< of the rows: blocks of the diagonal
+  std::vector<Mat3d> inverse, pair_factor, pair_held;  ///< of the rows: blocks of the diagonal; as eliminated
   std::vector<Vec3d> trial;    ///< the solution as pairs of segments change it
 
   int count() const { return int(position.size()); }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double least_speed = 1e-3;  // m/s: what pairs are off by that asks for no further solve
 constexpr int pair_sweeps = 4;
+constexpr double pair_share = 0.8;       // of what would undo it, were it alone
 constexpr double fastest_parting = 0.5;  // m/s at which an overlap is undone
 
 /// Where two segments are nearest to each other. Of parallel ones, in the middle of where they lie side by side.
@@ -162,38 +163,68 @@ void RopeSolver::add_pairs(Rope& rope, int index) const {
   }
 }
 
-/// Blocks of the inverse of a rope's rows at and above the diagonal: how its particles answer to an impulse.
+/// The part of a row that a particle is free to answer with. What is held by a body that moves is taken as free: it
+/// gives way with the body.
+Vec3d RopeSolver::free_part(const RopeNode& node, Vec3d r) const {
+  if (node.hold == RopeHold::none || (node.body >= 0 && set.bodies_[std::size_t(node.body)].moves)) return r;
+  return node.hold == RopeHold::attached ? Vec3d{} : r - dot(node.normal, r) * node.normal;
+}
+
+/// Blocks of the inverse of a rope's rows, with the bodies that it holds as lumps: how its particles answer to an
+/// impulse.
 void RopeSolver::invert_rows(Rope& rope) const {
   const std::size_t n = rope.position.size();
   rope.inverse.resize(n);
-  rope.inverse[n - 1] = rope.factor[n - 1];
-  for (std::size_t i = n - 1; i-- > 0;) {
-    const RopeNode& next = rope.nodes[i + 1];
-    const auto project = [&](Vec3d r) {
-      if (next.hold == RopeHold::none) return r;
-      return next.hold == RopeHold::attached ? Vec3d{} : r - dot(next.normal, r) * next.normal;
-    };
-    const Mat3d low{project(rope.lower[i + 1].cx), project(rope.lower[i + 1].cy), project(rope.lower[i + 1].cz)};
-    rope.inverse[i] = rope.factor[i] + rope.held[i] * (rope.inverse[i + 1] * (low * rope.factor[i]));
+  rope.pair_factor.resize(n);
+  rope.pair_held.resize(n);
+  const auto project = [&](const RopeNode& node, const Mat3d& m) {
+    return Mat3d{free_part(node, m.cx), free_part(node, m.cy), free_part(node, m.cz)};
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const RopeNode& node = rope.nodes[i];
+    Mat3d d = project(node, rope.diagonal[i]);
+    const RopeBody* body =
+        node.hold != RopeHold::none && node.body >= 0 ? &set.bodies_[std::size_t(node.body)] : nullptr;
+    if (body && body->moves) {
+      const double mobility = (math::trace(body->linear) + length_squared(node.arm) * math::trace(body->angular)) / 3;
+      if (node.hold == RopeHold::attached && mobility > 0) d = d + (1 / mobility) * Mat3d::identity();
+    } else if (node.hold == RopeHold::attached) {
+      d = d + rope.mass[i] * Mat3d::identity();
+    } else if (node.hold != RopeHold::none) {
+      const Mat3d normal = math::outer(node.normal, node.normal);
+      d = d + rope.mass[i] * normal + node.resistance * (Mat3d::identity() + (-1.0) * normal);
+    }
+    if (i > 0) d = d + (-1.0) * (project(node, rope.lower[i]) * rope.pair_held[i - 1]);
+    rope.pair_factor[i] = math::inverse(d);
+    rope.pair_held[i] = rope.pair_factor[i] * project(node, rope.upper[i]);
   }
+  rope.inverse[n - 1] = rope.pair_factor[n - 1];
+  for (std::size_t i = n - 1; i-- > 0;)
+    rope.inverse[i] = rope.pair_factor[i] +
+                      rope.pair_held[i] *
+                          (rope.inverse[i + 1] * (project(rope.nodes[i + 1], rope.lower[i + 1]) * rope.pair_factor[i]));
 }
 
 /// What an impulse at a point of a segment changes of the velocities of its ends.
 void RopeSolver::answer_of(const Rope& rope, std::size_t e, double share, Vec3d impulse, Vec3d& first,
                            Vec3d& second) const {
-  const auto given = [&](std::size_t i, Vec3d r) {
-    const RopeNode& node = rope.nodes[i];
-    if (node.hold == RopeHold::none) return r;
-    return node.hold == RopeHold::attached ? Vec3d{} : r - dot(node.normal, r) * node.normal;
-  };
-  const Vec3d a = given(e, (1 - share) * impulse), b = given(e + 1, share * impulse);
-  const Vec3d far = rope.inverse[e + 1] * b;
-  first = given(e, rope.inverse[e] * a - rope.held[e] * far);
-  second = given(e + 1, far - rope.inverse[e + 1] * (rope.lower[e + 1] * (rope.factor[e] * a)));
+  const RopeNode &one = rope.nodes[e], &other = rope.nodes[e + 1];
+  const Vec3d a = free_part(one, (1 - share) * impulse), b = free_part(other, share * impulse);
+  const Vec3d far = rope.inverse[e + 1] * b, low = free_part(other, rope.lower[e + 1] * (rope.pair_factor[e] * a));
+  first = free_part(one, rope.inverse[e] * a - rope.pair_held[e] * far);
+  second = free_part(other, far - rope.inverse[e + 1] * low);
 }
 
 bool RopeSolver::update_pairs() {
-  if (set.pairs_.empty()) return false;
+  bool any = false;
+  for (const RopePair& pair : set.pairs_) {
+    const Rope &a = set.ropes_[std::size_t(pair.rope[0])], &b = set.ropes_[std::size_t(pair.rope[1])];
+    const std::size_t i = std::size_t(pair.segment[0]), j = std::size_t(pair.segment[1]);
+    const Vec3d against =
+        lerp(a.solution[i], a.solution[i + 1], pair.share[0]) - lerp(b.solution[j], b.solution[j + 1], pair.share[1]);
+    any |= pair.push > 0 || dot(against, pair.normal) < pair.least;
+  }
+  if (!any) return false;
   for (Rope& rope : set.ropes_) {
     if (!rope.touch_ropes) continue;
     invert_rows(rope);
@@ -218,7 +249,7 @@ bool RopeSolver::update_pairs() {
       }
       if (!(lightness > 1e-12)) continue;
       const Vec3d old = pair.push * pair.normal + pair.grip;
-      pair.push = math::max(pair.push - off / (h * lightness), 0.0);
+      pair.push = math::max(pair.push - pair_share * off / (h * lightness), 0.0);
       const Vec3d slide = against - dot(against, pair.normal) * pair.normal;
       pair.grip -= slide * (0.5 / (h * lightness));
       const double held = length(pair.grip), most = pair.friction * pair.push;

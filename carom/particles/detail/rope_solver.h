@@ -49,6 +49,7 @@ struct RopeSolver {
   void find_pairs();   ///< at the start of a step
   void place_pairs();  ///< at the start of a substep
   void add_pairs(Rope& rope, int index) const;
+  Vec3d free_part(const RopeNode& node, Vec3d r) const;
   void invert_rows(Rope& rope) const;
   void answer_of(const Rope& rope, std::size_t e, double share, Vec3d impulse, Vec3d& first, Vec3d& second) const;
   bool update_pairs();  ///< true: solve again
