@@ -22,6 +22,7 @@ void Rope::resize(std::size_t n) {
   theta.resize(2 * (n - 1));
   pull.resize(n - 1);
   broken.resize(n - 1);
+  slack.resize(n - 1);
 }
 
 namespace {
@@ -327,9 +328,8 @@ double RopeSet::elastic_energy() const {
     for (std::size_t i = 0; i + 1 < rope.position.size(); ++i) {
       if (rope.broken[i]) continue;
       const double stiffness = rope.material.axial_stiffness / rope.rest[i];
-      const double stretch = distance(rope.position[i], rope.position[i + 1]) - rope.rest[i];
-      const double least = rope.least_tension(i) / stiffness, elastic = math::max(stretch, least);
-      sum += 0.5 * stiffness * elastic * elastic + stiffness * least * (stretch - elastic);
+      const double length = distance(rope.position[i], rope.position[i + 1]), stretch = length - rope.rest[i];
+      sum += rope.buckled(i, length) ? rope.least_tension(i) * stretch : 0.5 * stiffness * stretch * stretch;
     }
     sum += detail::bending_energy(rope);
     sum +=

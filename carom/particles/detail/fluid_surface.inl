@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/core/string.h"
+#include "carom/math/elementary.h"
 #include "carom/particles/detail/fluid_solver.inl"
 
 namespace carom::particles::detail {

@@ -141,13 +141,19 @@ struct Rope {
   std::vector<int> reach;      ///< two a body: particles from … to that its motion moves
   std::vector<Vec3d> columns;  ///< 6 a body, as many as particles
   std::vector<double> theta, pull;
+  std::vector<std::uint8_t> slack;                     ///< by segment
   std::vector<Mat3d> inverse, pair_factor, pair_held;  ///< of the rows: blocks of the diagonal; as eliminated
-  std::vector<Vec3d> trial;    ///< the solution as pairs of segments change it
+  std::vector<Vec3d> trial;                            ///< the solution as pairs of segments change it
 
   int count() const { return int(position.size()); }
-  /// N: a segment that is pressed together by more than Euler's load buckles; nothing but bending makes it stiff.
+  /// N: Euler's load of a segment, beyond which it buckles.
   double least_tension(std::size_t segment) const {
     return -math::pi * math::pi * material.bending_stiffness / (rest[segment] * rest[segment]);
+  }
+  /// A segment of this length is pressed together by more than a hundredth, and more than it bears.
+  bool buckled(std::size_t segment, double length) const {
+    const double strain = math::min(-0.01, least_tension(segment) / material.axial_stiffness);
+    return length < (1 + strain) * rest[segment];
   }
   void resize(std::size_t n);
 };
