@@ -22,7 +22,6 @@ void Rope::resize(std::size_t n) {
   theta.resize(2 * (n - 1));
   pull.resize(n - 1);
   broken.resize(n - 1);
-  slack.resize(n - 1);
 }
 
 namespace {
@@ -69,6 +68,25 @@ void lay(std::span<const Vec3d> corners, double way, int segments, std::vector<V
     }
     const double t = here > 0 ? math::min((s - before) / here, 1.0) : 0.0;
     out[std::size_t(i)] = lerp(corners[leg - 1], corners[leg], t);
+  }
+}
+
+/// A rope that is longer than its way lies in folds from side to side, each segment as long as it is at rest: as struts
+/// they would hold more energy than a fall.
+void fold(double rest, std::vector<Vec3d>& points) {
+  const int last = int(points.size()) - 1;
+  const std::vector<Vec3d> way = points;
+  for (int i = 1; i < last; ++i) {
+    // Every other one to one side; of an odd number of segments the last two aside, by 60° from each other.
+    const bool turned = last % 2 == 1 && i == last - 1;
+    if (i % 2 == 0 && !turned) continue;
+    const std::size_t k = std::size_t(i);
+    const double reach = math::max(distance(way[k], way[k - 1]), distance(way[k], way[k + 1]));
+    if (!(rest > reach)) continue;
+    const Vec3d along = normalize_or(way[k + 1] - way[k - 1], Vec3d{1, 0, 0}, 1e-12);
+    const Vec3d side = math::normalize(math::perpendicular(along)), other = cross(along, side);
+    const double width = math::sqrt(rest * rest - reach * reach);
+    points[k] += width * (turned ? 0.5 * side + math::sqrt(0.75) * other : side);
   }
 }
 
@@ -120,6 +138,7 @@ Result<int> RopeSet::add(const RopeDef& def) {
   rope.segment = rest / def.segments;
   rope.resize(std::size_t(def.segments) + 1);
   detail::lay(def.points, way, def.segments, rope.position);
+  if (rest > 1.02 * way) detail::fold(rope.segment, rope.position);
   for (double& length : rope.rest) length = rope.segment;
   ropes_.push_back(std::move(rope));
   return int(ropes_.size()) - 1;
@@ -327,9 +346,8 @@ double RopeSet::elastic_energy() const {
   for (const Rope& rope : ropes_) {
     for (std::size_t i = 0; i + 1 < rope.position.size(); ++i) {
       if (rope.broken[i]) continue;
-      const double stiffness = rope.material.axial_stiffness / rope.rest[i];
-      const double length = distance(rope.position[i], rope.position[i + 1]), stretch = length - rope.rest[i];
-      sum += rope.buckled(i, length) ? rope.least_tension(i) * stretch : 0.5 * stiffness * stretch * stretch;
+      const double stretch = distance(rope.position[i], rope.position[i + 1]) - rope.rest[i];
+      sum += 0.5 * rope.material.axial_stiffness / rope.rest[i] * stretch * stretch;
     }
     sum += detail::bending_energy(rope);
     sum +=

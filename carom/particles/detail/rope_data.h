@@ -146,15 +146,6 @@ struct Rope {
   std::vector<Vec3d> trial;                            ///< the solution as pairs of segments change it
 
   int count() const { return int(position.size()); }
-  /// N: Euler's load of a segment, beyond which it buckles.
-  double least_tension(std::size_t segment) const {
-    return -math::pi * math::pi * material.bending_stiffness / (rest[segment] * rest[segment]);
-  }
-  /// A segment of this length is pressed together by more than a hundredth, and more than it bears.
-  bool buckled(std::size_t segment, double length) const {
-    const double strain = math::min(-0.01, least_tension(segment) / material.axial_stiffness);
-    return length < (1 + strain) * rest[segment];
-  }
   void resize(std::size_t n);
 };
 

@@ -99,7 +99,6 @@ void RopeSolver::forces(Rope& rope) {
     rope.theta[2 * i] = implicit_share(h * h * m.axial_stiffness / rope.rest[i] * lightness);
     rope.theta[2 * i + 1] = h * h * lightness;
     rope.pull[i] = math::max(rope.tension[i], 0.0);
-    rope.slack[i] = rope.buckled(i, l);
     if (density == 0 || (m.drag_coefficient == 0 && m.skin_coefficient == 0)) continue;
     const Vec3d middle = 0.5 * (rope.position[i] + rope.position[i + 1]);
     const Vec3d air = environment::wind_at(set.air_.wind, middle.y) - 0.5 * (rope.velocity[i] + rope.velocity[i + 1]);
@@ -153,12 +152,8 @@ void RopeSolver::assemble(Rope& rope, int index) {
     const Vec3d g = normalize_or(reach, Vec3d{0, 1, 0}, 1e-12), way = normalize_or(aim, g, 1e-12);
     const double damping = rope.material.axial_damping / rope.rest[i];
     const double wound = (i == 0 ? rope.winch[0] : 0) + (i + 2 == n ? rope.winch[1] : 0);  // m/s off the rest length
-    const double asked = stiffness * (l - rope.rest[i]) + damping * (dot(g, closing) + wound * l / rope.rest[i]);
-    // What is pressed together has buckled between its ends. What comes taut in the step stays so until its end.
-    if (rope.slack[i] && asked > 0) rope.slack[i] = 0;
-    const double tension = rope.slack[i] ? rope.least_tension(i) : asked;
-    Mat3d c = Mat3d::zero();
-    if (!rope.slack[i]) c = (h * (axial * h * stiffness + damping)) * math::outer(way, g);
+    const double tension = stiffness * (l - rope.rest[i]) + damping * (dot(g, closing) + wound * l / rope.rest[i]);
+    Mat3d c = (h * (axial * h * stiffness + damping)) * math::outer(way, g);
     if (lateral > 0) {
       const double turn = h * h * lateral * rope.pull[i] / math::max(length(aim), 1e-9);
       c = c + turn * (Mat3d::identity() + (-1.0) * math::outer(way, way));
@@ -301,9 +296,7 @@ void RopeSolver::advance(Rope& rope, int index) {
   for (std::size_t i = 0; i + 1 < n; ++i) {
     if (rope.broken[i]) continue;
     const double stretch = distance(rope.position[i], rope.position[i + 1]) - rope.rest[i];
-    const double tension = rope.buckled(i, rope.rest[i] + stretch)
-                               ? rope.least_tension(i)
-                               : rope.material.axial_stiffness * stretch / rope.rest[i];
+    const double tension = rope.material.axial_stiffness * stretch / rope.rest[i];
     rope.tension[i] = tension;
     rope.peak = math::max(rope.peak, tension);
     if (rope.material.break_tension > 0 && tension > rope.material.break_tension) {
