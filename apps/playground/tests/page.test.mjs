@@ -22,6 +22,7 @@ test('the start page shows all demos by chapters with pictures, finds them by wo
   assert.equal(await page.locator('#demo-list img').count(), demos.length);
   assert.ok(await page.$$eval('#demo-list img', (all) => all.some((img) => !img.complete)), 'not all of them at once');
   assert.deepEqual(await page.$$eval('#highlights a', (all) => all.map((a) => a.dataset.demo)), ['wrecking-ball', 'glass-pane', 'fluid-tank', 'pool-table', 'powered_ragdoll', 'trebuchet']);
+  assert.ok((await page.locator('#highlights').boundingBox()).height < 250, 'in one row');
   await picture(page, 'start');
   assert.deepEqual(await barriers(page), []);
   for (const image of await page.locator('#demo-list section li:last-child img').all()) await image.scrollIntoViewIfNeeded();
