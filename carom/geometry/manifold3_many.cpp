@@ -187,14 +187,12 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
   return max(least, 0.0f);
 }
 
-int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
-                   std::span<Manifold3> out) {
+/// Returns −1 for what meets nothing.
+int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b, const Transform3f& x,
+                   float margin, Bounds3f box, std::span<Manifold3> out) {
   constexpr int max_patches = 12;
-  const detail::Convex b = detail::convex_of(shape);
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
-  const Bounds3f tight = bounds(shape, x);
-  Bounds3f box = grow(tight, margin);
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
   const float same = 2e-3f * (detail::outer_size(b) + b.radius);
   const Reach reach(shape, b, x, margin, solid);
@@ -234,13 +232,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     return true;
   });
   if (solid && count == 0 && sunk(*surface.height_field, b, x, out[0])) return 1;
-  if (count == 0) {
-    out[0] = {};
-    // A little less than what was measured, for rounding.
-    const float apart = clearance(surface, shape, b, x, tight, margin + 0.5f * detail::inner_size(b), solid);
-    out[0].points[0].separation = apart - 1e-5f * (1 + length(x.p));
-    return 0;
-  }
+  if (count == 0) return -1;
   Deepest found{out};
   for (int i = 0; i < count; ++i) {
     // The shape's own corners come before points cut by triangles' edges: in ties they are kept, with their names.
@@ -257,6 +249,20 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     found.offer(m);
   }
   return found.count;
+}
+
+int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
+                   std::span<Manifold3> out) {
+  const detail::Convex b = detail::convex_of(shape);
+  const Bounds3f tight = bounds(shape, x);
+  const int count = surface_convex(surface, shape, b, x, margin, grow(tight, margin), out);
+  if (count >= 0) return count;
+  out[0] = {};
+  // A little less than what was measured, for rounding.
+  const bool solid = surface.type == ShapeType3::height_field;
+  const float apart = clearance(surface, shape, b, x, tight, margin + 0.5f * detail::inner_size(b), solid);
+  out[0].points[0].separation = apart - 1e-5f * (1 + length(x.p));
+  return 0;
 }
 
 /// The corners of the mesh that are below the plane or near it: one patch.
@@ -334,6 +340,11 @@ int compound_any(const Shape3& a, const Shape3& b, const Transform3f& x, float m
 }
 
 }  // namespace many3
+
+int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
+                            const Bounds3f& box, std::span<Manifold3> out) {
+  return max(many3::surface_convex(surface, b, convex_of(b), b_in_a, margin, box, out), 0);
+}
 
 int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, std::span<Manifold3> out) {
   if (out.empty()) return 0;

@@ -255,7 +255,7 @@ class Adviser {
         (their_definition.filter.category & definition.filter.mask) == 0)
       return;
     const typename D::Pose placed = parts_[std::size_t(a)].state.pose * their_definition.local;
-    detail::for_manifolds(theirs, geometry, relative(placed, pose), float(touching),
+    detail::for_manifolds(theirs, geometry, relative(placed, pose), float(touching), {{}, float(touching)},
                           [&](const typename D::Manifold& m) {
                             const typename D::Vector n = rotate(placed.rotation, m.normal);
                             const double upright = double(dot(n, up_));

@@ -156,12 +156,14 @@ void Character<D>::look_around(const World<D>& world, float way) {
   }
 }
 
+/// The planes of all that a straight `way` may meet, and of what is no farther than `around` from it. What lies beside
+/// a long way is not looked at: on a mesh that is most of the triangles within its length.
 template <class D>
-void Character<D>::find_planes(const World<D>& world, float reach) {
+void Character<D>::find_planes(const World<D>& world, const Vector& way, float around) {
   planes_.clear();
-  reach += approach_;
+  const float near = around + approach_ + definition_.skin, reach = math::length(way) + near;
   const auto box = geometry::bounds(capsule_, typename D::Transform{{}, rotation_});
-  const auto grown = geometry::grow(box, reach + definition_.skin);
+  const auto grown = geometry::grow(merge(box, {box.low + way, box.high + way}), near);
   const typename D::Bounds bounds{position_ + Position(grown.low), position_ + Position(grown.high)};
   if (!world.overlap_bounds(bounds, nearby_, {definition_.filter.category, definition_.filter.mask}).ok()) return;
   for (const ShapeId shape : nearby_) {
@@ -175,8 +177,8 @@ void Character<D>::find_planes(const World<D>& world, float reach) {
     const auto state = world.state(body.value());
     if (!state.ok()) continue;
     const typename D::Pose placed = state.value().pose * definition.value().local;
-    detail::for_manifolds(geometry.value(), capsule_, relative(placed, pose()), reach + definition_.skin,
-                          [&](const typename D::Manifold& m) {
+    detail::for_manifolds(geometry.value(), capsule_, relative(placed, pose()), reach,
+                          {inverse_rotate(placed.rotation, way), near}, [&](const typename D::Manifold& m) {
                             int deepest = 0;
                             for (int i = 1; i < m.count; ++i)
                               if (m.points[i].separation < m.points[deepest].separation) deepest = i;
@@ -232,7 +234,7 @@ typename Character<D>::Vector Character<D>::fit(Vector wanted, bool keep_height)
 template <class D>
 void Character<D>::slide(const World<D>& world, Vector way, bool keep_height) {
   for (int i = 0; i < 4; ++i) {
-    find_planes(world, math::length(way) + ground_gap);
+    find_planes(world, {}, math::length(way) + ground_gap);
     const Vector x = fit(way, keep_height);
     position_ += Position(x);
     way -= x;
@@ -251,7 +253,7 @@ float Character<D>::advance(const World<D>& world, const Vector& direction, floa
   float gone = 0;
   stopped_ = false;
   for (int i = 0; i < 12 && way - gone > tiny; ++i) {
-    find_planes(world, way - gone);
+    find_planes(world, direction * (way - gone), ground_gap);
     float step = way - gone;
     for (const Plane& p : planes_) {
       const float toward = -dot(p.normal, direction);
@@ -265,22 +267,23 @@ float Character<D>::advance(const World<D>& world, const Vector& direction, floa
   return gone;
 }
 
-/// Up, on, and down again: true and there, if that leads farther than the wall did and ends on ground.
+/// Up, on, and down again: true and there, if that leads farther than the wall did and ends on ground. Nothing stands in
+/// the way of what has come as far as it `wanted` to along the way; uphill that is less than the length of the walk.
 template <class D>
-bool Character<D>::climb(const World<D>& world, const Vector& way, const Position& start) {
+bool Character<D>::climb(const World<D>& world, const Vector& way, float wanted, const Position& start) {
   const Vector up = definition_.up;
   const Position stopped = position_;
-  const float wanted = math::length(way);
-  const Vector ahead = way / wanted;
+  const float length = math::length(way);
+  const Vector ahead = way / length;
   const float before = float(dot(stopped - start, Position(ahead)));
   if (before > 0.99f * wanted) return false;
   position_ = start;
   const float raised = advance(world, up, definition_.step_height);
   slide(world, way, true);
   const float went = float(dot(position_ - start, Position(ahead)));
-  if (went > before + 0.25f * wanted) {  // less is only the skin at an edge
+  if (went > before + 0.25f * length) {  // less is only the skin at an edge
     advance(world, -up, raised + ground_gap);
-    if (!stopped_) find_planes(world, ground_gap);
+    if (!stopped_) find_planes(world, {}, ground_gap);
     // What carries it must not lie higher above where it began than a step: it has not been lifted over an edge.
     const float lifted = float(dot(position_ - start, Position(up)));
     for (const Plane& p : planes_)
@@ -339,7 +342,7 @@ void Character<D>::follow_ground(const World<D>& world, bool jumped, bool stood)
   const Position here = position_;
   stopped_ = false;
   if (stood && !jumped) advance(world, -up, definition_.step_height + ground_gap);
-  if (!stopped_) find_planes(world, ground_gap);
+  if (!stopped_) find_planes(world, {}, ground_gap);
   ground_ = {};
   const Plane* best = nullptr;
   for (const Plane& p : planes_) {
@@ -402,14 +405,14 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
     rise_ += pull * dt;
   }
   look_around(world, math::length(way));
-  find_planes(world, math::length(way) + math::length(ride) + ground_gap);
+  find_planes(world, {}, math::length(way) + math::length(ride) + ground_gap);
   if (speed > 0) push_bodies(world, walk);
   const Vector allowed = fit(way + ride, false);
   position_ += Position(allowed);
   Vector rest = way + ride - allowed;
   if (math::length(rest) > definition_.skin && math::length(allowed) > 0.01f * definition_.skin)
     slide(world, rest, false);
-  if (stood && !jumped && speed > 0) climb(world, walk * dt, begin + Position(ride));
+  if (stood && !jumped && speed > 0) climb(world, walk * dt, dot(way, walk) / speed, begin + Position(ride));
   if (!stood || jumped) {
     const float rose = float(dot(position_ - begin, Position(up)));
     if (math::abs(rose - dot(way, up)) > 10 * tiny)  // something stopped it

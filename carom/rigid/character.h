@@ -111,7 +111,7 @@ class CAROM_API Character {
   };
   Character() = default;
   void look_around(const World<D>& world, float way);
-  void find_planes(const World<D>& world, float reach);
+  void find_planes(const World<D>& world, const Vector& way, float around);
   void add_plane(const World<D>& world, ShapeId shape, const typename D::Shape& geometry, const typename D::Pose& pose,
                  const Vector& normal, float separation, const Vector& point, BodyId body);
   bool can_stand_on(const typename D::Shape& geometry, const typename D::Pose& pose, const Vector& normal,
@@ -119,7 +119,7 @@ class CAROM_API Character {
   Vector fit(Vector wanted, bool keep_height) const;
   void slide(const World<D>& world, Vector way, bool keep_height);
   float advance(const World<D>& world, const Vector& direction, float way);
-  bool climb(const World<D>& world, const Vector& way, const Position& start);
+  bool climb(const World<D>& world, const Vector& way, float wanted, const Position& start);
   void push_bodies(World<D>& world, const Vector& walk);
   void follow_ground(const World<D>& world, bool jumped, bool stood);
   Vector carry(const World<D>& world);

@@ -51,4 +51,9 @@ void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_
 bool collide_triangle(const Convex& triangle, std::uint8_t edges, bool solid, const Convex& b,
                       const Transform3f& b_in_a, float margin, ContactPoints& out, Vec3f& normal);
 
+/// `collide_many` of a surface and a convex shape, without the distance where they do not meet, for the triangles that
+/// meet `box` (in A's frame) alone.
+int collide_surface(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
+                    const Bounds3f& box, std::span<Manifold3> out);
+
 }  // namespace carom::geometry::detail

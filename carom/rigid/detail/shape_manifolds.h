@@ -1,15 +1,27 @@
 // Manifolds and rays of any shape of either dimension: what characters and the adviser ask of geometry.
 #pragma once
 
+#include "carom/geometry/detail/contact_points.h"
 #include "carom/geometry/manifold.h"
 #include "carom/geometry/query.h"
 
 namespace carom::rigid::detail {
 
+/// Of shapes of many parts, those are looked at which come within `around` (m) of a straight way in a's frame.
+template <class Vector>
+struct Around {
+  Vector way{};
+  float around = 0;
+  template <class Bounds>
+  Bounds along(const Bounds& box) const {
+    return geometry::grow(merge(box, Bounds{box.low + way, box.high + way}), around);
+  }
+};
+
 /// Calls f for every manifold of the convex shape b with a; normals point from a to b, in a's frame.
 template <class F>
 void for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const math::Transform2f& b_in_a, float margin,
-                   F&& f) {
+                   const Around<math::Vec2f>& near, F&& f) {
   const auto one = [&](const geometry::Shape2& part) {
     geometry::PairCache cache;
     geometry::Manifold2 m;
@@ -17,7 +29,7 @@ void for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const m
     if (m.count > 0) f(m);
   };
   if (a.type != geometry::ShapeType2::chain) return one(a);
-  const geometry::Bounds2f box = geometry::grow(geometry::bounds(b, b_in_a), margin);
+  const geometry::Bounds2f box = near.along(geometry::bounds(b, b_in_a));
   for (int i = 0; i < a.chain->segment_count(); ++i) {
     const geometry::ChainSegment s = a.chain->segment(i);
     if (geometry::overlaps(geometry::Bounds2f{min(s.a, s.b), max(s.a, s.b)}, box)) one(geometry::Shape2(s));
@@ -25,7 +37,7 @@ void for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const m
 }
 template <class F>
 void for_manifolds(const geometry::Shape3& a, const geometry::Shape3& b, const math::Transform3f& b_in_a, float margin,
-                   F&& f) {
+                   const Around<math::Vec3f>& near, F&& f) {
   if (geometry::is_convex(a) || a.type == geometry::ShapeType3::plane) {
     geometry::PairCache cache;
     geometry::Manifold3 m;
@@ -34,7 +46,9 @@ void for_manifolds(const geometry::Shape3& a, const geometry::Shape3& b, const m
     return;
   }
   geometry::Manifold3 many[16];
-  const int count = geometry::collide_many(a, b, b_in_a, margin, many);
+  const geometry::Bounds3f box = near.along(geometry::bounds(b, b_in_a));
+  const int count = geometry::is_surface(a) ? geometry::detail::collide_surface(a, b, b_in_a, margin, box, many)
+                                                    : geometry::collide_many(a, b, b_in_a, margin, many);
   for (int i = 0; i < count; ++i) f(many[i]);
 }
 
