@@ -69,13 +69,14 @@ void merge_into(Patch& patch, const ContactPoints& from, float same) {
   }
 }
 
-/// What a triangle must reach to be worth a look: in front of it the shape's middle, near its plane, and in the shape's
-/// own frame its box, which fits closer than the one in the surface's frame.
+/// What a triangle must reach to be worth a look: in front of it the shape's middle, near its plane and its sides, and
+/// in the shape's own frame its box, which fits closer than the one in the surface's frame.
 struct Reach {
   Vec3f middle{}, axis[3]{}, origin{};
   Bounds3f own{};
-  float around = 0;
-  bool solid = false;
+  float around = 0;  ///< m from the middle; of a ball or capsule, from its line
+  Vec3f end{};       ///< of the line, from the middle
+  bool line = false, solid = false;
 
   Reach(const Shape3& shape, const detail::Convex& core, const Transform3f& x, float margin, bool below)
       : middle(transform_point(x, detail::inner_point(core))),
@@ -85,14 +86,23 @@ struct Reach {
     const Mat3f turn = to_matrix(x.q);
     axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
     const Vec3f at = detail::inner_point(core);
-    around = 1.0001f * length(max(abs(own.low - at), abs(own.high - at)));
+    line = core.kind == detail::CoreKind::point || core.kind == detail::CoreKind::segment;
+    if (line) end = core.half.y * axis[1];
+    around = 1.0001f * (line ? core.radius + margin : length(max(abs(own.low - at), abs(own.high - at))));
+  }
+  /// Is all of the line, or of the ball about the middle, farther than it may be outside a plane?
+  bool outside(Vec3f normal, Vec3f corner) const {
+    const float above = dot(normal, middle - corner) - abs(dot(normal, end));
+    return above > 0 && above * above > around * around * length_squared(normal);
   }
   bool meets(const Vec3f (&corner)[3]) const {
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const float above = dot(normal, middle - corner[0]);
-    if (above > 0 && above * above > around * around * length_squared(normal)) return false;
+    if (outside(normal, corner[0])) return false;
+    if (!solid && dot(normal, middle - corner[0]) < 0) return false;
+    if (line)
+      for (int e = 0; e < 3; ++e)
+        if (outside(cross(corner[e == 2 ? 0 : e + 1] - corner[e], normal), corner[e])) return false;
     if (solid) return true;
-    if (above < 0) return false;
     const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
     for (int k = 0; k < 3; ++k) {
       const float a = dot(axis[k], p), b = dot(axis[k], q), c = dot(axis[k], r);

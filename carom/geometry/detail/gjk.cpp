@@ -94,15 +94,13 @@ void of_segments(Vec3d a, Vec3d u, Vec3d b, Vec3d v, Vec3d& on_a, Vec3d& on_b) {
   on_b = b + v * t;
 }
 
-/// A triangle and a point or segment that do not touch: false where they may.
-bool triangle_and_segment(const Placed& a, const Placed& b, double cutoff, CoreDistance& out) {
-  Vec3d p[3];
-  for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
-  const Vec3d n = cross(p[1] - p[0], p[2] - p[0]);
+}  // namespace gjk
+
+bool triangle_segment_distance(const Vec3d (&p)[3], Vec3d near, Vec3d far, double cutoff, CoreDistance& out) {
+  const Vec3d edge[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
+  const Vec3d n = cross(edge[0], p[2] - p[0]);
   const double nn = dot(n, n);
   if (!(nn > 0)) return false;
-  const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
-  Vec3d near = b.position + half, far = b.position - half;
   double low = dot(n, near - p[0]), high = dot(n, far - p[0]);
   const bool crosses = low * high < 0;
   if (math::abs(high) < math::abs(low)) {
@@ -112,33 +110,43 @@ bool triangle_and_segment(const Placed& a, const Placed& b, double cutoff, CoreD
     low = high, high = level;
   }
   out.count = 0;
+  out.overlap = false;
   const double size = math::sqrt(nn);
   if (!crosses && math::abs(low) > cutoff * size) {
     out.distance = math::abs(low) / size;
     out.normal = n * ((low < 0 ? -1 : 1) / size);
     return true;
   }
-  const auto above = [&](Vec3d q) {
-    return triple(n, p[1] - p[0], q - p[0]) >= 0 && triple(n, p[2] - p[1], q - p[1]) >= 0 &&
-           triple(n, p[0] - p[2], q - p[2]) >= 0;
-  };
-  if (!crosses && above(near)) {  // nothing of the segment is nearer to the plane
+  // How far the ends stand inside each edge. No point of an edge that both are inside of is nearest, but for its
+  // corners, which the edges beside it have too.
+  bool near_above = true, far_above = true, beyond[3];
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d inward = cross(n, edge[i]);
+    const bool near_inside = dot(inward, near - p[i]) >= 0, far_inside = dot(inward, far - p[i]) >= 0;
+    near_above = near_above && near_inside, far_above = far_above && far_inside;
+    beyond[i] = !(near_inside && far_inside);
+  }
+  if (!crosses && near_above) {  // nothing of the segment is nearer to the plane
     out.point_a = near - n * (low / nn);
     out.point_b = near;
   } else {
-    if (crosses && above(near + (far - near) * (low / (low - high)))) return false;
+    if (crosses) {
+      const Vec3d through = near + (far - near) * (low / (low - high));
+      bool inside = true;
+      for (int i = 0; i < 3; ++i) inside = inside && triple(n, edge[i], through - p[i]) >= 0;
+      if (inside) return false;
+    }
     double least = 1e300;
     const auto offer = [&](Vec3d on_a, Vec3d on_b) {
       const double d = length_squared(on_b - on_a);
       if (d < least) least = d, out.point_a = on_a, out.point_b = on_b;
     };
-    if (crosses)
-      for (const Vec3d& end : {near, far})
-        if (above(end)) offer(end - n * (dot(n, end - p[0]) / nn), end);
-    if (!crosses && above(far)) offer(far - n * (high / nn), far);
+    if (crosses && near_above) offer(near - n * (low / nn), near);
+    if (far_above) offer(far - n * (high / nn), far);
     for (int i = 0; i < 3; ++i) {
+      if (!beyond[i]) continue;
       Vec3d on_a, on_b;
-      of_segments(p[i], p[(i + 1) % 3] - p[i], near, far - near, on_a, on_b);
+      gjk::of_segments(p[i], edge[i], near, far - near, on_a, on_b);
       offer(on_a, on_b);
     }
   }
@@ -149,13 +157,14 @@ bool triangle_and_segment(const Placed& a, const Placed& b, double cutoff, CoreD
   return true;
 }
 
-}  // namespace gjk
-
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out) {
   out.overlap = false;
-  if (a.core->kind == CoreKind::triangle && b.core->kind <= CoreKind::segment &&
-      gjk::triangle_and_segment(a, b, cutoff, out))
-    return;
+  if (a.core->kind == CoreKind::triangle && b.core->kind <= CoreKind::segment) {
+    Vec3d p[3];
+    for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
+    const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
+    if (triangle_segment_distance(p, b.position + half, b.position - half, cutoff, out)) return;
+  }
   if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
   if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
   SimplexVertex* s = out.simplex.items;

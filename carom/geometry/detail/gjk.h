@@ -33,6 +33,10 @@ struct CoreDistance {
 /// known to be farther apart than `cutoff`. `guess` is a direction from A to B to begin with (zero: the centres').
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out);
 
+/// The same for a triangle and a segment (or a point, twice) in closed form. False where they touch, or the triangle is
+/// none.
+bool triangle_segment_distance(const Vec3d (&corner)[3], Vec3d from, Vec3d to, double cutoff, CoreDistance& out);
+
 /// For cores that overlap (from the simplex of core_distance): the shortest translation that parts them, by the
 /// expanding polytope algorithm (van den Bergen 2001). distance ≤ 0. False where the difference body is flat.
 bool core_depth(const Placed& a, const Placed& b, CoreDistance& inout);

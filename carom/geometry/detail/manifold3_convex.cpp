@@ -280,16 +280,18 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   using namespace core_pair;
   const int flat_edges = edges & (edge0_flat | edge1_flat | edge2_flat);
   const Pair pair{t, b, x, margin};
-  const Vec3f center = transform_point(x, inner_point(b));
+  // Balls and capsules: what stands for them is a line about their middle, and most is known in closed form.
+  const bool line = b.kind == CoreKind::point || b.kind == CoreKind::segment;
+  const Vec3f center = line ? x.p : transform_point(x, inner_point(b));
+  const Vec3f end = line ? rotate(x.q, Vec3f{0, b.half.y, 0}) : Vec3f{};
   const float behind = dot(t.normal, center - t.corner[0]);
   if (behind < (solid ? -2 * (outer_size(b) + b.radius) : 0.0f)) return false;
-  const FacePlane plane = face_plane(t, 0);
-  const float along_face = pair.along_a(plane);
+  const float along_face = line ? behind - abs(dot(t.normal, end)) : pair.along_a(face_plane(t, 0));
   if (along_face - pair.radius() > margin) return false;
   const float small = max(inner_size(b), 1e-6f);
   // Beside the triangle, farther than anything may reach? Three support points tell that sooner than the search for a
-  // distance; balls and capsules have a closed form that is as quick.
-  if (b.kind != CoreKind::point && b.kind != CoreKind::segment) {
+  // distance.
+  if (!line) {
     const float reach = 1.0001f * (pair.radius() + margin) + 0.02f * small;
     for (int e = 0; e < 3; ++e) {
       const Vec3f outward = cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal);
@@ -317,11 +319,16 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
       if (on_face()) return true;
     if (flat_edges == 7) return false;
   }
-  const Placed pa(t), pb(b, x);
+  const double cutoff = double(pair.radius()) + double(margin);
   CoreDistance found;
-  core_distance(pa, pb, double(pair.radius()) + double(margin), {}, found);
-  if (!found.overlap && found.distance > double(pair.radius()) + double(margin)) return false;
-  if (found.overlap && !core_depth(pa, pb, found)) return on_face();
+  const Vec3d corners[3] = {Vec3d(t.corner[0]), Vec3d(t.corner[1]), Vec3d(t.corner[2])};
+  if (!line ||
+      !triangle_segment_distance(corners, Vec3d(center) + Vec3d(end), Vec3d(center) - Vec3d(end), cutoff, found)) {
+    const Placed pa(t), pb(b, x);
+    core_distance(pa, pb, cutoff, {}, found);
+    if (found.overlap && !core_depth(pa, pb, found)) return on_face();
+  }
+  if (!found.overlap && found.distance > cutoff) return false;
   const Vec3f n = normalize(Vec3f(found.normal)), p = Vec3f(found.point_a);
   // The Gauss map of the surface, edge by edge: a direction that leans over a flat or concave edge is not on it.
   bool legal = dot(n, t.normal) > -1e-3f;

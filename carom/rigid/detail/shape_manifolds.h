@@ -48,7 +48,7 @@ void for_manifolds(const geometry::Shape3& a, const geometry::Shape3& b, const m
   geometry::Manifold3 many[16];
   const geometry::Bounds3f box = near.along(geometry::bounds(b, b_in_a));
   const int count = geometry::is_surface(a) ? geometry::detail::collide_surface(a, b, b_in_a, margin, box, many)
-                                                    : geometry::collide_many(a, b, b_in_a, margin, many);
+                                            : geometry::collide_many(a, b, b_in_a, margin, many);
   for (int i = 0; i < count; ++i) f(many[i]);
 }
 
