@@ -90,18 +90,20 @@ struct Reach {
     if (line) end = core.half.y * axis[1];
     around = 1.0001f * (line ? core.radius + margin : length(max(abs(own.low - at), abs(own.high - at))));
   }
-  /// Is all of the line, or of the ball about the middle, farther than it may be outside a plane?
-  bool outside(Vec3f normal, Vec3f corner) const {
-    const float above = dot(normal, middle - corner) - abs(dot(normal, end));
-    return above > 0 && above * above > around * around * length_squared(normal);
-  }
+  /// How far (m, times the length of the normal) all of the line, or of the middle, stands above a plane.
+  float height(Vec3f normal, Vec3f corner) const { return dot(normal, middle - corner) - abs(dot(normal, end)); }
   bool meets(const Vec3f (&corner)[3]) const {
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    if (outside(normal, corner[0])) return false;
+    const float above = max(height(normal, corner[0]), 0.0f), size = length_squared(normal), most = around * around;
+    if (above * above > most * size) return false;
     if (!solid && dot(normal, middle - corner[0]) < 0) return false;
     if (line)
-      for (int e = 0; e < 3; ++e)
-        if (outside(cross(corner[e == 2 ? 0 : e + 1] - corner[e], normal), corner[e])) return false;
+      for (int e = 0; e < 3; ++e) {
+        // Above the plane and beside an edge of it: both are parts of the distance.
+        const Vec3f outward = cross(corner[e == 2 ? 0 : e + 1] - corner[e], normal);
+        const float beside = height(outward, corner[e]), length = length_squared(outward);
+        if (beside > 0 && beside * beside * size + above * above * length > most * size * length) return false;
+      }
     if (solid) return true;
     const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
     for (int k = 0; k < 3; ++k) {

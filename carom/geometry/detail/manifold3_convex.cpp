@@ -322,8 +322,23 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const double cutoff = double(pair.radius()) + double(margin);
   CoreDistance found;
   const Vec3d corners[3] = {Vec3d(t.corner[0]), Vec3d(t.corner[1]), Vec3d(t.corner[2])};
-  if (!line ||
-      !triangle_segment_distance(corners, Vec3d(center) + Vec3d(end), Vec3d(center) - Vec3d(end), cutoff, found)) {
+  // What stands over the face with the point that comes nearest to its plane has no nearer one.
+  const auto stands_over = [&] {
+    if (line || along_face <= 0) return false;
+    const Vec3f foot = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, t.normal)))));
+    for (int e = 0; e < 3; ++e)
+      if (dot(cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal), foot - t.corner[e]) > 0) return false;
+    found.distance = double(along_face);
+    found.normal = Vec3d(t.normal);
+    found.point_b = Vec3d(foot);
+    found.point_a = found.point_b - found.normal * found.distance;
+    return true;
+  };
+  const auto in_closed_form = [&] {
+    return line &&
+           triangle_segment_distance(corners, Vec3d(center) + Vec3d(end), Vec3d(center) - Vec3d(end), cutoff, found);
+  };
+  if (!in_closed_form() && !stands_over()) {
     const Placed pa(t), pb(b, x);
     core_distance(pa, pb, cutoff, {}, found);
     if (found.overlap && !core_depth(pa, pb, found)) return on_face();

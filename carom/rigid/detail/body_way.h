@@ -122,6 +122,8 @@ float meeting_time(const WorldImplementation<D>& world, const ShapeRecord<D>& sh
   for (int i = 0; i < arcs; ++i) {
     const float begin = from + (to - from) * (float(i) / float(arcs));
     const float end = i + 1 == arcs ? to : from + (to - from) * (float(i + 1) / float(arcs));
+    // Two that fly past each other are near for one or two arcs of many.
+    if (arcs > 1 && other.tree != tree_fixed && !come_near(world, shape.body, other.body, begin, end)) continue;
     const Sweep<D> own = way_of_shape(shape, way_of_body(world, shape.body, base, begin, end)),
                    theirs = way_of_shape(other, way_of_body(world, other.body, base, begin, end));
     const float f = free_fraction(shape, own, other, theirs, guarded);

@@ -71,11 +71,21 @@ Quatf torque_free_turn(const Mat3f& inertia, const Quatf& q, float h, math::Vec3
   const T enough = precision * half * half * dot(m, m);
   V angle = T(h) * w, turned_m = m;
   math::Quat<T> r;
-  for (int i = 0; i < 8; ++i) {
+  M inverse_slope{};
+  T last = 0;
+  for (int i = 0; i < 12; ++i) {
     r = turned(angle);
     turned_m = inverse_rotate(r, m);
     const V error = tensor * angle - half * (m + turned_m);
-    if (dot(error, error) <= enough) break;
+    const T size = dot(error, error);
+    if (size <= enough) break;
+    // A slope serves as long as it makes each error 64 times smaller: it costs more than two looks at the error.
+    const bool serves = i > 0 && size * T(4096) < last;
+    last = size;
+    if (serves) {
+      angle -= inverse_slope * error;
+      continue;
+    }
     // Moving the angle by δ turns m₁ by J δ more, J the right Jacobian of the exponential map (its series).
     const T aa = dot(angle, angle);
     const T b = T(0.5) - aa * (T(1.0 / 24) - aa * T(1.0 / 720)),
@@ -85,7 +95,8 @@ Quatf torque_free_turn(const Mat3f& inertia, const Quatf& q, float h, math::Vec3
       return of_tensor - half * cross(turned_m, axis - b * first + c * second);
     };
     const M slope{column({1, 0, 0}, tensor.cx), column({0, 1, 0}, tensor.cy), column({0, 0, 1}, tensor.cz)};
-    angle -= inverse(slope) * error;
+    inverse_slope = inverse(slope);
+    angle -= inverse_slope * error;
   }
   if (!(dot(angle, angle) < T(greatest_free_turn * greatest_free_turn))) return Quatf(turned(T(h) * w));
   angular_velocity = rotate(attitude * r, inverse(tensor) * turned_m);

@@ -236,7 +236,8 @@ float meeting_time(const WorldImplementation<D>& world, const BulletPair& pair) 
 
 /// Lets bullets meet what moves, in the order of time.
 template <class D>
-void meet_in_order(WorldImplementation<D>& world) {
+void meet_in_order(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
   StepScratch<D>& scratch = world.scratch;
   std::vector<BulletPair>& pairs = scratch.bullet_pairs;
   std::vector<BulletMeeting>& heap = scratch.bullet_meetings;
@@ -250,6 +251,12 @@ void meet_in_order(WorldImplementation<D>& world) {
       pairs.end());
   scratch.first_bullet_pair.assign(world.bodies.awake.size(), none);
   heap.clear();
+  // Nobody has been stopped yet: when each pair meets by itself is asked side by side.
+  scratch.first_meetings.resize(pairs.size());
+  context.scheduler.parallel_for(int(pairs.size()), 32, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      scratch.first_meetings[std::size_t(i)] = meeting_time(world, pairs[std::size_t(i)]);
+  });
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (int side = 0; side < 2; ++side) {
       if (pairs[i].place[side] == none) continue;
@@ -257,7 +264,7 @@ void meet_in_order(WorldImplementation<D>& world) {
       pairs[i].next[side] = first;
       first = 2 * std::int32_t(i) + side;
     }
-    if (const float t = meeting_time(world, pairs[i]); t < 1) heap.push_back({t, std::int32_t(i)});
+    if (const float t = scratch.first_meetings[i]; t < 1) heap.push_back({t, std::int32_t(i)});
   }
   std::make_heap(heap.begin(), heap.end(), later);
   while (!heap.empty()) {
@@ -348,6 +355,7 @@ void make_room(StepScratch<D>& scratch, std::size_t bodies) {
   room(scratch.strays);
   room(scratch.bullet_pairs);
   room(scratch.bullet_meetings);
+  room(scratch.first_meetings);
   if (scratch.first_bullet_pair.capacity() < bodies) scratch.first_bullet_pair.reserve(bodies);
 }
 
@@ -389,7 +397,7 @@ void stop_fast_bodies(StepContext<D>& context) {
   for (const std::vector<BulletPair>& list : scratch.found_bullet_pairs)
     scratch.bullet_pairs.insert(scratch.bullet_pairs.end(), list.begin(), list.end());
   pair_strays(world);
-  if (!scratch.bullet_pairs.empty()) meet_in_order(world);
+  if (!scratch.bullet_pairs.empty()) meet_in_order(context);
   context.scheduler.parallel_for(int(scratch.fast.size()), 64, [&](int begin, int end, int) {
     for (int k = begin; k < end; ++k) {
       const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);
