@@ -5,6 +5,7 @@
 #include "carom/geometry/detail/contact_points.h"
 #include "carom/geometry/detail/queries.h"
 #include "carom/geometry/detail/surface.h"
+#include "carom/geometry/detail/triangle_reach.h"
 
 namespace carom::geometry {
 namespace many3 {
@@ -68,51 +69,6 @@ void merge_into(Patch& patch, const ContactPoints& from, float same) {
     patch.points.point[patch.points.count++] = p;
   }
 }
-
-/// What a triangle must reach to be worth a look: in front of it the shape's middle, near its plane and its sides, and
-/// in the shape's own frame its box, which fits closer than the one in the surface's frame.
-struct Reach {
-  Vec3f middle{}, axis[3]{}, origin{};
-  Bounds3f own{};
-  float around = 0;  ///< m from the middle; of a ball or capsule, from its line
-  Vec3f end{};       ///< of the line, from the middle
-  bool line = false, solid = false;
-
-  Reach(const Shape3& shape, const detail::Convex& core, const Transform3f& x, float margin, bool below)
-      : middle(transform_point(x, detail::inner_point(core))),
-        origin(x.p),
-        own(grow(bounds(shape, {}), margin)),
-        solid(below) {
-    const Mat3f turn = to_matrix(x.q);
-    axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
-    const Vec3f at = detail::inner_point(core);
-    line = core.kind == detail::CoreKind::point || core.kind == detail::CoreKind::segment;
-    if (line) end = core.half.y * axis[1];
-    around = 1.0001f * (line ? core.radius + margin : length(max(abs(own.low - at), abs(own.high - at))));
-  }
-  /// How far (m, times the length of the normal) all of the line, or of the middle, stands above a plane.
-  float height(Vec3f normal, Vec3f corner) const { return dot(normal, middle - corner) - abs(dot(normal, end)); }
-  bool meets(const Vec3f (&corner)[3]) const {
-    const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const float above = max(height(normal, corner[0]), 0.0f), size = length_squared(normal), most = around * around;
-    if (above * above > most * size) return false;
-    if (!solid && dot(normal, middle - corner[0]) < 0) return false;
-    if (line)
-      for (int e = 0; e < 3; ++e) {
-        // Above the plane and beside an edge of it: both are parts of the distance.
-        const Vec3f outward = cross(corner[e == 2 ? 0 : e + 1] - corner[e], normal);
-        const float beside = height(outward, corner[e]), length = length_squared(outward);
-        if (beside > 0 && beside * beside * size + above * above * length > most * size * length) return false;
-      }
-    if (solid) return true;
-    const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
-    for (int k = 0; k < 3; ++k) {
-      const float a = dot(axis[k], p), b = dot(axis[k], q), c = dot(axis[k], r);
-      if (min(a, min(b, c)) > own.high[k] || max(a, max(b, c)) < own.low[k]) return false;
-    }
-    return true;
-  }
-};
 
 /// A shape whose middle is in filled cells goes out by the nearest free face; the way up counts half.
 bool buried(const VoxelGrid& grid, const detail::Convex& b, const Transform3f& x, Manifold3& m) {
@@ -207,7 +163,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
   const float same = 2e-3f * (detail::outer_size(b) + b.radius);
-  const Reach reach(shape, b, x, margin, solid);
+  const detail::TriangleReach reach(shape, b, x, margin, solid);
   Patch patches[max_patches];
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
