@@ -40,8 +40,8 @@ class Inspection {
             {"angular_velocity", spin(state->angular_velocity)},
             {"awake", state->awake},
             {"why", why(*state, *definition)},
-            {"weight", double(state->mass) * double(definition->gravity_scale) *
-                           double(math::length(world_.definition().gravity))},
+            {"weight", double(state->mass) * double(definition->gravity_scale) * double(definition->time_scale) *
+                           double(definition->time_scale) * double(math::length(world_.definition().gravity))},
             {"contacts", std::move(contacts)},
             {"joints", std::move(joints)},
             {"advice", advice_json()}};

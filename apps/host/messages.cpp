@@ -136,9 +136,8 @@ Json shape_json(const ShapeView& s) {
       out["radius"] = s.radius;
       break;
     case ShapeKind::cylinder:
-      if (s.size.x > 0) out["rounding"] = s.size.x;
-      [[fallthrough]];
     case ShapeKind::cone:
+      if (s.size.x > 0) out["rounding"] = s.size.x;
       out["radius"] = s.radius;
       out["half_height"] = s.size.y;
       break;

@@ -93,7 +93,7 @@ ShapeView read_shape(const Json& json, const std::string& where, std::size_t mes
   if (!known) f.complain("kind", "a kind of shape of docs/protocol.md, found \"" + kind + "\"");
   s.radius = float(f.number("radius", 0));
   s.size.y = float(f.number("half_length", f.number("half_height", 0)));
-  if (s.kind == ShapeKind::cylinder) s.size.x = float(f.number("rounding", 0));
+  if (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone) s.size.x = float(f.number("rounding", 0));
   const char* three = s.kind == ShapeKind::box         ? "half_extents"
                       : s.kind == ShapeKind::ellipsoid ? "radii"
                       : s.kind == ShapeKind::plane     ? "normal"

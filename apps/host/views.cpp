@@ -218,7 +218,7 @@ void view_shape(const Shape3& shape, const math::Transform3f& local, bool sensor
     case ShapeType3::cone:
       view.kind = ShapeKind::cone;
       view.radius = shape.cone.radius;
-      view.size.y = shape.cone.half_height;
+      view.size = {shape.cone.rounding, shape.cone.half_height, 0};
       break;
     case ShapeType3::ellipsoid:
       view.kind = ShapeKind::ellipsoid;

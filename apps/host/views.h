@@ -30,7 +30,7 @@ const char* name_of(ShapeKind kind);
 struct ShapeView {
   ShapeKind kind = ShapeKind::sphere;
   math::Vec3f size{};  ///< box, ellipsoid: half extents; capsule: y = half length; cylinder, cone: y = half height;
-                       ///< cylinder: x = rounding;
+                       ///< cylinder, cone: x = rounding;
                        ///< plane: normal
   float radius = 0;
   std::uint32_t mesh = 0;           ///< index into MeshLibrary::meshes

@@ -68,7 +68,63 @@ MassProperties3 mass_of_cylinder(const Cylinder& cylinder, double density) {
   return detail::mass_of_diagonal(mass, {}, {transverse, axial, transverse});
 }
 
+/// π∫R², π∫yR², π∫y²R² and π∫R⁴ over y, of a solid of revolution made of pieces.
+struct Revolution {
+  double volume = 0, first = 0, second = 0, fourths = 0;
+
+  /// R from r0 to r1 in a straight line from y0 to y0 + h.
+  void add_frustum(double y0, double h, double r0, double r1) {
+    const double squares = h * (r0 * r0 + r0 * r1 + r1 * r1) / 3,
+                 along = h * h * (r0 * r0 + 2 * r0 * r1 + 3 * r1 * r1) / 12,
+                 along2 = h * h * h * (r0 * r0 + 3 * r0 * r1 + 6 * r1 * r1) / 30;
+    volume += pi * squares;
+    first += pi * (y0 * squares + along);
+    second += pi * (y0 * y0 * squares + 2 * y0 * along + along2);
+    fourths += pi * h * ((r0 * r0 + r1 * r1) * (r0 * r0 + r0 * r1 + r1 * r1) - r0 * r0 * r1 * r1) / 5;
+  }
+  /// R = a + r cos φ, y = c + r sin φ, with φ between two directions (cos, sin). dy = r cos φ dφ, and ∫cosⁿ by parts.
+  void add_arc(double a, double c, double r, Vec2d from, Vec2d to) {
+    double cosines[7], mixed[7];  // ∫cosⁿ, ∫cosⁿ sin
+    cosines[0] = math::atan2(to.y, to.x) - math::atan2(from.y, from.x);
+    cosines[1] = to.y - from.y;
+    double f = from.x, t = to.x;  // cosⁿ⁻¹, then cosⁿ
+    for (int n = 2; n < 7; ++n) {
+      cosines[n] = (t * to.y - f * from.y + (n - 1) * cosines[n - 2]) / n;
+      f *= from.x, t *= to.x;
+      mixed[n - 1] = (f - t) / n;
+    }
+    const auto sines = [&](int n) { return cosines[n] - cosines[n + 2]; };  // ∫cosⁿ sin²
+    const double a2 = a * a, r2 = r * r;
+    const double squares = r * (a2 * cosines[1] + 2 * a * r * cosines[2] + r2 * cosines[3]),
+                 along = r2 * (a2 * mixed[1] + 2 * a * r * mixed[2] + r2 * mixed[3]),
+                 along2 = r2 * r * (a2 * sines(1) + 2 * a * r * sines(2) + r2 * sines(3));
+    volume += pi * squares;
+    first += pi * (c * squares + along);
+    second += pi * (c * c * squares + 2 * c * along + along2);
+    fourths += pi * r *
+               (a2 * a2 * cosines[1] + 4 * a2 * a * r * cosines[2] + 6 * a2 * r2 * cosines[3] +
+                4 * a * r2 * r * cosines[4] + r2 * r2 * cosines[5]);
+  }
+  MassProperties3 mass(double density) const {
+    const double center = first / volume, axial = density * fourths / 2,
+                 transverse = axial / 2 + density * (second - center * first);
+    return detail::mass_of_diagonal(density * volume, {0, center, 0}, {transverse, axial, transverse});
+  }
+};
+
+/// A quarter of a ring and more about the rim of the base, a frustum along the side, a cap on the apex.
+MassProperties3 mass_of_rounded_cone(const Cone& cone, double density) {
+  const double h = cone.half_height, a = cone.radius, r = cone.rounding, slant = math::sqrt(4 * h * h + a * a);
+  const Vec2d out{2 * h / slant, a / slant};  // normal of the side
+  Revolution body;
+  body.add_arc(a, -h, r, {0, -1}, out);
+  body.add_frustum(-h + r * out.y, 2 * h, a + r * out.x, r * out.x);
+  body.add_arc(0, h, r, out, {0, 1});
+  return body.mass(density);
+}
+
 MassProperties3 mass_of_cone(const Cone& cone, double density) {
+  if (cone.rounding > 0) return mass_of_rounded_cone(cone, density);
   const double h = 2.0 * cone.half_height, r = cone.radius, mass = density * pi * r * r * h / 3;
   const double transverse = 3 * mass * (r * r + h * h / 4) / 20;
   return detail::mass_of_diagonal(mass, {0, -h / 4, 0}, {transverse, 3 * mass * r * r / 10, transverse});

@@ -149,6 +149,25 @@ Triangles cylinder_mesh(const Cylinder& c, int detail) {
   return make_lathe_mesh(profile, detail);
 }
 
+Triangles cone_mesh(const Cone& c, int detail) {
+  std::vector<Vec2f> profile;
+  if (c.rounding > 0) {
+    const int steps = max(2, detail / 4);
+    const double side = math::atan2(double(c.radius), 2 * double(c.half_height));  // where its normal points
+    for (int i = 0; i <= 2 * steps; ++i) {
+      const auto turn = math::sincos(-pi / 2 + (side + pi / 2) * i / (2 * steps));
+      profile.push_back({c.radius + c.rounding * float(turn.cos), c.rounding * float(turn.sin) - c.half_height});
+    }
+    for (int i = 0; i <= steps; ++i) {
+      const auto turn = math::sincos(side + (pi / 2 - side) * i / steps);
+      profile.push_back({i == steps ? 0 : c.rounding * float(turn.cos), c.rounding * float(turn.sin) + c.half_height});
+    }
+  } else {
+    profile = {{c.radius, -c.half_height}, {0, c.half_height}};
+  }
+  return make_lathe_mesh(profile, detail);
+}
+
 Triangles height_field_mesh(const HeightField& field) {
   Triangles out;
   const std::uint32_t columns = std::uint32_t(field.columns), rows = std::uint32_t(field.rows);
@@ -282,10 +301,8 @@ Triangles to_triangles(const Shape3& shape, int detail) {
       return mesh_building::box_mesh(shape.box, detail);
     case ShapeType3::cylinder:
       return mesh_building::cylinder_mesh(shape.cylinder, detail);
-    case ShapeType3::cone: {
-      const Vec2f profile[] = {{shape.cone.radius, -shape.cone.half_height}, {0, shape.cone.half_height}};
-      return make_lathe_mesh(profile, detail);
-    }
+    case ShapeType3::cone:
+      return mesh_building::cone_mesh(shape.cone, detail);
     case ShapeType3::ellipsoid: {
       Triangles out = make_sphere_mesh(1, detail, detail / 2);
       for (Vec3f& p : out.positions) p = scale(p, shape.ellipsoid.radii);

@@ -376,6 +376,7 @@ CastHit3 ray_cast(const Shape3& s, Vec3f origin, Vec3f translation) {
       if (s.cylinder.rounding > 0) return detail::cast_point(s, origin, translation);
       return ray3::on_cylinder(s.cylinder, o, d);
     case ShapeType3::cone:
+      if (s.cone.rounding > 0) return detail::cast_point(s, origin, translation);
       return ray3::on_cone(s.cone, o, d);
     case ShapeType3::ellipsoid:
       return ray3::on_ellipsoid(s.ellipsoid, o, d);

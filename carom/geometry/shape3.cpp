@@ -132,7 +132,9 @@ core::Status validate(const Shape3& shape) {
         return s;
       return detail::check_range("cylinder.rounding", shape.cylinder.rounding, 0, max_shape_size);
     case ShapeType3::cone:
-      return check_round("cone.half_height", shape.cone.half_height, "cone.radius", shape.cone.radius);
+      if (auto s = check_round("cone.half_height", shape.cone.half_height, "cone.radius", shape.cone.radius); !s)
+        return s;
+      return detail::check_range("cone.rounding", shape.cone.rounding, 0, max_shape_size);
     case ShapeType3::plane:
       if (!(abs(length(shape.plane.normal) - 1) < 1e-3f))
         return detail::error("plane.normal is (%g, %g, %g): expected a unit vector", double(shape.plane.normal.x),
@@ -173,7 +175,7 @@ Bounds3f bounds(const Shape3& shape, const Transform3f& t) {
       const Vec3f axis = rotate(t.q, Vec3f{0, 1, 0});
       const Vec3f e = disc_extents(axis) * shape.cone.radius;
       const Vec3f base = t.p - axis * shape.cone.half_height, apex = t.p + axis * shape.cone.half_height;
-      return {min(base - e, apex), max(base + e, apex)};
+      return grow(Bounds3f{min(base - e, apex), max(base + e, apex)}, shape.cone.rounding);
     }
     case ShapeType3::ellipsoid: {
       const Mat3f r = to_matrix(t.q);
@@ -227,7 +229,8 @@ Vec3f support(const Shape3& shape, Vec3f direction) {
     case ShapeType3::cone: {
       const Vec3f apex{0, shape.cone.half_height, 0};
       const Vec3f base = support_of_disc(shape.cone.radius, -shape.cone.half_height, direction);
-      return dot(apex, direction) > dot(base, direction) ? apex : base;
+      const Vec3f corner = dot(apex, direction) > dot(base, direction) ? apex : base;
+      return shape.cone.rounding > 0 ? corner + normalize(direction) * shape.cone.rounding : corner;
     }
     case ShapeType3::ellipsoid: {
       const Vec3f scaled = scale(shape.ellipsoid.radii, direction);

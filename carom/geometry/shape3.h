@@ -38,10 +38,12 @@ struct Cylinder {
   float radius = 0.5f;       ///< m, > 0
   float rounding = 0;        ///< m, ≥ 0
 };
-/// Axis along local y: base of `radius` at −half_height, apex at +half_height. Its centre of mass is at −half_height/2.
+/// Axis along local y: base of `radius` at −half_height, apex at +half_height, swept by a sphere of `rounding` (0:
+/// sharp, with its centre of mass at −half_height/2).
 struct Cone {
   float half_height = 0.5f;  ///< m, > 0
   float radius = 0.5f;       ///< m, > 0
+  float rounding = 0;        ///< m, ≥ 0
 };
 /// Half axes along local x, y and z: (x/rx)² + (y/ry)² + (z/rz)² ≤ 1.
 struct Ellipsoid {

@@ -118,7 +118,8 @@ class Adviser {
     if (part.state.type == BodyType::dynamic && part.state.mass > 0) {
       part.inverse_mass = 1 / double(part.state.mass);
       part.inverse_inertia = inverse_inertia_of(world_, id, part.state);
-      const float scale = definition.ok() ? definition->gravity_scale : 1;
+      const float scale =
+          definition.ok() ? definition->gravity_scale * definition->time_scale * definition->time_scale : 1;
       part.weight = std::max(0.0, double(part.state.mass) * gravity_ * double(scale));
     }
     part.height = double(dot(part.state.center_of_mass, typename D::Position(up_)));

@@ -87,6 +87,11 @@ struct BodyDef {
   float linear_damping = 0;                ///< 1/s
   float angular_damping = 0;               ///< 1/s
   float gravity_scale = 1;
+  /// .001 … 1000: the seconds that a dynamic body lives in a second of the world. What acts on it acts in its own time:
+  /// gravity, forces, effectors and damping, joint springs and motors, the threshold of restitution and sleep. What all
+  /// share stays the world's: velocities are told in its m/s, contacts and impulses exchange momentum in it. Bodies of
+  /// one scale do together what they do at 1, slower or faster. A joint takes the geometric mean of its two bodies.
+  float time_scale = 1;
   float sleep_speed = 0.05f;  ///< m/s; 0: never sleeps
   /// 0 … 64: what touches this body or is jointed to it is solved with so many substeps at least, and with contacts and
   /// joints stiffer in proportion (frequency × substeps/WorldDef::substeps). Other islands do not pay.

@@ -148,7 +148,7 @@ struct VortexField : EffectorTarget {
   double rate = 1;          ///< 1/s: a = rate·(v_field − v)
 };
 
-/// What a user's own effector sees and returns, in world axes.
+/// What a user's own effector sees and returns, in world axes; velocities in the body's own time (time_scale).
 template <class D>
 struct EffectorInput {
   BodyId body;

@@ -96,6 +96,8 @@ class CAROM_API World {
   Status set_locks(BodyId body, MotionLocks locks);
   Status set_damping(BodyId body, float linear, float angular);
   Status set_gravity_scale(BodyId body, float scale);
+  /// BodyDef::time_scale. A dynamic body goes on at the same speed in its own time: its velocities change.
+  Status set_time_scale(BodyId body, float scale);
   Status set_substeps(BodyId body, int substeps);  ///< BodyDef::substeps
   Status set_user_data(BodyId body, std::uint64_t data);
 

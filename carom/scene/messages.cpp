@@ -96,6 +96,7 @@ class ShapeWriter {
       case geometry::ShapeType3::cone:
         body = "\"kind\":\"cone\",\"half_height\":" + shortest(s.cone.half_height) +
                ",\"radius\":" + shortest(s.cone.radius);
+        if (s.cone.rounding > 0) body += ",\"rounding\":" + shortest(s.cone.rounding);
         break;
       case geometry::ShapeType3::ellipsoid:
         body = "\"kind\":\"ellipsoid\",\"radii\":" +

@@ -126,6 +126,7 @@ class SceneWriter {
     f.put("angular_velocity", angular_text(d.angular_velocity));
     f.unless("linear_damping", d.linear_damping, 0.0f).unless("angular_damping", d.angular_damping, 0.0f);
     f.unless("gravity_scale", d.gravity_scale, 1.0f).unless("sleep_speed", d.sleep_speed, fallback.sleep_speed);
+    f.unless("time_scale", d.time_scale, 1.0f);
     if (d.substeps != 0) f.put("substeps", double(d.substeps));
     put_locks(d.locks, f);
     f.flag("awake", d.awake, true)

@@ -152,7 +152,7 @@ struct Player {
         case 2:
           return geometry::Cylinder{in.size(), in.size(), in.flag() ? in.size() : 0.0f};
         case 3:
-          return geometry::Cone{in.size(), in.size()};
+          return geometry::Cone{in.size(), in.size(), in.flag() ? in.size() : 0.0f};
         case 4: {
           const Vector points[6] = {vector(), vector(), vector(), vector(), vector(), vector()};
           const auto hull = geometry::make_hull(points);
@@ -206,7 +206,7 @@ struct Player {
     d.locks.x = (options & 96) == 96;
     d.locks.rotation_z = (options & 192) == 192;
     if (options == 77) d.name = "named";
-    if (in.byte() > 200) d.linear_damping = in.number(), d.gravity_scale = in.number();
+    if (in.byte() > 200) d.linear_damping = in.number(), d.gravity_scale = in.number(), d.time_scale = in.number();
     const auto made = world.create_body(d);
     if (made.ok()) bodies.push_back(*made);
     return made.ok();

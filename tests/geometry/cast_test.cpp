@@ -31,6 +31,15 @@ TEST(RayCast, ClosedForms) {
   EXPECT_NEAR(rim.point.x, 0.5 + 0.2 / math::sqrt(2.0), 1e-4);
   EXPECT_NEAR(rim.point.y, 1 + 0.2 / math::sqrt(2.0), 1e-4);
   EXPECT_NEAR(rim.normal.y, 1 / math::sqrt(2.0), 1e-3);
+  // The side of a rounded one is the core's, moved out along its normal; over the apex is a ball.
+  const double slant = math::sqrt(5.0);
+  const CastHit3 round = ray_cast(Shape3(Cone{1, 1, 0.25f}), {2, 0, 0}, {-4, 0, 0});
+  ASSERT_TRUE(round.hit);
+  EXPECT_NEAR(double(round.fraction), (2 - 0.5 - 0.25 * slant / 2) / 4, 1e-5);
+  EXPECT_NEAR(double(round.normal.x), 2 / slant, 1e-3);
+  const CastHit3 cap = ray_cast(Shape3(Cone{1, 1, 0.25f}), {0, 4, 0}, {0, -8, 0});
+  ASSERT_TRUE(cap.hit);
+  EXPECT_NEAR(double(cap.fraction), (4 - 1.25) / 8, 1e-5);
   // A cone of half angle atan(1/2): at height y its radius is (h − y)/2.
   const CastHit3 k = ray_cast(Shape3(Cone{1, 1}), {2, 0, 0}, {-4, 0, 0});
   ASSERT_TRUE(k.hit);

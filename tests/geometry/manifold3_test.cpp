@@ -240,6 +240,25 @@ TEST(Manifold3, ConeRestsOnItsBaseAndOnItsSide) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(side.points[i].separation, -0.001f, 1e-4f);
 }
 
+// On its base it stands on the core's disc, on its side it lies on the core's line, on its tip it touches with a point.
+TEST(Manifold3, RoundedConeStandsLiesAndStandsOnItsTip) {
+  const Cone c{0.5f, 0.4f, 0.1f};
+  const Box ground{{5, 1, 5}};
+  const Manifold3 base = contact(ground, c, {{0.1f, 1.599f, 0}, {}}, 0.02f);
+  ASSERT_EQ(base.count, 4);
+  for (const ManifoldPoint3& p : base.points) EXPECT_NEAR(p.separation, -0.001f, 1e-5f);
+  const double slant = math::sqrt(1.0 + 0.16);
+  const Vec3f side_normal{float(1.0 / slant), float(0.4 / slant), 0};
+  const Quatf q = normalize(Quatf{1 + dot(side_normal, Vec3f{0, -1, 0}), cross(side_normal, Vec3f{0, -1, 0})});
+  const Manifold3 side = contact(ground, c, {{0, 1 + float(0.5 * 0.4 / slant) + 0.099f, 0}, q}, 0.02f);
+  ASSERT_EQ(side.count, 2);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(side.points[i].separation, -0.001f, 1e-4f);
+  EXPECT_NEAR(distance(side.points[0].point, side.points[1].point), slant, 2e-3);
+  const Manifold3 tip = contact(ground, c, {{0, 1.599f, 0}, {0, 1, 0, 0}}, 0.005f);
+  ASSERT_EQ(tip.count, 1);
+  EXPECT_NEAR(tip.points[0].separation, -0.001f, 1e-5f);
+}
+
 TEST(Manifold3, FlushTilesDoNotCatchABoxThatSlidesOverThem) {
   const Box tile{{0.5f, 0.5f, 0.5f}}, box{{0.25f, 0.25f, 0.25f}};
   const Quatf turned = normalize(Quatf{0.98877f, 0, 0.14944f, 0});  // 0.3 rad

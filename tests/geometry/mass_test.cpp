@@ -55,8 +55,9 @@ Vec3f rock[] = {{1, 0, 0}, {-1, 0.2f, 0}, {0, 1, 0.3f}, {0, -1, 0}, {0, 0, 1}, {
 // segments lies inside it, with an error of order n⁻²; extrapolating from n and n/2 leaves n⁻⁴.
 TEST(MassTest, ShapesAgreeWithTheirTriangles) {
   const Shape3 shapes[] = {
-      Sphere{0.7f},     Capsule3{0.4f, 0.3f},          Box{{0.3f, 0.5f, 0.9f}, 0},  Cylinder{0.6f, 0.4f},
-      Cone{0.6f, 0.5f}, Ellipsoid{{0.3f, 0.5f, 0.9f}}, Cylinder{0.6f, 0.4f, 0.25f}, make_hull(rock).value()};
+      Sphere{0.7f},           Capsule3{0.4f, 0.3f},          Box{{0.3f, 0.5f, 0.9f}, 0},  Cylinder{0.6f, 0.4f},
+      Cone{0.6f, 0.5f},       Ellipsoid{{0.3f, 0.5f, 0.9f}}, Cylinder{0.6f, 0.4f, 0.25f}, Cone{0.6f, 0.4f, 0.25f},
+      make_hull(rock).value()};
   for (const Shape3& shape : shapes) {
     const MassProperties3 exact = mass_properties(shape, 700);
     const MassProperties3 fine = mesh_mass(to_triangles(shape, 256), 700).properties;
@@ -76,6 +77,25 @@ TEST(MassTest, RoundedBoxHasSteinersVolume) {
   const double steiner =
       a * b * c + 2 * (a * b + b * c + c * a) * r + pi * (a + b + c) * r * r + 4.0 / 3 * pi * r * r * r;
   EXPECT_NEAR(m.mass, steiner, 1e-7);
+}
+
+// For a cone of base a, height H and side L, whose side's normal rises by α = asin(a/L): S = πa² + πaL,
+// M = πa(π/2 + α) + πH. Swept from next to nothing it is a ball.
+TEST(MassTest, RoundedConeHasSteinersVolume) {
+  const double a = double(0.4f), h = 2 * double(0.6f), r = 0.25, side = math::sqrt(a * a + h * h);
+  const MassProperties3 m = mass_properties(Shape3(Cone{0.6f, 0.4f, 0.25f}), 1);
+  const double steiner = pi * a * a * h / 3 + pi * a * (a + side) * r +
+                         (pi * a * (pi / 2 + math::asin(a / side)) + pi * h) * r * r + 4.0 / 3 * pi * r * r * r;
+  EXPECT_NEAR(m.mass, steiner, 1e-7);
+  const MassProperties3 ball = mass_properties(Shape3(Cone{1e-4f, 1e-4f, 1}), 1);
+  EXPECT_NEAR(ball.mass / (4.0 / 3 * pi), 1, 1e-3);
+  EXPECT_NEAR(ball.inertia(0, 0) / (8.0 / 15 * pi), 1, 1e-3);
+  EXPECT_NEAR(ball.inertia(1, 1) / (8.0 / 15 * pi), 1, 1e-3);
+  const MassProperties3 sharp = mass_properties(Shape3(Cone{0.6f, 0.4f}), 1),
+                        nearly = mass_properties(Shape3(Cone{0.6f, 0.4f, 1e-5f}), 1);
+  EXPECT_NEAR(nearly.mass, sharp.mass, 3e-5);
+  EXPECT_NEAR(nearly.center.y, sharp.center.y, 2e-5);
+  EXPECT_NEAR(nearly.inertia(0, 0), sharp.inertia(0, 0), 2e-5);
 }
 
 // The same for a cylinder of radius a and height 2h: S = 2πa² + 4πah, M = π²a + 2πh. Swept from a disc so thin that it

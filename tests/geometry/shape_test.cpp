@@ -37,6 +37,7 @@ std::vector<Shape3> convex_shapes() {
           Cylinder{0.6f, 0.4f},
           Cylinder{0.6f, 0.4f, 0.15f},
           Cone{0.6f, 0.5f},
+          Cone{0.6f, 0.5f, 0.15f},
           make_hull(points).value(),
           make_hull(points, {.radius = 0.2f}).value()};
 }
@@ -111,6 +112,9 @@ TEST(ShapeTest, ValidateNamesTheField) {
     EXPECT_NE(message(Shape3(Box{{1, bad, 1}, 0})).find("box.half_extents"), std::string::npos) << bad;
     EXPECT_NE(message(Shape3(Cylinder{bad, 1})).find("cylinder.half_height"), std::string::npos) << bad;
     EXPECT_NE(message(Shape3(Cone{1, bad})).find("cone.radius"), std::string::npos) << bad;
+    if (!(bad >= 0 && bad < 1)) {
+      EXPECT_NE(message(Shape3(Cone{1, 1, bad})).find("cone.rounding"), std::string::npos) << bad;
+    }
     EXPECT_NE(message(Shape2(Circle{bad})).find("circle.radius"), std::string::npos) << bad;
     EXPECT_NE(message(Shape2(Capsule2{1, bad})).find("capsule.radius"), std::string::npos) << bad;
   }

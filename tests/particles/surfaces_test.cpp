@@ -83,6 +83,7 @@ std::vector<Placed> all_shapes() {
           {"cylinder", geometry::Cylinder{0.4f, 0.3f}},
           {"hull", geometry::make_hull(corners).value()},
           {"cone", geometry::Cone{0.4f, 0.5f}},
+          {"rounded cone", geometry::Cone{0.3f, 0.4f, 0.1f}},
           {"ellipsoid", geometry::Ellipsoid{{0.5f, 0.3f, 0.4f}}},
           {"mesh", geometry::make_triangle_mesh(vertices, indices).value()},
           {"height field", geometry::make_height_field(5, 5, {0.5f, 0.5f}, heights).value()}};

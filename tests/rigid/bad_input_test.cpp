@@ -56,6 +56,7 @@ TYPED_TEST(BadInput, NumbersThatAreNotNumbers) {
     EXPECT_FALSE(world.set_damping(box, bad, 0).ok());
     EXPECT_FALSE(world.set_damping(box, 0, bad).ok());
     EXPECT_FALSE(world.set_gravity_scale(box, bad).ok());
+    EXPECT_FALSE(world.set_time_scale(box, bad).ok());
     EXPECT_FALSE(world.set_gravity(v).ok());
     EXPECT_FALSE(world.step(bad).ok());
     Material m;
@@ -198,6 +199,7 @@ TYPED_TEST(BadInput, DefinitionsReadBackAsGiven) {
   d.linear_damping = 0.5f;
   d.angular_damping = 0.25f;
   d.gravity_scale = 2;
+  d.time_scale = 0.5f;
   d.bullet = true;
   d.user_data = 77;
   d.locks.x = true;
@@ -208,6 +210,7 @@ TYPED_TEST(BadInput, DefinitionsReadBackAsGiven) {
   EXPECT_EQ(back.linear_damping, d.linear_damping);
   EXPECT_EQ(back.angular_damping, d.angular_damping);
   EXPECT_EQ(back.gravity_scale, d.gravity_scale);
+  EXPECT_EQ(back.time_scale, d.time_scale);
   EXPECT_EQ(back.bullet, true);
   EXPECT_EQ(back.user_data, 77u);
   EXPECT_EQ(back.locks, d.locks);

@@ -35,6 +35,7 @@ std::vector<geometry::Shape3> bodies_of_every_kind() {
           geometry::Box{{0.4f, 0.3f, 0.5f}},
           geometry::Cylinder{0.3f, 0.4f},
           geometry::Cone{0.4f, 0.4f},
+          geometry::Cone{0.3f, 0.3f, 0.1f},
           geometry::make_hull(octahedron).value(),
           geometry::make_compound(children).value()};
 }

@@ -328,7 +328,7 @@ TEST(WriteScene, KeepsEveryKindOfShape) {
     {"name": "hull", "position": [0.1, 5.3, 0.7], "awake": false, "user_data": "0xfedcba9876543210", "locks": ["x", "rotation_z"],
       "shape": {"type": "hull", "points": [[0,0,0],[1,0,0],[0,1.1,0],[0,0,1.3],[0.7,0.7,0.7]], "radius": 0.02, "filter": {"category": [1, 40], "mask": "0xff", "group": -3}}},
     {"name": "compound", "position": [5, 5, 5], "velocity": [1, 2, 3], "angular_velocity": [0.3, 0.2, 0.1], "rotation": {"yaw": "33 deg", "pitch": "12 deg"},
-      "shape": {"type": "compound", "children": [{"type": "cylinder", "height": 2, "rounding": 0.05}, {"type": "cone", "position": [0, 1, 0]}, {"type": "capsule", "length": 1, "radius": 0.2}]}},
+      "shape": {"type": "compound", "children": [{"type": "cylinder", "height": 2, "rounding": 0.05}, {"type": "cone", "position": [0, 1, 0], "rounding": 0.1}, {"type": "capsule", "length": 1, "radius": 0.2}]}},
     {"name": "box", "position": [-5, 5, 5], "shape": {"type": "box", "size": [1, 2, 3], "radius": 0.1, "sensor": true}},
     {"name": "belt", "type": "fixed", "position": [0, -9, 0], "shape": {"type": "box", "size": [9, 1, 9], "material": {"user_id": 7},
       "surface_velocity": ["2 km/h", 0, "1 m/s"], "modify_contacts": true}}],

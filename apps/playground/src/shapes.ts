@@ -75,6 +75,18 @@ export function drawable3(shape: Shape, meshes: Map<number, Mesh>): Drawable | u
       }
       return {key: 'cylinder', scale: new THREE.Vector3(r, 2 * h, r), build: (fine) => quartered(new THREE.CylinderGeometry(1, 1, 1, cut(40, fine)))};
     case 'cone':
+      if (shape.rounding) {
+        const e = shape.rounding;
+        return {key: `rounded cone ${r} ${h} ${e}`, scale: one(), build: (fine) => {
+          const steps = Math.max(2, Math.round(6 * fine)), side = Math.atan2(r, 2 * h);
+          const arc = (x: number, y: number, from: number, to: number) => Array.from({length: steps + 1}, (_, i) => {
+            const a = from + (to - from) * i / steps;
+            return new THREE.Vector2(Math.max(0, x + e * Math.cos(a)), y + e * Math.sin(a));
+          });
+          const profile = [new THREE.Vector2(0, -h - e), ...arc(r, -h, -0.5 * Math.PI, side), ...arc(0, h, side, 0.5 * Math.PI)];
+          return quartered(new THREE.LatheGeometry(profile, cut(40, fine)));
+        }};
+      }
       return {key: 'cone', scale: new THREE.Vector3(r, 2 * h, r), build: (fine) => quartered(new THREE.ConeGeometry(1, 1, cut(40, fine)))};
     case 'mesh': {
       const mesh = meshes.get(shape.mesh!);

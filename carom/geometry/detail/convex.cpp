@@ -28,6 +28,7 @@ Convex convex_of(const Shape3& s) {
     case ShapeType3::cone:
       c.kind = CoreKind::cone;
       c.half = {s.cone.radius, s.cone.half_height, s.cone.radius};
+      c.radius = s.cone.rounding;
       break;
     case ShapeType3::ellipsoid:
       c.kind = CoreKind::ellipsoid;

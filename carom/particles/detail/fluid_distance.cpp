@@ -113,8 +113,15 @@ float signed_distance(const Shape3& s, Vec3f p, float thickness) {
              s.cylinder.rounding;
     case ShapeType3::cone: {
       const float h = 2 * s.cone.half_height, slant = math::sqrt(h * h + s.cone.radius * s.cone.radius);
-      const float side = (math::sqrt(p.x * p.x + p.z * p.z) * h + (p.y - s.cone.half_height) * s.cone.radius) / slant;
-      return math::max(side, -s.cone.half_height - p.y);
+      const float r = math::sqrt(p.x * p.x + p.z * p.z), below = -s.cone.half_height - p.y;
+      const float side = (r * h + (p.y - s.cone.half_height) * s.cone.radius) / slant;
+      if (side < 0 && below < 0) return math::max(side, below) - s.cone.rounding;
+      // The nearest of the base and of the side, from apex to rim.
+      const float base = math::max(r - s.cone.radius, 0.0f);
+      const float along =
+          math::clamp((r * s.cone.radius - (p.y - s.cone.half_height) * h) / slant, 0.0f, slant) / slant;
+      const float dx = r - along * s.cone.radius, dy = p.y - s.cone.half_height + along * h;
+      return math::sqrt(math::min(base * base + below * below, dx * dx + dy * dy)) - s.cone.rounding;
     }
     case ShapeType3::ellipsoid:
       return distance_to_ellipsoid(s.ellipsoid.radii, p);

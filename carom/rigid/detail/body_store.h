@@ -70,6 +70,7 @@ enum BodyFlag : std::uint16_t {
   body_quarantined = 32,
   body_fast = 64,           ///< moved far in this step: continuous collision looks at it
   body_has_collider = 128,  ///< a shape that collides (not a sensor)
+  body_own_time = 256,      ///< BodyStore::time_scale has its clock
 };
 
 /// Links, settings and bookkeeping.
@@ -105,6 +106,7 @@ struct BodyStore {
   std::vector<BodyRecord> record;
   std::vector<std::string> names;    ///< empty until the first body with a name
   std::vector<std::uint64_t> birth;  ///< counts up with every creation: the order in which bodies are listed
+  std::vector<float> time_scale;     ///< empty until the first body with its own clock
   std::vector<std::int32_t> awake;   ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
 
   int substep_wishes = 0;  ///< bodies whose record asks for substeps
@@ -113,6 +115,18 @@ struct BodyStore {
   /// Does the solver move this body (dynamic or kinematic) or is it like the ground?
   bool is_fixed(std::int32_t slot) const { return record[std::size_t(slot)].type == BodyType::fixed; }
   bool is_dynamic(std::int32_t slot) const { return record[std::size_t(slot)].type == BodyType::dynamic; }
+  /// Seconds of the body's own in a second of the world.
+  float pace(std::int32_t slot) const {
+    if ((record[std::size_t(slot)].flags & body_own_time) == 0 || std::size_t(slot) >= time_scale.size()) return 1;
+    return time_scale[std::size_t(slot)];
+  }
+  void set_pace(std::int32_t slot, float pace) {
+    BodyRecord& r = record[std::size_t(slot)];
+    r.flags = std::uint16_t(pace == 1 ? r.flags & ~body_own_time : r.flags | body_own_time);
+    if (pace == 1) return;
+    if (time_scale.size() < record.size()) time_scale.resize(record.size(), 1);
+    time_scale[std::size_t(slot)] = pace;
+  }
 };
 
 }  // namespace carom::rigid::detail

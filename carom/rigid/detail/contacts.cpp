@@ -80,7 +80,7 @@ float round_radius(const geometry::Shape3& s) {
     case geometry::ShapeType3::cylinder:
       return s.cylinder.radius + s.cylinder.rounding;
     case geometry::ShapeType3::cone:
-      return s.cone.radius;
+      return s.cone.radius + s.cone.rounding;
     case geometry::ShapeType3::box:
       return s.box.radius;
     case geometry::ShapeType3::ellipsoid:

@@ -77,8 +77,9 @@ struct FieldForces {
       input.time = world.time;
       input.state.pose = world.bodies.pose[i];
       input.state.center_of_mass = motion.center;
-      input.state.linear_velocity = solver.linear_velocity;
-      input.state.angular_velocity = solver.angular_velocity;
+      const float pace = world.bodies.pace(body.slot);
+      input.state.linear_velocity = solver.linear_velocity * (1 / pace);
+      input.state.angular_velocity = solver.angular_velocity * (1 / pace);
       input.state.mass = motion.mass;
       input.state.user_data = world.bodies.record[i].user_data;
       const Wrench<D> wrench = e.model(input);
@@ -108,11 +109,11 @@ struct Turns {
 
   /// v̇ = a + rate × v.
   void turn(const EffectorBody<D>& body, Vec3d rate) const {
-    const Vec3d half_push = place_of(other_acceleration(world, body)) * (0.5 * dt);
-    const Vec3d before = place_of(body.velocity) + half_push, t = rate * (0.5 * dt);
+    const Vec3d half_push = place_of(other_acceleration(world, body)) * (0.5 * body.dt);
+    const Vec3d before = place_of(body.velocity) + half_push, t = rate * (0.5 * body.dt);
     const Vec3d middle = before + math::cross(t, before);
     const Vec3d change = math::cross(t, middle) * (2 / (1 + math::length_squared(t)));
-    push(world, body, part_of(change * (body.mass / dt), static_cast<D*>(nullptr)));
+    push(world, body, part_of(change * (body.mass / body.dt), static_cast<D*>(nullptr)));
   }
   void turn_frame(const EffectorBody<D>& body, Vec3d rate, Vec3d center, bool centrifugal) const {
     if (centrifugal) {
@@ -176,7 +177,7 @@ struct Resistances {
       const Vec3f rows = math::abs(m.cx) + math::abs(m.cy) + math::abs(m.cz);
       mobility = double(math::max(rows.x, math::max(rows.y, rows.z)));
     }
-    motion.torque += typename D::Angular(body.spin * (-c * mean_decay(c * mobility * dt)));
+    motion.torque += typename D::Angular(body.spin * (-c * mean_decay(c * mobility * body.dt)));
   }
 
   void operator()(const LinearDrag<D>& e) const {
@@ -195,7 +196,7 @@ struct Resistances {
       const double c = 0.5 * e.density * e.drag_coefficient * e.area * body.inverse_mass;
       const double rate = c * math::length(v);
       const Position middle =
-          v + (other_acceleration(world, body) - rate * v) * (0.5 * dt * mean_decay(0.5 * rate * dt));
+          v + (other_acceleration(world, body) - rate * v) * (0.5 * body.dt * mean_decay(0.5 * rate * body.dt));
       push_at(world, body, resist(world, body, c * math::length(middle), v), arm);
       if (e.angular_coefficient > 0) {
         double speed;
@@ -226,7 +227,7 @@ struct Resistances {
       const double slow = 1e-9;  // at rest drag is Stokes': the rate stays finite
       const double rate = rate_at(math::max(math::length(v), slow));
       const Position middle =
-          v + (other_acceleration(world, body) - rate * v) * (0.5 * dt * mean_decay(0.5 * rate * dt));
+          v + (other_acceleration(world, body) - rate * v) * (0.5 * body.dt * mean_decay(0.5 * rate * body.dt));
       push_at(world, body, resist(world, body, rate_at(math::max(math::length(middle), slow)), v), arm);
     });
   }

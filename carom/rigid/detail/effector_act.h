@@ -26,18 +26,21 @@ struct EffectorBody {
   typename D::Pose pose{};  ///< of the origin, at mid-step
   Position velocity{};      ///< at the start of the step
   AngularD spin{};
-  double mass = 0, inverse_mass = 0, dt = 0;
+  double mass = 0, inverse_mass = 0;
+  double dt = 0;  ///< s of its own time, as are the velocities
 
-  EffectorBody(const WorldImplementation<D>& world, std::int32_t body, double step) : slot(body), dt(step) {
+  EffectorBody(const WorldImplementation<D>& world, std::int32_t body, double step) : slot(body) {
     const std::size_t i = std::size_t(body);
+    const double pace = double(world.bodies.pace(body));
+    dt = step * pace;
     const BodyMotion<D>& motion = world.bodies.motion[i];
     const SolverBody<D>& state = world.bodies.solver[i];
-    velocity = Position(state.linear_velocity);
-    spin = AngularD(state.angular_velocity);
+    velocity = Position(state.linear_velocity) * (1 / pace);
+    spin = AngularD(state.angular_velocity) * (1 / pace);
     mass = motion.mass;
     inverse_mass = motion.inverse_mass;
     center = motion.center + velocity * (0.5 * dt);
-    pose.rotation = integrate(world.bodies.pose[i].rotation, state.angular_velocity * float(0.5 * dt));
+    pose.rotation = integrate(world.bodies.pose[i].rotation, state.angular_velocity * float(0.5 * step));
     pose.position = center - Position(rotate(pose.rotation, motion.local_center));
   }
 };

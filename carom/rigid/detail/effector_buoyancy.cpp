@@ -166,8 +166,15 @@ forces::Submerged3 wet_part(EffectorStore<Dim3>& store, const geometry::Shape3& 
                      2 * pi * r * r * h);
     }
     case ShapeType3::cone: {
-      const double h = double(shape.cone.half_height);
-      return forces::submerged_revolution({{0, -h, 0}, {0, h, 0}, double(shape.cone.radius), 0, false}, water);
+      const double rounding = double(shape.cone.rounding), h = double(shape.cone.half_height),
+                   r = double(shape.cone.radius), slant = math::sqrt(4 * h * h + r * r), side = 2 * h / slant;
+      if (!(rounding > 0)) return forces::submerged_revolution({{0, -h, 0}, {0, h, 0}, r, 0, false}, water);
+      // A frustum about it, from the plane under the base to that over the cap.
+      const double low = -h - rounding, high = h + rounding, at_apex = rounding / side;
+      const double lower = at_apex + r + r / (2 * h) * rounding,
+                   upper = math::max(at_apex - r / (2 * h) * rounding, 0.0);
+      return rounded(forces::submerged_revolution({{0, low, 0}, {0, high, 0}, lower, upper, false}, water), shape,
+                     rounding, pi * (high - low) * (lower * lower + lower * upper + upper * upper) / 3);
     }
     case ShapeType3::ellipsoid: {
       // A sphere in the frame where the half axes are one; the plane n·p = d there has the normal r n.

@@ -6,17 +6,33 @@
 namespace carom::rigid::detail {
 namespace {
 
+/// The substep, and how fast the time of what is joined goes (BodyDef::time_scale).
+struct Clock {
+  float h = 0;                                      ///< s
+  float pace = 1;                                   ///< s of its own in a second
+  float push() const { return h * (pace * pace); }  ///< impulse in the world's time of a force of 1 N
+};
+/// Of the two bodies' clocks the geometric mean; the ground has none.
+template <class D>
+Clock clock_of(const BodyStore<D>& bodies, const JointRecord<D>& record, float h) {
+  if (bodies.time_scale.empty()) return {h};
+  const float a = record.dynamic_a ? bodies.pace(record.body_a) : 0;
+  const float b = record.dynamic_b ? bodies.pace(record.body_b) : 0;
+  if (a == b) return {h, a > 0 ? a : 1};
+  return {h, a > 0 && b > 0 ? math::sqrt(a * b) : a + b};
+}
+
 void fill_limit(AxisLaw& law, const JointLimit& limit) {
   if (!limit.enabled) return;
   law.flags |= AxisLaw::lower | AxisLaw::upper;
   law.low = limit.lower;
   law.high = limit.upper;
 }
-void fill_motor(AxisLaw& law, const JointMotor& motor, float h) {
+void fill_motor(AxisLaw& law, const JointMotor& motor, const Clock& t) {
   if (!motor.enabled) return;
   law.flags |= AxisLaw::motor;
-  law.speed = motor.speed;
-  law.max_motor_impulse = motor.max_force * h;
+  law.speed = t.pace * motor.speed;
+  law.max_motor_impulse = motor.max_force * t.push();
 }
 template <class D>
 inline constexpr int last_turn = D::dimension == 2 ? 0 : 2;
@@ -37,25 +53,25 @@ int axis_of_part(JointPart part) {
 
 /// `stiffer`: √(mass that moves with the coordinate once the rest of the joint holds / mass of the row alone). A user's
 /// frequency is that of the whole joint: a rod on a hinge swings about the hinge, not about its own centre.
-void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, float h, float stiffer = 1) {
+void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, const Clock& t, float stiffer = 1) {
   if (!(spring.hertz > 0)) return;
   law.flags |= AxisLaw::spring;
   law.rest = rest;
-  law.response = spring_response(stiffer * spring.hertz, stiffer * spring.damping_ratio, h);
+  law.response = spring_response(t.pace * stiffer * spring.hertz, stiffer * spring.damping_ratio, t.h);
 }
 /// A coordinate of a generic joint, held or free.
-void fill_axis(AxisLaw& law, const JointAxis& axis, float h, float stiffer) {
+void fill_axis(AxisLaw& law, const JointAxis& axis, const Clock& t, float stiffer) {
   if (!axis.free) {
     law.flags |= AxisLaw::spring | AxisLaw::rigid;
     return;
   }
-  fill_spring(law, axis.spring, axis.target, h, stiffer);
-  law.max_spring_impulse = axis.max_spring_force * h;
+  fill_spring(law, axis.spring, axis.target, t, stiffer);
+  law.max_spring_impulse = axis.max_spring_force * t.push();
   fill_limit(law, axis.limit);
   if (axis.motor.enabled)
-    fill_motor(law, axis.motor, h);
+    fill_motor(law, axis.motor, t);
   else if (axis.friction > 0)
-    fill_motor(law, {true, 0, axis.friction}, h);
+    fill_motor(law, {true, 0, axis.friction}, t);
 }
 float mass_ratio_root(float row_mobility, float held_mobility) {
   if (!(row_mobility > 0)) return 1;
@@ -93,7 +109,7 @@ void memorise(const AxisLaw& law, Axis& memory) {
 
 template <class D>
 void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, JointRecord<D>& record,
-                 float h, int axis) {
+                 const Clock& t, int axis) {
   block.arm_a = at.arm_a;
   block.arm_b = at.arm_b;
   block.offset = at.offset;
@@ -110,15 +126,15 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
       const auto locked = pair.inverse_inertia_a + pair.inverse_inertia_b;
       stiffer = mass_ratio_root(mobility, mobility - inner(turns, solve_mobility(locked, turns)));
     }
-    fill_spring(law, slider->spring, slider->target_translation, h, stiffer);
-    fill_motor(law, slider->motor, h);
+    fill_spring(law, slider->spring, slider->target_translation, t, stiffer);
+    fill_motor(law, slider->motor, t);
     fill_limit(law, slider->limit);
   } else if (const auto* generic = std::get_if<GenericJointDef<D>>(&data.definition)) {
     block.between_anchors = false;
-    fill_axis(law, generic->linear[axis], h, 1);
+    fill_axis(law, generic->linear[axis], t, 1);
   } else if (const auto* distance = std::get_if<DistanceJointDef<D>>(&data.definition)) {
-    fill_spring(law, distance->spring, distance->length, h);
-    fill_motor(law, distance->motor, h);
+    fill_spring(law, distance->spring, distance->length, t);
+    fill_motor(law, distance->motor, t);
     fill_limit(law, distance->limit);
     if (data.internal) {
       const BodyPair<D> pair = pair_of(record);
@@ -126,7 +142,8 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
       const double mobility = double(pair.row_inverse_mass(row.lever_a, row.lever_b));
       law.flags |= AxisLaw::spring;
       law.rest = distance->length;
-      law.response = spring_response_of(data.stiffness, data.damping, mobility > 0 ? 1 / mobility : 0, h);
+      law.response = spring_response_of(data.stiffness * t.pace * t.pace, data.damping * t.pace,
+                                        mobility > 0 ? 1 / mobility : 0, t.h);
     } else if (distance->rope) {
       law.flags |= AxisLaw::pull_only;
       if (!(distance->spring.hertz > 0)) {
@@ -143,7 +160,7 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
 
 template <class D>
 void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, JointRecord<D>& record,
-                float h) {
+                const Clock& t) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
   block.law.flags = AxisLaw::periodic;
@@ -159,8 +176,8 @@ void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlac
       const auto held = solve_mobility(point_mobility(pair, at.arm_a, at.arm_b), anchors);
       stiffer = mass_ratio_root(mobility, mobility - dot(anchors, held));
     }
-    fill_spring(block.law, hinge->spring, hinge->target_angle, h, stiffer);
-    fill_motor(block.law, hinge->motor, h);
+    fill_spring(block.law, hinge->spring, hinge->target_angle, t, stiffer);
+    fill_motor(block.law, hinge->motor, t);
     fill_limit(block.law, hinge->limit);
   } else if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition)) {
     fill_limit(block.law, ball->twist);
@@ -179,12 +196,12 @@ void fill_cone(AngularAxis<D>& block, const JointData<D>& data, const JointPlace
 }
 
 template <class D>
-void fill_turn(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h, int axis) {
+void fill_turn(AngularAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, const Clock& t, int axis) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
   if constexpr (D::dimension == 3) block.kind = AngleKind(int(AngleKind::cardan_x) + axis);
   block.law.flags = AxisLaw::periodic;
-  fill_axis(block.law, std::get<GenericJointDef<D>>(data.definition).angular[axis], h, 1);
+  fill_axis(block.law, std::get<GenericJointDef<D>>(data.definition).angular[axis], t, 1);
   remember(block.law, data.memory.turn[axis]);
 }
 
@@ -245,13 +262,13 @@ void fill_path(PathPose<D>& pose, const JointStore<D>& joints, const JointData<D
   }
 }
 template <class D>
-void fill_along(AxisLaw& law, const PathJointDef<D>& path, const PathCurve<D>& curve, float h) {
-  fill_spring(law, path.spring, path.target_distance, h);
-  law.max_spring_impulse = path.max_spring_force * h;
+void fill_along(AxisLaw& law, const PathJointDef<D>& path, const PathCurve<D>& curve, const Clock& t) {
+  fill_spring(law, path.spring, path.target_distance, t);
+  law.max_spring_impulse = path.max_spring_force * t.push();
   if (path.motor.enabled)
-    fill_motor(law, path.motor, h);
+    fill_motor(law, path.motor, t);
   else if (path.friction > 0)
-    fill_motor(law, {true, 0, path.friction}, h);
+    fill_motor(law, {true, 0, path.friction}, t);
   if (path.closed) return;
   const float end = curve.length();
   fill_limit(law, path.limit.enabled ? JointLimit{true, max(path.limit.lower, 0.0f), min(path.limit.upper, end)}
@@ -259,7 +276,7 @@ void fill_along(AxisLaw& law, const PathJointDef<D>& path, const PathCurve<D>& c
 }
 
 template <class D>
-void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
+void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, const Clock& t) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
   block.impulse = data.memory.angular;
@@ -270,20 +287,20 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
     spring = weld->angular;
   else if (const auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition)) {
     // The hand also slows the body's turning, so that it does not swing for ever.
-    const float keep = math::exp(-0.5f * mouse->spring.hertz * mouse->spring.damping_ratio * h);
+    const float keep = math::exp(-0.5f * mouse->spring.hertz * mouse->spring.damping_ratio * t.pace * t.h);
     block.rigid = false;
     block.response = {1 - keep, 0, keep, 0};
     return;
   } else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
     spring = motor->angular;
-    block.max_impulse = motor->max_torque * h;
+    block.max_impulse = motor->max_torque * t.push();
   }
   block.rigid = !(spring.hertz > 0);
-  if (!block.rigid) block.response = spring_response(spring.hertz, spring.damping_ratio, h);
+  if (!block.rigid) block.response = spring_response(t.pace * spring.hertz, spring.damping_ratio, t.h);
 }
 
 template <class D>
-void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, float h) {
+void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlacement<D>& at, const Clock& t) {
   block.arm_a = at.arm_a;
   block.arm_b = at.arm_b;
   block.offset = at.offset;
@@ -293,13 +310,13 @@ void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlace
     spring = weld->linear;
   else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
     spring = motor->linear;
-    block.max_impulse = motor->max_force * h;
+    block.max_impulse = motor->max_force * t.push();
   } else if (const auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition)) {
     spring = mouse->spring;
-    block.max_impulse = mouse->max_force * h;
+    block.max_impulse = mouse->max_force * t.push();
   }
   block.rigid = !(spring.hertz > 0);
-  if (!block.rigid) block.response = spring_response(spring.hertz, spring.damping_ratio, h);
+  if (!block.rigid) block.response = spring_response(t.pace * spring.hertz, spring.damping_ratio, t.h);
 }
 
 }  // namespace
@@ -326,6 +343,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   };
   fill_masses(record.dynamic_a, record.body_a, record.inverse_mass_a, record.inverse_inertia_a, 0);
   fill_masses(record.dynamic_b, record.body_b, record.inverse_mass_b, record.inverse_inertia_b, 1);
+  const Clock t = clock_of(world.bodies, record, h);
   const JointPlacement<D> at = place_joint(world.bodies, header, data);
   const JointMemory<D>& memory = data.memory;
   const auto moving = [&] { return pair_of(record, world.bodies.solver.data()); };
@@ -336,22 +354,22 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
     using Block = std::remove_reference_t<decltype(raw)>;
     Block& block = *::new (static_cast<void*>(&raw)) Block{};
     if constexpr (std::is_same_v<Block, LinearAxis<D>>)
-      fill_linear(block, data, at, record, h, axis_of_part(part)), note(block);
+      fill_linear(block, data, at, record, t, axis_of_part(part)), note(block);
     else if constexpr (std::is_same_v<Block, PointBlock<D>>) {
-      fill_point(block, data, at, h);
+      fill_point(block, data, at, t);
       if (!block.rigid) block.note_speed(moving());
     } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
       if (part == part_cone)
         fill_cone(block, data, at);
       else if (part == part_twist)
-        fill_twist(block, data, at, record, h), note(block);
+        fill_twist(block, data, at, record, t), note(block);
       else
-        fill_turn(block, data, at, h, axis_of_part(part)), note(block);
+        fill_turn(block, data, at, t, axis_of_part(part)), note(block);
     } else if constexpr (std::is_same_v<Block, CouplingBlock<D>>) {
       fill_coupling(block, data, at);
     } else if constexpr (std::is_same_v<Block, PathAxis<D>>) {
       fill_path(block.pose, world.joints, data, at);
-      fill_along(block.law, std::get<PathJointDef<D>>(data.definition), block.pose.curve, h);
+      fill_along(block.law, std::get<PathJointDef<D>>(data.definition), block.pose.curve, t);
       remember(block.law, memory.linear[0]);
       note(block);
     } else if constexpr (std::is_same_v<Block, PathBlock<D>>) {
@@ -364,9 +382,9 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
         block.friction = true;
         block.rigid = false;
         block.impulse = memory.friction;
-        block.max_impulse = std::get<BallJointDef<D>>(data.definition).friction_torque * h;
+        block.max_impulse = std::get<BallJointDef<D>>(data.definition).friction_torque * t.push();
       } else {
-        fill_angular(block, data, at, h);
+        fill_angular(block, data, at, t);
         if (!block.rigid) block.note_speed(moving());
       }
     } else if constexpr (std::is_same_v<Block, PinBlock<D>>) {

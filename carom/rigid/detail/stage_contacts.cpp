@@ -13,7 +13,8 @@ template <class D>
 typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t body) {
   if (!context.world.bodies.is_dynamic(body)) return {};
   const BodyMotion<D>& m = context.world.bodies.motion[std::size_t(body)];
-  return context.world.definition.gravity * m.gravity_scale + m.force * m.inverse_mass;
+  const float pace = context.world.bodies.pace(body);
+  return (pace * pace) * (context.world.definition.gravity * m.gravity_scale + m.force * m.inverse_mass);
 }
 
 template <class D, int W>
@@ -129,7 +130,7 @@ std::uint8_t find_approach(const StepContext<D>& context, std::int32_t index, co
       if (m.restitution > 0 && vn < 0) {
         // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
         const float impact = math::sqrt(vn * vn + 2 * closing * max(block.point[i].separation[lane], 0.0f));
-        if (impact > world.definition.restitution_threshold) speed = m.restitution * impact;
+        if (impact > bounce_threshold(world, c.body[0], c.body[1])) speed = m.restitution * impact;
       }
     }
     if (extra != nullptr) extra->bounce_speed[i][lane] = speed;

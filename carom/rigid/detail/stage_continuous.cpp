@@ -307,7 +307,8 @@ void slow_what_jams(WorldImplementation<D>& world, std::int32_t body, const Swee
 template <class D>
 void take_back_gravity(WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start, float dt) {
   if (start.fraction >= 1 || world.bodies.record[std::size_t(body)].constraint_count != 0) return;
-  const float gained = world.bodies.motion[std::size_t(body)].gravity_scale * (1 - start.fraction) * dt;
+  const float pace = world.bodies.pace(body);
+  const float gained = world.bodies.motion[std::size_t(body)].gravity_scale * (1 - start.fraction) * dt * pace * pace;
   world.bodies.solver[std::size_t(body)].linear_velocity -= world.definition.gravity * gained;
 }
 

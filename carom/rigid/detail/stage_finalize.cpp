@@ -16,8 +16,8 @@ float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
 
 /// m/s², of what acts on the body from afar.
 template <class D>
-float gravity_of(const WorldDef<D>& definition, const BodyMotion<D>& m) {
-  return math::length(m.gravity_scale * definition.gravity + m.inverse_mass * m.force);
+float gravity_of(const WorldDef<D>& definition, const BodyMotion<D>& m, float pace) {
+  return pace * pace * math::length(m.gravity_scale * definition.gravity + m.inverse_mass * m.force);
 }
 
 template <class D>
@@ -113,11 +113,12 @@ void finalize_bodies(StepContext<D>& context) {
           travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
         record.flags |= body_fast;
       }
+      const float pace = world.bodies.pace(body);
       scratch.swept[std::size_t(i)] = {pose.rotation, m.center, whole, 1};
       pose.rotation = normalize(s.delta_rotation * pose.rotation);
       m.center = m.center + typename D::Position(s.delta_position);
       m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
-                         ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m)))
+                         ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace)))
                          : 0;
       m.force = {};
       m.torque = {};
@@ -125,9 +126,10 @@ void finalize_bodies(StepContext<D>& context) {
       const float speed = max(math::length(s.linear_velocity), spin * max(m.outer_extent, 0.01f));
       // What is still being pushed out of an overlap is not at rest: that way is not in its velocity.
       const float pushed = math::length(s.delta_position * context.inverse_dt - s.linear_velocity);
-      if (record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0 && speed < record.sleep_speed &&
-          pushed < 0.2f * record.sleep_speed)
-        record.sleep_timer += context.dt;
+      const float sleep_speed = record.sleep_speed * pace;
+      if (record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0 && speed < sleep_speed &&
+          pushed < 0.2f * sleep_speed)
+        record.sleep_timer += context.dt * pace;
       else
         record.sleep_timer = 0;
       reset_delta(s);
@@ -178,7 +180,7 @@ void gather_hit_events(StepContext<D>& context) {
       const ManifoldRecord<D>& record = world.contacts.manifold(m);
       float impulse = 0;
       for (int i = 0; i < record.manifold.count; ++i) impulse += record.impulses.total[i];
-      if (record.approach_speed < world.definition.restitution_threshold || impulse <= 0) continue;
+      if (record.approach_speed < bounce_threshold(world, c.body[0], c.body[1]) || impulse <= 0) continue;
       if (record.approach_speed > event.approach_speed) {
         typename D::Position points[D::max_points];
         float separations[D::max_points];

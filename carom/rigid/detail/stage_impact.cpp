@@ -174,7 +174,8 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
     const float impact = impact_speed(closing, gap[i], acceleration, accelerated ? h : 0);
     if (impact > fastest) fastest = impact, time = clamp(gap[i] / closing, -h, h), meeting = gap[i];
   }
-  if (fastest <= context.world.definition.restitution_threshold) return false;
+  const float threshold = bounce_threshold(context.world, ia, ib);
+  if (fastest <= threshold) return false;
   // All of a face strikes at once, though rounding lets a corner lag behind.
   int count = 0;
   const float gained = accelerated ? acceleration * h : 0;
@@ -184,8 +185,7 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
     if (!closes[i]) continue;
     ++count;
     const float impact = impact_speed(closing, gap[i], acceleration, accelerated ? h : 0);
-    if (impact > context.world.definition.restitution_threshold)
-      target[i] = max(m.restitution * impact + acceleration * max(time, 0.0f) - gained, 0.0f);
+    if (impact > threshold) target[i] = max(m.restitution * impact + acceleration * max(time, 0.0f) - gained, 0.0f);
   }
 
   const V va = a.linear_velocity, vb = b.linear_velocity;
@@ -257,8 +257,9 @@ void leave_to_next_step(StepContext<D>& context) {
     bool fast = false;
     for (int i = 0; i < m.manifold.count; ++i) {
       const V r = get(at.block.point[i].r_a, at.lane);
-      fast = fast || dot(n, a.linear_velocity + cross(a.angular_velocity, r) - b.linear_velocity -
-                                cross(b.angular_velocity, r + offset)) > context.world.definition.restitution_threshold;
+      fast = fast ||
+             dot(n, a.linear_velocity + cross(a.angular_velocity, r) - b.linear_velocity -
+                        cross(b.angular_velocity, r + offset)) > bounce_threshold(context.world, c.body[0], c.body[1]);
     }
     if (!fast) continue;
     for (auto& point : at.block.point) point.separation[at.lane] = 1e3f;

@@ -87,11 +87,11 @@ void prepare_drives(StepContext<D>& context) {
       drive.flags = BodyDrive<D>::dynamic;
       if (record.constraint_count == 0) drive.flags |= BodyDrive<D>::in_flight;
       if (may_turn_freely(m, record)) drive.flags |= BodyDrive<D>::gyroscopic;
-      const float share = h * load_share(m);
+      const float pace = bodies.pace(drive.body), share = h * load_share(m) * (pace * pace);
       drive.linear_gain = share * (m.gravity_scale * gravity + m.inverse_mass * m.force);
       drive.angular_gain = share * (m.world_inverse_inertia * m.torque);
-      drive.linear_keep = 1 / (1 + h * m.linear_damping);
-      drive.angular_keep = 1 / (1 + h * m.angular_damping);
+      drive.linear_keep = 1 / (1 + h * pace * m.linear_damping);
+      drive.angular_keep = 1 / (1 + h * pace * m.angular_damping);
     }
   });
 }

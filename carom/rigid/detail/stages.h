@@ -30,6 +30,15 @@ template <class D>
 void find_impacts(StepContext<D>& context);
 template <class D>
 void solve_impacts(StepContext<D>& context, ImpactMoment moment);
+/// m/s at which two bodies begin to bounce: the world's, in the time of the slower of those that move.
+template <class D>
+float bounce_threshold(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b) {
+  const BodyStore<D>& bodies = world.bodies;
+  if (bodies.time_scale.empty()) return world.definition.restitution_threshold;
+  const float fast = 1e3f,
+              pace = min(bodies.is_dynamic(a) ? bodies.pace(a) : fast, bodies.is_dynamic(b) ? bodies.pace(b) : fast);
+  return world.definition.restitution_threshold * pace;
+}
 /// Where a manifold's points are now, in the world.
 template <class D>
 void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecord<D>& manifold,

@@ -21,11 +21,12 @@ void visit_slots(Slots& slots, Visit& visit) {
 
 template <class Bodies, class Visit>
 void visit_bodies(Bodies& store, Visit& visit) {
-  auto& [slots, solver, pose, motion, record, names, birth, awake, substep_wishes] = store;
+  auto& [slots, solver, pose, motion, record, names, birth, time_scale, awake, substep_wishes] = store;
   visit_slots(slots, visit);
   visit.bodies(solver, pose, motion, record);
   visit.names(names);
   visit.state(birth);
+  visit.state(time_scale);
   visit.state(awake);
   visit.state(substep_wishes);
 }

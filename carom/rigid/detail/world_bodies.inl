@@ -23,6 +23,7 @@ void check_body(Complaint& c, const BodyDef<D>& d) {
   check_range(c, "linear_damping", d.linear_damping, 0, 1e6);
   check_range(c, "angular_damping", d.angular_damping, 0, 1e6);
   check_range(c, "gravity_scale", d.gravity_scale, -1e6, 1e6);
+  check_range(c, "time_scale", d.time_scale, 1e-3, 1e3);
   check_range(c, "sleep_speed", d.sleep_speed, 0, 1e6);
   check_range(c, "substeps", d.substeps, 0, 64);
   if (d.type != BodyType::fixed && d.type != BodyType::kinematic && d.type != BodyType::dynamic)
@@ -129,6 +130,7 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   r.sleep_speed = d.sleep_speed;
   r.substeps = std::uint8_t(d.substeps);
   if (d.substeps > 0) ++bodies.substep_wishes;
+  bodies.set_pace(std::int32_t(slot), d.time_scale);
   r.user_data = d.user_data;
   set_flag<D>(r, body_enabled, d.enabled);
   set_flag<D>(r, body_bullet, d.bullet);
@@ -218,6 +220,7 @@ Result<BodyDef<D>> World<D>::body_definition(BodyId body) const {
   d.linear_damping = m.linear_damping;
   d.angular_damping = m.angular_damping;
   d.gravity_scale = m.gravity_scale;
+  d.time_scale = self_->bodies.pace(*slot);
   d.sleep_speed = r.sleep_speed;
   d.substeps = r.substeps;
   d.locks = locks_of(r.locks);

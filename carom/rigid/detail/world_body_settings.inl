@@ -200,6 +200,28 @@ Status World<D>::set_gravity_scale(BodyId body, float scale) {
 }
 
 template <class D>
+Status World<D>::set_time_scale(BodyId body, float scale) {
+  using namespace detail;
+  const Result<std::int32_t> slot = slot_of(*self_, "set_time_scale", body);
+  if (!slot.ok()) return slot.error();
+  Complaint complaint("World::set_time_scale");
+  check_range(complaint, "scale", scale, 1e-3, 1e3);
+  if (!complaint.none_yet()) return complaint.error();
+  const float before = self_->bodies.pace(*slot);
+  if (scale == before) return {};
+  wake_body(*self_, *slot);
+  self_->bodies.set_pace(*slot, scale);
+  if (!self_->bodies.is_dynamic(*slot)) return {};
+  SolverBody<D>& s = self_->bodies.solver[std::size_t(*slot)];
+  const Vector linear = s.linear_velocity * (scale / before);
+  forget_load<D>(self_->bodies.motion[std::size_t(*slot)], linear - s.linear_velocity,
+                 rest_speed(self_->definition, self_->last_dt));
+  s.linear_velocity = linear;
+  s.angular_velocity = s.angular_velocity * (scale / before);
+  return {};
+}
+
+template <class D>
 Status World<D>::set_user_data(BodyId body, std::uint64_t data) {
   const Result<std::int32_t> slot = detail::slot_of(*self_, "set_user_data", body);
   if (!slot.ok()) return slot.error();

@@ -67,7 +67,7 @@ inline Extents extents_of(const geometry::Shape3& s) {
   e.inner = min(half.x, min(half.y, half.z));
   if (s.type == geometry::ShapeType3::ellipsoid) e.outer = max(half.x, max(half.y, half.z));
   if (s.type == geometry::ShapeType3::hull) e.inner = s.hull->inner_radius + s.hull->radius;
-  if (s.type == geometry::ShapeType3::cone) e.inner = 0.4f * min(s.cone.radius, s.cone.half_height);
+  if (s.type == geometry::ShapeType3::cone) e.inner = 0.4f * min(s.cone.radius, s.cone.half_height) + s.cone.rounding;
   if (geometry::is_surface(s)) e.inner = e.outer;
   return e;
 }

@@ -343,7 +343,9 @@ Totals<D> World<D>::totals() const {
     t.kinetic_energy +=
         0.5 * mass * math::length_squared(Position(s.linear_velocity)) +
         spin_energy<D>(m, self_->bodies.pose[std::size_t(i)].rotation, s.angular_velocity, t.angular_momentum);
-    t.potential_energy -= mass * double(m.gravity_scale) * dot(Position(self_->definition.gravity), m.center);
+    const double pace = double(self_->bodies.pace(i));
+    t.potential_energy -=
+        mass * double(m.gravity_scale) * (pace * pace) * dot(Position(self_->definition.gravity), m.center);
   }
   if (t.mass > 0) t.center_of_mass = weighted * (1 / t.mass);
   return t;

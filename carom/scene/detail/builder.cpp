@@ -342,6 +342,7 @@ class Builder final : public BodyNames {
     def.linear_damping = float(reader_.number(o, "linear_damping", 0));
     def.angular_damping = float(reader_.number(o, "angular_damping", 0));
     def.gravity_scale = float(reader_.number(o, "gravity_scale", 1));
+    def.time_scale = float(reader_.number(o, "time_scale", 1));
     def.linear_velocity = vector_for(reader_.vector(o, "velocity"), tag);
     def.angular_velocity = angular_for(reader_.angular(o, "angular_velocity"), tag);
     if (!read_shapes(o, shapes)) return;
@@ -399,6 +400,7 @@ class Builder final : public BodyNames {
     world().shapes(id, ids);
     if (!reader_.accept(world().set_damping(id, def.linear_damping, def.angular_damping), *o.node, o.path)) return;
     if (!reader_.accept(world().set_gravity_scale(id, def.gravity_scale), *o.node, o.path)) return;
+    if (!reader_.accept(world().set_time_scale(id, def.time_scale), *o.node, o.path)) return;
     if (!reader_.accept(world().set_substeps(id, def.substeps), *o.node, o.path)) return;
     if (def.type == BodyType::kinematic &&
         !reader_.accept(world().set_velocity(id, def.linear_velocity, def.angular_velocity), *o.node, o.path))

@@ -305,7 +305,8 @@ bool read_geometry(Reader& reader, const Library& library, const Object& o, int 
                                float(reader.number(o, "rounding", 0))};
       break;
     case cone:
-      out = geometry::Cone{half_of(reader, o, "height", "half_height", 0.5), radius_of(reader, o, 0.5)};
+      out = geometry::Cone{half_of(reader, o, "height", "half_height", 0.5), radius_of(reader, o, 0.5),
+                           float(reader.number(o, "rounding", 0))};
       break;
     case ellipsoid:
       if (!needs(reader, o, "radii", "ellipsoid")) return false;

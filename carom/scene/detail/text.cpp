@@ -116,7 +116,10 @@ void put_geometry(const geometry::Shape3& s, Fields& f) {
           .unless("rounding", s.cylinder.rounding, 0.0f);
       return;
     case geometry::ShapeType3::cone:
-      f.put("type", quote("cone")).put("half_height", s.cone.half_height).put("radius", s.cone.radius);
+      f.put("type", quote("cone"))
+          .put("half_height", s.cone.half_height)
+          .put("radius", s.cone.radius)
+          .unless("rounding", s.cone.rounding, 0.0f);
       return;
     case geometry::ShapeType3::ellipsoid:
       f.put("type", quote("ellipsoid")).put("radii", vector_text(s.ellipsoid.radii));
