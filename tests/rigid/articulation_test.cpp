@@ -270,6 +270,40 @@ TEST(Articulation, FastFlightLeavesSlowJointsAlone) {
   }
 }
 
+// Nor how fast it spins: two rods that spin about their common hinge open and close against each other, for ever.
+TEST(Articulation, FastSpinLeavesSlowJointsAlone) {
+  for (const float spin : {1.0f, 5.0f, 10.0f, 20.0f})
+    for (const float opening : {0.02f, 0.2f}) {
+      WorldDef<Dim3> def = world_with<Dim3>(0);
+      def.joint_solver = JointSolver::direct;
+      def.allow_sleep = false;
+      World3 world(def);
+      BodyId rod[2];
+      for (int i = 0; i < 2; ++i) {
+        const float x = i == 0 ? -0.5f : 0.5f, inner = 0.5f * opening;
+        rod[i] = world
+                     .create_body({.position = {double(x), 0, 0},
+                                   .linear_velocity = {0, spin * x - 0.5f * inner, 0},
+                                   .angular_velocity = {0, 0, i == 0 ? spin + inner : spin - inner}})
+                     .value();
+        world.add_shape(rod[i], geometry::Box{{0.5f, 0.1f, 0.1f}}).value();
+      }
+      world.create_joint(hinge_at<Dim3>(world, rod[0], rod[1], {0, 0, 0})).value();
+      auto tree = Articulation3::create(world, rod[0]).value();
+      const double energy = world.totals().kinetic_energy;
+      double last = 0;
+      for (int i = 0; i < 600; ++i) {
+        world.step(frame).value();
+        tree.read(world).value();
+        // The last whole swing: its frequency is of the order of the spin's.
+        if (i >= 600 - int(420 / spin)) last = std::max(last, math::abs(tree.speeds()[0]));
+      }
+      EXPECT_GT(last, 0.85 * double(opening)) << "spin " << spin;
+      EXPECT_LT(last, 1.02 * double(opening)) << "spin " << spin;
+      EXPECT_NEAR(world.totals().kinetic_energy / energy, 1, 1e-4) << "spin " << spin << " opening " << opening;
+    }
+}
+
 // Whatever hangs on it, a joint swings with the frequency and damping that were asked for: e^(−ζωt) cos(√(1−ζ²) ωt).
 TEST(Articulation, MusclesAreOscillatorsOfTheirFrequency) {
   for (const double zeta : {0.1, 1.0}) {

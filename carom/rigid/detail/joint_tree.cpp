@@ -16,9 +16,10 @@ constexpr double small_error = 1e-6;             ///< m and rad: no further step
 /// Under tension F a body swings between its joints at up to ω² = F r/I. Positions that follow from velocities bear
 /// ω h < 2, and long before that what swings faster than this square gets inertia for it (see `stiffen`).
 constexpr double calm_swing = 0.25;
-constexpr double swing_damping = 1;    ///< share of that stiffness, per substep, that damps links against each other
-constexpr double rod_damping = 0.2;    ///< of a rod's cross motion in the same way: also of its swing as a whole
-constexpr double tension_decay = 0.8;  ///< a tension is remembered for some substeps, because it may flicker
+constexpr double swing_damping = 1;     ///< share of that stiffness, per substep, that damps links against each other
+constexpr double rod_damping = 0.2;     ///< of a rod's cross motion in the same way: also of its swing as a whole
+constexpr double account_share = 1e-3;  ///< of a free tree's energy that its joints may have lost and give back
+constexpr double tension_decay = 0.8;   ///< a tension is remembered for some substeps, because it may flicker
 
 template <class D>
 class Tree {
@@ -150,9 +151,19 @@ class Tree {
       note_settled(joint);
     }
     // Joints do no work: what rounding and large turns made of a substep is not to be more than there was.
-    const double after = energy_.kinetic();
+    double turning = 0;
+    const double after = energy_.kinetic(turning);
     range_.work += after - before;
-    if (range_.work > 0) energy_.take(range_.work, after);
+    double excess = range_.work;
+    if (range_.free) {
+      // Of a tree that spins, what the substeps err swings to and fro with its inner motion: taken out each time that
+      // it is above nothing, it would bring that motion to rest. So it counts as a sum, which forgets all but a little.
+      const std::size_t first = std::size_t(trees_.joints[std::size_t(range_.first_joint)].joint);
+      float& account = context_.world.joints.data[first].memory.drift;
+      excess += double(account);
+      account = float(max(min(excess, 0.0), -account_share * (after + turning)));
+    }
+    if (excess > 0) energy_.take(excess, after);
   }
 
  private:

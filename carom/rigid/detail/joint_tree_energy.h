@@ -16,10 +16,16 @@ struct TreeEnergy {
   /// Of a free tree, that of its inner motion: joints change nothing of the rest, whose rounding would drown a slow
   /// one.
   double kinetic() const {
+    double turning = 0;
+    return kinetic(turning);
+  }
+  /// `turning`: of a free tree, its turning as a whole besides.
+  double kinetic(double& turning) const {
     double rigid[dofs] = {};
     typename D::Position center{};
     if (range.free) rigid_motion(rigid, center);
     double sum = 0;
+    turning = 0;
     for (int i = range.first_body; i < range.body_end; ++i) {
       const TreeBody<D>& body = trees.bodies[std::size_t(i)];
       double v[dofs];
@@ -28,6 +34,8 @@ struct TreeEnergy {
         double r[dofs];
         rigid_velocity(rigid, position_of(body) - center, r);
         for (int c = 0; c < dofs; ++c) v[c] -= r[c];
+        for (int c = 0; c < dimension; ++c) r[c] -= rigid[c];
+        turning += energy_of(body, r);
       }
       sum += energy_of(body, v);
     }
