@@ -11,7 +11,7 @@ namespace {
 constexpr double trace_of_compliance = 1e-5;     ///< of the row's own mobility
 constexpr double correction_share = 0.3;         ///< of an error that a substep removes
 constexpr double largest_correction_speed = 10;  ///< m/s and rad/s
-constexpr int refinements = 3;                   ///< Newton steps toward the joint at the end of the substep
+constexpr int refinements = 6;                   ///< most Newton steps toward the joint at the end of the substep
 constexpr double small_error = 1e-6;             ///< m and rad: no further step
 /// Under tension F a body swings between its joints at up to ω² = F r/I. Positions that follow from velocities bear
 /// ω h < 2, and long before that what swings faster than this square gets inertia for it (see `stiffen`).
