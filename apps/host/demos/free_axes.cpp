@@ -110,7 +110,7 @@ class FreeAxes final : public Repeatable<FreeAxes, Demo3> {
     out.push_back({"farthest the puck left its plane", "m", "the joint holds it", lift_, 0, 2e-3});
     const double swing = (last_ - first_) / max(crossings_ - 1, 1);
     out.push_back({"period of the platform", "s", "1/f", swing, 2, 0.03});
-    out.push_back({"speed of the cart", "m/s", "its wheels want 2, in a curve", far_, 0, 0.15});
+    out.push_back({"speed of the cart", "m/s", "its wheels want 2, in a curve", far_, 0, 0.25});
     // Ackermann's mean wheel: curvature tan(steer)/wheelbase, less what the tyres slip.
     out.push_back(
         {"curvature of its way", "1/m", "tan δ/wheelbase", turn_, tan(radians(20.0)) / (2 * half_base_), 0.06});

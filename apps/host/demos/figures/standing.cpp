@@ -112,8 +112,8 @@ class Standing final : public Repeatable<Standing, Demo3> {
   static Pose at_ease() {
     Pose pose;
     for (int k = 0; k < 2; ++k) {
-      pose.hip[k] = {0, 0, 0.1}, pose.knee[k] = 0.2, pose.ankle[k] = {0, 0, 0.06};
-      pose.shoulder[k] = {k == 0 ? -0.15 : 0.15, 0, 0.1}, pose.elbow[k] = 0.25;
+      pose.hip[k] = {0, 0, 0.1}, pose.knee[k] = 0.2, pose.ankle[k] = {0, 0, 0.1};
+      pose.shoulder[k] = {k == 0 ? 0.15 : -0.15, 0, 0.1}, pose.elbow[k] = 0.25;
     }
     return pose;
   }

@@ -18,8 +18,8 @@ class Filters final : public Repeatable<Filters, Demo2> {
     d.group = "Rules of bodies";
     d.text =
         "Every shape is in categories (bits) and has a mask of the categories that it meets. Two shapes collide where "
-        "each one's category is in the other's mask. The trays hold the colour they have, and all balls meet one "
-        "another.\n\n"
+        "each one's category is in the other's mask. The trays hold the colour they have, and balls meet their "
+        "own kind.\n\n"
         "  meet = (category_a & mask_b) ≠ 0 and (category_b & mask_a) ≠ 0\n\n"
         "A group goes before: two shapes of the same negative group never meet, of the same positive one always. The "
         "grey ghosts name the ground and their own kind; being of one negative group they pass through each other "
@@ -71,7 +71,7 @@ class Filters final : public Repeatable<Filters, Demo2> {
       body.name = kind == 3 ? "ghost" : "ball";
       body.position = {-2.7 + 0.6 * (i * 7 % 10) + 0.05 * (i % 3), 8.4 + 0.42 * double(i / 4)};
       const std::uint64_t own = std::uint64_t{1} << (kind + 1);
-      rigid::ShapeDef<Dim2> shape = surface(own, kind == 3 ? tray_ | own : ~std::uint64_t{0});
+      rigid::ShapeDef<Dim2> shape = surface(own, tray_ | own);
       shape.material.rolling_resistance = 0.05f;
       if (kind == 3) {
         shape.filter.group = stage.count("group") == 1 ? -3 : 0;

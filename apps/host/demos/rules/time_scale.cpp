@@ -91,7 +91,6 @@ class TimeScale final : public Repeatable<TimeScale, Demo2> {
       stage.check(stage.world().set_time_scale(balls_[i].body, in_field ? stage.valuef("field") : 1));
       if (ball.pose.position.x < landing() + 4 && ball.awake) continue;
       stage.remove(balls_[i].body);
-      stage.check(stage.world().destroy_body(balls_[i].body));
       balls_.erase(balls_.begin() + std::ptrdiff_t(i));
     }
   }
