@@ -27,6 +27,7 @@ Figure Figure::create(Stage3& stage, Vec3d place, std::uint32_t shirt, std::uint
     rigid::ShapeDef<Dim3> d;
     d.density = 950;
     d.material.friction = which >= foot ? 0.9f : 0.5f;
+    d.filter.group = -7;
     f.body[which] = stage.add(body, shape, d, color);
   };
   part(pelvis, "pelvis", {0, 1.0, 0}, geometry::Box{{0.06f, 0.05f, 0.1f}, 0.05f}, trousers);
@@ -73,12 +74,10 @@ Figure Figure::create(Stage3& stage, Vec3d place, std::uint32_t shirt, std::uint
     f.knee[k] = hinge(thigh + k, shin + k, {0, knee_height, 0.1 * side}, -2.5f, 0.02f);
     f.ankle[k] = ball(shin + k, foot + k, {0, ankle_height, 0.1 * side}, 0.9f, 0.4f);
   }
-  if (!holder.is_null()) {
-    rigid::WeldJointDef<Dim3> hold;
-    hold.body_a = holder, hold.body_b = f.body[pelvis];
-    hold.frame_a.p = Vec3f(stage.at(hold.body_b).pose.position - stage.at(holder).pose.position);
-    (void)stage.keep(stage.world().create_joint(hold));
-  }
+  rigid::WeldJointDef<Dim3> hold;
+  hold.body_a = holder, hold.body_b = f.body[pelvis];
+  hold.frame_a.p = Vec3f(stage.at(hold.body_b).pose.position - stage.at(holder).pose.position);
+  (void)stage.keep(stage.world().create_joint(hold));
   core::Result<rigid::Articulation3> made = rigid::Articulation3::create(stage.world(), f.body[pelvis]);
   if (made.ok())
     f.mechanism = std::move(made).value();

@@ -3,7 +3,7 @@
 namespace carom::host::demo {
 
 std::span<const DemoFactory> figure_demos() {
-  static constexpr DemoFactory list[] = {make_powered_ragdoll, make_standing, make_robot_arm};
+  static constexpr DemoFactory list[] = {make_powered_ragdoll, make_robot_arm};
   return list;
 }
 

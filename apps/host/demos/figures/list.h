@@ -7,6 +7,5 @@ namespace carom::host::demo {
 
 std::unique_ptr<Demo> make_robot_arm();
 std::unique_ptr<Demo> make_powered_ragdoll();
-std::unique_ptr<Demo> make_standing();
 
 }  // namespace carom::host::demo
