@@ -36,8 +36,8 @@ struct JointMemory {
   typename D::Vector path_normal{};
   float path[2 * (D::dimension - 1)]{};
   bool fresh_path() const { return path_normal == typename D::Vector{}; }
-  /// Of a gear, rack or screw: what its coordinates have come apart so far, m or rad. Of the first joint of a free tree:
-  /// J, what the tree's joints have lost so far and may give back, ≤ 0.
+  /// Of a gear, rack or screw: what its coordinates have come apart so far, m or rad. Of the first joint of a free
+  /// tree: J, what the tree's joints have lost so far and may give back, ≤ 0.
   float drift = 0;
 };
 
