@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "apps/host/scene_destruction.h"
 #include "apps/host/scene_matter.h"
 #include "carom/environment/environment.h"
 
@@ -89,6 +90,7 @@ class SceneDemo final : public DemoOf<D> {
       picture_.begin(stage, *world_.matter);
       picture_.draw<D>(stage, *world_.matter);
     }
+    if (world_.destruction) fired_.draw(stage, world_);
   }
 
   core::Status step(Stage<D>& stage) override {
@@ -101,6 +103,7 @@ class SceneDemo final : public DemoOf<D> {
     sample(stage);
     show_water(stage);
     if (world_.matter) picture_.draw<D>(stage, *world_.matter);
+    if (world_.destruction) fired_.draw(stage, world_);
     if constexpr (D::dimension == 3)
       if (const auto place = world_.flight_place()) fly(stage, *place);
     for (Followed& f : trails_) {
@@ -280,6 +283,7 @@ class SceneDemo final : public DemoOf<D> {
   std::vector<math::Vec3d> rungs_;
   static constexpr std::uint32_t water_cells = 80;
   MatterPicture picture_;
+  DestructionPicture fired_;
   int water_ = -1;  ///< its surface; negative: no water
 };
 

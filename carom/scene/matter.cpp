@@ -177,7 +177,8 @@ environment::Wind wind_near(const environment::Environment& around, Vec3d place,
 }  // namespace
 
 template <class D>
-Status Matter::step(rigid::World<D>& world, double dt, const environment::Environment* around) {
+Status Matter::step(rigid::World<D>& world, double dt, const environment::Environment* around,
+                    core::FunctionRef<Status()> advance) {
   const double time = world.time();
   if constexpr (D::dimension == 3) {
     if (!ropes.empty()) {
@@ -205,7 +206,7 @@ Status Matter::step(rigid::World<D>& world, double dt, const environment::Enviro
     if (Status s = liquid.thing.step(world, float(dt)); !s) return s;
   for (auto& grains : many.grains)
     if (Status s = grains.thing.step(world, float(dt)); !s) return s;
-  if (Status s = world.step(float(dt)); !s) return s;
+  if (Status s = advance(); !s) return s;
 
   for (auto& entry : many.particles) {
     SceneParticles<D>& p = entry.thing;
@@ -238,8 +239,8 @@ Status Matter::set_wind(const environment::Environment* around) {
   return set(space);
 }
 
-template Status Matter::step(rigid::World2&, double, const environment::Environment*);
-template Status Matter::step(rigid::World3&, double, const environment::Environment*);
+template Status Matter::step(rigid::World2&, double, const environment::Environment*, core::FunctionRef<Status()>);
+template Status Matter::step(rigid::World3&, double, const environment::Environment*, core::FunctionRef<Status()>);
 
 void Matter::add_to(core::StateHash& hash) const {
   if (!ropes.empty()) hash.add(rope_set.state_hash());

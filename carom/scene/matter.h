@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/core/function_ref.h"
 #include "carom/core/hash.h"
 #include "carom/environment/environment.h"
 #include "carom/particles/cloth.h"
@@ -66,9 +67,10 @@ class CAROM_API Matter {
     return const_cast<Matter*>(this)->of<D>();
   }
 
-  /// The world's step with all of this before and after it.
+  /// The world's step with all of this before and after it. `advance` does the world's own part.
   template <class D>
-  Status step(rigid::World<D>& world, double dt, const environment::Environment* around);
+  Status step(rigid::World<D>& world, double dt, const environment::Environment* around,
+              core::FunctionRef<Status()> advance);
   /// Lets the particles feel the steady wind of the environment, beside their own turbulence.
   Status set_wind(const environment::Environment* around);
   void add_to(core::StateHash& hash) const;

@@ -3,6 +3,7 @@
 #include "carom/core/hash.h"
 #include "carom/core/spelling.h"
 #include "carom/math/elementary.h"
+#include "carom/scene/destruction.h"
 #include "carom/scene/detail/document.h"
 #include "carom/scene/detail/expression.h"
 #include "carom/scene/detail/flight.h"
@@ -214,6 +215,22 @@ const auto* longest_owner(const List& list, std::string_view text, std::string_v
 
 }  // namespace
 
+namespace {
+template <class D>
+Status step_world(SceneWorld& scene, World<D>& world) {
+  Destruction* const destruction = scene.destruction.get();
+  if (destruction != nullptr)
+    if (Status s = destruction->before(world, scene.dt); !s) return s;
+  const auto advance = [&] {
+    return destruction != nullptr ? destruction->step(world, scene.dt) : world.step(float(scene.dt));
+  };
+  const Status done = scene.matter
+                          ? scene.matter->step(world, scene.dt, environment_of(world, scene.environment).get(), advance)
+                          : advance();
+  return done.ok() && destruction != nullptr ? destruction->after(world, scene.dt) : done;
+}
+}  // namespace
+
 SceneWorld::SceneWorld() = default;
 SceneWorld::~SceneWorld() = default;
 SceneWorld::SceneWorld(SceneWorld&&) noexcept = default;
@@ -233,10 +250,8 @@ Status SceneWorld::step() {
     };
     if (const Status s = std::visit(walk, c.walker); !s.ok()) return s;
   }
-  if (matter && world2) return matter->step(*world2, dt, environment_of(*world2, environment).get());
-  if (matter && world3) return matter->step(*world3, dt, environment_of(*world3, environment).get());
-  if (world2) return world2->step(float(dt));
-  if (world3) return world3->step(float(dt));
+  if (world2) return step_world(*this, *world2);
+  if (world3) return step_world(*this, *world3);
   if (!flight) return core::Error{"the scene has no world"};
   if (flight->at + 1 >= flight->rows.size()) return core::Error{"the flight has ended"};
   ++flight->at;
@@ -256,9 +271,10 @@ std::uint64_t SceneWorld::state_hash() const {
   core::StateHash hash;
   if (world2 || world3) {
     const std::uint64_t bodies_hash = world2 ? world2->state_hash() : world3->state_hash();
-    if (!matter) return bodies_hash;
+    if (!matter && !destruction) return bodies_hash;
     hash.add(bodies_hash);
-    matter->add_to(hash);
+    if (matter) matter->add_to(hash);
+    if (destruction) destruction->add_to(hash);
     return hash.digest();
   }
   if (!flight) return 0;
@@ -350,6 +366,7 @@ Result<Probe> SceneWorld::probe(std::string_view text) const {
         unit = source.field == coordinate ? (turns ? "rad" : "m") : (turns ? "rad/s" : "m/s");
       }
     } else if (matter && matter->find(name, dimension, source, unit)) {
+    } else if (destruction && destruction->find(name, dimension, source, unit)) {
     } else if (const SceneBody* body = longest_owner(bodies, name, rest);
                body != nullptr && match_quantity(rest, body_names, dimension, source.field, source.component)) {
       source.kind = Probe::Source::Kind::body;
@@ -367,7 +384,9 @@ Result<Probe> SceneWorld::probe(std::string_view text) const {
       const std::string owner = name.substr(0, name.find('.'));
       for (const QuantityName& q : world_names) known.push_back(q.name);
       for (const SceneBody& b : bodies) known.push_back(b.name);
-      const std::vector<std::string> things = matter ? matter->names() : std::vector<std::string>();
+      std::vector<std::string> things = matter ? matter->names() : std::vector<std::string>();
+      if (destruction)
+        for (std::string& thing : destruction->names()) things.push_back(std::move(thing));
       for (const std::string& thing : things) known.push_back(thing);
       return core::Error{message + ", expected one of the world (time, energy.kinetic, …) or body.quantity" +
                          core::did_you_mean(owner, known)};
@@ -400,6 +419,9 @@ double SceneWorld::read(const Probe& probe) const {
         break;
       case Probe::Source::Kind::matter:
         values[i] = matter ? matter->read(s) : missing;
+        break;
+      case Probe::Source::Kind::destruction:
+        values[i] = destruction ? destruction->read(s, time()) : missing;
         break;
       case Probe::Source::Kind::flight:
         values[i] = flight ? detail::flight_fields()[std::size_t(s.field)].read(flight->now()) : missing;

@@ -17,6 +17,7 @@ using core::Status;
 enum class Kind : std::uint8_t { rigid, flight };
 
 class Matter;
+class Destruction;
 namespace detail {
 struct Expression;
 class Flight;
@@ -62,11 +63,11 @@ class CAROM_API Probe {
 
   /// What one name in the expression stands for.
   struct Source {
-    enum class Kind : std::uint8_t { world, body, joint, flight, matter } kind = Kind::world;
+    enum class Kind : std::uint8_t { world, body, joint, flight, matter, destruction } kind = Kind::world;
     int field = 0, component = 0;
     rigid::BodyId body{};
     rigid::JointId joint{};
-    int list = 0, item = 0;  ///< of matter
+    int list = 0, item = 0;  ///< of matter and destruction
   };
   std::vector<Source> sources;
   std::shared_ptr<const detail::Expression> expression;
@@ -86,8 +87,10 @@ class CAROM_API SceneWorld {
   std::unique_ptr<rigid::World2> world2;  ///< one of these three is there
   std::unique_ptr<rigid::World3> world3;
   std::unique_ptr<detail::Flight> flight;
-  std::unique_ptr<Matter> matter;  ///< ropes, cloth, liquids and so on (matter.h); null where there are none
-  std::vector<SceneBody> bodies;   ///< in creation order
+  std::unique_ptr<Matter> matter;            ///< ropes, cloth, liquids and so on (matter.h); null where there are none
+  std::unique_ptr<Destruction> destruction;  ///< charges, guns, structures (destruction.h); null where there are none
+  std::vector<SceneBody> bodies;             ///< in creation order
+  std::size_t listed_bodies = 0;             ///< the first so many are of the file's bodies
   std::vector<SceneJoint> joints;
   std::vector<SceneEffector> effectors;
   std::vector<SceneCharacter> characters;

@@ -28,9 +28,9 @@ std::string measure_name(Measure measure) {
 }
 
 std::string item_schema(const Field& field) {
-  const ObjectKind* const grouped[] = {tables().body,   tables().joint,  tables().effector,
-                                       tables().rope,   tables().cloth,  tables().soft_body,
-                                       tables().liquid, tables().grains, tables().particles};
+  const ObjectKind* const grouped[] = {tables().body,      tables().joint,     tables().effector,  tables().rope,
+                                       tables().cloth,     tables().soft_body, tables().liquid,    tables().grains,
+                                       tables().particles, tables().structure, tables().explosion, tables().gun};
   if (field.of != nullptr && std::find(std::begin(grouped), std::end(grouped), field.of) != std::end(grouped))
     return "{\"anyOf\": [" + reference_to(field.of->name) + ", " + reference_to("group") + "]}";
   if (field.of == tables().shape || field.of == tables().surface)

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "carom/scene/destruction.h"
 #include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/text.h"
 
@@ -30,8 +31,9 @@ std::string inertia_text(const math::Mat3d& i) {
 template <class D>
 class SceneWriter {
  public:
-  SceneWriter(const World<D>& world, const WriteOptions& options, std::span<const SceneBody> names)
-      : world_(world), options_(options) {
+  SceneWriter(const World<D>& world, const WriteOptions& options, std::span<const SceneBody> names,
+              const Destruction* destruction = nullptr)
+      : world_(world), options_(options), destruction_(destruction) {
     for (const SceneBody& n : names)
       if (!n.name.empty()) given_.emplace(n.id.packed(), &n);
   }
@@ -76,6 +78,8 @@ class SceneWriter {
     }
     out += "\n  ]";
     if (!environment.empty()) out += ",\n  \"environment\": " + environment;
+    if (const std::string charges = explosions_text(); !charges.empty())
+      out += ",\n  \"explosions\": [" + charges + "]";
     return out + "\n}\n";
   }
 
@@ -419,8 +423,30 @@ class SceneWriter {
     return f.put("magnetic", D::dimension == 2 ? digits(e.magnetic.z) : vector_text(e.magnetic)).object();
   }
 
+  /// Charges that have not done their work yet; the time of the world begins anew.
+  std::string explosions_text() const {
+    std::string list;
+    if (destruction_ == nullptr) return list;
+    for (const auto& entry : destruction_->of<D>().explosions) {
+      const blast::Explosion<D>& e = entry.thing.explosion;
+      if (e.finished(world_.time())) continue;
+      const blast::Charge<D>& c = e.charge();
+      Fields f;
+      f.put("name", quote(entry.name)).put("position", vector_text(c.position)).put("mass", c.mass);
+      f.put("burst", quote(c.burst == blast::Burst::ground ? "ground" : "free_air"));
+      f.put("time", c.time - world_.time()).put("reach", c.reach).flag("clearing", c.clearing, true);
+      f.put("shelter", c.shelter);
+      if (!c.casing.is_null()) f.put("casing", quoted_name(c.casing));
+      if (c.mask != ~std::uint64_t{0}) f.put("mask", bits_text(c.mask));
+      if (c.obstacles != ~std::uint64_t{0}) f.put("obstacles", bits_text(c.obstacles));
+      list += (list.empty() ? "\n    " : ",\n    ") + f.object();
+    }
+    return list;
+  }
+
   const World<D>& world_;
   const WriteOptions& options_;
+  const Destruction* destruction_;
   World<D> scratch_;
   std::map<std::uint64_t, const SceneBody*> given_;
   std::map<std::uint64_t, std::string> names_;
@@ -440,10 +466,15 @@ Result<std::string> write_scene(const World3& world, const WriteOptions& options
 Result<std::string> write_scene(const SceneWorld& world, const WriteOptions& options) {
   if (world.matter != nullptr)
     return core::Error{
-        "only bodies, joints and effectors can be written: this scene has ropes, cloth, liquids, grains "
-        "or particles too"};
-  if (world.world2) return write_scene(*world.world2, options, world.bodies);
-  if (world.world3) return write_scene(*world.world3, options, world.bodies);
+        "only bodies, joints, effectors and charges can be written: this scene has ropes, cloth, liquids, grains or "
+        "particles too"};
+  const Destruction* const destruction = world.destruction.get();
+  const auto more = [](const auto& of) { return !of.guns.empty() || !of.structures.empty(); };
+  if (destruction != nullptr && (more(destruction->plane) || more(destruction->space)))
+    return core::Error{
+        "only bodies, joints, effectors and charges can be written: this scene has guns or structures that break too"};
+  if (world.world2) return SceneWriter<Dim2>(*world.world2, options, world.bodies, destruction).write();
+  if (world.world3) return SceneWriter<Dim3>(*world.world3, options, world.bodies, destruction).write();
   return core::Error{"only worlds of bodies can be written"};
 }
 

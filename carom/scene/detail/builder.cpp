@@ -2,6 +2,7 @@
 
 #include "carom/core/spelling.h"
 #include "carom/scene/detail/characters.h"
+#include "carom/scene/detail/destruction.h"
 #include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/joints.h"
 #include "carom/scene/detail/matter.h"
@@ -132,8 +133,9 @@ class Builder final : public BodyNames {
       visit_parts();
       if (update_ && !reader_.failed()) check_count(what);
       if (reader_.failed()) return false;
+      if (!update_ && what_ == "bodies") out_.listed_bodies = out_.bodies.size();
     }
-    if (!make_matter()) return false;
+    if (!make_matter() || !make_destruction()) return false;
     // Shapes and joints wake what they touch, so that sleepers are laid down when everything stands.
     for (const BodyId id : sleepers_)
       if (!reader_.accept(world().set_awake(id, false), document_.main(), "bodies")) return false;
@@ -171,8 +173,9 @@ class Builder final : public BodyNames {
       into[map->keys[i]] = {&map->children[i], std::string(key) + "." + map->keys[i]};
   }
 
-  static constexpr const char* lists[] = {"bodies", "joints",      "effectors", "characters", "ropes",
-                                          "cloths", "soft_bodies", "liquids",   "grains",     "particles"};
+  static constexpr const char* lists[] = {"bodies",     "joints",      "effectors", "characters", "ropes",
+                                          "cloths",     "soft_bodies", "liquids",   "grains",     "particles",
+                                          "structures", "explosions",  "guns"};
   void visit_parts() {
     for (const Node& part : document_.parts)
       for (const char* list : lists)
@@ -196,6 +199,27 @@ class Builder final : public BodyNames {
       if (!made->names().empty()) out_.matter = std::move(made);
     }
     return out_.matter == nullptr || reader_.accept(out_.matter->set_wind(around.get()), document_.main(), "particles");
+  }
+
+  /// Structures first, so that guns may aim at them. What runs already stays as it is.
+  bool make_destruction() {
+    if (update_) return true;
+    const std::shared_ptr<const environment::Environment> around = environment_of(world(), out_.environment);
+    auto made = std::make_unique<Destruction>();
+    for (const Node& part : document_.parts)
+      if (!read_penetration<D>(reader_, part, made->of<D>().hits)) return false;
+    DestructionPlace<D> place{reader_, *this,    world(),      *made,
+                              out_,    library_, around.get(), 10.0 * document_.maximum_objects};
+    destruction_ = &place;
+    for (const char* what : destruction_lists) {
+      what_ = what;
+      visit_parts();
+      if (reader_.failed()) return false;
+      for (std::size_t i = names_.size(); i < out_.bodies.size(); ++i) names_.emplace(out_.bodies[i].name, i);
+    }
+    destruction_ = nullptr;
+    if (!made->names().empty()) out_.destruction = std::move(made);
+    return true;
   }
 
   void visit(const Node& list, std::string_view key, const std::string& path) {
@@ -257,6 +281,7 @@ class Builder final : public BodyNames {
           node, path,
           "found more than " + std::to_string(document_.maximum_objects) + " bodies, shapes, joints and effectors");
     if (matter_ != nullptr) return read_matter(*matter_, what_, node, path);
+    if (destruction_ != nullptr) return read_destruction(*destruction_, what_, node, path);
     if (what_ == "bodies")
       body(node, path);
     else if (what_ == "joints")
@@ -268,7 +293,7 @@ class Builder final : public BodyNames {
   }
 
   void check_count(std::string_view what) {
-    const std::size_t had = what == "bodies"      ? own_bodies()
+    const std::size_t had = what == "bodies"      ? out_.listed_bodies
                             : what == "joints"    ? out_.joints.size()
                             : what == "effectors" ? out_.effectors.size()
                                                   : out_.characters.size();
@@ -277,12 +302,6 @@ class Builder final : public BodyNames {
   void count_changed(std::string_view what) {
     reader_.fail(document_.main(), what,
                  "this value changes how many " + std::string(what) + " there are: restart the scene");
-  }
-  std::size_t own_bodies() const {
-    // The body "world" that joints may have made is not in any list, and characters come last.
-    const std::size_t own = out_.bodies.size() - out_.characters.size();
-    const bool made = own > 0 && out_.bodies[own - 1].name == "world" && next_ + 1 == own;
-    return own - (made ? 1 : 0);
   }
 
   /// Tiles have several outlines: each is a shape of its own.
@@ -485,7 +504,8 @@ class Builder final : public BodyNames {
   std::map<std::string, std::size_t, std::less<>> names_;
   std::vector<BodyId> sleepers_;
   std::string_view what_;
-  MatterPlace<D>* matter_ = nullptr;  ///< while matter is made
+  MatterPlace<D>* matter_ = nullptr;            ///< while matter is made
+  DestructionPlace<D>* destruction_ = nullptr;  ///< likewise
   std::size_t next_ = 0;
   int turns_ = 0, made_ = 0;
 };

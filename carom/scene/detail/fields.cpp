@@ -1,5 +1,6 @@
 #include "carom/scene/detail/fields.h"
 
+#include "carom/scene/detail/destruction_fields.h"
 #include "carom/scene/detail/environment_fields.h"
 #include "carom/scene/detail/matter_fields.h"
 
@@ -67,7 +68,9 @@ constexpr Field material_fields[] = {
     {"density", T::quantity, M::density, "used by shapes that give neither density nor mass"},
     {"user_id", T::integer},
 };
+}  // namespace
 const ObjectKind material_kind{"material", "How a surface behaves.", material_fields};
+namespace {
 
 constexpr Field filter_fields[] = {
     {"category", T::bits, M::plain, "what the shape is: a number, a hexadecimal text, or a list of bit numbers"},
@@ -84,7 +87,6 @@ constexpr Field surface_fields[] = {
 };
 const ObjectKind surface_kind{"surface", "What parts of a mesh, height field or chain are made of.", surface_fields};
 
-extern const ObjectKind shape_kind;
 constexpr Field shape_fields[] = {
     {"preset", T::text, M::plain, "name of a preset file, without .json"},
     {"name", T::text},
@@ -160,7 +162,9 @@ constexpr Field shape_fields[] = {
     {"one_way", T::vector, M::plain, "holds what comes against this direction, lets through the rest; shape's frame"},
     {"user_data", T::bits},
 };
+}  // namespace
 const ObjectKind shape_kind{"shape", "A collision shape.", shape_fields};
+namespace {
 
 constexpr Field mass_properties_fields[] = {
     {"mass", T::quantity, M::mass, "", nullptr, {}, true},
@@ -422,6 +426,9 @@ constexpr Field group_fields[] = {
     {"liquids", T::list, M::plain, "liquids", &liquid_kind},
     {"grains", T::list, M::plain, "sand, gravel, beads", &grains_kind},
     {"particles", T::list, M::plain, "systems of particles", &particles_kind},
+    {"structures", T::list, M::plain, "solids that break", &structure_kind},
+    {"explosions", T::list, M::plain, "charges", &explosion_kind},
+    {"guns", T::list, M::plain, "guns", &gun_kind},
     {"characters", T::list, M::plain, "", &character_kind},
 };
 const ObjectKind group_kind{
@@ -566,6 +573,10 @@ constexpr Field scene_fields[] = {
     {"liquids", T::list, M::plain, "liquids and groups", &liquid_kind},
     {"grains", T::list, M::plain, "sand, gravel, beads and groups", &grains_kind},
     {"particles", T::list, M::plain, "systems of particles and groups", &particles_kind},
+    {"structures", T::list, M::plain, "solids that break, and groups", &structure_kind},
+    {"explosions", T::list, M::plain, "charges and groups", &explosion_kind},
+    {"guns", T::list, M::plain, "guns and groups", &gun_kind},
+    {"penetration", T::list, M::plain, "what projectiles go through; all else stops them", &penetration_kind},
     {"characters", T::list, M::plain, "characters and groups", &character_kind},
     {"environment", T::object, M::plain, "gravity, air, wind and water around the bodies", &environment_kind},
     {"camera", T::object, M::plain, "", &camera_kind},
@@ -592,6 +603,10 @@ constexpr Field part_fields[] = {
     {"liquids", T::list, M::plain, "liquids", &liquid_kind},
     {"grains", T::list, M::plain, "sand, gravel, beads", &grains_kind},
     {"particles", T::list, M::plain, "systems of particles", &particles_kind},
+    {"structures", T::list, M::plain, "solids that break", &structure_kind},
+    {"explosions", T::list, M::plain, "charges", &explosion_kind},
+    {"guns", T::list, M::plain, "guns", &gun_kind},
+    {"penetration", T::list, M::plain, "what projectiles go through; all else stops them", &penetration_kind},
     {"characters", T::list, M::plain, "", &character_kind},
 };
 const ObjectKind part_kind{"part", "A file that scenes include.", part_fields};
@@ -633,7 +648,10 @@ const ObjectKind* const all_kinds[] = {&scene_kind,         &world_kind,
                                        &drain_kind,         &grains_kind,
                                        &particles_kind,     &emitter_kind,
                                        &sub_emission_kind,  &attractor_kind,
-                                       &touch_kind};
+                                       &touch_kind,         &structure_kind,
+                                       &explosion_kind,     &gun_kind,
+                                       &ammunition_kind,    &sight_kind,
+                                       &penetration_kind,   &layer_kind};
 
 }  // namespace
 
@@ -677,6 +695,9 @@ const FieldTables& tables() {
                              .liquid = &liquid_kind,
                              .grains = &grains_kind,
                              .particles = &particles_kind,
+                             .structure = &structure_kind,
+                             .explosion = &explosion_kind,
+                             .gun = &gun_kind,
                              .all = all_kinds};
   return t;
 }

@@ -57,7 +57,7 @@ struct FieldTables {
   const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *surface, *shape, *body,
       *character, *mass_properties, *group, *joint, *joint_axis, *joint_axes, *frame, *spring, *limit, *motor,
       *effector, *wave, *camera, *plot, *axis, *series, *expectation, *rotation, *preset, *flight, *earth, *vehicle,
-      *initial, *rope, *cloth, *soft_body, *liquid, *grains, *particles;
+      *initial, *rope, *cloth, *soft_body, *liquid, *grains, *particles, *structure, *explosion, *gun;
   std::span<const ObjectKind* const> all;
 };
 const FieldTables& tables();

@@ -85,8 +85,9 @@ class PartReader {
     return read_part;
   }
 
-  /// Puts the keys that presets give into the objects that name them, where those do not have them.
-  core::Status merge_presets(Node& node, const std::string& from, int depth) {
+  /// Puts the keys that presets give into the objects that name them, where those do not have them. `list`: the key of
+  /// the list that the node is in.
+  core::Status merge_presets(Node& node, const std::string& from, int depth, std::string_view list = {}) {
     if (node.is_object()) {
       if (const Node* preset = node.find("preset"); preset != nullptr && preset->is_text()) {
         if (depth >= 8) return error(*preset, "preset", "presets name one another more than 8 deep");
@@ -102,8 +103,40 @@ class PartReader {
     }
     if (node.is_object() && node.find("file") != nullptr && node.find("type") != nullptr)
       if (const core::Status read = read_mesh(node, from); !read) return read;
-    for (Node& child : node.children)
-      if (const core::Status merged = merge_presets(child, from, depth); !merged) return merged;
+    if (node.is_object() && list == "guns")
+      for (const char* key : {"ammunition", "sight"}) name_preset(node, key);
+    if (node.is_object() && list == "penetration")
+      if (const core::Status read = read_wall(node); !read) return read;
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+      const std::string_view within = node.is_object() ? std::string_view(node.keys[i]) : list;
+      if (const core::Status merged = merge_presets(node.children[i], from, depth, within); !merged) return merged;
+    }
+    return {};
+  }
+
+  /// "ammunition": "9mm_115_fmj" is short for {"preset": "ammunition/9mm_115_fmj"}.
+  static void name_preset(Node& owner, const std::string& key) {
+    for (std::size_t i = 0; i < owner.keys.size(); ++i) {
+      Node& name = owner.children[i];
+      if (owner.keys[i] != key || !name.is_text()) continue;
+      Node preset = name;
+      preset.text = key + "/" + name.text;
+      name.kind = NodeKind::object;
+      name.text.clear();
+      name.keys = {"preset"};
+      name.children = {std::move(preset)};
+    }
+  }
+  /// "wall": "brick" stands for the layers of presets/wall/brick.json.
+  core::Status read_wall(Node& owner) {
+    for (std::size_t i = 0; i < owner.keys.size(); ++i) {
+      if (owner.keys[i] != "wall" || !owner.children[i].is_text()) continue;
+      Node named = owner.children[i];
+      named.text = "wall/" + named.text;
+      const Node* layers = nullptr;
+      if (const core::Status found = load_preset(named, layers, true); !found) return found;
+      owner.children[i] = *layers;
+    }
     return {};
   }
 
@@ -156,7 +189,7 @@ class PartReader {
     return {};
   }
 
-  core::Status load_preset(const Node& at, const Node*& values) {
+  core::Status load_preset(const Node& at, const Node*& values, bool is_list = false) {
     const auto known = presets_.find(at.text);
     if (known == presets_.end()) {
       if (!is_inside(at.text))
@@ -171,14 +204,17 @@ class PartReader {
       Reader reader(document_);
       Object o;
       if (!reader.open(*parsed, "", *tables().preset, o)) return reader.error();
-      if (!o.find("values")->is_object())
-        return error(*o.find("values"), "values", "found " + show(*o.find("values")) + ", expected an object");
+      if (is_list ? !o.find("values")->is_array() : !o.find("values")->is_object())
+        return error(*o.find("values"), "values",
+                     "found " + show(*o.find("values")) + (is_list ? ", expected a list" : ", expected an object"));
       Node own = *o.find("values");
       if (own.find("preset") != nullptr) return error(own, "values.preset", "a preset may not name another one");
       merged_ += own.children.size();
       presets_.emplace(at.text, std::move(own));
     }
     values = &presets_.find(at.text)->second;
+    if (values->is_array() != is_list)
+      return error(at, "preset", "found the preset " + show(at) + ", which is for something else");
     merged_ += count(*values);
     if (merged_ > (2u << 20)) return error(at, "preset", "the presets of this scene add more than two million values");
     return {};

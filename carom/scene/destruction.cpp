@@ -1,0 +1,321 @@
+#include "carom/scene/destruction.h"
+
+#include "carom/core/string.h"
+
+namespace carom::scene {
+namespace {
+using math::Vec3d;
+using rigid::Dim2;
+using rigid::Dim3;
+
+Vec3d in_space(math::Vec2d p) { return {p.x, p.y, 0}; }
+Vec3d in_space(Vec3d p) { return p; }
+Vec3d in_space(math::Vec2f p) { return {double(p.x), double(p.y), 0}; }
+Vec3d in_space(math::Vec3f p) { return Vec3d(p); }
+Vec3d turn(math::Rot2f q, Vec3d v) { return in_space(rotate(math::Rot2d(q), math::Vec2d{v.x, v.y})); }
+Vec3d turn(const math::Quatf& q, Vec3d v) { return rotate(math::Quatd(q), v); }
+Vec3d spin_of(float w) { return {0, 0, double(w)}; }
+Vec3d spin_of(math::Vec3f w) { return Vec3d(w); }
+
+/// Raised by `up` rad in the upright plane through it, and turned by `right` rad about the vertical.
+Vec3d swung(Vec3d way, double up, double right) {
+  const ballistics::Laying l = ballistics::laying(way);
+  return ballistics::direction(l.elevation + up, l.azimuth + right);
+}
+
+struct Muzzle {
+  Vec3d place{}, bore{1, 0, 0}, velocity{};
+};
+template <class D>
+Result<Muzzle> muzzle_of(const GunDef& gun, const rigid::World<D>& world) {
+  if (gun.body.is_null()) return Muzzle{gun.muzzle, gun.bore, {}};
+  const auto state = world.state(gun.body);
+  if (!state) return state.error();
+  const Vec3d place = in_space(state->pose.position) + turn(state->pose.rotation, gun.muzzle);
+  const Vec3d arm = place - in_space(state->center_of_mass);
+  return Muzzle{place, turn(state->pose.rotation, gun.bore),
+                in_space(state->linear_velocity) + cross(spin_of(state->angular_velocity), arm)};
+}
+
+/// Where the barrel points for the next shot; empty: the target is out of reach.
+template <class D>
+Result<std::optional<Vec3d>> aimed(const SceneGun& gun, const rigid::World<D>& world, const Muzzle& muzzle) {
+  const GunDef& d = gun.definition;
+  const ballistics::Gun firearm = ballistics::gun_of(d.weapon);
+  if (!d.target.is_null()) {
+    const auto target = world.state(d.target);
+    if (!target) return std::optional<Vec3d>{};  // it is gone
+    const auto aims = ballistics::aim(d.weapon.ammunition.projectile, d.conditions,
+                                      {firearm.muzzle_speed, muzzle.place, muzzle.velocity},
+                                      {in_space(target->center_of_mass), in_space(target->linear_velocity), {}},
+                                      {.longest_time = d.lifetime, .high_arc = d.high_arc});
+    if (!aims) return aims.error();
+    const std::optional<ballistics::Shot>& shot = d.high_arc ? aims->high : aims->low;
+    if (!shot) return std::optional<Vec3d>{};
+    return std::optional<Vec3d>(shot->direction);
+  }
+  if (!d.climbs) return std::optional<Vec3d>(muzzle.bore);
+  const double impulse = ballistics::recoil_impulse(ballistics::charge_of(d.weapon));
+  const std::size_t known = math::min<std::size_t>(gun.shot_times.size(), 64);  // what was long ago has died away
+  const std::span<const double> recent(gun.shot_times.data() + gun.shot_times.size() - known, known);
+  const ballistics::RecoilMotion motion = ballistics::recoil_at(d.weapon.mount, impulse, recent, world.time());
+  return std::optional<Vec3d>(swung(muzzle.bore, motion.rise, motion.swing));
+}
+
+template <class D>
+Status shoot(SceneGun& gun, rigid::World<D>& world) {
+  const GunDef& d = gun.definition;
+  const double now = world.time(), interval = 60 / d.weapon.rounds_per_minute;
+  while (gun.shots < d.rounds && gun.next <= now + 1e-9) {
+    const auto muzzle = muzzle_of(d, world);
+    if (!muzzle) return {};  // its body is gone
+    auto way = aimed(gun, world, *muzzle);
+    if (!way) return way.error();
+    gun.no_solution = !way->has_value();
+    if (gun.no_solution) return {};
+    const double up = d.weapon.dispersion * gun.random.normal(), right = d.weapon.dispersion * gun.random.normal();
+    const double speed = math::max(
+        1.0, ballistics::gun_of(d.weapon).muzzle_speed + d.weapon.ammunition.speed_deviation * gun.random.normal());
+    Vec3d bore = **way;
+    if (d.weapon.dispersion > 0) bore = swung(bore, up, D::dimension == 3 ? right : 0);
+    ballistics::BatchRound round = gun.round;
+    round.tag = std::uint64_t(gun.shots);
+    gun.batch.add({muzzle->place, muzzle->velocity + speed * bore}, round);
+    if (d.recoils && !d.body.is_null()) {
+      const Vec3d push = -ballistics::recoil_impulse(ballistics::charge_of(d.weapon)) * bore;
+      typename D::Vector impulse{};
+      typename D::Position point{};
+      for (int k = 0; k < D::dimension; ++k) impulse[k] = float(push[k]), point[k] = muzzle->place[k];
+      if (Status s = world.add_impulse_at(d.body, impulse, point); !s) return s;
+    }
+    ++gun.shots;
+    gun.shot_times.push_back(now);
+    // After a wait for the target the next shot counts from this one.
+    gun.next = (gun.next < now - interval ? now : gun.next) + interval;
+  }
+  return {};
+}
+
+/// What a bullet's blow is to the bonds of a structure: it lasts as long as the bullet needs for its way.
+template <class D>
+void load_structures(DestructionOf<D>& all, const ballistics::BatchHit& hit, double dt) {
+  for (auto& s : all.structures) {
+    const std::uint32_t part = s.thing.part_of(hit.shape);
+    if (part == blast::ground) continue;
+    const double speed = 0.5 * (length(hit.velocity) + length(hit.exit_velocity));
+    typename D::Vector impulse{};
+    typename D::Position point{};
+    for (int k = 0; k < D::dimension; ++k) impulse[k] = float(hit.impulse[k]), point[k] = hit.point[k];
+    s.thing.add_load(part, impulse, point, math::clamp(hit.depth / math::max(speed, 1.0), 2e-5, dt));
+  }
+}
+
+template <class D>
+void forget_old(SceneGun& gun, double now) {
+  for (std::size_t i = gun.batch.size(); i-- > 0;)
+    if (now - gun.shot_times[std::size_t(gun.batch.round(i).tag)] > gun.definition.lifetime) gun.batch.remove(i);
+}
+
+}  // namespace
+
+template <class D>
+Status Destruction::before(rigid::World<D>& world, double dt) {
+  DestructionOf<D>& all = of<D>();
+  for (auto& gun : all.guns)
+    if (Status s = shoot<D>(gun.thing, world); !s) return s;
+  for (auto& entry : all.explosions) {
+    SceneExplosion<D>& e = entry.thing;
+    if (e.explosion.finished(world.time())) continue;
+    if (Status s = e.explosion.apply(world, dt); !s) return s;
+    e.reached += int(e.explosion.events().size());
+    for (const blast::ShapeLoad<D>& load : e.explosion.loads())
+      for (auto& s : all.structures)
+        if (const std::uint32_t part = s.thing.part_of(load.shape); part != blast::ground)
+          s.thing.add_load(part, load.impulse, load.point, load.duration);
+  }
+  return {};
+}
+
+template <class D>
+Status Destruction::step(rigid::World<D>& world, double dt) {
+  DestructionOf<D>& all = of<D>();
+  if (all.structures.empty()) return world.step(float(dt));
+  std::vector<blast::Structure<D>*> every;
+  for (auto& s : all.structures) every.push_back(&s.thing);
+  return all.stepper.step(world, float(dt), every);
+}
+
+template <class D>
+Status Destruction::after(rigid::World<D>& world, double dt) {
+  DestructionOf<D>& all = of<D>();
+  for (auto& entry : all.guns) {
+    SceneGun& gun = entry.thing;
+    gun.last.clear();
+    if (gun.batch.size() == 0) continue;
+    gun.batch.step(dt);
+    ballistics::HitOptions options;
+    options.filter.ignore = gun.definition.body;
+    if (Status s = all.hits.collect(gun.batch, world, dt, options); !s) return s;
+    for (const ballistics::BatchHit& hit : all.hits.hits()) {
+      gun.last.push_back(hit);
+      ++gun.hits;
+      gun.passed += hit.outcome == ballistics::LayerOutcome::passed ? 1 : 0;
+      gun.ricochets += hit.outcome == ballistics::LayerOutcome::ricochet ? 1 : 0;
+      gun.energy += hit.energy;
+      gun.last_hit = hit.point;
+      gun.hit_speed = length(hit.velocity);
+      load_structures(all, hit, dt);
+    }
+    forget_old<D>(gun, world.time());
+  }
+  return {};
+}
+
+template Status Destruction::before(rigid::World2&, double);
+template Status Destruction::before(rigid::World3&, double);
+template Status Destruction::step(rigid::World2&, double);
+template Status Destruction::step(rigid::World3&, double);
+template Status Destruction::after(rigid::World2&, double);
+template Status Destruction::after(rigid::World3&, double);
+
+void Destruction::add_to(core::StateHash& hash) const {
+  const auto add = [&hash](const auto& all) {
+    for (const auto& gun : all.guns) {
+      hash.add(gun.thing.shots).add(gun.thing.hits).add(gun.thing.next).add(gun.thing.random.position());
+      for (int component = 0; component < 6; ++component)
+        for (const float x : gun.thing.batch.array(component)) hash.add(x);
+    }
+    for (const auto& s : all.structures) hash.add(std::uint64_t(s.thing.broken()));
+  };
+  add(plane);
+  add(space);
+}
+
+namespace {
+enum List { explosion_list, gun_list, structure_list };
+constexpr std::string_view list_names[] = {"explosion", "gun", "structure"};
+enum Field {
+  front,
+  reached,
+  impulse,
+  shots,
+  in_flight,
+  hits,
+  passed,
+  ricochets,
+  energy,
+  last_hit,
+  hit_speed,
+  parts,
+  pieces,
+  broken,
+  load
+};
+struct FieldName {
+  int list;
+  std::string_view name, unit;
+  bool vector = false;
+};
+constexpr FieldName fields[] = {
+    {explosion_list, "front", "m"},    {explosion_list, "reached", ""}, {explosion_list, "impulse", "N*s", true},
+    {gun_list, "shots", ""},           {gun_list, "in_flight", ""},     {gun_list, "hits", ""},
+    {gun_list, "passed", ""},          {gun_list, "ricochets", ""},     {gun_list, "energy", "J"},
+    {gun_list, "last_hit", "m", true}, {gun_list, "hit_speed", "m/s"},  {structure_list, "parts", ""},
+    {structure_list, "pieces", ""},    {structure_list, "broken", ""},  {structure_list, "load", ""}};
+
+template <class See>
+void each_name(const Destruction& all, const See& see) {
+  const auto list = [&](int which, const auto& things) {
+    for (std::size_t i = 0; i < things.size(); ++i) see(which, int(i), things[i].name);
+  };
+  const auto both = [&](const auto& of) {
+    list(explosion_list, of.explosions);
+    list(gun_list, of.guns);
+    list(structure_list, of.structures);
+  };
+  both(all.plane);
+  both(all.space);
+}
+
+double read_gun(const SceneGun& gun, const Probe::Source& s) {
+  switch (s.field) {
+    case shots:
+      return gun.shots;
+    case in_flight:
+      return double(gun.batch.size());
+    case hits:
+      return gun.hits;
+    case passed:
+      return gun.passed;
+    case ricochets:
+      return gun.ricochets;
+    case energy:
+      return gun.energy;
+    case hit_speed:
+      return gun.hit_speed;
+    default:
+      return gun.last_hit[s.component];
+  }
+}
+template <class D>
+double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time) {
+  const auto place = std::size_t(s.item);
+  if (s.list == gun_list) return read_gun(all.guns[place].thing, s);
+  if (s.list == explosion_list) {
+    const SceneExplosion<D>& e = all.explosions[place].thing;
+    if (s.field == reached) return e.reached;
+    return s.field == front ? e.explosion.front_radius(time) : in_space(e.explosion.impulse_given())[s.component];
+  }
+  const blast::Structure<D>& structure = all.structures[place].thing;
+  if (s.field == parts) return double(structure.part_count());
+  if (s.field == pieces) return double(structure.cluster_count());
+  if (s.field == broken) return double(structure.broken());
+  double worst = 0;
+  for (const float l : structure.loads()) worst = math::max(worst, double(l));
+  return worst;
+}
+template <class D>
+bool any_of(const DestructionOf<D>& all) {
+  return !all.explosions.empty() || !all.guns.empty() || !all.structures.empty();
+}
+}  // namespace
+
+bool Destruction::find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const {
+  bool found = false;
+  std::size_t best = 0;
+  each_name(*this, [&](int list, int place, const std::string& name) {
+    const std::string whole = core::text(list_names[list], ".", name, ".");
+    if (text.substr(0, whole.size()) != whole || whole.size() < best) return;
+    const std::string_view rest = text.substr(whole.size());
+    for (int f = 0; f < int(std::size(fields)); ++f) {
+      if (fields[f].list != list || rest.substr(0, fields[f].name.size()) != fields[f].name) continue;
+      const std::string_view end = rest.substr(fields[f].name.size());
+      const bool good =
+          fields[f].vector ? end.size() == 2 && end[0] == '.' && end[1] >= 'x' && end[1] <= (dimension == 2 ? 'y' : 'z')
+                           : end.empty();
+      if (!good) continue;
+      best = whole.size();
+      found = true;
+      source.kind = Probe::Source::Kind::destruction;
+      source.list = list;
+      source.item = place;
+      source.field = f;
+      source.component = fields[f].vector ? end[1] - 'x' : 0;
+      unit = fields[f].unit;
+    }
+  });
+  return found;
+}
+
+double Destruction::read(const Probe::Source& s, double time) const {
+  return any_of(plane) ? read_of(plane, s, time) : read_of(space, s, time);
+}
+
+std::vector<std::string> Destruction::names() const {
+  std::vector<std::string> out;
+  each_name(*this,
+            [&](int list, int, const std::string& name) { out.push_back(core::text(list_names[list], ".", name)); });
+  return out;
+}
+
+}  // namespace carom::scene

@@ -1,0 +1,37 @@
+// Reads explosions, guns and structures of a scene file into a world.
+#pragma once
+
+#include "carom/scene/destruction.h"
+#include "carom/scene/detail/joints.h"
+#include "carom/scene/detail/shapes.h"
+
+namespace carom::scene::detail {
+
+inline constexpr const char* destruction_lists[] = {"structures", "explosions", "guns"};
+
+/// What readers of these share.
+template <class D>
+struct DestructionPlace {
+  Reader& reader;
+  BodyNames& names;
+  rigid::World<D>& world;
+  Destruction& out;
+  SceneWorld& scene;  ///< gets the bodies of structures
+  const Library& library;
+  const environment::Environment* around;  ///< null: still air of the standard day
+  double budget = 0;                       ///< pieces and rounds that may still be made
+};
+
+/// Makes one thing of the list. Fails the reader where it is wrong.
+template <class D>
+void read_destruction(DestructionPlace<D>& place, std::string_view list, const Node& node, const std::string& path);
+/// The key "penetration": what projectiles go through.
+template <class D>
+bool read_penetration(Reader& reader, const Node& part, ballistics::BatchHits<D>& hits);
+
+template <class D>
+void read_gun(DestructionPlace<D>& place, const Object& o);
+template <class D>
+void read_structure(DestructionPlace<D>& place, const Object& o);
+
+}  // namespace carom::scene::detail

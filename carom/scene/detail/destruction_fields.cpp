@@ -1,0 +1,169 @@
+#include "carom/scene/detail/destruction_fields.h"
+
+namespace carom::scene::detail {
+namespace {
+using T = FieldType;
+using M = Measure;
+
+constexpr const char* preset_text = "name of a preset file, without .json";
+constexpr const char* name_text = "unique among its kind; {expressions} in braces are replaced";
+constexpr std::string_view bursts[] = {"ground", "free_air"};
+constexpr std::string_view arcs[] = {"low", "high"};
+constexpr std::string_view drag_functions[] = {"g1", "g2", "g5", "g6", "g7", "g8", "gi", "gs", "ra4"};
+constexpr std::string_view patterns[] = {"voronoi", "even", "clustered", "radial", "slabs", "bricks"};
+constexpr std::string_view substances[] = {"glass", "brick_and_mortar", "concrete", "ceramic", "wood", "ice"};
+
+constexpr Field explosion_fields[] = {
+    {"preset", T::text, M::plain, preset_text},
+    {"name", T::text, M::plain, name_text},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this charge out"},
+    {"position", T::vector, M::length},
+    {"mass", T::quantity, M::mass, "of TNT, or of what is equivalent to it", nullptr, {}, true},
+    {"time", T::quantity, M::time, "when it goes off"},
+    {"burst", T::choice, M::plain, "on the ground (unless given) or in free air", nullptr, bursts},
+    {"reach", T::quantity, M::length, "at most 40 m/kg^(1/3), which 0 stands for"},
+    {"clearing", T::flag, M::plain, "edges relieve the reflected pressure; true unless given"},
+    {"shelter", T::quantity, M::plain, "0 to 1: share of the pressure that arrives behind an obstacle"},
+    {"casing", T::name, M::plain, "name of a body that is neither pushed nor in the way"},
+    {"mask", T::bits, M::plain, "categories of shapes that feel it"},
+    {"obstacles", T::bits, M::plain, "categories of shapes that shelter"},
+};
+
+constexpr Field ammunition_fields[] = {
+    {"preset", T::text, M::plain, preset_text},
+    {"description", T::text},
+    {"drag_function", T::choice, M::plain, "a standard projectile", nullptr, drag_functions},
+    {"drag_coefficient", T::quantity, M::plain, "at every speed, instead of a function"},
+    {"ballistic_coefficient", T::quantity, M::plain, "lb/in^2; or mass and diameter alone"},
+    {"form_factor", T::quantity, M::plain, "multiplies the drag"},
+    {"mass", T::quantity, M::mass, "of the projectile"},
+    {"diameter", T::quantity, M::length},
+    {"length", T::quantity, M::length},
+    {"muzzle_speed", T::quantity, M::speed},
+    {"speed_deviation", T::quantity, M::speed, "standard deviation from shot to shot"},
+    {"powder_mass", T::quantity, M::mass, "for the recoil"},
+    {"gas_speed", T::quantity, M::speed, "at which the powder's gas leaves"},
+};
+constexpr Field sight_fields[] = {
+    {"preset", T::text, M::plain, preset_text},
+    {"description", T::text},
+    {"height", T::quantity, M::length, "from the bore up to the line of sight"},
+    {"click", T::quantity, M::angle, "of a turret"},
+    {"spacing", T::quantity, M::angle, "between marks of the reticle"},
+    {"magnification", T::quantity, M::plain},
+};
+constexpr Field gun_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, such as gun/rifle_308"},
+    {"name", T::text, M::plain, name_text},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this gun out"},
+    {"body", T::name, M::plain, "that carries it, and takes the recoil; it stands in the world where absent"},
+    {"position", T::vector, M::length, "of the muzzle; in the body's frame where it has one"},
+    {"direction", T::vector, M::plain, "of the bore, x unless given; in the body's frame where it has one"},
+    {"target", T::name, M::plain, "a body aimed at before each shot, with lead; out of reach it does not shoot"},
+    {"arc", T::choice, M::plain, "at a target: low unless given", nullptr, arcs},
+    {"ammunition", T::reference, M::plain, "name of a preset of presets/ammunition, or written here", &ammunition_kind},
+    {"sight", T::reference, M::plain, "name of a preset of presets/sight, or written here", &sight_kind},
+    {"sighted", T::flag, M::plain, "direction is the line of sight: the bore is raised for the zero"},
+    {"zero", T::quantity, M::length, "distance at which a sighted gun meets the line of sight"},
+    {"mass", T::quantity, M::mass, "of the gun"},
+    {"muzzle_speed", T::quantity, M::speed, "from this barrel instead of that of the ammunition"},
+    {"twist", T::quantity, M::length, "of a turn"},
+    {"dispersion", T::quantity, M::angle, "standard deviation of each axis"},
+    {"rounds_per_minute", T::quantity, M::plain},
+    {"rounds", T::integer, M::plain, "how many it has, 1 unless given"},
+    {"start", T::quantity, M::time, "of the first shot"},
+    {"lifetime", T::quantity, M::time, "a projectile flies no longer; 60 s unless given"},
+    {"recoil", T::flag, M::plain, "its body takes the recoil; true unless given"},
+    {"climb", T::flag, M::plain, "the mount's motion turns the bore from shot to shot"},
+    {"mount_mass", T::quantity, M::mass, "what moves back"},
+    {"mount_inertia", T::quantity, M::inertia, "about the shoulder"},
+    {"mount_bore_above_shoulder", T::quantity, M::length, "lever that lifts the muzzle"},
+    {"mount_bore_beside_shoulder", T::quantity, M::length, "lever that swings it"},
+    {"mount_push_frequency", T::quantity, M::frequency},
+    {"mount_push_damping", T::quantity, M::plain},
+    {"mount_rise_frequency", T::quantity, M::frequency},
+    {"mount_rise_damping", T::quantity, M::plain},
+    {"seed", T::integer, M::plain, "of dispersion and muzzle speeds"},
+    {"color", T::color, M::plain, "of its projectiles, as #rrggbb"},
+};
+
+constexpr Field layer_fields[] = {
+    {"name", T::text},
+    {"thickness", T::quantity, M::length, "of the last layer as thick as the shape unless given"},
+    {"strength", T::quantity, M::pressure, "a of the resistance A (a + b v^2)"},
+    {"inertia", T::quantity, M::density, "b"},
+    {"limit_speed", T::quantity, M::speed, "of a thin plate, by Recht and Ipson, instead of a medium"},
+    {"density", T::quantity, M::density, "of a plate"},
+    {"ricochet_angle", T::quantity, M::angle, "flatter than this it skips off"},
+    {"ricochet_restitution", T::quantity, M::plain, "share of the speed that is left then"},
+};
+constexpr Field penetration_fields[] = {
+    {"description", T::text},
+    {"user_id", T::integer, M::plain, "of the material; all others where absent"},
+    {"wall",
+     T::any,
+     M::plain,
+     "name of a preset of presets/wall, or a list of layers from the outside",
+     nullptr,
+     {},
+     true},
+};
+
+constexpr Field structure_fields[] = {
+    {"preset", T::text, M::plain, preset_text},
+    {"name", T::text, M::plain, "unique among bodies; {expressions} in braces are replaced"},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this structure out"},
+    {"shape", T::reference, M::plain, "a solid: box, hull, polygon, closed mesh, sphere, cylinder …", &shape_kind},
+    {"outline",
+     T::point_list,
+     M::length,
+     "any simple polygon, counterclockwise, instead of a shape",
+     nullptr,
+     {},
+     false,
+     2},
+    {"position", T::vector, M::length},
+    {"rotation", T::rotation, M::angle, "", &rotation_kind},
+    {"velocity", T::vector, M::speed, "of the centre of mass"},
+    {"angular_velocity", T::vector, M::angular_speed, "world axes; a number in the plane"},
+    {"pattern", T::choice, M::plain, "where it cracks; voronoi unless given", nullptr, patterns},
+    {"pieces", T::integer, M::plain, "of voronoi, even and clustered patterns; slabs"},
+    {"seed", T::integer, M::plain, "of the pattern"},
+    {"rounds", T::integer, M::plain, "even: of Lloyd's smoothing, 0 to 10"},
+    {"impact", T::vector, M::length, "clustered, radial: centre of the cracks, in its frame"},
+    {"impact_radius", T::quantity, M::length, "clustered: mean distance of half the sites"},
+    {"axis", T::vector, M::plain, "radial: through the pane; slabs: square to them", nullptr, {}, false, 3},
+    {"first_radius", T::quantity, M::length, "radial: of the first ring"},
+    {"growth", T::quantity, M::plain, "radial: from ring to ring"},
+    {"sectors", T::integer, M::plain, "radial: pieces of a ring"},
+    {"jitter", T::quantity, M::plain, "radial, slabs: 0 to 1"},
+    {"brick", T::vector, M::length, "bricks: size", nullptr, {}, false, 3},
+    {"skin", T::quantity, M::length, "by which hulls of pieces stand back, 1 mm unless given"},
+    {"substance", T::choice, M::plain, "density, strengths and stiffness; concrete unless given", nullptr, substances},
+    {"density", T::quantity, M::density, "instead of the substance's"},
+    {"tensile_strength", T::quantity, M::pressure, "instead of the substance's"},
+    {"compressive_strength", T::quantity, M::pressure, "instead of the substance's"},
+    {"shear_strength", T::quantity, M::pressure, "instead of the substance's"},
+    {"youngs_modulus", T::quantity, M::pressure, "instead of the substance's"},
+    {"contact_time", T::quantity, M::time, "of a blow, instead of the substance's"},
+    {"anchored_below", T::quantity, M::length, "parts that reach below this y of its frame hold to the ground"},
+    {"bullet", T::flag, M::plain, "pieces are continuous against moving bodies too"},
+    {"material", T::reference, M::plain, "of its surface", &material_kind},
+    {"filter", T::object, M::plain, "", &filter_kind},
+    {"color", T::color, M::plain, "as #rrggbb, or #rrggbbaa with an opacity"},
+};
+
+}  // namespace
+
+const ObjectKind explosion_kind{"explosion", "A charge that goes off.", explosion_fields};
+const ObjectKind ammunition_kind{"ammunition", "What a gun shoots.", ammunition_fields};
+const ObjectKind sight_kind{"sight", "What a gun is aimed with.", sight_fields};
+const ObjectKind gun_kind{"gun", "A gun that shoots.", gun_fields};
+const ObjectKind layer_kind{"layer", "A layer that projectiles go through.", layer_fields};
+const ObjectKind penetration_kind{"penetration", "What a material is for projectiles.", penetration_fields};
+const ObjectKind structure_kind{"structure", "A solid that breaks.", structure_fields};
+
+}  // namespace carom::scene::detail

@@ -1,0 +1,139 @@
+#include "carom/scene/detail/destruction.h"
+#include "carom/scene/detail/destruction_fields.h"
+#include "carom/scene/detail/matter.h"
+
+namespace carom::scene::detail {
+namespace {
+
+/// The object under a key that may name a preset. A name was replaced when the file was read.
+bool open_named(Reader& r, const Object& o, const char* key, const ObjectKind& kind, Object& out) {
+  if (!o.has(key)) return false;
+  return r.open(*o.find(key), o.path_of(key), kind, out);
+}
+
+ballistics::Ammunition read_ammunition(Reader& r, const Object& o) {
+  ballistics::Ammunition a;
+  a.mass = r.number(o, "mass", a.mass);
+  a.diameter = r.number(o, "diameter", a.diameter);
+  a.length = r.number(o, "length", a.length);
+  a.muzzle_speed = r.number(o, "muzzle_speed", a.muzzle_speed);
+  a.speed_deviation = r.number(o, "speed_deviation", a.speed_deviation);
+  a.powder_mass = r.number(o, "powder_mass", a.powder_mass);
+  a.gas_speed = r.number(o, "gas_speed", a.gas_speed);
+  const double coefficient = r.number(o, "drag_coefficient", 0.3), form = r.number(o, "form_factor", 1);
+  const auto positive = [&](const char* key, double value) {
+    if (!r.failed() && o.has(key) && !(value > 0 && math::is_finite(value)))
+      r.expected(*o.find(key), o.path_of(key), "a number above zero");
+  };
+  if (!r.failed() && !(coefficient >= 0))
+    r.expected(*o.find("drag_coefficient"), o.path_of("drag_coefficient"), "a number of zero or more");
+  positive("form_factor", form);
+  positive("mass", a.mass);
+  positive("diameter", a.diameter);
+  ballistics::DragCurve drag(coefficient);
+  if (o.has("drag_function")) drag = ballistics::DragCurve(ballistics::DragFunction(r.choice(o, "drag_function", 0)));
+  if (o.has("ballistic_coefficient")) {
+    const double bc = r.number(o, "ballistic_coefficient", 1);
+    positive("ballistic_coefficient", bc);
+    if (!r.failed() && !o.has("drag_function"))
+      r.fail(*o.node, o.path, "the key \"drag_function\" is missing beside a ballistic coefficient");
+    if (r.failed()) return a;
+    a.projectile = ballistics::projectile_from_coefficient(ballistics::DragFunction::g1, bc);
+    a.projectile.drag = drag;
+    a.projectile.area_per_mass *= form;
+  } else if (!r.failed()) {
+    a.projectile = ballistics::projectile_from_size(drag, a.mass, a.diameter, form);
+  }
+  return a;
+}
+
+void read_mount(Reader& r, const Object& o, ballistics::GunMount& m) {
+  m.mass = r.number(o, "mount_mass", m.mass);
+  m.inertia = r.number(o, "mount_inertia", m.inertia);
+  m.bore_above_shoulder = r.number(o, "mount_bore_above_shoulder", m.bore_above_shoulder);
+  m.bore_beside_shoulder = r.number(o, "mount_bore_beside_shoulder", m.bore_beside_shoulder);
+  m.push_frequency = r.number(o, "mount_push_frequency", m.push_frequency);
+  m.push_damping = r.number(o, "mount_push_damping", m.push_damping);
+  m.rise_frequency = r.number(o, "mount_rise_frequency", m.rise_frequency);
+  m.rise_damping = r.number(o, "mount_rise_damping", m.rise_damping);
+}
+
+ballistics::Weapon read_weapon(Reader& r, const Object& o) {
+  ballistics::Weapon w;
+  Object ammunition, sight;
+  if (open_named(r, o, "ammunition", ammunition_kind, ammunition)) w.ammunition = read_ammunition(r, ammunition);
+  if (!r.failed() && !o.has("ammunition")) {
+    r.fail(*o.node, o.path, "the key \"ammunition\" is missing in a gun (or in its preset)");
+    return w;
+  }
+  if (open_named(r, o, "sight", sight_kind, sight)) {
+    w.sight.height = r.number(sight, "height", w.sight.height);
+    w.sight.click = r.number(sight, "click", w.sight.click);
+    w.sight.spacing = r.number(sight, "spacing", w.sight.spacing);
+    w.sight.magnification = r.number(sight, "magnification", w.sight.magnification);
+  }
+  w.mass = r.number(o, "mass", w.mass);
+  w.muzzle_speed = r.number(o, "muzzle_speed", w.muzzle_speed);
+  w.twist = r.number(o, "twist", w.twist);
+  w.zero = r.number(o, "zero", w.zero);
+  w.dispersion = r.number(o, "dispersion", w.dispersion);
+  w.rounds_per_minute = r.number(o, "rounds_per_minute", w.rounds_per_minute);
+  read_mount(r, o, w.mount);
+  return w;
+}
+
+}  // namespace
+
+template <class D>
+void read_gun(DestructionPlace<D>& place, const Object& o) {
+  Reader& r = place.reader;
+  GunDef gun;
+  gun.weapon = read_weapon(r, o);
+  if (o.has("body")) gun.body = place.names.find_body(*o.find("body"), o.path_of("body"), r.text(o, "body"));
+  if (o.has("target")) gun.target = place.names.find_body(*o.find("target"), o.path_of("target"), r.text(o, "target"));
+  gun.muzzle = r.vector(o, "position");
+  gun.bore = r.vector(o, "direction", {1, 0, 0});
+  gun.high_arc = r.choice(o, "arc", 0) == 1;
+  gun.start = r.number(o, "start", 0);
+  gun.rounds = r.integer(o, "rounds", 1, 1, 100000);
+  gun.lifetime = r.number(o, "lifetime", gun.lifetime);
+  gun.recoils = r.flag(o, "recoil", true);
+  gun.climbs = r.flag(o, "climb", false);
+  gun.seed = std::uint64_t(r.integer(o, "seed", 1, 0, 0x7FFFFFFF));
+  const bool sighted = r.flag(o, "sighted", false);
+  std::string name;
+  std::uint32_t color = 0xffd27f;
+  auto& list = place.out.template of<D>().guns;
+  if (r.failed() || !name_thing(r, o, "gun", list, name, color)) return;
+  if (!(math::length(gun.bore) > 1e-9))
+    return r.expected(*o.find("direction"), o.path_of("direction"), "a direction that is not zero");
+  gun.bore = math::normalize(gun.bore);
+  if (!(gun.start >= 0)) return r.expected(*o.find("start"), o.path_of("start"), "a time of zero or more");
+  if (!(gun.lifetime >= 1e-3 && gun.lifetime <= 600))
+    return r.expected(*o.find("lifetime"), o.path_of("lifetime"), "1 ms to 600 s");
+  if (!r.accept(ballistics::check(gun.weapon), *o.node, o.path)) return;
+
+  gun.conditions.gravity = -double(place.world.definition().gravity.y);
+  if (place.around != nullptr) {
+    const environment::Environment::Definition& around = place.around->definition();
+    gun.conditions.air =
+        around.vacuum ? environment::AirColumn::uniform(0) : environment::AirColumn(around.air, around.altitude);
+    gun.conditions.wind = environment::WindColumn(around.wind.mean);
+    if (place.around->has_gravity()) gun.conditions.gravity -= place.around->gravity(gun.muzzle).y;
+  }
+  if (sighted) {
+    const auto aiming = ballistics::zeroed(gun.weapon, gun.conditions);
+    if (!r.accept(aiming.ok() ? core::Status{} : core::Status{aiming.error()}, *o.node, o.path)) return;
+    const ballistics::Laying l = ballistics::laying(gun.bore);
+    gun.bore = ballistics::direction(l.elevation + aiming->elevation, l.azimuth);
+  }
+  const ballistics::Ammunition& a = gun.weapon.ammunition;
+  const ballistics::BatchRound round{.area_per_mass = a.projectile.area_per_mass,
+                                     .mass = a.mass,
+                                     .frontal_area = math::pi / 4 * math::square(a.diameter)};
+  list.push_back({std::move(name), color, SceneGun(gun, round)});
+}
+template void read_gun(DestructionPlace<rigid::Dim2>&, const Object&);
+template void read_gun(DestructionPlace<rigid::Dim3>&, const Object&);
+
+}  // namespace carom::scene::detail

@@ -1,0 +1,353 @@
+// Explosions, guns and structures of scene files: what they do, every preset of theirs, what is wrong.
+#include "carom/scene/destruction.h"
+
+#include <dirent.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "carom/scene/scene.h"
+#include "carom/scene/write_scene.h"
+
+namespace scene_destruction_test {
+using namespace carom;
+using scene::ParameterValue;
+using scene::Scene;
+using scene::SceneWorld;
+
+std::string read_file(const std::string& path) {
+  std::string text;
+  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+    for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text.push_back(char(c));
+    std::fclose(file);
+  }
+  return text;
+}
+/// A tetrahedron of edge √2 m with its corners counterclockwise seen from outside.
+constexpr const char* tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+scene::Result<Scene> parse(const std::string& text) {
+  const scene::Resolver resolver = [](std::string_view path) -> scene::Result<std::string> {
+    if (path == "solid.obj") return std::string(tetrahedron);
+    if (path == "open.obj") return std::string(tetrahedron).substr(0, std::string(tetrahedron).rfind("f 2"));
+    std::string found = read_file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
+    if (found.empty()) return core::Error{"no such file"};
+    return found;
+  };
+  return scene::parse_scene(text, "s.json", resolver);
+}
+SceneWorld start(const std::string& text, std::vector<ParameterValue> values = {}) {
+  const auto scene = parse(text);
+  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
+  auto world = scene.ok() ? scene->instantiate(values) : scene::Result<SceneWorld>(SceneWorld());
+  EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
+  return world.ok() ? std::move(world).value() : SceneWorld();
+}
+void run(SceneWorld& world, double seconds) {
+  while (world.time() < seconds - 1e-9) ASSERT_TRUE(world.step().ok());
+}
+double read(const SceneWorld& world, const char* quantity) {
+  const auto probe = world.probe(quantity);
+  EXPECT_TRUE(probe.ok()) << (probe.ok() ? "" : probe.error().message);
+  return probe.ok() ? world.read(*probe) : 0;
+}
+std::string message(const std::string& keys, int dimension = 3) {
+  const auto s = parse("{\"dimension\": " + std::to_string(dimension) + ", " + keys + "}");
+  return s.ok() ? std::string("none") : s.error().message;
+}
+std::vector<std::string> presets(const char* kind) {
+  std::vector<std::string> names;
+  DIR* folder = opendir((std::string(CAROM_SOURCE_DIR) + "/presets/" + kind).c_str());
+  while (const dirent* entry = folder != nullptr ? readdir(folder) : nullptr)
+    if (const std::string name = entry->d_name; name.size() > 5 && name.ends_with(".json"))
+      names.push_back(name.substr(0, name.size() - 5));
+  if (folder != nullptr) closedir(folder);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string charged(const std::string& charge, int dimension) {
+  const bool plane = dimension == 2;
+  return std::string("{\"dimension\": ") + (plane ? "2" : "3") + ", \"gravity\": " + (plane ? "[0, 0]" : "[0, 0, 0]") +
+         R"(, "parameters": {"charge": {"value": "8 kg", "minimum": "1 kg", "maximum": "20 kg"}},
+      "bodies": [{"name": "box", "position": )" +
+         (plane ? R"(["6 m", "0.5 m"])" : R"(["6 m", "0.5 m", 0])") +
+         R"(, "mass": "100 kg", "shape": {"type": "box", "size": )" + (plane ? "[1, 1]" : "[1, 1, 1]") +
+         R"(}}], "explosions": [{"name": "c", "position": )" + (plane ? "[0, 0]" : "[0, 0, 0]") + ", " + charge + "}]}";
+}
+
+TEST(SceneExplosions, PushWhenTheyGoOff) {
+  for (const int dimension : {2, 3}) {
+    const auto speed = [&](const char* charge, double seconds, std::vector<ParameterValue> values = {}) {
+      SceneWorld world = start(charged(charge, dimension), values);
+      run(world, seconds);
+      return read(world, "box.velocity.x");
+    };
+    const double pushed = speed(R"("mass": "=charge")", 0.2);
+    EXPECT_GT(pushed, 1);
+    EXPECT_EQ(speed(R"("mass": "=charge", "time": "0.3 s")", 0.2), 0);
+    EXPECT_NEAR(speed(R"("mass": "=charge", "time": "0.3 s")", 0.5), pushed, 0.02 * pushed);
+    EXPECT_GT(speed(R"("mass": "=charge")", 0.2, {{"charge", 16}}), pushed);
+    EXPECT_EQ(start(charged(R"("mass": "=charge", "if": 0)", dimension)).destruction, nullptr);
+    SceneWorld world = start(charged(R"("mass": "=charge")", dimension));
+    run(world, 0.5);
+    EXPECT_EQ(read(world, "explosion.c.reached"), 1);
+    EXPECT_NEAR(read(world, "explosion.c.impulse.x"), 100 * read(world, "box.velocity.x"), 1e-3 * 100 * pushed);
+  }
+}
+
+TEST(SceneExplosions, AreWrittenAndGoOnWhereTheyWere) {
+  SceneWorld world = start(charged(R"("mass": "2.7 kg", "time": "55 ms", "burst": "free_air", "casing": "box",
+                                      "mask": "0x7", "shelter": 0.25, "clearing": false, "reach": "30 m")",
+                                   3));
+  run(world, 2.0 / 60);
+  const auto text = scene::write_scene(world);
+  ASSERT_TRUE(text.ok()) << text.error().message;
+  SceneWorld copy = start(*text);
+  const auto &a = world.destruction->space.explosions[0].thing.explosion.charge(),
+             &b = copy.destruction->space.explosions[0].thing.explosion.charge();
+  EXPECT_NEAR(b.time, a.time - 2.0 / 60, 1e-15);
+  EXPECT_EQ(a.mass, b.mass);
+  EXPECT_EQ(a.burst, b.burst);
+  EXPECT_EQ(a.mask, b.mask);
+  EXPECT_EQ(a.shelter, b.shelter);
+  EXPECT_EQ(a.clearing, b.clearing);
+  EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(world.find_body(a.casing)->name, copy.find_body(b.casing)->name);
+}
+
+constexpr const char* range = R"({"step": "1/240 s",
+  "bodies": [{"name": "plate", "type": "fixed", "position": ["=200 yd + 5 mm", 0, 0],
+              "shape": {"type": "box", "size": ["1 cm", "2 m", "2 m"], "material": {"user_id": 4}}},
+             {"name": "behind", "type": "fixed", "position": ["190 m", 0, 0], "shape": {"type": "box", "size": [1, 9, 9]}}],
+  "guns": [{"name": "g", "preset": "gun/rifle_308", "dispersion": 0, "sighted": true,
+            "ammunition": {"preset": "ammunition/308_168_smk", "speed_deviation": 0}}])";
+
+TEST(SceneGuns, ASightedRifleHitsWhereTheFieldTablesSay) {
+  // 168 SMK at 2650 ft/s, zero 100 yd, sights 1.5 in above the bore: 4.333 in low and 2247.55 ft/s at 200 yd.
+  SceneWorld world = start(std::string(range) + "}");
+  run(world, 0.3);
+  EXPECT_EQ(read(world, "gun.g.shots"), 1);
+  EXPECT_EQ(read(world, "gun.g.hits"), 1);
+  EXPECT_EQ(read(world, "gun.g.in_flight"), 0);
+  EXPECT_NEAR(read(world, "gun.g.last_hit.y"), (1.5 - 4.333) * 0.0254, 3e-3);
+  EXPECT_NEAR(read(world, "gun.g.last_hit.x"), 200 * 0.9144, 1e-3);
+  EXPECT_NEAR(read(world, "gun.g.hit_speed"), 2247.55 * 0.3048, 0.6);
+}
+
+TEST(SceneGuns, GoThroughWhatTheyMay) {
+  SceneWorld world = start(std::string(range) + R"(, "penetration": [{"user_id": 4, "wall": [{"strength": "30 MPa",
+      "inertia": "800 kg/m^3"}]}]})");
+  run(world, 0.35);
+  EXPECT_EQ(read(world, "gun.g.passed"), 1);
+  EXPECT_EQ(read(world, "gun.g.hits"), 2);
+  EXPECT_NEAR(read(world, "gun.g.last_hit.x"), 189.5, 1e-3);
+  // Poncelet: v² after 1 cm.
+  const double m = 168 * 64.79891e-6, area = math::pi / 4 * math::square(0.308 * 0.0254), v = 2247.55 * 0.3048;
+  const double v2 = (v * v + 30e6 / 800) * math::exp(-2 * area * 800 * 0.01 / m) - 30e6 / 800;
+  EXPECT_NEAR(read(world, "gun.g.hit_speed"), math::sqrt(v2), 8);  // and 6 m of air
+}
+
+TEST(SceneGuns, LeadAMovingTargetAndSayWhenItIsOutOfReach) {
+  const auto scene = [](const char* where) {
+    return std::string(
+               R"({"step": "1/120 s", "bodies": [{"name": "t", "gravity_scale": 0, "mass": 1000, "velocity": [-8, 0, 5],
+        "position": )") +
+           where + R"(, "shape": {"type": "sphere", "radius": "0.3 m"}}],
+        "guns": [{"name": "g", "target": "t", "rounds": 3, "rounds_per_minute": 60,
+                  "ammunition": {"mass": 1, "diameter": "5 cm", "muzzle_speed": "120 m/s"}}]})";
+  };
+  SceneWorld near = start(scene("[200, 20, 30]"));
+  run(near, 6);
+  EXPECT_EQ(read(near, "gun.g.shots"), 3);
+  EXPECT_EQ(read(near, "gun.g.hits"), 3);
+  SceneWorld far = start(scene("[20000, 20, 30]"));
+  run(far, 0.5);
+  EXPECT_EQ(read(far, "gun.g.shots"), 0);
+  EXPECT_TRUE(far.destruction->space.guns[0].thing.no_solution);
+}
+
+TEST(SceneGuns, RecoilIsTheImpulseOfBulletAndGas) {
+  for (const char* dimension : {"2", "3"}) {
+    const bool plane = dimension[0] == '2';
+    SceneWorld world =
+        start(std::string("{\"dimension\": ") + dimension + ", \"gravity\": " + (plane ? "[0, 0]" : "[0, 0, 0]") +
+              R"(, "bodies": [{"name": "cart", "mass": 50,
+        "shape": {"type": "box", "size": )" +
+              (plane ? "[1, 1]" : "[1, 1, 1]") + R"(}}],
+        "guns": [{"name": "g", "body": "cart", "position": )" +
+              (plane ? "[1, 0]" : "[1, 0, 0]") + R"(,
+                  "ammunition": {"mass": 0.5, "diameter": 0.05, "muzzle_speed": 400, "powder_mass": 0.1, "gas_speed": 1500}}]})");
+    run(world, 1.0 / 60);
+    EXPECT_NEAR(read(world, "cart.velocity.x"), -(0.5 * 400 + 0.1 * 1500) / 50, 1e-5);
+    EXPECT_EQ(read(world, "gun.g.in_flight"), 1);
+    run(world, 61);
+    EXPECT_EQ(read(world, "gun.g.in_flight"), 0) << "a projectile is forgotten after its lifetime";
+  }
+}
+
+TEST(SceneGuns, EveryPresetShootsAndEveryWallHolds) {
+  const auto guns = presets("gun"), rounds = presets("ammunition"), walls = presets("wall");
+  EXPECT_GE(guns.size(), 5u);
+  EXPECT_GE(walls.size(), 6u);
+  std::string list, layers;
+  for (const std::string& g : guns) list += R"({"preset": "gun/)" + g + R"(", "climb": true, "rounds": 2},)";
+  for (const std::string& a : rounds) list += R"({"ammunition": ")" + a + R"("},)";
+  for (std::size_t i = 0; i < walls.size(); ++i)
+    layers +=
+        (i > 0 ? ", " : "") + std::string("{\"user_id\": ") + std::to_string(i) + ", \"wall\": \"" + walls[i] + "\"}";
+  list.pop_back();
+  SceneWorld world = start("{\"guns\": [" + list + "], \"penetration\": [" + layers + "]}");
+  ASSERT_NE(world.destruction, nullptr);
+  ASSERT_EQ(world.destruction->space.guns.size(), guns.size() + rounds.size());
+  run(world, 0.1);
+  for (const auto& gun : world.destruction->space.guns) EXPECT_GE(gun.thing.shots, 1) << gun.name;
+}
+
+std::string structure(const std::string& keys, int dimension = 3) {
+  return "{\"dimension\": " + std::to_string(dimension) +
+         ", \"gravity\": " + (dimension == 2 ? "[0, 0]" : "[0, 0, 0]") + ", \"structures\": [{\"name\": \"s\", " +
+         keys + "}]}";
+}
+
+TEST(SceneStructures, EverySolidWeighsWhatItShould) {
+  struct Case {
+    const char* keys;
+    double mass;
+    int dimension = 3;
+    double tolerance = 1e-4;
+  };
+  const Case cases[] = {
+      {R"("shape": {"type": "box", "size": [1, 2, 0.5]}, "density": 1000)", 1000},
+      {R"("shape": {"type": "box", "size": [1, 2, 0.5]}, "substance": "glass", "pattern": "even", "pieces": 20)", 2500},
+      {R"("shape": {"type": "box", "size": [1, 2, 0.5]}, "density": 1000, "pattern": "slabs", "pieces": 5, "jitter": 0.4)",
+       1000},
+      {R"("shape": {"type": "box", "size": [1, 2, 0.5]}, "density": 1000, "pattern": "bricks", "brick": [0.3, 0.3, 0.5])",
+       1000},
+      {R"("shape": {"type": "box", "size": [1, 1, 0.01]}, "density": 1000, "pattern": "radial", "skin": 1e-4)", 10},
+      {R"("shape": {"type": "hull", "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}, "density": 600, "pattern": "clustered")",
+       100},
+      {R"("shape": {"type": "mesh", "file": "solid.obj"}, "density": 600, "pieces": 12)", 100},
+      // A sphere of 24 facets round weighs less than the round one.
+      {R"("shape": {"type": "sphere", "radius": 0.5}, "density": 1000, "pieces": 12)", 523.6, 3, 0.03},
+      {R"("shape": {"type": "box", "size": [2, 1]}, "density": 1000)", 2000, 2},
+      {R"("outline": [[0,0],[2,0],[2,2],[1,1],[0,2]], "density": 1000, "pattern": "radial", "impact": [1, 0.5], "first_radius": 0.2)",
+       3000, 2},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.keys);
+    SceneWorld world = start(structure(c.keys, c.dimension));
+    ASSERT_NE(world.destruction, nullptr);
+    EXPECT_NEAR(read(world, "s.mass"), c.mass, c.tolerance * c.mass);
+    EXPECT_GT(read(world, "structure.s.parts"), 3);
+    EXPECT_EQ(read(world, "structure.s.pieces"), 1);
+  }
+}
+
+TEST(SceneStructures, BreakOnTheGroundInSpaceAndInThePlane) {
+  for (const int dimension : {2, 3}) {
+    const bool plane = dimension == 2;
+    SceneWorld world = start("{\"dimension\": " + std::to_string(dimension) +
+                             R"(, "bodies": [{"name": "floor", "type": "fixed",
+        "position": )" + (plane ? "[0, -0.5]" : "[0, -0.5, 0]") +
+                             R"(, "shape": {"type": "box", "size": )" + (plane ? "[20, 1]" : "[20, 1, 20]") +
+                             R"(}}], "structures": [{"name": "s", "substance": "glass", "tensile_strength": "1 MPa",
+        "shear_strength": "1 MPa", "pieces": 30, "position": )" +
+                             (plane ? "[0, 4]" : "[0, 4, 0]") + R"(, "shape": {"type": "box", "size": )" +
+                             (plane ? "[1, 1]" : "[1, 1, 1]") + "}}]}");
+    const double before = read(world, "mass");
+    run(world, 0.5);
+    EXPECT_EQ(read(world, "structure.s.broken"), 0);
+    run(world, 2);
+    EXPECT_GT(read(world, "structure.s.pieces"), 4);
+    EXPECT_NEAR(read(world, "mass"), before, 1e-5 * before);
+  }
+}
+
+TEST(SceneStructures, ABlastAndAShotBreakThem) {
+  const std::string wall = R"("bodies": [{"name": "ground", "type": "fixed", "shape": {"type": "plane"}}],
+      "structures": [{"name": "w", "position": ["3 m", "0.8 m", 0], "shape": {"type": "box", "size": ["0.1 m", "1.6 m", "2 m"]},
+                      "pattern": "bricks", "brick": ["0.1 m", "0.2 m", "0.4 m"], "substance": "brick_and_mortar", "anchored_below": "-0.75 m"}])";
+  SceneWorld alone = start("{" + wall + "}");
+  run(alone, 0.5);
+  EXPECT_EQ(read(alone, "structure.w.broken"), 0);
+  SceneWorld blast = start("{" + wall + R"(, "explosions": [{"mass": "3 kg"}]})");
+  run(blast, 0.5);
+  EXPECT_GT(read(blast, "structure.w.pieces"), 5);
+  SceneWorld shot = start("{" + wall + R"(, "guns": [{"ammunition": {"mass": 6, "diameter": 0.12, "muzzle_speed": 400},
+                                                       "position": [0, 1, 0]}]})");
+  run(shot, 0.5);
+  EXPECT_GT(read(shot, "structure.w.broken"), 0);
+}
+
+TEST(SceneDestruction, ErrorsNameTheirPlace) {
+  struct Case {
+    const char *keys, *part;
+    int dimension = 3;
+  };
+  const Case cases[] = {
+      {R"("explosions": 5)", "explosions: found 5, expected a list"},
+      {R"("explosions": [{}])", "explosions[0]: the key \"mass\" is missing"},
+      {R"("explosions": [{"mass": "-1 kg"}])", "mass is -1"},
+      {R"("explosions": [{"mass": "1 kg", "shelter": 2}])", "shelter is 2"},
+      {R"("explosions": [{"mass": "1 kg", "burst": "sky"}])", "expected one of ground, free_air"},
+      {R"("explosions": [{"mass": "1 m"}])", "explosions[0].mass"},
+      {R"("explosions": [{"mass": 1, "casing": "nobody"}])", "expected the name of a body"},
+      {R"("explosions": [{"mass": 1, "name": "a"}, {"mass": 1, "name": "a"}])", "a second time"},
+      {R"("guns": [{}])", "the key \"ammunition\" is missing"},
+      {R"("guns": [{"ammunition": "nothing"}])", "no such file"},
+      {R"("guns": [{"ammunition": "../x"}])", "expected the name of a preset"},
+      {R"("guns": [{"ammunition": 5}])", "guns[0].ammunition"},
+      {R"("guns": [{"ammunition": {"mass": -1}}])", "guns[0].ammunition.mass"},
+      {R"("guns": [{"ammunition": {"ballistic_coefficient": 0.3}}])", "drag_function"},
+      {R"("guns": [{"ammunition": {}, "rounds": 0}])", "guns[0].rounds"},
+      {R"("guns": [{"ammunition": {}, "direction": [0, 0, 0]}])", "a direction that is not zero"},
+      {R"("guns": [{"ammunition": {}, "start": "-1 s"}])", "a time of zero or more"},
+      {R"("guns": [{"ammunition": {}, "lifetime": "2 h"}])", "1 ms to 600 s"},
+      {R"("guns": [{"ammunition": {}, "target": "drone"}])", "expected the name of a body"},
+      {R"("guns": [{"ammunition": {}, "sighted": true, "zero": "90 km"}])", "guns[0]"},
+      {R"("guns": [{"ammunition": {}, "calibre": 5}])", "calibre"},
+      {R"("penetration": [{"wall": []}])", "a list of 1 to 100 layers"},
+      {R"("penetration": [{"wall": [{"thickness": "-1 m"}]}])", "penetration[0].wall"},
+      {R"("penetration": [{"wall": "nothing"}])", "no such file"},
+      {R"("structures": [{}])", "the key \"shape\" is missing"},
+      {R"("structures": [{"shape": {"type": "plane"}}])", "does not break"},
+      {R"("structures": [{"shape": {"type": "mesh", "file": "open.obj"}}])", "structures[0]"},
+      {R"("structures": [{"shape": {"type": "box"}, "pattern": "bricks"}])", "the key \"brick\" is missing"},
+      {R"("structures": [{"shape": {"type": "box"}, "pattern": "bricks", "brick": [1, 0, 1]}])", "structures[0]"},
+      {R"("structures": [{"shape": {"type": "box"}, "pattern": "bricks", "brick": [0.001, 0.001, 0.001]}])",
+       "structures[0]"},
+      {R"("structures": [{"shape": {"type": "box"}, "pattern": "stars"}])", "expected one of voronoi"},
+      {R"("structures": [{"shape": {"type": "box"}, "pieces": 0}])", "structures[0].pieces"},
+      {R"("structures": [{"shape": {"type": "box"}, "density": 0}])", "structures[0].density"},
+      {R"("structures": [{"shape": {"type": "box"}, "tensile_strength": 0}])", "structures[0]"},
+      {R"("structures": [{"shape": {"type": "box"}, "skin": "1 m"}])", "skin"},
+      {R"("structures": [{"shape": {"type": "box", "position": [1, 0, 0]}}])", "no place of its own"},
+      {R"("bodies": [{"name": "a"}], "structures": [{"name": "a", "shape": {"type": "box"}}])", "that no body has"},
+      {R"("structures": [{"shape": {"type": "segment", "points": [[0,0],[1,0]]}}])", "does not break", 2},
+      {R"("structures": [{"shape": {"type": "circle"}, "pattern": "bricks"}])", "voronoi or radial in the plane", 2},
+      {R"("structures": [{"outline": [[0,0],[0,1],[1,0]]}])", "structures[0]", 2},
+  };
+  for (const Case& c : cases) {
+    const std::string found = message(c.keys, c.dimension);
+    EXPECT_NE(found.find(c.part), std::string::npos) << c.keys << "\n  gave: " << found;
+    EXPECT_NE(found.find(":1: "), std::string::npos) << "no line in: " << found;
+  }
+}
+
+TEST(SceneDestruction, LiveParametersLeaveWhatRunsAlone) {
+  const auto scene =
+      parse(R"({"parameters": {"g": {"value": "-9 m/s^2", "minimum": "-20 m/s^2", "maximum": "0 m/s^2", "live": true}},
+      "gravity": [0, "=g", 0], "explosions": [{"mass": 1}], "guns": [{"ammunition": {}, "rounds": 5}],
+      "structures": [{"shape": {"type": "box"}, "pieces": 8}]})");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  auto world = scene->instantiate();
+  ASSERT_TRUE(world.ok());
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(world->step().ok());
+  const std::vector<ParameterValue> weaker = {{"g", -3}};
+  const auto applied = scene->apply(*world, weaker);
+  EXPECT_TRUE(applied.ok()) << applied.error().message;
+  EXPECT_EQ(double(world->world3->definition().gravity.y), -3);
+  EXPECT_EQ(world->destruction->space.guns[0].thing.shots, 1);
+}
+
+}  // namespace scene_destruction_test
