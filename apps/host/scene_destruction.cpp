@@ -4,9 +4,6 @@ namespace carom::host {
 namespace {
 using math::Vec3d;
 
-Vec3d in_space(math::Vec2d p) { return {p.x, p.y, 0}; }
-Vec3d in_space(Vec3d p) { return p; }
-
 /// A circle about an axis k: lines square to it.
 void ring(StageBase& stage, Vec3d center, double radius, int axis, std::uint32_t rgba) {
   constexpr int sides = 64;

@@ -110,6 +110,32 @@ void load_structures(DestructionOf<D>& all, const ballistics::BatchHit& hit, dou
   }
 }
 
+/// The wind of a wave drags particles along, as it does balls of their size.
+template <class D>
+void push_particles(const blast::Explosion<D>& explosion, MatterOf<D>& matter, double time, double dt) {
+  std::vector<typename D::Vector> places, velocities;
+  for (auto& entry : matter.particles) {
+    particles::ParticleSystem& system = entry.thing.system;
+    const particles::SystemDef& d = system.definition();
+    if (d.drag.law == particles::DragLaw::none || !(explosion.front_radius(time + dt) > 0)) continue;
+    const double coefficient = d.drag.law == particles::DragLaw::quadratic ? double(d.drag.coefficient) : 0.47;
+    const double area_per_mass = coefficient * math::pi * math::square(double(d.radius)) / double(d.mass);
+    places.resize(std::size_t(system.size()));
+    velocities.resize(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (int k = 0; k < D::dimension; ++k) {
+        places[i][k] = system.array(k)[i];
+        velocities[i][k] = system.array(3 + k)[i];
+      }
+    typename D::Position origin{};
+    for (int k = 0; k < D::dimension; ++k) origin[k] = d.anchor[k];
+    const std::vector<typename D::Vector> before = velocities;
+    explosion.push_particles(places, velocities, origin, area_per_mass, time, dt);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (!(velocities[i] == before[i])) system.set_velocity(int(i), in_space(velocities[i]));
+  }
+}
+
 template <class D>
 void forget_old(SceneGun& gun, double now) {
   for (std::size_t i = gun.batch.size(); i-- > 0;)
@@ -119,13 +145,14 @@ void forget_old(SceneGun& gun, double now) {
 }  // namespace
 
 template <class D>
-Status Destruction::before(rigid::World<D>& world, double dt) {
+Status Destruction::before(rigid::World<D>& world, double dt, Matter* matter) {
   DestructionOf<D>& all = of<D>();
   for (auto& gun : all.guns)
     if (Status s = shoot<D>(gun.thing, world); !s) return s;
   for (auto& entry : all.explosions) {
     SceneExplosion<D>& e = entry.thing;
     if (e.explosion.finished(world.time())) continue;
+    if (matter != nullptr) push_particles(e.explosion, matter->of<D>(), world.time(), dt);
     if (Status s = e.explosion.apply(world, dt); !s) return s;
     e.reached += int(e.explosion.events().size());
     for (const blast::ShapeLoad<D>& load : e.explosion.loads())
@@ -171,8 +198,8 @@ Status Destruction::after(rigid::World<D>& world, double dt) {
   return {};
 }
 
-template Status Destruction::before(rigid::World2&, double);
-template Status Destruction::before(rigid::World3&, double);
+template Status Destruction::before(rigid::World2&, double, Matter*);
+template Status Destruction::before(rigid::World3&, double, Matter*);
 template Status Destruction::step(rigid::World2&, double);
 template Status Destruction::step(rigid::World3&, double);
 template Status Destruction::after(rigid::World2&, double);

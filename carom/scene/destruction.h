@@ -84,9 +84,10 @@ class CAROM_API Destruction {
     return const_cast<Destruction*>(this)->of<D>();
   }
 
-  /// Before a step of `dt` s: shots, and what blasts give to bodies.
+  /// Before a step of `dt` s: shots, and what blasts give to bodies and particles (those of `matter`, which may be
+  /// null).
   template <class D>
-  Status before(rigid::World<D>& world, double dt);
+  Status before(rigid::World<D>& world, double dt, Matter* matter);
   /// In place of World::step: with breaking in it.
   template <class D>
   Status step(rigid::World<D>& world, double dt);

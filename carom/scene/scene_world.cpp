@@ -220,7 +220,7 @@ template <class D>
 Status step_world(SceneWorld& scene, World<D>& world) {
   Destruction* const destruction = scene.destruction.get();
   if (destruction != nullptr)
-    if (Status s = destruction->before(world, scene.dt); !s) return s;
+    if (Status s = destruction->before(world, scene.dt, scene.matter.get()); !s) return s;
   const auto advance = [&] {
     return destruction != nullptr ? destruction->step(world, scene.dt) : world.step(float(scene.dt));
   };
