@@ -44,7 +44,7 @@ AimSolver::Arrival AimSolver::propagate(Vec3d u, double time, double allowed, Sc
     const Step end = step(x, v, k, h);
     const double room = tolerance / math::max(end.error, 1e-30);
     // The fifth root, near enough: the root of the root, held closer to one.
-    const double factor = math::clamp(0.85 * math::sqrt(math::sqrt(room)), 0.2, 3.0);
+    const double factor = math::clamp(0.8 * math::sqrt(math::sqrt(room)), 0.2, 1.7);
     if (room >= 1) {
       x = end.x;
       v = end.v;

@@ -6,19 +6,25 @@ namespace carom::ballistics::detail {
 AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool near) const {
   Root root;
   Inverse inverse;
-  // Paths are integrated a good deal better than they still miss; the last ones as well as they must be.
-  // What they err adds up: bends of drag curves and layers of wind, met on the way, pass the estimate unseen.
-  const double fine = 0.1 * options_.tolerance / (1 + 0.25 * guess.time);
-  Schedule schedule;  // of the first path that is as good as it must be
-  double accuracy = near ? fine : math::max(0.02 * math::length(target_(guess.time) - shooter_.muzzle), fine);
-  double last_accuracy = accuracy, last_missed = 1e300, first_missed = 1e300;
-  Vec3d last_u{}, last_x{};
+  const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
+  // Most of the way paths are rough: they follow the steps of the first one that is good to a few 10^-5 of the way,
+  // and so all err alike. One fine path then tells by how much, and rough ones are flown at a target that is off by
+  // that. What the fine one errs adds up: bends of drag curves and layers of wind pass the estimate unseen.
+  const double fine = 0.1 * allowed / (1 + 0.25 * guess.time), rough = math::max(4e-5 * away, fine);
+  Schedule schedule;
+  double accuracy = near ? fine : math::max(0.02 * away, rough);
+  double last_accuracy = accuracy, last_missed = 1e300, first_missed = 1e300, last_both = 1e300;
+  Vec3d last_u{}, last_x{}, off{}, fine_u{};  // off: fine less rough
+  bool corrected = near;
+  double contraction = 0.1;  // of the miss by a step of Newton's method
   double last_time = 0;
   for (int i = 0; i < most; ++i) {
     const bool recorded = schedule.count > 0 && schedule.count <= Schedule::most;
-    const Arrival end = recorded ? follow(guess.u, guess.time, schedule)
-                                 : propagate(guess.u, guess.time, accuracy, accuracy <= fine ? &schedule : nullptr);
-    const Vec3d place = target_(guess.time), miss = place - end.position;
+    Arrival end = recorded ? follow(guess.u, guess.time, schedule)
+                           : propagate(guess.u, guess.time, accuracy, accuracy <= rough ? &schedule : nullptr);
+    end.position += off;
+    const Vec3d place = target_(guess.time);
+    Vec3d miss = place - end.position;
     if (i == 0) {
       inverse = estimate(guess, end);
     } else {  // what the change of u alone did to the arrival, where that is more than what integration errs
@@ -27,29 +33,42 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool near) 
         update(inverse, guess.u - last_u, moved);
     }
     last_u = guess.u;
-    last_x = end.position;
     last_time = guess.time;
     last_accuracy = accuracy;
     const Vec3d barrel = guess.u - shooter_.velocity;
     const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed;
-    const double missed = math::length(miss);
+    double missed = math::length(miss);
+    if (!math::is_finite(missed)) return root;
+    bool turned = false;  // from rough to fine
+    if (corrected && !near && math::length(guess.u - fine_u) * guess.time > 10 * rough) corrected = false;
+    // Near enough that the fine path errs by as much here as where it will hit.
+    if (accuracy <= rough && !corrected && missed < 5 * rough && math::abs(lack) * guess.time < 5 * rough) {
+      const Arrival best = propagate(guess.u, guess.time, fine);
+      off += best.position - end.position;
+      corrected = turned = true;
+      fine_u = guess.u;
+      end = best;
+      miss = place - end.position;
+      missed = math::length(miss);
+    }
+    last_x = end.position;
     const Vec3d d = barrel / speed, drift = velocity_of_target(guess.time) - end.velocity;
     const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
     const double slope = math::dot(d, to_drift);
     if (!math::is_finite(missed) || !math::is_finite(slope) || slope == 0) return root;
-    const double allowed = options_.tolerance;
-    if (accuracy <= fine && math::abs(lack) * guess.time < allowed && missed < allowed) {
+    if (corrected && math::abs(lack) * guess.time < allowed && missed < allowed) {
       root = {true, slope, guess, end};
       root.guess.u = shooter_.velocity + shooter_.muzzle_speed * d;
       return root;
     }
-    // A flight that is as good as it must be, and a correction that the last ones say will land: it is not flown.
-    const double next_miss = missed < last_missed ? missed * missed / last_missed : missed;
-    const bool lands = i > 0 && accuracy <= fine && next_miss < 0.5 * allowed && missed < 30 * allowed &&
-                       math::abs(lack) * guess.time < 30 * allowed;
+    // A correction that the last ones say will land: it is not flown.
+    const double both = missed + math::abs(lack) * guess.time;
+    if (!turned && i > 0) contraction = math::clamp(both / last_both, 0.02, 1.0);
+    const bool lands = i > 0 && corrected && both < 30 * allowed && contraction * both < 0.25 * allowed;
+    last_both = both;
     // The next miss is some tenth of this one: then integration may err a tenth of that.
-    accuracy = math::min(accuracy, 0.02 * math::min(missed, last_missed));
-    if (accuracy < 100 * fine) accuracy = fine;
+    accuracy = math::min(accuracy, math::max(0.02 * math::min(missed, last_missed), rough));
+    if (accuracy < 4 * rough) accuracy = rough;
     if (i == 0) first_missed = missed;
     if (eager && i >= 4 && missed > 0.2 * first_missed) return root;
     last_missed = missed;

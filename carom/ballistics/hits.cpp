@@ -141,7 +141,11 @@ core::Status BatchHits<D>::cast_batch(const ProjectileBatch& batch, const rigid:
       const std::size_t i = first + k;
       const Vec3d from = batch.previous_position(i);
       const FlightPoint now = batch.at(i);
-      met_.push_back({{i, 0, from, now.position - from, now.velocity}, found_[k], double(found_[k].fraction) * dt});
+      // Within the step the velocity goes from one whose mean with the last is that of the way.
+      const Vec3d along = now.position - from;
+      const double left = 1 - double(found_[k].fraction);
+      const Vec3d then = now.velocity + (2 * left) * (along / dt - now.velocity);
+      met_.push_back({{i, 0, from, along, then}, found_[k], double(found_[k].fraction) * dt});
     }
   }
   cast_ += count;
