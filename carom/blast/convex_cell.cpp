@@ -1,5 +1,7 @@
 #include "carom/blast/convex_cell.h"
 
+#include <array>
+
 #include "carom/blast/detail/cell_cutter.h"
 #include "carom/blast/detail/solid_sum.h"
 #include "carom/math/elementary.h"
@@ -195,6 +197,42 @@ geometry::MassProperties3 ConvexCell::mass_properties(double density) const {
       sum.add(vertices_[corners[0]], vertices_[corners[k]], vertices_[corners[k + 1]]);
   }
   return sum.properties(density);
+}
+
+bool ConvexCell::shrink(double distance) {
+  constexpr std::size_t most = 128;
+  const std::size_t count = vertices_.size();
+  if (count > most || 6 * count != 2 * loops_.size()) return false;  // not three faces a corner
+  std::array<std::array<std::uint16_t, 3>, most> faces_of;
+  std::array<std::uint8_t, most> degree{};
+  for (std::size_t f = 0; f < faces_.size(); ++f)
+    for (const std::uint16_t v : loop(faces_[f])) {
+      if (degree[v] == 3) return false;
+      faces_of[v][degree[v]++] = std::uint16_t(f);
+    }
+  // A corner moves by m with n·m = −distance for its three faces: as long as no edge turns round, none vanished on the
+  // way, for its length is linear in the distance.
+  std::array<Vec3d, most> moved;
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec3d &a = faces_[faces_of[v][0]].normal, &b = faces_[faces_of[v][1]].normal,
+                &c = faces_[faces_of[v][2]].normal;
+    const Vec3d bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+    const double determinant = dot(a, bc);
+    if (!(math::abs(determinant) > 1e-3)) return false;
+    moved[v] = vertices_[v] - (distance / determinant) * (bc + ca + ab);
+  }
+  for (const Face& face : faces_) {
+    const auto corners = loop(face);
+    std::uint16_t before = corners[corners.size() - 1];
+    for (const std::uint16_t here : corners) {
+      const Vec3d edge = vertices_[here] - vertices_[before];
+      if (!(dot(moved[here] - moved[before], edge) > 0.01 * length_squared(edge))) return false;
+      before = here;
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) vertices_[v] = moved[v];
+  for (Face& face : faces_) face.offset -= distance;
+  return true;
 }
 
 double ConvexCell::volume() const {

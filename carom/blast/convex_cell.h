@@ -63,6 +63,10 @@ class CAROM_API ConvexCell {
     return clip(half_space, scratch);
   }
 
+  /// Moves every face inward by `distance` m where corners and faces go on meeting as they do, three faces a corner.
+  /// False, and nothing moved, where they would not: then cuts must tell.
+  bool shrink(double distance);
+
   bool empty() const { return faces_.empty(); }
   std::span<const math::Vec3d> vertices() const { return vertices_; }
   std::span<const Face> faces() const { return faces_; }

@@ -142,20 +142,22 @@ std::shared_ptr<const geometry::Hull> make_cell_hull(const ConvexCell& cell, Vec
   const ConvexCell* solid = &cell;
   ConvexCell shrunk;
   if (skin > 0) {
-    detail::CellCutter cutter;
-    bool fits = cutter.load(cell, cell.tolerance());
-    for (std::size_t f = 0; f < cell.faces().size() && fits; ++f) {
-      const ConvexCell::Face& face = cell.faces()[f];
-      if (cutter.clip(face.normal, face.offset - skin, face.tag) == ConvexCell::Cut::all) return nullptr;
-      fits = cutter.fits();
-    }
-    if (fits) {
-      shrunk.take(cutter, cell.tolerance());
-    } else {
-      shrunk = cell;
-      ConvexCell::Scratch scratch;
-      for (const ConvexCell::Face& face : cell.faces())
-        if (shrunk.clip({face.normal, face.offset - skin, face.tag}, scratch) == ConvexCell::Cut::all) return nullptr;
+    shrunk = cell;
+    if (!shrunk.shrink(skin)) {
+      detail::CellCutter cutter;
+      bool fits = cutter.load(cell, cell.tolerance());
+      for (std::size_t f = 0; f < cell.faces().size() && fits; ++f) {
+        const ConvexCell::Face& face = cell.faces()[f];
+        if (cutter.clip(face.normal, face.offset - skin, face.tag) == ConvexCell::Cut::all) return nullptr;
+        fits = cutter.fits();
+      }
+      if (fits) {
+        shrunk.take(cutter, cell.tolerance());
+      } else {
+        ConvexCell::Scratch scratch;
+        for (const ConvexCell::Face& face : cell.faces())
+          if (shrunk.clip({face.normal, face.offset - skin, face.tag}, scratch) == ConvexCell::Cut::all) return nullptr;
+      }
     }
     solid = &shrunk;
   }

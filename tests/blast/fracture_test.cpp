@@ -53,6 +53,30 @@ TEST(ConvexCell, CutsOfABox) {
   EXPECT_TRUE(corner.empty());
 }
 
+TEST(ConvexCell, ShrinkingIsCuttingByEveryFaceMovedInward) {
+  const ConvexCell box = unit_box();
+  const Pattern pattern = voronoi_pattern(box, uniform_sites(box, 150, 5)).value();
+  int shrunk = 0;
+  for (const double distance : {1e-4, 1e-3, 0.01}) {
+    for (const ConvexCell& cell : pattern.cells) {
+      ConvexCell moved = cell, cut = cell;
+      const bool done = moved.shrink(distance);
+      for (const ConvexCell::Face& face : cell.faces()) (void)cut.clip({face.normal, face.offset - distance, face.tag});
+      if (!done) {
+        EXPECT_EQ(moved.volume(), cell.volume()) << "nothing moves where it cannot";
+        continue;
+      }
+      ++shrunk;
+      EXPECT_EQ(moved.faces().size(), cell.faces().size());
+      EXPECT_NEAR(moved.volume(), cut.volume(), 1e-9 * cell.volume());
+      EXPECT_LT(math::distance(moved.mass_properties(1).center, cut.mass_properties(1).center), 1e-8);
+    }
+  }
+  EXPECT_GT(shrunk, 150);
+  ConvexCell flat(geometry::Bounds3d{{0, 0, 0}, {1, 1, 0.01}});
+  EXPECT_FALSE(flat.shrink(0.006)) << "the two sides would pass each other";
+}
+
 TEST(Fracture, VoronoiPiecesAreTheWhole) {
   const geometry::Bounds3d box{{-1, -0.5, -2}, {1, 0.5, 2}};
   const ConvexCell whole(box);
