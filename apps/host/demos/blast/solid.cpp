@@ -20,7 +20,9 @@ class Solid final : public Repeatable<Solid, Demo3> {
     d.id = vase_ ? "vase" : "fracture-mesh";
     d.title = vase_ ? "A vase falls" : "A mesh of your own breaks";
     d.summary = vase_ ? "A hollow, concave mesh is cut into shards that hold together until it lands."
-                      : "A star or a ring of your making, cut into cells, opened by a slider and then let fall.";
+                      : "A star or a ring of your making, cut into cells, opened by a slider and then let fall. Drop "
+                        "an OBJ, STL or "
+                        "glTF file on the page to break a mesh of your own.";
     d.group = "Explosions and fracture";
     d.chapter = "18.8";
     d.text =
