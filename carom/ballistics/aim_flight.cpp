@@ -84,7 +84,7 @@ AimSolver::Pass AimSolver::pass(double elevation, double azimuth) const {
   double t = 0;
   for (int i = 0; i < 400 && t < options_.longest_time; ++i) {
     const double speed = math::length(v),
-                 h = math::min(0.12 * math::max(speed, 0.5 * fall_speed_) / math::max(math::length(k), 1e-9),
+                 h = math::min(0.3 * math::max(speed, 0.5 * fall_speed_) / math::max(math::length(k), 1e-9),
                                -0.5 * start / math::max(speed, 1e-9));
     const Step end = step(x, v, k, h);
     const double gone = beyond(end.x, t + h);
