@@ -209,8 +209,11 @@ void Stage<D>::redraw(BodyId body) {
 
 template <class D>
 void Stage<D>::set_color(BodyId body, std::uint32_t color) {
-  for (Actor& actor : actors_)
-    if (actor.body == body) actor.color = color;
+  for (Actor& actor : actors_) {
+    if (!(actor.body == body) || actor.color == color) continue;
+    actor.color = color;
+    redraw(body);
+  }
 }
 
 template <class D>

@@ -117,8 +117,11 @@ class Field final : public Repeatable<Field, Demo3> {
       }
     }
     for (const Vec3d& g : gauges_) stage.line(Vec3d{g.x, 0, g.z}, Vec3d{g.x, g.y + 0.25, g.z}, pen(blue));
-    stage.say(format("%.1f ms, front at %.1f m; gauges peak at %.0f and %.0f kPa", 1e3 * max(since, 0.0), front,
-                     1e-3 * peak_[0], 1e-3 * peak_[1]));
+    if (passing(stage))
+      stage.say(format("%.1f ms, front at %.1f m; gauges peak at %.0f and %.0f kPa", 1e3 * max(since, 0.0), front,
+                       1e-3 * peak_[0], 1e-3 * peak_[1]));
+    else
+      stage.say(format("the wave has passed; gauges peaked at %.0f and %.0f kPa", 1e-3 * peak_[0], 1e-3 * peak_[1]));
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {

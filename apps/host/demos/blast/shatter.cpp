@@ -93,7 +93,7 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
     if (shots_ > 0 && stage.world().contains(ball_))
       stage.sample(1, 0, t, double(length(stage.at(ball_).linear_velocity)));
     if (!wall_.events().empty())
-      stage.say(format("%.0f bonds broke, the worst at %.1f times its strength; %.0f bodies",
+      stage.say(format("broken bonds: %.0f, the worst at %.1f times its strength; %.0f bodies",
                        double(wall_.events().size()), worst(), double(wall_.cluster_count())));
   }
 
