@@ -47,8 +47,8 @@ struct AimOptions {
 };
 
 /// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 10 to 20 µs, both
-/// 50 to 150 µs, a target clearly out of reach 45 µs; a target that is only just in or out of reach, or has
-/// several arcs, a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
+/// 20 to 100 µs, a target at rest that is clearly out of reach 20 µs; a target that is only just in or out of reach,
+/// moves fast beyond it, or has several arcs, a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
 

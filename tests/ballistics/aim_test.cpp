@@ -217,4 +217,42 @@ TEST(Aim, BadInputIsNamed) {
   EXPECT_FALSE(aim({}, {}, {}, Target{{__builtin_nan(""), 0, 0}}));
 }
 
+// Profiles of wind are steep near the ground and have bends by the hundred: every shot told hits all the same.
+TEST(Aim, ShotsThroughAProfileOfWindHit) {
+  math::Random random(7);
+  constexpr DragFunction functions[] = {DragFunction::g1, DragFunction::g7, DragFunction::gs, DragFunction::g5};
+  int found = 0, none = 0;
+  for (int i = 0; i < 800; ++i) {
+    const Projectile p = random.chance(.3)
+                             ? projectile_from_terminal_speed(random.uniform(20.0, 300.0))
+                             : projectile_from_coefficient(functions[random.below(4)], random.uniform(.05, 1.2));
+    Conditions c;
+    if (random.chance(.6)) {
+      const double across = random.uniform(-15.0, 15.0), along = random.uniform(-15.0, 15.0);
+      c.wind = environment::WindColumn(environment::Wind{
+          .velocity = {across, 0, along},
+          .profile = random.chance(.5) ? environment::WindProfile::power : environment::WindProfile::uniform});
+    }
+    const double speed = random.uniform(60.0, 900.0), up = random.uniform(0.0, 30.0);
+    const Shooter shooter{speed, {0, up, 0}, {random.uniform(-20.0, 20.0), 0, random.uniform(-20.0, 20.0)}};
+    const double away = math::min(speed * speed / 19.6 * math::square(random.uniform(.02, .9)), 8000.0),
+                 around = random.uniform(-3.1, 3.1), height = random.uniform(-50.0, 200.0);
+    const double x = random.uniform(-25.0, 25.0), y = random.uniform(-3.0, 3.0), z = random.uniform(-25.0, 25.0);
+    Target target{{away * math::cos(around), height, away * math::sin(around)}, {x, y, z}, {}};
+    if (random.chance(.3)) target.velocity = {};
+    const auto both = aim(p, c, shooter, target);
+    ASSERT_TRUE(both.ok());
+    ++(*both ? found : none);
+    if (!*both) continue;
+    for (const Shot& shot : {*both->low, *both->high}) {
+      const auto flight = fly(p, c, {shooter.muzzle, shooter.velocity + speed * shot.direction},
+                              {.time = shot.time, .tolerance = 1e-11});
+      ASSERT_TRUE(flight.ok());
+      EXPECT_LT(math::distance(flight->end().position, target.position + shot.time * target.velocity), .01) << i;
+    }
+  }
+  EXPECT_GT(found, 400);
+  EXPECT_GT(none, 100);
+}
+
 }  // namespace ballistics_aim_test
