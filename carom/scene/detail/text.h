@@ -23,9 +23,11 @@ template <class T>
 std::string vector_text(math::Vec3<T> v) {
   return "[" + digits(v.x) + ", " + digits(v.y) + ", " + digits(v.z) + "]";
 }
-inline std::string rotation_text(math::Rot2f q) { return "[" + digits(q.c) + ", " + digits(q.s) + "]"; }
+// A rotation is normalised when it is read, which loses the sign of a zero: adding one loses it here too.
+inline std::string rotation_text(math::Rot2f q) { return "[" + digits(q.c + 0.0f) + ", " + digits(q.s + 0.0f) + "]"; }
 inline std::string rotation_text(const math::Quatf& q) {
-  return "[" + digits(q.w) + ", " + digits(q.x) + ", " + digits(q.y) + ", " + digits(q.z) + "]";
+  return "[" + digits(q.w + 0.0f) + ", " + digits(q.x + 0.0f) + ", " + digits(q.y + 0.0f) + ", " + digits(q.z + 0.0f) +
+         "]";
 }
 inline std::string angular_text(float w) { return digits(w); }
 inline std::string angular_text(math::Vec3f w) { return vector_text(w); }
