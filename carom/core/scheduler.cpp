@@ -1,15 +1,14 @@
 #include "carom/core/scheduler.h"
 
-#if !defined(__wasi__)
 #include <atomic>
 #include <cstdint>
-#include <thread>
 #include <vector>
-#endif
+
+#include "carom/core/detail/threads.h"
 
 namespace carom::core {
 
-#if defined(__wasi__)
+#if !CAROM_THREADS
 
 std::unique_ptr<TaskScheduler> make_thread_pool(int) { return std::make_unique<SerialScheduler>(); }
 int hardware_threads() { return 1; }
@@ -17,14 +16,6 @@ int hardware_threads() { return 1; }
 #else
 
 namespace detail {
-
-inline void spin_pause() {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  asm volatile("isb" ::: "memory");
-#endif
-}
 
 /// Workers enter a region by counting themselves in at a gate, so that the caller never waits for one that is still
 /// asleep and a late one never touches what is over. Inside, they follow the loops that the caller publishes.
@@ -41,19 +32,19 @@ class ThreadPool final : public TaskScheduler {
         stage_runs_(std::make_unique<Tagged[]>(std::size_t(threads))),
         stage_done_(std::make_unique<Tagged[]>(std::size_t(threads))) {
     workers_.reserve(std::size_t(threads) - 1);
-    for (int i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work(i); });
+    for (int i = 1; i < threads; ++i) workers_.emplace_back(&ThreadPool::serve, this, i);
   }
   ~ThreadPool() override {
     stopping_.store(true, std::memory_order_relaxed);
     signal_.fetch_add(1);
-    signal_.notify_all();
-    for (std::thread& worker : workers_) worker.join();
+    wake_all(signal_);
+    for (Thread& worker : workers_) worker.join();
   }
   int thread_count() const override { return int(workers_.size()) + 1; }
 
   void begin_region() override {
     if (!busy_.exchange(true, std::memory_order_acquire)) {
-      owner_.store(std::this_thread::get_id(), std::memory_order_relaxed);
+      owner_.store(this_thread(), std::memory_order_relaxed);
       open();
     }
     if (owned()) ++depth_;
@@ -61,7 +52,7 @@ class ThreadPool final : public TaskScheduler {
   void end_region() override {
     if (!owned() || --depth_ > 0) return;
     close();
-    owner_.store(std::thread::id(), std::memory_order_relaxed);
+    owner_.store(ThreadId(), std::memory_order_relaxed);
     busy_.store(false, std::memory_order_release);
   }
 
@@ -109,7 +100,7 @@ class ThreadPool final : public TaskScheduler {
     std::atomic<int> count{1}, grain{1};
   };
 
-  bool owned() const { return owner_.load(std::memory_order_relaxed) == std::this_thread::get_id(); }
+  bool owned() const { return owner_.load(std::memory_order_relaxed) == this_thread(); }
   int first_of_run(int run, int chunks) const {
     const int threads = thread_count();
     return int((std::int64_t(chunks) * run + threads - 1) / threads);
@@ -120,7 +111,7 @@ class ThreadPool final : public TaskScheduler {
     closed_.store(false, std::memory_order_relaxed);
     gate_.store(epoch << 32 | open_bit, std::memory_order_release);
     signal_.fetch_add(1);  // sequentially consistent with sleepers_: either we see the sleeper or it sees the signal
-    if (sleepers_.load() > 0) signal_.notify_all();
+    if (sleepers_.load() > 0) wake_all(signal_);
   }
   void close() {
     gate_.fetch_and(~open_bit, std::memory_order_relaxed);
@@ -228,7 +219,7 @@ class ThreadPool final : public TaskScheduler {
     if (spin < spins_)
       spin_pause();
     else
-      std::this_thread::yield();
+      yield();
   }
 
   bool try_enter(std::uint64_t& served) {
@@ -255,6 +246,7 @@ class ThreadPool final : public TaskScheduler {
     }
   }
 
+  static void serve(void* pool, int worker) { static_cast<ThreadPool*>(pool)->work(worker); }
   void work(int worker) {
     std::uint64_t served = 0;
     for (;;) {
@@ -272,7 +264,7 @@ class ThreadPool final : public TaskScheduler {
       }
       if (signalled) continue;
       sleepers_.fetch_add(1);
-      signal_.wait(seen);
+      wait_while(signal_, seen);
       sleepers_.fetch_sub(1);
     }
   }
@@ -286,20 +278,22 @@ class ThreadPool final : public TaskScheduler {
   alignas(64) std::atomic<int> sleepers_{0};
   std::atomic<bool> busy_{false};
   std::atomic<bool> stopping_{false};
-  std::atomic<std::thread::id> owner_{};  // who opened the region
-  int depth_ = 0;                         // the owner's nested regions
-  bool in_loop_ = false;                  // the owner's: a loop of this region runs
+  std::atomic<ThreadId> owner_{};  // who opened the region
+  int depth_ = 0;                  // the owner's nested regions
+  bool in_loop_ = false;           // the owner's: a loop of this region runs
   int spins_;
   std::unique_ptr<Tagged[]> runs_, stage_runs_, stage_done_;  // by run
-  std::vector<std::thread> workers_;
+  std::vector<Thread> workers_;
 };
 
 }  // namespace detail
 
+#if !defined(__wasi__)
 int hardware_threads() {
   const unsigned n = std::thread::hardware_concurrency();
   return n < 1 ? 1 : int(n);
 }
+#endif
 
 std::unique_ptr<TaskScheduler> make_thread_pool(int threads) {
   const int n = threads < 1 ? 1 : (threads > 64 ? 64 : threads);
