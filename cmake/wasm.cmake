@@ -1,5 +1,5 @@
 # WebAssembly by clang and wasi-libc (Debian: clang-19, lld-19, wasi-libc, libc++-19-dev-wasm32, libclang-rt-19-dev-wasm32).
-# One thread, SIMD128, no exceptions: the same sources and the same bits as the native build.
+# SIMD128, atomics, no exceptions: the same sources and the same bits as the native build.
 set(CMAKE_SYSTEM_NAME WASI)
 set(CMAKE_SYSTEM_VERSION 1)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
@@ -11,6 +11,8 @@ set(CMAKE_CXX_COMPILER ${CAROM_WASM_CXX})
 set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fno-exceptions -fno-rtti -D_WASI_EMULATED_PROCESS_CLOCKS")
+# Several instances may run on one memory (apps/wasm/runtime.cpp).
+add_compile_options(-matomics -mbulk-memory)
 # A megabyte of stack: blocks of a thousand particles lie on it; the default of 64 KiB is overrun without a word.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-lwasi-emulated-process-clocks -Wl,-z,stack-size=1048576")
 # Optimised when it is linked, so the archives hold clang's own form of code, which an older llvm-ar cannot read: the

@@ -31,4 +31,5 @@ compare "clang, 1 thread" all "$clang"
 compare "clang, SIMD width 4, 2 threads" "scene|model" "$clang" --scenes --models --width 4 --threads 2
 # V8 of Node 20 now and then crashes in its optimising compiler on the largest functions; its other one does not.
 compare "WebAssembly under Node" all node --no-warnings --liftoff-only "$here/tests/determinism/run_wasm.mjs" "$wasm"
+compare "WebAssembly under Node, 2 threads" scene node --no-warnings --liftoff-only "$here/tests/determinism/run_wasm.mjs" --workers 1 "$wasm" --scenes --threads 2
 [ $failures = 0 ] || exit 1

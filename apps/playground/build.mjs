@@ -16,7 +16,7 @@ rmSync(out, {recursive: true, force: true});
 mkdirSync(out, {recursive: true});
 await build({
   absWorkingDir: here,
-  entryPoints: {main: 'src/main.ts', worker: 'src/worker.ts', style: 'src/style.css'},
+  entryPoints: {main: 'src/main.ts', worker: 'src/worker.ts', thread: 'src/thread.ts', style: 'src/style.css'},
   bundle: true,
   minify: true,
   sourcemap: false,

@@ -9,6 +9,7 @@
 
 #include "apps/host/host.h"
 #include "apps/host/scene_demo.h"
+#include "carom/core/scheduler.h"
 #include "carom/scene/scene.h"
 
 namespace {
@@ -69,6 +70,7 @@ CAROM_MODULE("carom_file") void carom_file(std::uint32_t name_size) {
 CAROM_MODULE("carom_start") void carom_start() {
   const Files& files = module().files;
   host::HostOptions options;
+  options.threads = core::hardware_threads();
   for (const auto& [name, text] : files.text) {
     if (name.compare(0, presets.size(), presets) == 0) continue;
     const std::string id = "scene:" + name.substr(0, name.rfind('.'));

@@ -1,5 +1,7 @@
 // The parts of the engine that come when one of their functions is first called (apps/wasm/split.mjs): in their place
 // in the module's table stand functions that load them. A Worker may wait for a file, and so does the call.
+// Every instance, and so every thread, has a table and parts of its own.
+import {withMemory} from '../../wasm/memory.mjs';
 
 /** So long after the start the other parts are fetched quietly, lest a click has to wait for one. */
 const QUIET = 1500;  // ms
@@ -10,7 +12,7 @@ export class Parts {
   private loaded = new Set<string>();
   private main?: WebAssembly.Exports;
 
-  constructor(module: WebAssembly.Module) {
+  constructor(module: WebAssembly.Module, private shared: boolean) {
     const [list] = WebAssembly.Module.customSections(module, 'parts');
     if (list) this.files = JSON.parse(new TextDecoder().decode(list)) as Record<string, string>;
   }
@@ -27,6 +29,9 @@ export class Parts {
 
   begin(main: WebAssembly.Exports): void {
     this.main = main;
+  }
+
+  fetchQuietly(): void {
     const {connection} = navigator as Navigator & {connection?: {saveData?: boolean}};
     if (!connection?.saveData) setTimeout(() => { void this.fetchAll(); }, QUIET);
   }
@@ -49,7 +54,7 @@ export class Parts {
     request.responseType = 'arraybuffer';
     request.send();
     if (request.status !== 200) throw new Error(`${file}: the server answers ${request.status}; it may hold a newer page than this one`);
-    return new WebAssembly.Module(request.response as ArrayBuffer);
+    return new WebAssembly.Module(withMemory(new Uint8Array(request.response as ArrayBuffer), this.shared));
   }
 
   private async fetchAll(): Promise<void> {
@@ -57,7 +62,7 @@ export class Parts {
       if (this.loaded.has(part)) continue;
       const answer = await fetch(file, {priority: 'low'});
       if (!answer.ok) return;  // whoever needs it will say so
-      const module = await WebAssembly.compile(await answer.arrayBuffer());
+      const module = await WebAssembly.compile(withMemory(new Uint8Array(await answer.arrayBuffer()), this.shared));
       if (!this.loaded.has(part)) this.compiled.set(part, module);
     }
   }

@@ -1,9 +1,10 @@
 // The engine in the page: the same simulation host as `carom serve` runs, compiled to WebAssembly. Carries the
 // messages of docs/protocol.md; the module's exports are documented in apps/wasm/exports.cpp.
+import {compile, share, system} from './module';
 import {Parts} from './parts';
+import type {Start} from './thread';
 
 interface Exports {
-  memory: WebAssembly.Memory;
   _initialize(): void;
   carom_room(size: number): number;
   carom_file(nameSize: number): void;
@@ -13,53 +14,29 @@ interface Exports {
   carom_advance(seconds: number): void;
   carom_take(): number;
   carom_message(): number;
+  carom_workers(count: number): void;
+  carom_worker_room(): number;
 }
 
 const FRAME = 1000 / 60;  // ms
+const MOST_THREADS = 8;
+const {memory, threads} = share(MOST_THREADS);
 const text = {encode: new TextEncoder(), decode: new TextDecoder()};
 let host: Exports | undefined;
 let last = performance.now();
 const early: (string | ArrayBuffer)[] = [];
 
-/** What the C library asks of a system: a clock, and somewhere to complain. */
-function system(memory: () => ArrayBuffer): Record<string, (...args: never[]) => number> {
-  const BAD_HANDLE = 8;
-  return {
-    clock_time_get: (_id: number, _precision: bigint, at: number) => {
-      new DataView(memory()).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
-      return 0;
-    },
-    fd_write: (_fd: number, list: number, count: number, written: number) => {
-      const view = new DataView(memory());
-      let said = '', bytes = 0;
-      for (let i = 0; i < count; ++i) {
-        const size = view.getUint32(list + 8 * i + 4, true);
-        said += text.decode.decode(new Uint8Array(memory(), view.getUint32(list + 8 * i, true), size));
-        bytes += size;
-      }
-      console.error(said);
-      view.setUint32(written, bytes, true);
-      return 0;
-    },
-    fd_close: () => BAD_HANDLE,
-    fd_seek: () => BAD_HANDLE,
-  };
-}
-
 function put(bytes: Uint8Array): void {
   const at = host!.carom_room(bytes.length);
-  new Uint8Array(host!.memory.buffer, at, bytes.length).set(bytes);
+  new Uint8Array(memory.buffer, at, bytes.length).set(bytes);
 }
 
-/** The rest of what the host has to say. Frames go over without a copy of the copy. */
+/** The rest of what the host has to say. Copied first: shared memory is neither sent nor read as text. */
 function drain(): void {
   for (let size = host!.carom_take(); size >= 0; size = host!.carom_take()) {
-    const bytes = new Uint8Array(host!.memory.buffer, host!.carom_message(), size >> 1);
+    const bytes = new Uint8Array(memory.buffer, host!.carom_message(), size >> 1).slice();
     if (size & 1) postMessage(text.decode.decode(bytes));
-    else {
-      const copy = bytes.slice().buffer;
-      postMessage(copy, {transfer: [copy]});
-    }
+    else postMessage(bytes.buffer, {transfer: [bytes.buffer]});
   }
 }
 
@@ -79,22 +56,26 @@ function tick(): void {
   setTimeout(tick, Math.max(0, FRAME - (performance.now() - now)));
 }
 
-/** A server that does not know WebAssembly's type cannot be streamed from. */
-async function compile(url: string): Promise<WebAssembly.Module> {
-  const answer = await fetch(url);
-  if (!answer.ok) throw new Error(`${url}: the server answers ${answer.status}`);
-  return answer.headers.get('Content-Type')?.startsWith('application/wasm') ? WebAssembly.compileStreaming(answer) : WebAssembly.compile(await answer.arrayBuffer());
+/** Workers for the engine's threads. It does not wait for them: until they are there it does everything itself. */
+function lend(module: WebAssembly.Module): void {
+  host!.carom_workers(threads - 1);
+  for (let i = 1; i < threads; ++i) {
+    const worker = new Worker(new URL('thread.js', location.href), {type: 'module'});
+    const start: Start = {module, memory, room: host!.carom_worker_room()};
+    worker.postMessage(start);
+  }
 }
 
 async function start(): Promise<void> {
-  const [module, files] = await Promise.all([compile('carom.wasm'), fetch('files.json').then((answer) => answer.json() as Promise<Record<string, string>>)]);
-  let made: Exports;
-  const parts = new Parts(module);
-  const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: system(() => made.memory.buffer), ...parts.imports()});
-  made = instance.exports as unknown as Exports;
+  const [module, files] = await Promise.all([compile('carom.wasm', threads > 1), fetch('files.json').then((answer) => answer.json() as Promise<Record<string, string>>)]);
+  const parts = new Parts(module, threads > 1);
+  const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: system(memory), env: {memory}, ...parts.imports()});
+  const made = instance.exports as unknown as Exports;
   parts.begin(instance.exports);
+  parts.fetchQuietly();
   made._initialize();
   host = made;
+  lend(module);
   for (const [name, file] of Object.entries(files)) {
     const head = text.encode.encode(name), bytes = text.encode.encode(name + file);
     put(bytes);

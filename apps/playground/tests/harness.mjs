@@ -39,13 +39,16 @@ export async function serve(port = 0) {
   return {url, close: () => { child.kill('SIGINT'); return ended; }};
 }
 
-/** A folder over HTTP as the plainest web server would: no headers but the type, and that only of what browsers insist on. */
-export async function serveFolder(folder) {
+/** What a server says that wants its page isolated from others, so that it may share memory between threads. */
+export const ISOLATED = {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'};
+
+/** A folder over HTTP as the plainest web server would: no headers but the type, and that only of what browsers insist on, and those asked for. */
+export async function serveFolder(folder, headers = {}) {
   const types = {'.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml'};
   const server = createServer((request, response) => {
     const path = join(folder, normalize(new URL(request.url, 'http://x').pathname).replace(/\/$/, '/index.html'));
     if (!existsSync(path)) { response.writeHead(404).end(); return; }
-    response.writeHead(200, {'Content-Type': types[extname(path)] ?? 'application/octet-stream'}).end(readFileSync(path));
+    response.writeHead(200, {...headers, 'Content-Type': types[extname(path)] ?? 'application/octet-stream'}).end(readFileSync(path));
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   return {url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close()};

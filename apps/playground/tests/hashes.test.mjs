@@ -1,4 +1,4 @@
-// Every demo and scene leads to the same bits natively and as WebAssembly in Chromium. WEB names the folder that
+// Every demo and scene leads to the same bits natively and as WebAssembly in Chromium, with one thread and several. WEB names the folder that
 // `./play --web` builds, MODULE the whole engine before it is cut; HASH_STEPS and HASH_DEMOS (names with commas between them)
 // ask for other runs. Scenes run in Node too; there tools/check_determinism.sh runs the demos.
 import assert from 'node:assert/strict';
@@ -9,16 +9,16 @@ import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
 import {promisify} from 'node:util';
-import {carom, root, serveFolder, visit} from './harness.mjs';
+import {carom, ISOLATED, root, serveFolder, visit} from './harness.mjs';
 
 const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
 const whole = process.env.MODULE ?? join(root, 'build/wasm/apps/wasm/carom.wasm');
 const steps = Number(process.env.HASH_STEPS ?? 600);
 const scratch = mkdtempSync(join(tmpdir(), 'carom-hashes-'));
 
-let server;
-before(async () => { server = await serveFolder(web); });
-after(() => { server?.close(); rmSync(scratch, {recursive: true, force: true}); });
+let server, isolated;
+before(async () => { server = await serveFolder(web); isolated = await serveFolder(web, ISOLATED); });
+after(() => { server?.close(); isolated?.close(); rmSync(scratch, {recursive: true, force: true}); });
 
 /** In the page: state hashes of demos after so many steps, one after another, in one engine of its own. */
 function hashesAfter(runs) {
@@ -57,14 +57,15 @@ function hashesAfter(runs) {
   });
 }
 
-test(`state hashes after ${steps} steps: native and WebAssembly, in Chromium and in Node`, {timeout: 1800e3}, async () => {
+test(`state hashes after ${steps} steps: native and WebAssembly, in Chromium with one thread and several, and in Node`, {timeout: 3000e3}, async () => {
   const run = promisify(execFile), limits = {maxBuffer: 1 << 26, cwd: root};
   const listed = JSON.parse((await run(carom, ['list', '--json'], limits)).stdout);
   const only = process.env.HASH_DEMOS?.split(',');
   const names = [...listed.demos.map((d) => d.demo), ...listed.scenes.map((d) => `scene:${d.demo}`), ...(only ? listed.stress.map((d) => d.demo) : [])]
     .filter((name) => !only || only.includes(name));
-  // A page without a demo of its own: nothing else takes the processors.
-  const page = await visit(`${server.url}worker.js`, {}, false);
+  // Pages without a demo of their own: nothing else takes the processors. One thread, and as many as there are processors.
+  const page = await visit(`${server.url}worker.js`, {}, false), threaded = await visit(`${isolated.url}worker.js`, {}, false);
+  assert.ok(await threaded.evaluate(() => crossOriginIsolated));
   const nativeOf = async (some) => {
     const native = [];
     for (const name of some) {
@@ -82,6 +83,8 @@ test(`state hashes after ${steps} steps: native and WebAssembly, in Chromium and
     if (i + 1 < parts.length) next = nativeOf(parts[i + 1]);  // while the page is at work
     const found = await page.evaluate(hashesAfter, some.map((name, k) => [name, native[k].steps]));
     some.forEach((name, k) => assert.equal(found[k], native[k].state_hash, name));
+    const withThreads = await threaded.evaluate(hashesAfter, some.map((name, k) => [name, native[k].steps]));
+    some.forEach((name, k) => assert.equal(withThreads[k], native[k].state_hash, `${name} with threads`));
     some.forEach((name, k) => { if (name.startsWith('scene:')) scenes.push({name, ...native[k]}); });
   }
   const {stdout} = await run(process.execPath, ['--no-warnings', '--liftoff-only', fileURLToPath(new URL('node_hashes.mjs', import.meta.url)), whole, join(web, 'files.json'),

@@ -7,9 +7,9 @@ import {makeHost} from '../../wasm/split.mjs';
 const [module, files, ...runs] = process.argv.slice(2);
 const compiled = await WebAssembly.compile(readFileSync(module));
 let last;
-const host = makeHost(compiled, JSON.parse(readFileSync(files, 'utf8')), (frame) => {
+const host = makeHost(compiled, JSON.parse(readFileSync(files, 'utf8')), {frame: (frame) => {
   if (frame.getUint8(1) & 2) last = {step: frame.getUint32(8, true), hash: frame.getBigUint64(frame.byteLength - 16, true)};
-});
+}});
 for (const run of runs) {
   const [name, steps] = [run.slice(0, run.lastIndexOf('=')), Number(run.slice(run.lastIndexOf('=') + 1))];
   host.said.length = 0;

@@ -6,16 +6,17 @@ import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
 import {gzipSync} from 'node:zlib';
-import {at, beyond, bodies, holding, paused, picture, place, screen, serveFolder, visit} from './harness.mjs';
+import {at, beyond, bodies, holding, ISOLATED, paused, picture, place, screen, serveFolder, visit} from './harness.mjs';
 
 const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
 
-let server;
+let server, isolated;
 before(async () => {
   assert.ok(existsSync(join(web, 'carom.wasm')), `${web} holds no built page: ./play --web makes one`);
   server = await serveFolder(web);
+  isolated = await serveFolder(web, ISOLATED);
 });
-after(() => server?.close());
+after(() => { server?.close(); isolated?.close(); });
 
 const packed = (name) => gzipSync(readFileSync(join(web, name)), {level: 9}).length;
 
@@ -75,4 +76,18 @@ test('the engine runs in the page: grab, pause, step, a scene file', async () =>
   await page.evaluate(() => { location.hash = 'scene:newton_cradle'; });
   await page.waitForFunction(() => document.title.includes('radle'));
   await page.done();
+});
+
+const threadsOf = (page) => page.evaluate(() => Number(document.querySelector('#numbers').textContent.match(/on (\d+) thread/)?.[1]));
+
+test('a page that its server isolates runs the engine on several threads', async () => {
+  const page = await visit(`${isolated.url}#pyramids`);
+  await beyond(page, 60);
+  const processors = await page.evaluate(() => (crossOriginIsolated ? navigator.hardwareConcurrency : 0));
+  assert.equal(await threadsOf(page), Math.min(8, processors));
+  await page.done();
+  const plain = await visit(`${server.url}#pyramids`);
+  await beyond(plain, 60);
+  assert.equal(await threadsOf(plain), 1);
+  await plain.done();
 });
