@@ -12,7 +12,7 @@ set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fno-exceptions -fno-rtti -D_WASI_EMULATED_PROCESS_CLOCKS")
 # Several instances may run on one memory (apps/wasm/runtime.cpp).
-add_compile_options(-matomics -mbulk-memory)
+add_compile_options(-matomics -mbulk-memory -include ${CMAKE_CURRENT_LIST_DIR}/wasm_errno.h)
 # A megabyte of stack: blocks of a thousand particles lie on it; the default of 64 KiB is overrun without a word.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-lwasi-emulated-process-clocks -Wl,-z,stack-size=1048576")
 # Optimised when it is linked, so the archives hold clang's own form of code, which an older llvm-ar cannot read: the
