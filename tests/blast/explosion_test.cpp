@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "carom/geometry/hull.h"
 #include "carom/math/elementary.h"
 
 namespace blast_test {
@@ -189,6 +190,20 @@ TEST(Explosion, InThePlaneAndOnAnyNumberOfThreads) {
     hash[threads - 1] = world.state_hash();
   }
   EXPECT_EQ(hash[0], hash[1]);
+}
+
+TEST(Explosion, FacesWithEqualSidesAreSplitToo) {
+  // A corner of a cube cut off: its slanted face has three sides of √2, equal to the bit.
+  const math::Vec3f corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  rigid::World3 world({.gravity = {0, 0, 0}});
+  const auto body = world.create_body({.position = {3, 1, 0}}).value();
+  ASSERT_TRUE(world.add_shape(body, geometry::Shape3(geometry::make_hull(corners).value())));
+  auto explosion = Explosion3::make({.mass = 1}).value();
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(explosion.apply(world, 1e-3));
+    ASSERT_TRUE(world.step(1e-3f));
+  }
+  EXPECT_GT(length(explosion.impulse_given()), 10);
 }
 
 TEST(Explosion, ParticlesRideTheWindAndNoFaster) {

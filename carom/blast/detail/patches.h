@@ -40,9 +40,8 @@ inline void split_patch(math::Vec3f a, math::Vec3f b, math::Vec3f c, float size,
   const float ab = distance_squared(a, b), bc = distance_squared(b, c), ca = distance_squared(c, a);
   const float longest = math::max(ab, math::max(bc, ca));
   if (longest > size * size && out.size() < most_patches) {
-    // Across the longest side, turned so that it is ab.
-    if (longest == bc) return split_patch(b, c, a, size, out);
-    if (longest == ca && ab != longest) return split_patch(c, a, b, size, out);
+    // Across the longest side, turned so that it is ab; of equal ones the first, or it would turn for ever.
+    if (ab != longest) return bc == longest ? split_patch(b, c, a, size, out) : split_patch(c, a, b, size, out);
     const math::Vec3f m = 0.5f * (a + b);
     split_patch(a, m, c, size, out);
     split_patch(m, b, c, size, out);
