@@ -97,7 +97,7 @@ export class Panel {
   private inputs(demo: Opened): void {
     const host = document.getElementById('inputs')!;
     host.replaceChildren(...demo.inputs.map((input) => {
-      const key = input.keys.map((k) => k.replace(/^Key|^Digit/, '').replace('ArrowUp', '↑').replace('ArrowDown', '↓').replace('ArrowLeft', '←').replace('ArrowRight', '→').replace('Space', 'space').replace('Enter', 'enter')).join(' ');
+      const key = [...new Set(input.keys.map((k) => k.replace(/^Shift(Left|Right)$/, 'shift').replace(/^Key|^Digit/, '').replace('ArrowUp', '↑').replace('ArrowDown', '↓').replace('ArrowLeft', '←').replace('ArrowRight', '→').replace('Space', 'space').replace('Enter', 'enter')))].join(' ');
       const button = element('button', {type: 'button', title: `${input.label} (${key})`}, input.label, ' ', element('kbd', {textContent: key}));
       const press = (value: number) => this.send({type: 'input', action: input.action, value});
       button.onpointerdown = (event) => { button.setPointerCapture(event.pointerId); press(input.value); };

@@ -103,7 +103,9 @@ export class Viewer {
       this.controls.addEventListener('change', () => { this.stale = true; });
     } else {
       const away = new THREE.Vector3(...(position as [number, number, number])).sub(new THREE.Vector3(...(target as [number, number, number])));
-      away.multiplyScalar(stepBack(this.home, aspect, this.bodies.seen()));
+      const back = stepBack(this.home, aspect, this.bodies.seen());
+      away.multiplyScalar(back);
+      if (away.y < 0) away.y /= back;  // who looks up from the ground steps back on it, not under it
       const distance = away.length();
       this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
       this.camera.position.set(target[0], target[1], target[2]).add(away);
