@@ -215,9 +215,10 @@ void pair_strays(WorldImplementation<D>& world) {
     }
 }
 
-/// The fraction of the step at which a pair meets, as far as both ways are known; above 1: it does not.
+/// The fraction of the step at which a pair meets, as far as both ways are known; above 1: it does not. Until `after`
+/// it is known not to.
 template <class D>
-float meeting_time(const WorldImplementation<D>& world, const BulletPair& pair) {
+float meeting_time(const WorldImplementation<D>& world, const BulletPair& pair, float after) {
   const ShapeRecord<D>&own = world.shapes.at(pair.own), &other = world.shapes.at(pair.other);
   const auto fraction = [&](int side) {
     return pair.place[side] == none ? 0.0f : world.scratch.swept[std::size_t(pair.place[side])].fraction;
@@ -225,7 +226,7 @@ float meeting_time(const WorldImplementation<D>& world, const BulletPair& pair) 
   const float a = fraction(0), b = fraction(1), ends[2] = {min(a, b), max(a, b)};
   const typename D::Position base = world.scratch.swept[std::size_t(pair.place[0])].center;
   const bool guarded = !one_way(world, pair.other);
-  float from = 0;
+  float from = after;
   for (const float to : ends) {  // first both move, then the one that was not stopped
     if (to <= from) continue;
     if (const float t = meeting_time(world, own, other, base, from, to, guarded); t < 1) return t;
@@ -252,10 +253,10 @@ void meet_in_order(StepContext<D>& context) {
   scratch.first_bullet_pair.assign(world.bodies.awake.size(), none);
   heap.clear();
   // Nobody has been stopped yet: when each pair meets by itself is asked side by side.
-  scratch.first_meetings.resize(pairs.size());
+  scratch.pair_meetings.resize(pairs.size());
   context.scheduler.parallel_for(int(pairs.size()), 32, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i)
-      scratch.first_meetings[std::size_t(i)] = meeting_time(world, pairs[std::size_t(i)]);
+      scratch.pair_meetings[std::size_t(i)] = meeting_time(world, pairs[std::size_t(i)], 0);
   });
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (int side = 0; side < 2; ++side) {
@@ -264,7 +265,7 @@ void meet_in_order(StepContext<D>& context) {
       pairs[i].next[side] = first;
       first = 2 * std::int32_t(i) + side;
     }
-    if (const float t = scratch.first_meetings[i]; t < 1) heap.push_back({t, std::int32_t(i)});
+    if (const float t = scratch.pair_meetings[i]; t < 1) heap.push_back({t, std::int32_t(i)});
   }
   std::make_heap(heap.begin(), heap.end(), later);
   while (!heap.empty()) {
@@ -272,7 +273,7 @@ void meet_in_order(StepContext<D>& context) {
     const BulletMeeting meeting = heap.back();
     heap.pop_back();
     const BulletPair& pair = pairs[std::size_t(meeting.pair)];
-    if (meeting_time(world, pair) != meeting.time) continue;  // another one came first
+    if (scratch.pair_meetings[std::size_t(meeting.pair)] != meeting.time) continue;  // another one came first
     for (int side = 0; side < 2; ++side) {
       if (pair.place[side] == none) continue;
       const std::int32_t body = world.bodies.awake[std::size_t(pair.place[side])];
@@ -285,7 +286,10 @@ void meet_in_order(StepContext<D>& context) {
         carry_on(world, body, world.shapes.at(facing).body, meeting.time);
       for (std::int32_t key = scratch.first_bullet_pair[std::size_t(pair.place[side])]; key != none;) {
         const BulletPair& changed = pairs[std::size_t(key >> 1)];
-        if (const float t = meeting_time(world, changed); t < 1) {
+        // What it would have met before now has come up before now.
+        float& t = scratch.pair_meetings[std::size_t(key >> 1)];
+        t = meeting_time(world, changed, meeting.time);
+        if (t < 1) {
           heap.push_back({t, key >> 1});
           std::push_heap(heap.begin(), heap.end(), later);
         }
@@ -356,7 +360,7 @@ void make_room(StepScratch<D>& scratch, std::size_t bodies) {
   room(scratch.strays);
   room(scratch.bullet_pairs);
   room(scratch.bullet_meetings);
-  room(scratch.first_meetings);
+  room(scratch.pair_meetings);
   if (scratch.first_bullet_pair.capacity() < bodies) scratch.first_bullet_pair.reserve(bodies);
 }
 

@@ -113,7 +113,7 @@ template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, loads, hits, flights, impacts, impact_queue, solver_stages, solver_loops, sweeps, sweeping, watches,
          old_bounds, moved_place, moved, group_places, group_ends, found_pairs, met_sensors, pairs, found_bullet_pairs,
-         found_strays, strays, bullet_pairs, bullet_meetings, first_meetings, first_bullet_pair, swept, fast, broken,
+         found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings, first_bullet_pair, swept, fast, broken,
          body_changes, contact_changes, found_manifolds, manifolds, island_parent, island_list, island_bodies,
          island_ends, doomed_contacts, new_touches, island_restless, island_substeps, whole_awake, whole_trees,
          whole_colors, contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin, sensor_end,
@@ -142,7 +142,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(strays);
   visit.scratch(bullet_pairs);
   visit.scratch(bullet_meetings);
-  visit.scratch(first_meetings);
+  visit.scratch(pair_meetings);
   visit.scratch(first_bullet_pair);
   visit.scratch(swept);
   visit.scratch(fast);

@@ -134,7 +134,7 @@ struct StepScratch {
   std::vector<StrayShape<D>> strays;
   std::vector<BulletPair> bullet_pairs;
   std::vector<BulletMeeting> bullet_meetings;                  ///< a heap, earliest first
-  std::vector<float> first_meetings;                           ///< of each pair, while nobody has been stopped
+  std::vector<float> pair_meetings;                            ///< by place in bullet_pairs, as the ways are known now
   std::vector<std::int32_t> first_bullet_pair;                 ///< by place in BodyStore::awake
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake
