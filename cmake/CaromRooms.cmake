@@ -13,7 +13,7 @@ function(carom_add_room NAME FLOOR)
   target_link_libraries(${target} PUBLIC carom_flags)
   target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
-    VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD ${CAROM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+    VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD ${CAROM_UNITY} UNITY_BUILD_BATCH_SIZE ${CAROM_UNITY_BATCH})
   if(BUILD_SHARED_LIBS)
     target_compile_definitions(${target} PUBLIC CAROM_SHARED)
   endif()
@@ -52,6 +52,12 @@ function(carom_rooms_below FLOOR OUT)
   set(${OUT} ${result} PARENT_SCOPE)
 endfunction()
 
+# carom_compile_lightly(TARGET): for what no one waits for when it runs. In an optimised build its sources are compiled
+# with less of it, which takes half the time; results are the same, as everywhere.
+function(carom_compile_lightly TARGET)
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # carom_add_test(NAME FLOOR [folder]): all of tests/NAME as one program, linked to the rooms up to FLOOR.
 function(carom_add_test NAME FLOOR)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${NAME}/*.cpp)
@@ -62,8 +68,9 @@ function(carom_add_test NAME FLOOR)
   add_executable(test_${NAME} ${sources})
   # The assertions of GoogleTest are written with an else of their own: `if (x) EXPECT_EQ(a, b);` is no mistake.
   target_compile_options(test_${NAME} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-else>)
+  carom_compile_lightly(test_${NAME})
   target_link_libraries(test_${NAME} PRIVATE ${rooms} carom_flags GTest::gtest_main Threads::Threads ${ARGN})
-  set_target_properties(test_${NAME} PROPERTIES UNITY_BUILD ${CAROM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(test_${NAME} PROPERTIES UNITY_BUILD ${CAROM_UNITY} UNITY_BUILD_BATCH_SIZE ${CAROM_UNITY_BATCH})
   target_compile_definitions(test_${NAME} PRIVATE CAROM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   add_test(NAME ${NAME} COMMAND test_${NAME} --gtest_brief=1)
 endfunction()

@@ -7,15 +7,15 @@
 
 namespace carom::command {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
 std::string hex(std::uint64_t hash) {
   char text[20];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;
 }
+
+namespace {
+
+using Json = nlohmann::ordered_json;
 
 Json vector_json(math::Vec3d v) { return {v.x, v.y, v.z}; }
 

@@ -8,6 +8,9 @@
 
 namespace carom::command {
 
+/// A state hash as it is written everywhere: 16 hexadecimal digits.
+std::string hex(std::uint64_t hash);
+
 struct StepHash {
   std::uint64_t step = 0, hash = 0;
 };

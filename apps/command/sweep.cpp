@@ -16,6 +16,7 @@
 #include "apps/command/canvas.h"
 #include "apps/command/chart.h"
 #include "apps/command/command.h"
+#include "apps/command/report.h"
 #include "apps/command/sweep_report.h"
 #include "apps/host/simulation.h"
 
@@ -68,12 +69,6 @@ core::Result<Varied> parse_varied(const host::Declaration& d, const std::string&
     out.values.push_back(*number);
   }
   return out;
-}
-
-std::string hex(std::uint64_t x) {
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(x));
-  return text;
 }
 
 class Sweep {

@@ -13,7 +13,7 @@ namespace carom::rigid {
 namespace {
 
 constexpr double touching = 0.02;  // m: bodies so near rest on each other
-constexpr int none = -1;
+constexpr int no_part = -1;
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -36,9 +36,9 @@ struct Part {
   double factor = 1;  ///< the solver's mass over its own (detail/load.h)
   std::string name;
 };
-/// A contact or joint that carries `above` by `below` (none: what does not move).
+/// A contact or joint that carries `above` by `below` (no_part: what does not move).
 struct Support {
-  int above = none, below = none;
+  int above = no_part, below = no_part;
   double stiffness = 0;  ///< N/m, of a joint; 1/s², ω² of a contact
   JointId joint{};
   int points = 0;                      ///< of a contact
@@ -91,7 +91,7 @@ class Adviser {
     for (const JointId id : joints)
       if (const auto joint = world.joint_state(id); joint.ok())
         for (const BodyId body : {joint->body_a, joint->body_b})
-          if (const int part = place_of(body); part != none) parts_[std::size_t(part)].jointed = true;
+          if (const int part = place_of(body); part != no_part) parts_[std::size_t(part)].jointed = true;
   }
 
   std::vector<Advice> all() {
@@ -123,12 +123,12 @@ class Adviser {
       part.weight = std::max(0.0, double(part.state.mass) * gravity_ * double(scale));
     }
     part.height = double(dot(part.state.center_of_mass, typename D::Position(up_)));
-    if (std::size_t(id.index) >= place_.size()) place_.resize(std::size_t(id.index) + 1, none);
+    if (std::size_t(id.index) >= place_.size()) place_.resize(std::size_t(id.index) + 1, no_part);
     place_[std::size_t(id.index)] = int(parts_.size());
     parts_.push_back(part);
   }
-  int place_of(BodyId id) const { return id.is_null() ? none : place_[std::size_t(id.index)]; }
-  bool moves(int part) const { return part != none && parts_[std::size_t(part)].inverse_mass > 0; }
+  int place_of(BodyId id) const { return id.is_null() ? no_part : place_[std::size_t(id.index)]; }
+  bool moves(int part) const { return part != no_part && parts_[std::size_t(part)].inverse_mass > 0; }
   void say(AdviceKind kind, BodyId body, JointId joint, double predicted, int substeps, std::string message) {
     advice_.push_back({kind, body, joint, predicted, substeps, std::move(message)});
   }
@@ -189,10 +189,10 @@ class Adviser {
       if (spring == nullptr) continue;
       double inverse = 0;
       for (const BodyId body : {spring->body_a, spring->body_b})
-        if (const int part = place_of(body); part != none) inverse += parts_[std::size_t(part)].inverse_mass;
+        if (const int part = place_of(body); part != no_part) inverse += parts_[std::size_t(part)].inverse_mass;
       const BodyId subject = spring->body_a;
       const int part = place_of(subject);
-      stiff_spring("spring of " + (part == none ? std::string("the world") : parts_[std::size_t(part)].name),
+      stiff_spring("spring of " + (part == no_part ? std::string("the world") : parts_[std::size_t(part)].name),
                    std::sqrt(std::max(0.0, spring->stiffness) * inverse) / (2 * math::pi), subject, {});
     }
   }
@@ -264,7 +264,7 @@ class Adviser {
                             const int above = upright > 0 ? b : a, below = upright > 0 ? a : b;
                             if (!moves(above)) return;
                             const double omega = 2 * math::pi * contact_hertz_ * (moves(below) ? 1 : 2);
-                            Support support{above, moves(below) ? below : none, omega * omega, {}};
+                            Support support{above, moves(below) ? below : no_part, omega * omega, {}};
                             for (; support.points < m.count; ++support.points) {
                               const typename D::Position point = world_point(placed, m.points[support.points].point);
                               support.mobility[0][support.points] = mobility(parts_[std::size_t(above)], point, n);
@@ -326,14 +326,14 @@ class Adviser {
       const int above = la > lb ? link.a : link.b, below = la > lb ? link.b : link.a;
       const double k =
           parts_[std::size_t(above)].inverse_mass + (moves(below) ? parts_[std::size_t(below)].inverse_mass : 0);
-      supports_.push_back({above, moves(below) ? below : none, omega * omega / k, link.id});
+      supports_.push_back({above, moves(below) ? below : no_part, omega * omega / k, link.id});
     }
   }
 
   /// Loads from the top down, what gives way from the bottom up; then a word about the worst of each heap.
   void carry(AdviceKind kind, double share) {
     if (supports_.empty()) return;
-    std::vector<int> order, degree(parts_.size(), 0), root(parts_.size(), none);
+    std::vector<int> order, degree(parts_.size(), 0), root(parts_.size(), no_part);
     for (int i = 0; i < int(parts_.size()); ++i) {
       parts_[std::size_t(i)].load = parts_[std::size_t(i)].weight;
       parts_[std::size_t(i)].sag = 0;
@@ -344,7 +344,7 @@ class Adviser {
     std::vector<std::vector<int>> under(parts_.size());
     for (int s = 0; s < int(supports_.size()); ++s) {
       const Support& support = supports_[std::size_t(s)];
-      if (support.below != none && !(height(support.below) < height(support.above))) continue;
+      if (support.below != no_part && !(height(support.below) < height(support.above))) continue;
       under[std::size_t(support.above)].push_back(s);
     }
     std::vector<double> force(supports_.size(), 0);
@@ -352,7 +352,7 @@ class Adviser {
       for (const int s : under[std::size_t(i)]) {
         force[std::size_t(s)] = parts_[std::size_t(i)].load / double(under[std::size_t(i)].size());
         const int below = supports_[std::size_t(s)].below;
-        if (below != none) parts_[std::size_t(below)].load += force[std::size_t(s)];
+        if (below != no_part) parts_[std::size_t(below)].load += force[std::size_t(s)];
       }
     for (const int i : order) parts_[std::size_t(i)].factor = load_factor(parts_[std::size_t(i)]);
     std::vector<double> length(parts_.size(), 0);
@@ -363,27 +363,27 @@ class Adviser {
       double sum = 0, longest = 0;
       for (const int s : under[std::size_t(i)]) {
         const Support& support = supports_[std::size_t(s)];
-        const double below = support.below == none ? 0 : parts_[std::size_t(support.below)].sag;
+        const double below = support.below == no_part ? 0 : parts_[std::size_t(support.below)].sag;
         sum += below + support.yields(force[std::size_t(s)], part.factor,
-                                      support.below == none ? 1 : parts_[std::size_t(support.below)].factor);
-        longest = std::max(longest, support.below == none ? 0 : length[std::size_t(support.below)]);
-        root[std::size_t(i)] = support.below == none ? i : root[std::size_t(support.below)];
+                                      support.below == no_part ? 1 : parts_[std::size_t(support.below)].factor);
+        longest = std::max(longest, support.below == no_part ? 0 : length[std::size_t(support.below)]);
+        root[std::size_t(i)] = support.below == no_part ? i : root[std::size_t(support.below)];
         worst[std::size_t(i)] = support;
       }
       if (under[std::size_t(i)].empty()) continue;
       part.sag = sum / double(under[std::size_t(i)].size());
       length[std::size_t(i)] = longest + smallest_extent(part.id);
     }
-    std::vector<int> top(parts_.size(), none);  // of each heap, by its lowest body
+    std::vector<int> top(parts_.size(), no_part);  // of each heap, by its lowest body
     for (const int i : order) {
       const int r = root[std::size_t(i)];
-      if (r == none) continue;
+      if (r == no_part) continue;
       int& t = top[std::size_t(r)];
-      if (t == none || parts_[std::size_t(i)].sag > parts_[std::size_t(t)].sag) t = i;
+      if (t == no_part || parts_[std::size_t(i)].sag > parts_[std::size_t(t)].sag) t = i;
     }
     std::vector<int> worst_first;
     for (const int t : top)
-      if (t != none && parts_[std::size_t(t)].sag > share * length[std::size_t(t)]) worst_first.push_back(t);
+      if (t != no_part && parts_[std::size_t(t)].sag > share * length[std::size_t(t)]) worst_first.push_back(t);
     std::stable_sort(worst_first.begin(), worst_first.end(),
                      [&](int l, int r) { return parts_[std::size_t(l)].sag > parts_[std::size_t(r)].sag; });
     if (int(worst_first.size()) > options_.most) worst_first.resize(std::size_t(options_.most));

@@ -344,7 +344,7 @@ class SceneWriter {
         .put("point", vector_text(e.point));
     return f.put("angular_coefficient", e.angular_coefficient).object();
   }
-  std::string effector_text(const Wind<D>& e) const {
+  std::string effector_text(const rigid::Wind<D>& e) const {
     return effector_fields("wind").put("velocity", vector_text(e.velocity)).object();
   }
   std::string effector_text(const SpringDamper<D>& e) const {

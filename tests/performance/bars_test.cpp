@@ -8,6 +8,7 @@
 #include "benchmarks/measure.h"
 #include "benchmarks/scene_pieces.h"
 #include "carom/math/random.h"
+#include "tests/rigid/scene_pieces.h"
 
 namespace {
 using namespace carom;
@@ -63,6 +64,25 @@ TEST(Bars, HundredThousandSleepersAddLessThanOnePercent) {
   }
   EXPECT_EQ(beside.counters().awake_bodies, 4000);
   EXPECT_LT(fastest[1], 1.01 * fastest[0]) << "µs a step with and without 100 000 sleepers";
+}
+
+// Rollback of eight frames at 60 Hz: half of a frame.
+TEST(Bars, RestoreAndEightStepsOfFiveHundredBodies) {
+  rigid::WorldDef<Dim3> definition;
+  definition.allow_sleep = false;
+  World3 world(definition);
+  rigid::test::add_ground(world);
+  rigid::test::add_heap(world, 31);
+  rigid::test::run(world, 400);
+  const rigid::Snapshot3 base = world.snapshot();
+  double best = 1e9;
+  for (int round = 0; round < 100 && (round < 25 || best >= 8000); ++round) {
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(world.restore(base).ok());
+    rigid::test::run(world, 8);
+    best = std::min(best, microseconds_since(begin));
+  }
+  EXPECT_LT(best, 8000) << "µs";
 }
 
 /// Fastest of a few rounds, µs a call.

@@ -2,8 +2,6 @@
 // they belong to and is simulated again. It must end where a world ends that had them all in time.
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include "tests/rigid/scene_pieces.h"
 
 namespace carom::rigid::test {
@@ -197,25 +195,6 @@ TEST(SnapshotSize, ADifferenceIsSmall) {
   run(sleepers, 8);
   EXPECT_LT(sleepers.snapshot().encode(base).size(), 1000u);  // one ball among 720 sleepers; most is the header
   EXPECT_TRUE(sleepers.contains(ball));
-}
-
-// Restore and eight steps of 500 bodies in less than 8 ms on one core. The least of many runs: machines are shared.
-TEST(SnapshotSpeed, RestoreAndEightStepsOfFiveHundredBodies) {
-#ifdef __OPTIMIZE__
-  World3 world = heap_of_500(false);
-  run(world, 400);
-  const Snapshot3 base = world.snapshot();
-  double best = 1e9;
-  for (int round = 0; round < 25; ++round) {
-    const auto start = std::chrono::steady_clock::now();
-    ASSERT_TRUE(world.restore(base).ok());
-    run(world, 8);
-    best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-  }
-  EXPECT_LT(best, 8.0);
-#else
-  GTEST_SKIP() << "speed is a matter of optimised builds";
-#endif
 }
 
 }  // namespace

@@ -8,25 +8,25 @@ constexpr std::uint32_t limb_mask2 = part_pin | part_twist;
 constexpr std::uint32_t limb_mask3 = part_pin | part_friction | part_cone | part_twist | part_angular | part_hinge;
 
 template <std::size_t N, int W, class V>
-void put(float (&lanes)[N][W], int lane, const V& v) {
+void set_lane(float (&lanes)[N][W], int lane, const V& v) {
   for (std::size_t i = 0; i < N; ++i) lanes[i][lane] = v[int(i)];
 }
 template <int W>
-void put(float (&lanes)[4][W], int lane, const Quatf& q) {
+void set_lane(float (&lanes)[4][W], int lane, const Quatf& q) {
   lanes[0][lane] = q.w;
   for (int i = 0; i < 3; ++i) lanes[i + 1][lane] = q.vector()[i];
 }
 template <int W>
-void put(float (&lanes)[6][W], int lane, const Mat3f& m) {
+void set_lane(float (&lanes)[6][W], int lane, const Mat3f& m) {
   const float t[6] = {m.cx.x, m.cx.y, m.cx.z, m.cy.y, m.cy.z, m.cz.z};
   for (int i = 0; i < 6; ++i) lanes[i][lane] = t[i];
 }
 template <int W>
-Vec3f get(const float (&lanes)[3][W], int lane) {
+Vec3f lane_value(const float (&lanes)[3][W], int lane) {
   return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 template <int W>
-Vec2f get(const float (&lanes)[2][W], int lane) {
+Vec2f lane_value(const float (&lanes)[2][W], int lane) {
   return {lanes[0][lane], lanes[1][lane]};
 }
 
@@ -60,10 +60,10 @@ void take_law(const LawLanes<W>& law, int lane, auto& memory) {
 
 template <int W>
 void fill_block(LimbLanes<Dim2, W>& out, int lane, JointPart, const PinBlock<Dim2>& pin) {
-  put(out.arm_a, lane, pin.arm_a);
-  put(out.arm_b, lane, pin.arm_b);
-  put(out.offset, lane, pin.offset);
-  put(out.impulse, lane, pin.impulse);
+  set_lane(out.arm_a, lane, pin.arm_a);
+  set_lane(out.arm_b, lane, pin.arm_b);
+  set_lane(out.offset, lane, pin.offset);
+  set_lane(out.impulse, lane, pin.impulse);
 }
 template <int W>
 void fill_block(LimbLanes<Dim2, W>& out, int lane, JointPart, const AngularAxis<Dim2>& axis) {
@@ -74,10 +74,10 @@ void fill_block(LimbLanes<Dim2, W>& out, int lane, JointPart, const AngularAxis<
 }
 template <int W>
 void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart, const PinBlock<Dim3>& pin) {
-  put(out.arm_a, lane, pin.arm_a);
-  put(out.arm_b, lane, pin.arm_b);
-  put(out.offset, lane, pin.offset);
-  put(out.impulse, lane, pin.impulse);
+  set_lane(out.arm_a, lane, pin.arm_a);
+  set_lane(out.arm_b, lane, pin.arm_b);
+  set_lane(out.offset, lane, pin.offset);
+  set_lane(out.impulse, lane, pin.impulse);
 }
 template <int W>
 void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart part, const AngularAxis<Dim3>& axis) {
@@ -88,12 +88,12 @@ void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart part, const Angular
 template <int W>
 void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart part, const AngularBlock<Dim3>& turn) {
   if (part == part_friction) {
-    put(out.friction, lane, turn.impulse);
+    set_lane(out.friction, lane, turn.impulse);
     out.max_friction[lane] = turn.max_impulse;
     return;
   }
-  put(out.spring, lane, turn.impulse);
-  put(out.before, lane, turn.before);
+  set_lane(out.spring, lane, turn.impulse);
+  set_lane(out.before, lane, turn.before);
   out.velocity[lane] = turn.response.velocity;
   out.position[lane] = turn.response.position;
   out.memory[lane] = turn.response.memory;
@@ -101,7 +101,7 @@ void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart part, const Angular
 }
 template <int W>
 void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart, const HingeBlock& hinge) {
-  put(out.hinge, lane, hinge.impulse);
+  set_lane(out.hinge, lane, hinge.impulse);
 }
 
 template <class D, int W>
@@ -127,12 +127,12 @@ void fill_lane(LimbLanes<D, W>& out, int lane, std::int32_t joint, const WorldIm
     out.inverse_inertia_a[lane] = record.inverse_inertia_a;
     out.inverse_inertia_b[lane] = record.inverse_inertia_b;
   } else {
-    put(out.start_tensor_a, lane, record.tensors()[0]);
-    put(out.start_tensor_b, lane, record.tensors()[1]);
+    set_lane(out.start_tensor_a, lane, record.tensors()[0]);
+    set_lane(out.start_tensor_b, lane, record.tensors()[1]);
     const JointPlacement<D> at =
         place_joint(world.bodies, world.joints.headers[std::size_t(joint)], world.joints.data[std::size_t(joint)]);
-    put(out.frame_a, lane, at.frame_a);
-    put(out.frame_b, lane, at.frame_b);
+    set_lane(out.frame_a, lane, at.frame_a);
+    set_lane(out.frame_b, lane, at.frame_b);
   }
   for_each_block(record, [&](JointPart part, auto& block) {
     if constexpr (requires { fill_block(out, lane, part, block); }) fill_block(out, lane, part, block);
@@ -141,15 +141,15 @@ void fill_lane(LimbLanes<D, W>& out, int lane, std::int32_t joint, const WorldIm
 
 template <int W>
 void take_lane(const LimbLanes<Dim2, W>& block, int lane, JointMemory<Dim2>& memory) {
-  memory.point = get(block.impulse, lane);
+  memory.point = lane_value(block.impulse, lane);
   take_law(block.law, lane, memory.turn[0]);
 }
 template <int W>
 void take_lane(const LimbLanes<Dim3, W>& block, int lane, JointMemory<Dim3>& memory) {
-  memory.point = get(block.impulse, lane);
-  memory.friction = get(block.friction, lane);
-  memory.angular = get(block.spring, lane);
-  memory.hinge = get(block.hinge, lane);
+  memory.point = lane_value(block.impulse, lane);
+  memory.friction = lane_value(block.friction, lane);
+  memory.angular = lane_value(block.spring, lane);
+  memory.hinge = lane_value(block.hinge, lane);
   memory.turn[0] = {};
   memory.turn[0].upper = block.cone.impulse[lane];
   take_law(block.law, lane, memory.turn[2]);
@@ -236,7 +236,7 @@ void store_limbs(StepContext<D>& context) {
           if constexpr (D::dimension == 2)
             data.torque = blocks[b].turn_impulse[lane] * context.inverse_h;
           else
-            data.torque = get(blocks[b].turn_impulse, lane) * context.inverse_h;
+            data.torque = lane_value(blocks[b].turn_impulse, lane) * context.inverse_h;
         }
     });
   });

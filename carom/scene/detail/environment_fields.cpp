@@ -10,7 +10,6 @@ constexpr std::string_view profiles[] = {"uniform", "power", "logarithmic"};
 constexpr std::string_view turbulence_spectra[] = {"dryden", "von_karman"};
 constexpr std::string_view sea_spectra[] = {"none", "pierson_moskowitz", "jonswap"};
 constexpr std::string_view stretchings[] = {"wheeler", "vertical"};
-constexpr const char* preset_text = "name of a preset file, without .json";
 
 constexpr Field gravity_fields[] = {
     {"kind", T::choice, M::plain, "", nullptr, gravity_kinds, true},

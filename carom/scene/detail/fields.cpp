@@ -59,7 +59,7 @@ const ObjectKind parameter_kind{"parameter", "A number that a command line, a sw
                                 parameter_fields};
 
 constexpr Field material_fields[] = {
-    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"preset", T::text, M::plain, preset_text},
     {"description", T::text},
     {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0"},
     {"restitution", T::quantity, M::plain, "0 to 1"},
@@ -88,7 +88,7 @@ constexpr Field surface_fields[] = {
 const ObjectKind surface_kind{"surface", "What parts of a mesh, height field or chain are made of.", surface_fields};
 
 constexpr Field shape_fields[] = {
-    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"preset", T::text, M::plain, preset_text},
     {"name", T::text},
     {"description", T::text},
     {"type", T::choice, M::plain, "kind of shape", nullptr, shape_types},
@@ -182,7 +182,7 @@ const ObjectKind mass_properties_kind{"mass_properties", "Mass, centre and inert
                                       mass_properties_fields};
 
 constexpr Field body_fields[] = {
-    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"preset", T::text, M::plain, preset_text},
     {"name", T::text, M::plain, "unique; {expressions} in braces are replaced"},
     {"description", T::text},
     {"if", T::quantity, M::plain, "0: leave this body out"},
@@ -286,7 +286,7 @@ const ObjectKind joint_axes_kind{"joint_axes", "What is free, and how. Axes that
                                  joint_axes_fields};
 
 constexpr Field joint_fields[] = {
-    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"preset", T::text, M::plain, preset_text},
     {"name", T::text},
     {"description", T::text},
     {"if", T::quantity, M::plain, "0: leave this joint out"},
@@ -343,7 +343,7 @@ constexpr Field wave_fields[] = {
 const ObjectKind wave_kind{"wave", "A wave that runs along x.", wave_fields};
 
 constexpr Field effector_fields[] = {
-    {"preset", T::text, M::plain, "name of a preset file, without .json"},
+    {"preset", T::text, M::plain, preset_text},
     {"name", T::text},
     {"description", T::text},
     {"if", T::quantity, M::plain, "0: leave this effector out"},

@@ -53,6 +53,9 @@ struct ObjectKind {
   }
 };
 
+/// Of the key "preset" wherever it stands.
+inline constexpr const char* preset_text = "name of a preset file, without .json";
+
 struct FieldTables {
   const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *surface, *shape, *body,
       *character, *mass_properties, *group, *joint, *joint_axis, *joint_axes, *frame, *spring, *limit, *motor,

@@ -379,7 +379,7 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       return e;
     }
     case 3:
-      return Wind<D>{vector_for(reader.vector(o, "velocity"), d)};
+      return rigid::Wind<D>{vector_for(reader.vector(o, "velocity"), d)};
     case 4: {
       SpringDamper<D> e;
       if (!o.has("body_a"))

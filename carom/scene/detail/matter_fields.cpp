@@ -5,10 +5,9 @@ namespace {
 using T = FieldType;
 using M = Measure;
 
-constexpr const char* preset_text = "name of a preset file, without .json";
 constexpr const char* name_text = "unique among its kind; {expressions} in braces are replaced";
 constexpr std::string_view edges[] = {"first_column", "last_column", "first_row", "last_row"};
-constexpr std::string_view drag_laws[] = {"none", "linear", "stokes", "schiller_naumann", "quadratic"};
+constexpr std::string_view particle_drag_laws[] = {"none", "linear", "stokes", "schiller_naumann", "quadratic"};
 constexpr std::string_view answers[] = {"bounce", "stick", "kill"};
 constexpr std::string_view forms[] = {"point", "segment", "disc", "box", "sphere", "mesh"};
 constexpr std::string_view occasions[] = {"death", "hit"};
@@ -245,7 +244,7 @@ constexpr Field particles_fields[] = {
     {"mass", T::quantity, M::mass, "of one"},
     {"density", T::quantity, M::density, "of its ball, instead of mass"},
     {"gravity_scale", T::quantity, M::plain, "hot smoke rises: negative"},
-    {"drag", T::choice, M::plain, "quadratic unless given", nullptr, drag_laws},
+    {"drag", T::choice, M::plain, "quadratic unless given", nullptr, particle_drag_laws},
     {"drag_coefficient", T::quantity, M::plain, "of a quadratic drag"},
     {"linear_coefficient", T::quantity, M::damping, "of a linear drag"},
     {"drag_over_age", T::any, M::plain, "a factor: a number, or pairs of age (0 to 1) and value"},

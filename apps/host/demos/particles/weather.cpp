@@ -9,7 +9,7 @@ using rigid::BodyId;
 using rigid::Dim2;
 using rigid::Dim3;
 
-constexpr double water = 1000, ice = 917;
+constexpr double water = 1000, density_of_ice = 917;
 float ball_mass(double radius, double density) { return float(4.0 / 3 * pi * radius * radius * radius * density); }
 
 class Snow final : public Repeatable<Snow, Demo3> {
@@ -365,7 +365,7 @@ class Hail final : public Repeatable<Hail, Demo2> {
     d.capacity = 3000;
     d.planar = true;
     d.radius = 0.5f * stage.valuef("diameter");
-    d.mass = ball_mass(double(d.radius), ice);
+    d.mass = ball_mass(double(d.radius), density_of_ice);
     d.color_over_age = particles::Gradient(0x3d86c6);
     d.opacity_over_age = stage.keep(particles::Curve::make({{0, 1}, {0.9f, 1}, {1, 0}}));
     d.contacts = {.enabled = true, .restitution = stage.valuef("restitution"), .friction = 0.2f, .substeps = 4};
