@@ -135,7 +135,9 @@ Vec3d shade(Vec3d albedo, Vec3d normal, Vec3d to_eye, double lit) {
   const double diffuse = std::max(0.0, dot(normal, sun)) * lit;
   const Vec3d ambient = lerp(Vec3d{0.20, 0.19, 0.18}, Vec3d{0.40, 0.44, 0.50}, 0.5 + 0.5 * normal.y);
   const Vec3d half = normalize(sun + to_eye);
-  const double gloss = std::pow(std::max(0.0, dot(normal, half)), 40) * 0.18 * lit;
+  const double shine = std::max(0.0, dot(normal, half)), shine_2 = shine * shine,
+               shine_8 = shine_2 * shine_2 * shine_2 * shine_2;
+  const double gloss = shine_8 * shine_8 * shine_8 * shine_8 * shine_8 * 0.18 * lit;
   return scale(albedo, ambient + Vec3d{0.95, 0.91, 0.84} * diffuse) + Vec3d{gloss, gloss, gloss};
 }
 
