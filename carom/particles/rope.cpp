@@ -134,7 +134,6 @@ Result<int> RopeSet::add(const RopeDef& def) {
   rope.material = def.material;
   rope.filter = def.filter;
   rope.collide = def.collide;
-  rope.touch_ropes = def.touch_ropes;
   rope.segment = rest / def.segments;
   rope.resize(std::size_t(def.segments) + 1);
   detail::lay(def.points, way, def.segments, rope.position);
@@ -296,11 +295,6 @@ Vec3d RopeSet::attachment_force(int index, int node) const {
   for (const detail::RopeGrip& grip : rope.grips)
     if (grip.attachment.node == node) return grip.force;
   return {};
-}
-int RopeSet::rope_contact_count() const {
-  int count = 0;
-  for (const detail::RopePair& pair : pairs_) count += pair.push > 0;
-  return count;
 }
 int RopeSet::contact_count(int index) const {
   int count = 0;

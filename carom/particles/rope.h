@@ -41,7 +41,6 @@ struct RopeDef {
   int segments = 20;                ///< 1 … 10 000, of equal length along the way
   double length = 0;                ///< m at rest; 0: as long as it lies
   bool collide = true;              ///< with shapes of the world
-  bool touch_ropes = false;         ///< keeps apart from other ropes of the set that do, and from itself
   rigid::Filter filter{};
 };
 
@@ -69,8 +68,6 @@ namespace detail {
 struct Rope;
 struct RopeBody;
 struct RopeMemory;
-struct RopePair;
-struct RopeSpan;
 struct RopeShape;
 struct RopeSolver;
 }  // namespace detail
@@ -119,7 +116,6 @@ class CAROM_API RopeSet {
   const RopeMaterial& material(int rope) const;
   Vec3d attachment_force(int rope, int node) const;  ///< N on the body, over the last step
   int contact_count(int rope) const;
-  int rope_contact_count() const;                                     ///< pairs of segments that press on each other
   std::span<const RopeBreakEvent> breaks() const { return breaks_; }  ///< of the last step
 
   Vec3d momentum() const;                        ///< kg·m/s
@@ -134,8 +130,6 @@ class CAROM_API RopeSet {
   std::vector<detail::RopeBody> bodies_;
   std::vector<detail::RopeShape> shapes_;
   std::vector<detail::RopeMemory> memory_;
-  std::vector<detail::RopePair> pairs_, old_pairs_;
-  std::vector<detail::RopeSpan> spans_;
   std::vector<double> matrix_, right_;
   std::vector<int> first_block_;
   std::vector<rigid::ShapeId> found_;

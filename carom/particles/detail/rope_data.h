@@ -97,28 +97,10 @@ struct RopeEdge {
   Mat3d stiff = Mat3d::zero();  ///< kg: impulse = stiff (target − velocity) + grip
 };
 
-/// Two segments that may touch. What pushes and rubs them acts on both alike, and is kept from substep to substep.
-struct RopePair {
-  int rope[2] = {0, 0}, segment[2] = {0, 0};
-  double share[2] = {0.5, 0.5};  ///< of the second end
-  Vec3d normal{};                ///< toward the first
-  double separation = 1e30;      ///< m
-  double least = 0;              ///< m/s along the normal, to keep apart
-  double friction = 0;
-  double push = 0;  ///< N
-  Vec3d grip{};     ///< N on the first, across
-};
-
-/// Where a segment may be in this step.
-struct RopeSpan {
-  int rope = 0, segment = 0;
-  Vec3d low{}, high{};
-};
-
 struct Rope {
   RopeMaterial material{};
   rigid::Filter filter{};
-  bool collide = true, touch_ropes = false;
+  bool collide = true;
   double segment = 0;  ///< m, as it was made
   std::vector<Vec3d> position, velocity;
   std::vector<double> lump;           ///< kg beside the rope's own
@@ -141,9 +123,7 @@ struct Rope {
   std::vector<int> reach;      ///< two a body: particles from … to that its motion moves
   std::vector<Vec3d> columns;  ///< 6 a body, as many as particles
   std::vector<double> theta, pull;
-  std::vector<std::uint8_t> slack;                     ///< by segment
-  std::vector<Mat3d> inverse, pair_factor, pair_held;  ///< of the rows: blocks of the diagonal; as eliminated
-  std::vector<Vec3d> trial;                            ///< the solution as pairs of segments change it
+  std::vector<std::uint8_t> slack;  ///< by segment
 
   int count() const { return int(position.size()); }
   void resize(std::size_t n);

@@ -44,16 +44,6 @@ struct RopeSolver {
   Vec3d edge_answer(const Rope& rope, std::size_t edge, std::size_t t, int c) const;
   Vec3d edge_push(const Rope& rope, int node, int body, Vec3d velocity, Vec3d spin) const;
 
-  // rope_pairs.cpp
-  bool share_anchor(const Rope& a, int segment_a, const Rope& b, int segment_b) const;
-  void find_pairs();   ///< at the start of a step
-  void place_pairs();  ///< at the start of a substep
-  void add_pairs(Rope& rope, int index) const;
-  Vec3d free_part(const RopeNode& node, Vec3d r) const;
-  void invert_rows(Rope& rope) const;
-  void answer_of(const Rope& rope, std::size_t e, double share, Vec3d impulse, Vec3d& first, Vec3d& second) const;
-  bool update_pairs();  ///< true: solve again
-
   // rope_step.cpp
   int needed_substeps(const Rope& rope) const;
   void wind_winches(Rope& rope);
@@ -61,7 +51,7 @@ struct RopeSolver {
   void weigh(Rope& rope);    ///< winches turn; masses
   void forces(Rope& rope);
   void hold_grips(Rope& rope);
-  void assemble(Rope& rope, int index);
+  void assemble(Rope& rope);
   void solve(Rope& rope);
   void react(Rope& rope, bool coupled);  ///< impulses on the particles that the solution asks for
   double change(Rope& rope);             ///< the greatest strain by which the last iteration was off, squared; tensions

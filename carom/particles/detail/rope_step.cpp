@@ -132,7 +132,7 @@ void RopeSolver::hold_grips(Rope& rope) {
   }
 }
 
-void RopeSolver::assemble(Rope& rope, int index) {
+void RopeSolver::assemble(Rope& rope) {
   const std::size_t n = rope.position.size();
   for (std::size_t i = 0; i < n; ++i) {
     rope.diagonal[i] = Mat3d::diagonal({rope.mass[i], rope.mass[i], rope.mass[i]});
@@ -167,7 +167,6 @@ void RopeSolver::assemble(Rope& rope, int index) {
     rope.momentum[i + 1] -= pull;
   }
   add_edges(rope);
-  if (rope.touch_ropes) add_pairs(rope, index);
 }
 
 void RopeSolver::solve(Rope& rope) {
@@ -325,7 +324,6 @@ Status RopeSolver::run() {
     wind_winches(rope);
     find_contacts(rope);
   }
-  find_pairs();
   find_mobility();
   for (Rope& rope : set.ropes_) prepare(rope);
   for (int s = 0; s < substeps; ++s) {
@@ -342,16 +340,14 @@ Status RopeSolver::run() {
       place_contacts(rope);
       place_edges(rope);
     }
-    place_pairs();
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
-        Rope& rope = set.ropes_[r];
-        assemble(rope, int(r));
+      for (Rope& rope : set.ropes_) {
+        assemble(rope);
         solve(rope);
         react(rope, false);
       }
       couple();
-      bool again = iteration + 1 < most_iterations && update_pairs();
+      bool again = false;
       for (Rope& rope : set.ropes_) {
         react(rope, true);
         if (iteration + 1 == most_iterations) continue;

@@ -53,7 +53,6 @@ constexpr Field rope_fields[] = {
     {"twist", T::quantity, M::angle, "of the clamped last end against the first"},
     {"substeps", T::integer, M::plain, "1 to 256; of all ropes the most"},
     {"collide", T::flag, M::plain, "with shapes of the world"},
-    {"touch_ropes", T::flag, M::plain, "keeps apart from other ropes that do, and from itself"},
     {"filter", T::object, M::plain, "", &filter_kind},
     {"color", T::color, M::plain, "as #rrggbb"},
 };

@@ -10,7 +10,6 @@ std::unique_ptr<Demo> make_flag_and_sail();
 std::unique_ptr<Demo> make_trebuchet();
 std::unique_ptr<Demo> make_capstan();
 std::unique_ptr<Demo> make_torsion_chain();
-std::unique_ptr<Demo> make_knots();
 std::unique_ptr<Demo> make_soft_bodies();
 
 }  // namespace carom::host::demo
