@@ -128,6 +128,22 @@ void tessellate(const host::ShapeView& shape, const host::MeshLibrary& meshes, c
       b.revolve({{r, h, 0, 1}, {0, h, 0, 1}}, detail);
       break;
     case ShapeKind::cone: {
+      if (const double e = double(shape.size.x); e > 0) {
+        const int steps = detail / 4;
+        const double side = std::atan2(r, 2 * h);  // where its normal points
+        rings.push_back({0, -h - e, 0, -1});
+        for (int i = 0; i <= 2 * steps; ++i) {
+          const double a = -pi / 2 + (side + pi / 2) * i / (2 * steps), c = std::cos(a), up = std::sin(a);
+          rings.push_back({r + e * c, -h + e * up, c, up});
+        }
+        for (int i = 0; i < steps; ++i) {
+          const double a = side + (pi / 2 - side) * i / steps, c = std::cos(a), up = std::sin(a);
+          rings.push_back({e * c, h + e * up, c, up});
+        }
+        rings.push_back({0, h + e, 0, 1});
+        b.revolve(rings, detail);
+        break;
+      }
       const double slope = r / std::sqrt(r * r + 4 * h * h), across = 2 * h / std::sqrt(r * r + 4 * h * h);
       b.revolve({{r, -h, across, slope}, {0, h, across, slope}}, detail);
       b.revolve({{0, -h, 0, -1}, {r, -h, 0, -1}}, detail);

@@ -29,7 +29,7 @@ class FreeAxes final : public Repeatable<FreeAxes, Demo3> {
         "axes, each on a spring: heave, surge and sway swing with f, whatever its mass.\n\n"
         "  x = A cos 2πft,  y = B sin 4πft";
     d.duration = 10;
-    d.camera = {{0.5, 5.6, 11.5}, {0, 0.9, 0}, 0.75};
+    d.camera = {{0.4, 4.2, 8.8}, {0, 0.7, 0.4}, 0.75};
     d.ground = 0;
     d.parameters = {
         {"frequency", "Frequency of the springs", "Hz", "Hz", "f, of the puck and the platform", 0.2, 2, 0, 0.5, false},
@@ -98,11 +98,11 @@ class FreeAxes final : public Repeatable<FreeAxes, Demo3> {
     way_.draw(stage, pen(blue, 0xa0));
     if (t > 5) far_ = max(far_, abs(v - 2));
     if (t > 5) turn_ = double(cart.angular_velocity.y) / v;
-    for (int i = 0; i < 8; ++i) {  // the springs under the platform
-      const Vec3d foot{rest_x_ + (i % 2 == 0 ? -0.6 : 0.6), 0, (i / 2 % 2 == 0 ? -0.4 : 0.4)};
-      const rigid::BodyState<Dim3> p = stage.at(platform_);
-      const Vec3f corner{float((i + i / 4) % 2 == 0 ? -0.6 : 0.6), -0.08f, i / 2 % 2 == 0 ? -0.4f : 0.4f};
-      stage.line(foot, p.pose.position + Vec3d(rotate(p.pose.rotation, corner)), pen(dark));
+    const rigid::BodyState<Dim3> platform = stage.at(platform_);
+    for (int i = 0; i < 4; ++i) {  // springs under the platform
+      const Vec3f corner{i % 2 == 0 ? -0.6f : 0.6f, -0.08f, i / 2 == 0 ? -0.4f : 0.4f};
+      stage.line({rest_x_ + double(corner.x), 0, double(corner.z)},
+                 platform.pose.position + Vec3d(rotate(platform.pose.rotation, corner)), pen(dark));
     }
   }
 

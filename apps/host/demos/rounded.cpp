@@ -30,7 +30,7 @@ class Rounded final : public Repeatable<Rounded, Demo3> {
         "lies and the centre of mass l from that tip:\n\n"
         "  T = 2π √( I cot²α / (m g sin β l cos α) ),  I = I_a cos²α + (I_t + m l²) sin²α";
     d.duration = 8;
-    d.camera = {{1.2, 4.4, 8.4}, {0.2, 0.6, 0}, 0.75};
+    d.camera = {{0.6, 3.2, 6.2}, {0.3, 0.4, 0}, 0.75};
     d.ground = 0;
     d.parameters = {
         {"rounding", "Rounding of the cone", "m", "cm", "r", 0.02, 0.2, 0, 0.08, false},
