@@ -1,11 +1,11 @@
 // The tables of explosions, guns and structures.
 #pragma once
 
-#include "carom/scene/detail/fields.h"
+#include "carom/scene/detail/body_fields.h"
 
 namespace carom::scene::detail {
 
 extern const ObjectKind explosion_kind, gun_kind, ammunition_kind, sight_kind, penetration_kind, layer_kind,
-    structure_kind, filter_kind, rotation_kind, material_kind, shape_kind;
+    structure_kind;
 
 }  // namespace carom::scene::detail
