@@ -1,6 +1,6 @@
 #include "carom/scene/destruction.h"
 
-#include "carom/core/string.h"
+#include "carom/scene/detail/quantity_names.h"
 
 namespace carom::scene {
 namespace {
@@ -308,30 +308,11 @@ bool any_of(const DestructionOf<D>& all) {
 }  // namespace
 
 bool Destruction::find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const {
-  bool found = false;
-  std::size_t best = 0;
-  each_name(*this, [&](int list, int place, const std::string& name) {
-    const std::string whole = core::text(list_names[list], ".", name, ".");
-    if (text.substr(0, whole.size()) != whole || whole.size() < best) return;
-    const std::string_view rest = text.substr(whole.size());
-    for (int f = 0; f < int(std::size(fields)); ++f) {
-      if (fields[f].list != list || rest.substr(0, fields[f].name.size()) != fields[f].name) continue;
-      const std::string_view end = rest.substr(fields[f].name.size());
-      const bool good =
-          fields[f].vector ? end.size() == 2 && end[0] == '.' && end[1] >= 'x' && end[1] <= (dimension == 2 ? 'y' : 'z')
-                           : end.empty();
-      if (!good) continue;
-      best = whole.size();
-      found = true;
-      source.kind = Probe::Source::Kind::destruction;
-      source.list = list;
-      source.item = place;
-      source.field = f;
-      source.component = fields[f].vector ? end[1] - 'x' : 0;
-      unit = fields[f].unit;
-    }
-  });
-  return found;
+  const auto names = [this](const auto& see) { each_name(*this, see); };
+  const auto known = [](int list, int field) { return fields[field].list == list; };
+  if (!detail::find_quantity<FieldName>(text, dimension, list_names, fields, names, known, source, unit)) return false;
+  source.kind = Probe::Source::Kind::destruction;
+  return true;
 }
 
 double Destruction::read(const Probe::Source& s, double time) const {
@@ -339,10 +320,7 @@ double Destruction::read(const Probe::Source& s, double time) const {
 }
 
 std::vector<std::string> Destruction::names() const {
-  std::vector<std::string> out;
-  each_name(*this,
-            [&](int list, int, const std::string& name) { out.push_back(core::text(list_names[list], ".", name)); });
-  return out;
+  return detail::quantity_names(list_names, [this](const auto& see) { each_name(*this, see); });
 }
 
 }  // namespace carom::scene

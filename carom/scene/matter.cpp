@@ -1,7 +1,7 @@
 #include "carom/scene/matter.h"
 
 #include "carom/core/hash.h"
-#include "carom/core/string.h"
+#include "carom/scene/detail/quantity_names.h"
 
 namespace carom::scene {
 namespace {
@@ -256,32 +256,13 @@ void Matter::add_to(core::StateHash& hash) const {
 }
 
 bool Matter::find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const {
-  bool found = false;
-  std::size_t best = 0;
-  each_name(*this, [&](int list, int place, const std::string& name) {
-    const std::string whole = core::text(list_names[list], ".", name, ".");
-    if (text.substr(0, whole.size()) != whole || whole.size() < best) return;
-    const std::string_view rest = text.substr(whole.size());
-    for (int f = 0; f < int(std::size(fields)); ++f) {
-      if ((has[list] >> f & 1) == 0 || rest.substr(0, fields[f].name.size()) != fields[f].name) continue;
-      const std::string_view end = rest.substr(fields[f].name.size());
-      const bool good =
-          fields[f].vector ? end.size() == 2 && end[0] == '.' && end[1] >= 'x' && end[1] <= (dimension == 2 ? 'y' : 'z')
-                           : end.empty();
-      if (!good) continue;
-      best = whole.size();
-      found = true;
-      source.kind = Probe::Source::Kind::matter;
-      source.list = list;
-      source.item = place;
-      source.field = f;
-      source.component = fields[f].vector ? end[1] - 'x' : 0;
-      unit = fields[f].unit;
-      if (list == cloth_list && f == of_tension) unit = "N/m";
-      if (dimension == 2 && f == of_volume) unit = "m^2";
-    }
-  });
-  return found;
+  const auto names = [this](const auto& see) { each_name(*this, see); };
+  const auto known = [](int list, int field) { return (has[list] >> field & 1) != 0; };
+  if (!detail::find_quantity<FieldName>(text, dimension, list_names, fields, names, known, source, unit)) return false;
+  source.kind = Probe::Source::Kind::matter;
+  if (source.list == cloth_list && source.field == of_tension) unit = "N/m";
+  if (dimension == 2 && source.field == of_volume) unit = "m^2";
+  return true;
 }
 
 double Matter::read(const Probe::Source& s) const {
@@ -293,10 +274,7 @@ double Matter::read(const Probe::Source& s) const {
 }
 
 std::vector<std::string> Matter::names() const {
-  std::vector<std::string> out;
-  each_name(*this,
-            [&](int list, int, const std::string& name) { out.push_back(core::text(list_names[list], ".", name)); });
-  return out;
+  return detail::quantity_names(list_names, [this](const auto& see) { each_name(*this, see); });
 }
 
 }  // namespace carom::scene

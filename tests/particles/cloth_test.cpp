@@ -7,6 +7,7 @@
 
 #include "carom/core/scheduler.h"
 #include "carom/math/elementary.h"
+#include "tests/particles/weightless.h"
 
 namespace carom::particles {
 namespace cloth_test {
@@ -15,12 +16,6 @@ using namespace math;
 using rigid::Dim3;
 using rigid::World3;
 constexpr double dt = 1.0 / 60, g = 9.80665;
-
-World3 weightless() {
-  rigid::WorldDef<Dim3> def;
-  def.gravity = {};
-  return World3(def);
-}
 
 TEST(Cloth, HangingStripStretchesByItsStiffness) {
   // A strip of .2 × 1 m with 1 kg at its lower edge: σ = F/(E t w). Poisson's ratio 0, since the held edge would

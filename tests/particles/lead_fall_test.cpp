@@ -3,6 +3,7 @@
 
 #include "carom/math/elementary.h"
 #include "carom/particles/rope.h"
+#include "tests/particles/weightless.h"
 
 namespace carom::particles {
 namespace lead_fall_test {
@@ -12,12 +13,6 @@ using rigid::BodyId;
 using rigid::Dim3;
 using rigid::World3;
 constexpr double dt = 1.0 / 60, g = 9.80665;
-
-World3 weightless() {
-  rigid::WorldDef<Dim3> def;
-  def.gravity = {};
-  return World3(def);
-}
 
 // A leader falls past the last anchor into a rope of length L: without damping the greatest force is
 // F = m g + √((m g)² + 2 m g EA f), f the height of the fall over L (Wexler, Am. Alpine Journal 7 (1950) 379).

@@ -5,6 +5,7 @@
 
 #include "carom/math/elementary.h"
 #include "carom/particles/rope.h"
+#include "tests/particles/weightless.h"
 
 namespace carom::particles {
 namespace rope_rod_test {
@@ -12,12 +13,6 @@ namespace rope_rod_test {
 using namespace math;
 using rigid::World3;
 constexpr double dt = 1.0 / 60, g = 9.80665;
-
-World3 weightless() {
-  rigid::WorldDef<rigid::Dim3> def;
-  def.gravity = {};
-  return World3(def);
-}
 
 TEST(RopeRod, CantileverBendsAsABeam) {
   // Euler–Bernoulli: w = F L³/3EI. The force is the weight of a lump at the tip; the first segment is clamped, so that

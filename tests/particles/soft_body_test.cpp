@@ -7,6 +7,7 @@
 
 #include "carom/core/scheduler.h"
 #include "carom/math/elementary.h"
+#include "tests/particles/weightless.h"
 
 namespace carom::particles {
 namespace soft_body_test {
@@ -15,12 +16,6 @@ using namespace math;
 using rigid::Dim3;
 using rigid::World3;
 constexpr double dt = 1.0 / 60, g = 9.80665;
-
-World3 weightless() {
-  rigid::WorldDef<Dim3> def;
-  def.gravity = {};
-  return World3(def);
-}
 
 TEST(SoftBody, BarStretchesByYoungsModulus) {
   // δ = F L/(E A); the ends' cross-sections may contract (ν = 0 here, as one end is held).
