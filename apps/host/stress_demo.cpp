@@ -50,7 +50,7 @@ const char* what_of(const SceneInfo& info) {
       {"box3d/joint_grid", "A net of 10 000 balls on 19 701 ball joints hangs from its upper edge."},
       {"box3d/junkyard", "10 584 rocks fall into a yard in which a pillar goes round."},
       {"box3d/large_pyramid", "5 050 cubes in one pyramid of a hundred rows."},
-      {"box3d/many_pyramids", "196 pyramids of 55 cubes."},
+      {"box3d/many_pyramids", "196 pyramids of 55 cubes each, side by side on one floor."},
       {"box3d/rain", "Ragdolls of fourteen bodies rain on a hundred grids with a torus each."},
       {"box3d/trees25", "Fifty trunks of 22 prisms fall over on a wavy mesh, four cells of it a metre."},
       {"box3d/trees50", "Fifty trunks of 22 prisms fall over on a wavy mesh, two cells of it a metre."},
