@@ -5,12 +5,15 @@
 namespace carom::rigid::detail {
 namespace {
 
-Vec3d axis_of_degree(const TreeLink& link, int k) { return k == 0 ? link.axes.cx : k == 1 ? link.axes.cy : link.axes.cz; }
+Vec3d axis_of_degree(const TreeLink& link, int k) {
+  return k == 0 ? link.axes.cx : k == 1 ? link.axes.cy : link.axes.cz;
+}
 
 /// Σ sₖ qₖ.
 Vec3d along_axes(const TreeLink& link, std::span<const double> values) {
   Vec3d sum{};
-  for (int k = 0; k < link.degrees; ++k) sum += axis_of_degree(link, k) * values[std::size_t(link.first) + std::size_t(k)];
+  for (int k = 0; k < link.degrees; ++k)
+    sum += axis_of_degree(link, k) * values[std::size_t(link.first) + std::size_t(k)];
   return sum;
 }
 
@@ -61,7 +64,8 @@ void tree_forces(std::span<const TreeLink> links, const TreeRoot& root, std::spa
     const TreeLink& link = links[i];
     const TreeForce& load = motion.load[i];
     for (int k = 0; k < link.degrees; ++k)
-      torques[std::size_t(link.first) + std::size_t(k)] = dot(axis_of_degree(link, k), link.slides ? load.force : load.moment);
+      torques[std::size_t(link.first) + std::size_t(k)] =
+          dot(axis_of_degree(link, k), link.slides ? load.force : load.moment);
     const std::size_t p = std::size_t(link.parent);
     const Vec3d base = links[p].parent < 0 ? links[p].center : links[p].anchor;
     motion.load[p].force += load.force;
