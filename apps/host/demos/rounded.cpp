@@ -121,7 +121,8 @@ class Rounded final : public Repeatable<Rounded, Demo3> {
     for (int i = 0; i < count; ++i) {
       rigid::BodyDef<Dim3> body;
       body.name = names[i % 6];
-      body.position = {1.2 + 0.75 * (i % 4) + 0.05 * (i % 3), 0.5 + 0.62 * double(i / 8), -0.5 + 0.9 * (i / 4 % 2)};
+      const int layer = i / 8;
+      body.position = {1.2 + 0.75 * (i % 4) + 0.05 * (i % 3), 0.5 + 0.62 * layer, -0.5 + 0.9 * (i / 4 % 2)};
       body.rotation = from_axis_angle(normalize(Vec3f{1, float(i % 5), 2}), float(i));
       stage.add(body, shapes[i % 6], {.material = {.friction = 0.5f, .rolling_resistance = 0.02f}}, colors[i % 6]);
     }

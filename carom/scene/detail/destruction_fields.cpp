@@ -5,11 +5,8 @@ namespace {
 using T = FieldType;
 using M = Measure;
 
-constexpr const char* preset_text = "name of a preset file, without .json";
-constexpr const char* name_text = "unique among its kind; {expressions} in braces are replaced";
 constexpr std::string_view bursts[] = {"ground", "free_air"};
 constexpr std::string_view arcs[] = {"low", "high"};
-constexpr std::string_view drag_functions[] = {"g1", "g2", "g5", "g6", "g7", "g8", "gi", "gs", "ra4"};
 constexpr std::string_view patterns[] = {"voronoi", "even", "clustered", "radial", "slabs", "bricks"};
 constexpr std::string_view substances[] = {"glass", "brick_and_mortar", "concrete", "ceramic", "wood", "ice"};
 
@@ -89,7 +86,7 @@ constexpr Field gun_fields[] = {
     {"color", T::color, M::plain, "of its projectiles, as #rrggbb"},
 };
 
-constexpr Field layer_fields[] = {
+constexpr Field layer_of_material_fields[] = {
     {"name", T::text},
     {"thickness", T::quantity, M::length, "of the last layer as thick as the shape unless given"},
     {"strength", T::quantity, M::pressure, "a of the resistance A (a + b v^2)"},
@@ -162,7 +159,7 @@ const ObjectKind explosion_kind{"explosion", "A charge that goes off.", explosio
 const ObjectKind ammunition_kind{"ammunition", "What a gun shoots.", ammunition_fields};
 const ObjectKind sight_kind{"sight", "What a gun is aimed with.", sight_fields};
 const ObjectKind gun_kind{"gun", "A gun that shoots.", gun_fields};
-const ObjectKind layer_kind{"layer", "A layer that projectiles go through.", layer_fields};
+const ObjectKind layer_kind{"layer", "A layer that projectiles go through.", layer_of_material_fields};
 const ObjectKind penetration_kind{"penetration", "What a material is for projectiles.", penetration_fields};
 const ObjectKind structure_kind{"structure", "A solid that breaks.", structure_fields};
 

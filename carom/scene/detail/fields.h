@@ -55,6 +55,9 @@ struct ObjectKind {
 
 /// Of the key "preset" wherever it stands.
 inline constexpr const char* preset_text = "name of a preset file, without .json";
+/// Of the key "name" of what is not a body.
+inline constexpr const char* name_text = "unique among its kind; {expressions} in braces are replaced";
+inline constexpr std::string_view drag_functions[] = {"g1", "g2", "g5", "g6", "g7", "g8", "gi", "gs", "ra4"};
 
 struct FieldTables {
   const ObjectKind *scene, *part, *world, *material_pair, *parameter, *material, *filter, *surface, *shape, *body,

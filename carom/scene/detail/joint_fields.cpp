@@ -16,7 +16,6 @@ constexpr std::string_view effector_types[] = {
     "magnus_lift",       "turning_frame", "electromagnetic_field", "projectile"};
 constexpr std::string_view drag_laws[] = {"constant", "sphere", "cylinder", "disc", "by_reynolds", "by_mach"};
 constexpr std::string_view lift_balls[] = {"rough_ball", "baseball", "tennis_ball"};
-constexpr std::string_view drag_functions[] = {"g1", "g2", "g5", "g6", "g7", "g8", "gi", "gs", "ra4"};
 }  // namespace
 
 constexpr Field frame_fields[] = {

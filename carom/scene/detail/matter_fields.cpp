@@ -5,7 +5,6 @@ namespace {
 using T = FieldType;
 using M = Measure;
 
-constexpr const char* name_text = "unique among its kind; {expressions} in braces are replaced";
 constexpr std::string_view edges[] = {"first_column", "last_column", "first_row", "last_row"};
 constexpr std::string_view particle_drag_laws[] = {"none", "linear", "stokes", "schiller_naumann", "quadratic"};
 constexpr std::string_view answers[] = {"bounce", "stick", "kill"};

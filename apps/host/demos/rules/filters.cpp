@@ -69,13 +69,14 @@ class Filters final : public Repeatable<Filters, Demo2> {
       const int kind = i % 4;
       rigid::BodyDef<Dim2> body;
       body.name = kind == 3 ? "ghost" : "ball";
-      body.position = {-2.7 + 0.6 * (i * 7 % 10) + 0.05 * (i % 3), 8.4 + 0.42 * double(i / 4)};
+      const int row = i / 4;
+      body.position = {-2.7 + 0.6 * (i * 7 % 10) + 0.05 * (i % 3), 8.4 + 0.42 * row};
       const std::uint64_t own = std::uint64_t{1} << (kind + 1);
       rigid::ShapeDef<Dim2> shape = surface(own, tray_ | own);
       shape.material.rolling_resistance = 0.05f;
       if (kind == 3) {
         shape.filter.group = stage.count("group") == 1 ? -3 : 0;
-        body.position = {1.5 * (i % 8 < 4 ? -1 : 1), 8.4 + 0.5 * double(i / 4)};
+        body.position = {1.5 * (i % 8 < 4 ? -1 : 1), 8.4 + 0.5 * row};
       }
       balls_[kind].push_back(stage.add(body, geometry::Circle{radius_}, shape, colors[kind]));
     }

@@ -60,7 +60,8 @@ class Substeps final : public Repeatable<Substeps, Demo2> {
     for (int i = 0; i < balls; ++i) {
       rigid::BodyDef<Dim2> ball;
       ball.name = "ball";
-      ball.position = {-5.6 + 0.62 * (i % 20) + 0.05 * (i / 20 % 3), 0.4 + 0.6 * (i / 20)};
+      const int row = i / 20;
+      ball.position = {-5.6 + 0.62 * (i % 20) + 0.05 * (i / 20 % 3), 0.4 + 0.6 * row};
       stage.add(ball, geometry::Circle{0.2f}, {}, i % 2 == 0 ? sand : gold);
     }
     changed(stage, {});
