@@ -38,7 +38,7 @@ test('the page is small enough for a phone', () => {
   assert.ok(page <= 400e3, `the page takes ${page} bytes`);
   // All that the gallery has: nobody waits for it, but it is all fetched in the end.
   const engine = readdirSync(web).filter((n) => n.endsWith('.wasm')).reduce((sum, n) => sum + packed(n), 0);
-  assert.ok(engine <= 1650e3, `the engine and its parts take ${engine} bytes`);
+  assert.ok(engine <= 1750e3, `the engine and its parts take ${engine} bytes`);
 });
 
 // The bar is 600 kB. It was met until scene files could hold guns and structures; half of the code is what lists demos and scenes.
