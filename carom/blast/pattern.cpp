@@ -196,7 +196,8 @@ std::vector<Vec3d> clustered_sites(const ConvexCell& container, Vec3d impact, do
     Vec3d p{};
     bool found = false;
     for (int tries = 0; tries < 60 && i % 2 == 0 && !found; ++tries) {
-      p = impact + (radius * random.exponential()) * random.on_sphere();
+      const double reach = radius * random.exponential();  // drawn first: an expression has no order of its own
+      p = impact + reach * random.on_sphere();
       found = inside(container, p);
     }
     sites.push_back(found ? p : draw_inside(container, box, random));

@@ -30,6 +30,16 @@ void blast_models(int width) {
   for (const blast::Bond& bond : pieces->bonds) hash.add(bond.a).add(bond.b).add(bond.area);
   print_model("fracture_mesh", hash);
 
+  // Every way to choose where things break: random draws in one order with every compiler.
+  hash = {};
+  blast::RadialSites rings;
+  rings.impact = {0.2, 0.1, 0};
+  const auto radial = blast::radial_sites(box, rings, 3);
+  for (const auto& sites : {blast::uniform_sites(box, 40, 1), blast::even_sites(box, 40, 2, 2),
+                            blast::clustered_sites(box, {0.5, 0, 0}, 0.2, 40, 3), radial.value()})
+    for (const Vec3d& p : sites) hash.add(p.x).add(p.y).add(p.z);
+  print_model("fracture_sites", hash);
+
   // A wall, a charge before it, and what is left a second later.
   hash = {};
   rigid::World3 world({.simd_width = width});
