@@ -1,5 +1,6 @@
 // From manifolds to the blocks of the wide solver, and from the solved blocks back.
 #include "carom/math/cpu.h"
+#include "carom/math/simd.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -284,10 +285,10 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
 
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
-/// of the one before it waits.
+/// of the one before it waits. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
 template <class D>
-void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list, std::size_t i,
-                       bool velocities) {
+CAROM_SIMD_INLINE void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list,
+                                         std::size_t i, bool velocities) {
   constexpr std::size_t manifold_lanes = 64, contact_lanes = 40, body_lanes = 18;
   if (i + manifold_lanes < list.size())
     prefetch_lines(&world.contacts.manifold(list[i + manifold_lanes]), sizeof(ManifoldRecord<D>));
