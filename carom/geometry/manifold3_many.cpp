@@ -118,8 +118,9 @@ bool sunk(const HeightField& field, const detail::Convex& b, const Transform3f& 
 
 /// A shape that meets nothing of a surface is at least this far (m) from all of it; at most `limit`. What lies below a
 /// height field is solid, so of its triangles only what keeps the shape above or beside them counts.
-float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex& b, const Transform3f& x,
-                const Bounds3f& tight, float limit, bool solid) {
+float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
+                const detail::PlacedCorners& corners, const Transform3f& x, const Bounds3f& tight, float limit,
+                bool solid) {
   const Mat3f turn = to_matrix(x.q);
   const Vec3f axis[3] = {turn.cx, turn.cy, turn.cz};
   const Bounds3f own = bounds(shape, {});
@@ -138,6 +139,10 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
       normal = normal * (1 / size);
       for (const float side : {1.0f, -1.0f}) {
         if (side < 0 && solid) continue;
+        if (corners.known()) {
+          gap = max(gap, corners.least(side * normal) - side * dot(normal, t.corner[0] - x.p) - b.radius);
+          continue;
+        }
         const Vec3f facing = inverse_rotate(x.q, normal * -side);
         const Vec3f nearest = transform_point(x, Vec3f(detail::support(b, Vec3d(facing))));
         gap = max(gap, side * dot(normal, nearest - t.corner[0]) - b.radius);
@@ -156,14 +161,15 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
 }
 
 /// Returns −1 for what meets nothing.
-int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b, const Transform3f& x,
-                   float margin, Bounds3f box, std::span<Manifold3> out) {
+int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
+                   const detail::PlacedCorners& corners, const Transform3f& x, float margin,
+                   const detail::Approach& approach, Bounds3f box, std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
   const float same = 2e-3f * (detail::outer_size(b) + b.radius);
-  const detail::TriangleReach reach(shape, b, x, margin, solid);
+  const detail::TriangleReach reach(shape, b, corners, x, margin, approach, solid);
   Patch patches[max_patches];
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
@@ -171,7 +177,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
-    if (!detail::collide_triangle(triangle, t.edges, solid, b, x, margin, points, n)) return true;
+    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, points, n)) return true;
     // Corners of the moving shape keep their names from triangle to triangle; points cut by an edge are the triangle's.
     for (int i = 0; i < points.count; ++i)
       if (points.point[i].feature > 0xff) points.point[i].feature ^= t.index * 2654435761u;
@@ -220,15 +226,24 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
 }
 
 int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
-                   std::span<Manifold3> out) {
+                   const detail::Approach& approach, std::span<Manifold3> out) {
   const detail::Convex b = detail::convex_of(shape);
   const Bounds3f tight = bounds(shape, x);
-  const int count = surface_convex(surface, shape, b, x, margin, grow(tight, margin), out);
+  detail::PlacedCorners corners(b, x);
+  Bounds3f box = grow(tight, margin);
+  if (corners.known() && approach.margin < margin) {
+    corners.go(approach);
+    const Bounds3f way = corners.bounds();
+    const float most = b.radius + approach.margin + approach.bend;
+    box.low = max(box.low, x.p + way.low - Vec3f{most, most, most});
+    box.high = min(box.high, x.p + way.high + Vec3f{most, most, most});
+  }
+  const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, out);
   if (count >= 0) return count;
   out[0] = {};
   // A little less than what was measured, for rounding.
   const bool solid = surface.type == ShapeType3::height_field;
-  const float apart = clearance(surface, shape, b, x, tight, margin + 0.5f * detail::inner_size(b), solid);
+  const float apart = clearance(surface, shape, b, corners, x, tight, margin + 0.5f * detail::inner_size(b), solid);
   out[0].points[0].separation = apart - 1e-5f * (1 + length(x.p));
   return 0;
 }
@@ -311,7 +326,13 @@ int compound_any(const Shape3& a, const Shape3& b, const Transform3f& x, float m
 
 int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
                             const Bounds3f& box, std::span<Manifold3> out) {
-  return max(many3::surface_convex(surface, b, convex_of(b), b_in_a, margin, box, out), 0);
+  const Convex core = convex_of(b);
+  const PlacedCorners corners(core, b_in_a);
+  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, out), 0);
+}
+int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
+                                const Approach& approach, std::span<Manifold3> out) {
+  return many3::surface_convex(surface, b, b_in_a, margin, approach, out);
 }
 
 int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, std::span<Manifold3> out) {
@@ -322,7 +343,7 @@ int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, fl
     return out[0].count > 0 ? 1 : 0;
   }
   if (a.type == ShapeType3::compound) return many3::compound_any(a, b, b_in_a, margin, out);
-  if (is_surface(a) && is_convex(b)) return many3::surface_convex(a, b, b_in_a, margin, out);
+  if (is_surface(a) && is_convex(b)) return many3::surface_convex(a, b, b_in_a, margin, {}, out);
   if (a.type == ShapeType3::mesh && b.type == ShapeType3::plane)
     return many3::mesh_plane(*a.mesh, b.plane, b_in_a, margin, out);
   const bool plane_mesh = a.type == ShapeType3::plane && b.type == ShapeType3::mesh;

@@ -6,6 +6,8 @@
 
 namespace carom::geometry::detail {
 
+class PlacedCorners;
+
 /// Candidates along one normal, in the frame of A.
 struct ContactPoints {
   static constexpr int capacity = 64;
@@ -48,8 +50,21 @@ void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_
 /// One side of a surface's triangle (A): adds to `out` and sets its normal. `edges` are EdgeFlags: contacts that lean
 /// over a flat edge are the neighbour's, and nothing that hardly dips below the plane catches on an open one. `solid`:
 /// there is matter below, to any depth. False where there is none.
+/// `corners` are those of b; where they are known, the caller has seen that the triangle is within reach.
 bool collide_triangle(const Convex& triangle, std::uint8_t edges, bool solid, const Convex& b,
-                      const Transform3f& b_in_a, float margin, ContactPoints& out, Vec3f& normal);
+                      const PlacedCorners& corners, const Transform3f& b_in_a, float margin, ContactPoints& out,
+                      Vec3f& normal);
+
+/// How a shape goes past a surface while their contacts hold, in the surface's frame.
+struct Approach {
+  Vec3f way{};           ///< m, of the origin of the shape's frame
+  Vec3f turn{};          ///< rad
+  float bend = 0;        ///< m: no point strays farther from where these take it
+  float margin = 1e30f;  ///< m: what the shape stays farther from than so does not count
+};
+/// `collide_many` of a surface and a convex shape, for triangles that the shape may come near.
+int collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
+                        const Approach& approach, std::span<Manifold3> out);
 
 /// `collide_many` of a surface and a convex shape, without the distance where they do not meet, for the triangles that
 /// meet `box` (in A's frame) alone.

@@ -109,11 +109,9 @@ static Vec3d rim_point(const Convex& c, double y, Vec3d d) {
   return {d.x * k, y, d.z * k};
 }
 
-int farthest(const std::vector<float>& lanes, Vec3f d) {
+int farthest(const float* p, int blocks, Vec3f d) {
   using Four = math::WideFloat<4>;
   const Four x = Four::splat(d.x), y = Four::splat(d.y), z = Four::splat(d.z);
-  const float* p = lanes.data();
-  const std::int32_t blocks = std::int32_t(lanes.size() / 12);
   Four most = Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z;
   math::WideInt<4> where = math::WideInt<4>::zero();
   for (std::int32_t i = 1; i < blocks; ++i) {

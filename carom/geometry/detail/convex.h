@@ -33,7 +33,10 @@ bool is_polyhedron(const Convex& c);  ///< box, hull or triangle
 
 Vec3d support(const Convex& c, Vec3d direction);
 /// Which of the vectors of Hull::vertex_lanes or normal_lanes lies farthest along d; the first among equals.
-int farthest(const std::vector<float>& lanes, Vec3f d);
+int farthest(const float* lanes, int blocks, Vec3f d);
+inline int farthest(const std::vector<float>& lanes, Vec3f d) {
+  return farthest(lanes.data(), int(lanes.size() / 12), d);
+}
 
 /// Faces that are flat and bounded: candidates for a reference face.
 int face_count(const Convex& c);

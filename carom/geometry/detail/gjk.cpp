@@ -1,5 +1,7 @@
 #include "carom/geometry/detail/gjk.h"
 
+#include "carom/geometry/detail/placed_corners.h"
+
 namespace carom::geometry::detail {
 namespace gjk {
 
@@ -157,20 +159,16 @@ bool triangle_segment_distance(const Vec3d (&p)[3], Vec3d near, Vec3d far, doubl
   return true;
 }
 
-void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out) {
-  out.overlap = false;
-  if (a.core->kind == CoreKind::triangle && b.core->kind <= CoreKind::segment) {
-    Vec3d p[3];
-    for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
-    const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
-    if (triangle_segment_distance(p, b.position + half, b.position - half, cutoff, out)) return;
-  }
-  if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
-  if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
+namespace gjk {
+
+/// From the first vertex of the simplex on. support(direction): the vertex of b − a that lies nearest along it.
+template <class Support>
+void search(const SimplexVertex& first, double cutoff, Support&& support, CoreDistance& out) {
   SimplexVertex* s = out.simplex.items;
-  s[0] = gjk::support_of(a, b, guess);
+  s[0] = first;
+  out.overlap = false;
   out.count = 1;
-  gjk::Reduced r = gjk::reduce(s, 1);
+  Reduced r = reduce(s, 1);
   double vv = length_squared(r.closest), scale = length_squared(s[0].w);
   for (int iteration = 0; iteration < 64; ++iteration) {
     if (out.count == 4 || vv <= 1e-20 * scale) {
@@ -178,7 +176,7 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
       break;
     }
     const Vec3d v = r.closest;
-    const SimplexVertex next = gjk::support_of(a, b, v);
+    const SimplexVertex next = support(v);
     const double reach = dot(v, next.w);
     if (reach > 0 && reach * reach > cutoff * cutoff * vv) {
       out.distance = reach / math::sqrt(vv);
@@ -193,7 +191,7 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
     RawArray<SimplexVertex, 4> grown;
     for (int i = 0; i < out.count; ++i) grown[i] = s[i];
     grown[out.count] = next;
-    const gjk::Reduced smaller = gjk::reduce(grown.items, out.count + 1);
+    const Reduced smaller = reduce(grown.items, out.count + 1);
     const double nearer = length_squared(smaller.closest);
     if (smaller.count < 4 && !(nearer < vv)) break;  // rounding: no nearer any more
     r = smaller;
@@ -208,6 +206,38 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
   }
   out.distance = out.overlap ? 0 : math::sqrt(vv);
   out.normal = out.overlap ? Vec3d{} : r.closest * (1 / out.distance);
+}
+
+}  // namespace gjk
+
+void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out) {
+  if (a.core->kind == CoreKind::triangle && b.core->kind <= CoreKind::segment) {
+    Vec3d p[3];
+    for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
+    const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
+    if (triangle_segment_distance(p, b.position + half, b.position - half, cutoff, out)) return;
+  }
+  if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
+  if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
+  gjk::search(gjk::support_of(a, b, guess), cutoff, [&](Vec3d v) { return gjk::support_of(a, b, v); }, out);
+}
+
+void triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
+                       CoreDistance& out) {
+  const Vec3d origin(b.origin());
+  const Vec3d p[3] = {corner[0] - origin, corner[1] - origin, corner[2] - origin};
+  const auto support = [&](Vec3d v) {
+    const double along[3] = {dot(p[0], v), dot(p[1], v), dot(p[2], v)};
+    SimplexVertex s;
+    s.a = along[0] >= along[1] && along[0] >= along[2] ? p[0] : (along[1] >= along[2] ? p[1] : p[2]);
+    s.b = Vec3d(b.corner(b.farthest(Vec3f(-v))));
+    s.w = s.b - s.a;
+    return s;
+  };
+  gjk::search(support(toward_b), cutoff, support, out);
+  out.point_a += origin, out.point_b += origin;
+  if (!out.overlap) return;
+  for (int i = 0; i < out.count; ++i) out.simplex[i].a += origin, out.simplex[i].b += origin;
 }
 
 namespace epa {

@@ -1,6 +1,7 @@
 // Contacts of general convex cores: the axis by distance or depth, the points by clipping the features that face it.
 #include "carom/geometry/detail/contact_points.h"
 #include "carom/geometry/detail/gjk.h"
+#include "carom/geometry/detail/placed_corners.h"
 #include "carom/geometry/triangle_mesh.h"
 
 namespace carom::geometry::detail {
@@ -275,8 +276,8 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   points_for(pair, found, 5e-4f * small, cache, out);
 }
 
-bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const Transform3f& x,
-                      float margin, ContactPoints& out, Vec3f& normal) {
+bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const PlacedCorners& corners,
+                      const Transform3f& x, float margin, ContactPoints& out, Vec3f& normal) {
   using namespace core_pair;
   const int flat_edges = edges & (edge0_flat | edge1_flat | edge2_flat);
   const Pair pair{t, b, x, margin};
@@ -286,12 +287,18 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const Vec3f end = line ? rotate(x.q, Vec3f{0, b.half.y, 0}) : Vec3f{};
   const float behind = dot(t.normal, center - t.corner[0]);
   if (behind < (solid ? -2 * (outer_size(b) + b.radius) : 0.0f)) return false;
-  const float along_face = line ? behind - abs(dot(t.normal, end)) : pair.along_a(face_plane(t, 0));
+  // The point that comes nearest to the triangle's plane, and how near, without the radius.
+  Vec3f foot{};
+  if (corners.known())
+    foot = corners.corner(corners.farthest(-t.normal)) + x.p;
+  else if (!line)
+    foot = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, t.normal)))));
+  const float along_face = line ? behind - abs(dot(t.normal, end)) : dot(t.normal, foot - t.corner[0]);
   if (along_face - pair.radius() > margin) return false;
   const float small = max(inner_size(b), 1e-6f);
   // Beside the triangle, farther than anything may reach? Three support points tell that sooner than the search for a
   // distance.
-  if (!line) {
+  if (!line && !corners.known()) {
     const float reach = 1.0001f * (pair.radius() + margin) + 0.02f * small;
     for (int e = 0; e < 3; ++e) {
       const Vec3f outward = cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal);
@@ -321,13 +328,17 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   }
   const double cutoff = double(pair.radius()) + double(margin);
   CoreDistance found;
-  const Vec3d corners[3] = {Vec3d(t.corner[0]), Vec3d(t.corner[1]), Vec3d(t.corner[2])};
-  // What stands over the face with the point that comes nearest to its plane has no nearer one.
-  const auto stands_over = [&] {
-    if (line || along_face <= 0) return false;
-    const Vec3f foot = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, t.normal)))));
+  const Vec3d own[3] = {Vec3d(t.corner[0]), Vec3d(t.corner[1]), Vec3d(t.corner[2])};
+  // What stands over the face with the point that comes nearest to its plane has no nearer one. Else the nearest point
+  // of the triangle lies on an edge that the foot is beyond: distances from a convex shape are a convex function, and
+  // grow on every way away from its foot. Where all of these are flat, the contact is the neighbours'.
+  int beyond = 0;
+  if (!line && along_face > 0)
     for (int e = 0; e < 3; ++e)
-      if (dot(cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal), foot - t.corner[e]) > 0) return false;
+      if (dot(cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal), foot - t.corner[e]) > 0) beyond |= 1 << e;
+  if (beyond != 0 && (beyond & ~flat_edges) == 0) return on_face();
+  const auto stands_over = [&] {
+    if (line || along_face <= 0 || beyond != 0) return false;
     found.distance = double(along_face);
     found.normal = Vec3d(t.normal);
     found.point_b = Vec3d(foot);
@@ -336,11 +347,14 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   };
   const auto in_closed_form = [&] {
     return line &&
-           triangle_segment_distance(corners, Vec3d(center) + Vec3d(end), Vec3d(center) - Vec3d(end), cutoff, found);
+           triangle_segment_distance(own, Vec3d(center) + Vec3d(end), Vec3d(center) - Vec3d(end), cutoff, found);
   };
   if (!in_closed_form() && !stands_over()) {
     const Placed pa(t), pb(b, x);
-    core_distance(pa, pb, cutoff, {}, found);
+    if (corners.known())
+      triangle_distance(own, corners, Vec3d(t.normal), cutoff, found);
+    else
+      core_distance(pa, pb, cutoff, {}, found);
     if (found.overlap && !core_depth(pa, pb, found)) return on_face();
   }
   if (!found.overlap && found.distance > cutoff) return false;

@@ -1,7 +1,8 @@
 // Which triangles of a surface a convex shape may meet: told by a few planes, before anything is asked about the shape.
 #pragma once
 
-#include "carom/geometry/detail/convex.h"
+#include "carom/geometry/detail/contact_points.h"
+#include "carom/geometry/detail/placed_corners.h"
 #include "carom/math/mat.h"
 
 namespace carom::geometry::detail {
@@ -14,13 +15,20 @@ struct TriangleReach {
   float around = 0;  ///< m from the middle; of a ball or capsule, from its line
   Vec3f end{};       ///< of the line, from the middle
   Vec3f box_middle{}, half[3]{};
+  const PlacedCorners& corners;
+  const Approach& approach;
+  float radius = 0;
   bool line = false, solid = false;
 
-  TriangleReach(const Shape3& shape, const Convex& core, const Transform3f& x, float margin, bool below)
+  TriangleReach(const Shape3& shape, const Convex& core, const PlacedCorners& placed, const Transform3f& x,
+                float margin, const Approach& goes, bool below)
       : middle(transform_point(x, inner_point(core))),
         origin(x.p),
         own(grow(bounds(shape, {}), margin)),
         box_middle(transform_point(x, own.center())),
+        corners(placed),
+        approach(goes),
+        radius(core.radius),
         solid(below) {
     const Mat3f turn = to_matrix(x.q);
     axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
@@ -28,6 +36,11 @@ struct TriangleReach {
     for (int k = 0; k < 3; ++k) half[k] = extents[k] * axis[k];
     line = core.kind == CoreKind::point || core.kind == CoreKind::segment;
     if (line) end = core.half.y * axis[1];
+    if (corners.known()) {
+      middle -= origin;
+      around = 1.0001f * (core.radius + margin) + 1e-6f * (length(origin) + length(max(abs(own.low), abs(own.high))));
+      return;
+    }
     around = 1.0001f * (line ? core.radius + margin : length(max(abs(own.low - at), abs(own.high - at))));
   }
   /// How far (m, times the length of the normal) all of the line stands above a plane, or all of the box.
@@ -37,6 +50,7 @@ struct TriangleReach {
            abs(dot(normal, half[2]));
   }
   bool meets(const Vec3f (&corner)[3]) const {
+    if (corners.known()) return near_corners(corner[0] - origin, corner[1] - origin, corner[2] - origin);
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const float above = max(line_height(normal, corner[0]), 0.0f), size = length_squared(normal),
                 most = around * around;
@@ -53,13 +67,49 @@ struct TriangleReach {
       const float beside = line_height(outward, corner[e]), length = length_squared(outward);
       if (beside > 0 && beside * beside * size + above * above * length > most * size * length) return false;
     }
-    if (solid) return true;
-    const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
+    return solid || in_box(corner[0] - origin, corner[1] - origin, corner[2] - origin);
+  }
+
+ private:
+  bool in_box(Vec3f p, Vec3f q, Vec3f r) const {
     for (int k = 0; k < 3; ++k) {
       const float a = dot(axis[k], p), b = dot(axis[k], q), c = dot(axis[k], r);
       if (min(a, min(b, c)) > own.high[k] || max(a, max(b, c)) < own.low[k]) return false;
     }
     return true;
+  }
+  /// Does all of the shape, which lies this far along a direction, stay out of reach as it goes on?
+  bool keeps_off(float height, Vec3f direction, float level) const {
+    const float most = approach.margin + approach.bend + radius, size = most * most * length_squared(direction);
+    if (!(height > 0) || height * height <= size) return false;
+    const float then = corners.least_then(direction) - level;
+    return then > 0 && then * then > size;
+  }
+  /// By the corners themselves; p, q, r are seen from the origin of the shape.
+  bool near_corners(Vec3f p, Vec3f q, Vec3f r) const {
+    const Vec3f edge[3] = {q - p, r - q, p - r}, start[3] = {p, q, r}, normal = cross(edge[0], edge[1]);
+    const float level = dot(normal, p);
+    if (!solid && dot(normal, middle) < level) return false;
+    const float above = max(corners.least(normal) - level, 0.0f), size = length_squared(normal), most = around * around;
+    if (above * above > most * size || keeps_off(above, normal, level)) return false;
+    for (int e = 0; e < 3; ++e) {
+      // Above the plane and beside an edge of it: both are parts of the distance.
+      const Vec3f outward = cross(edge[e], normal);
+      const float beside = corners.least(outward) - dot(outward, start[e]);
+      if (!(beside > 0)) continue;
+      const float length = length_squared(outward);
+      if (beside * beside * size + above * above * length > most * size * length) return false;
+      if (keeps_off(beside, outward, dot(outward, start[e]))) return false;
+    }
+    if (solid) return true;
+    if (!corners.has_faces()) return in_box(p, q, r);
+    // In front of a face of the shape.
+    const PlacedCorners::Before face = corners.face_before(p, q, r);
+    const float most_before = approach.margin + approach.bend + radius;
+    if (face.distance > around) return false;
+    if (!(face.distance > most_before)) return true;
+    const float nearest = min(dot(face.normal, p), min(dot(face.normal, q), dot(face.normal, r)));
+    return nearest + corners.least_then(-face.normal) <= most_before;
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/geometry/detail/chain_tree.h"
+#include "carom/geometry/detail/contact_points.h"
 #include "carom/rigid/dimension.h"
 
 namespace carom::rigid::detail {
@@ -57,9 +58,14 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
   found.count = count;
 }
 inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
-                        Found<Dim3>& found) {
-  found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
-  if (found.count == 0) found.apart = found.manifold[0].points[0].separation;
+                        const geometry::detail::Approach& approach, Found<Dim3>& found) {
+  const bool some = is_surface(a) && is_convex(b);
+  if (some)
+    found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, found.manifold);
+  else
+    found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
+  if (found.count == 0)
+    found.apart = math::max(found.manifold[0].points[0].separation, some ? approach.margin : margin);
   for (int i = 0; i < found.count; ++i) found.child[i] = found.manifold[i].child;
 }
 

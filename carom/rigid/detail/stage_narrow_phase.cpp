@@ -89,6 +89,25 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
   normal = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, normal);
   return least_way(world, c, [&](const BodySweep<D>& s) { return max(s.turning - dot(normal, s.way), 0.0f); });
 }
+/// How B's shape goes past A in this step, in the frame of A's.
+geometry::detail::Approach approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c) {
+  geometry::detail::Approach approach;
+  const Dim3::Pose pose = shape_pose(world, world.shapes.at(c.shape[1]));
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t body = std::size_t(c.body[side]);
+    const SolverBody<Dim3>& s = world.bodies.solver[body];
+    const Vec3f arm = Vec3f(pose.position - world.bodies.motion[body].center),
+                turn = s.angular_velocity * world.last_dt;
+    const Vec3f way = s.linear_velocity * world.last_dt + cross(turn, arm);
+    approach.way = side == 0 ? approach.way - way : approach.way + way;
+    approach.turn = side == 0 ? approach.turn - turn : approach.turn + turn;
+    approach.bend += 0.5f * length_squared(turn) * (math::length(arm) + world.shapes.at(c.shape[1]).outer_extent);
+  }
+  const Quatf frame = shape_pose(world, world.shapes.at(c.shape[0])).rotation;
+  approach.way = inverse_rotate(frame, approach.way), approach.turn = inverse_rotate(frame, approach.turn);
+  approach.margin = 2 * c.margin();
+  return approach;
+}
 /// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
 /// counted. Apart from each other along an axis, they may slide past each other, but are looked at now and then, so
 /// that pairs end whose bounds have parted.
@@ -313,8 +332,11 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
                          const ShapeRecord<D>& b, float reach, std::vector<FoundManifold<D>>& list) {
   ContactStore<D>& store = world.contacts;
   Found<D> found;
-  collide_all(a.geometry, b.geometry, c.base, reach, found);
-  c.gap = found.count == 0 ? max(reach, found.apart) : reach;
+  if constexpr (D::dimension == 3)
+    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c), found);
+  else
+    collide_all(a.geometry, b.geometry, c.base, reach, found);
+  c.gap = found.count == 0 ? found.apart : reach;
   c.axis = {};
   int kept = 0;
   for (int i = 0; i < found.count; ++i) {

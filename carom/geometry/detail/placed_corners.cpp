@@ -1,0 +1,94 @@
+#include "carom/geometry/detail/placed_corners.h"
+
+#include "carom/math/mat.h"
+
+namespace carom::geometry::detail {
+
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): what the shape has not is not read
+PlacedCorners::PlacedCorners(const Convex& core, const Transform3f& x) : origin_(x.p) {
+  const Mat3f turn = to_matrix(x.q);
+  if (core.kind == CoreKind::hull) {
+    if (core.hull->vertices.size() > capacity) return;
+    blocks_ = int(core.hull->vertex_lanes.size() / 12);
+    for (int i = 0; i < blocks_; ++i) {
+      const float* p = core.hull->vertex_lanes.data() + 12 * i;
+      const Four u = Four::load(p), v = Four::load(p + 4), w = Four::load(p + 8);
+      for (int k = 0; k < 3; ++k) {
+        const Four at = u * Four::splat(turn.cx[k]) + v * Four::splat(turn.cy[k]) + w * Four::splat(turn.cz[k]);
+        at.store(lanes_ + 12 * i + 4 * k);
+      }
+    }
+    const std::vector<HullPlane>& planes = core.hull->planes;
+    if (planes.size() > capacity) return;
+    face_blocks_ = int(planes.size() + 3) / 4;
+    for (int i = 0; i < 4 * face_blocks_; ++i) {
+      const HullPlane& plane = planes[min(std::size_t(i), planes.size() - 1)];
+      const Vec3f n = turn * plane.normal;
+      float* lane = planes_ + 16 * (i / 4) + i % 4;
+      lane[0] = n.x, lane[4] = n.y, lane[8] = n.z, lane[12] = plane.offset;
+    }
+  } else if (core.kind == CoreKind::box) {
+    blocks_ = 2;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3f p = turn * Vec3f{i & 1 ? core.half.x : -core.half.x, i & 2 ? core.half.y : -core.half.y,
+                                   i & 4 ? core.half.z : -core.half.z};
+      for (int k = 0; k < 3; ++k) lanes_[12 * (i / 4) + 4 * k + i % 4] = p[k];
+    }
+    face_blocks_ = 2;
+    for (int i = 0; i < 8; ++i) {
+      const int axis = min(i, 5) >> 1;
+      const Vec3f n = (i & 1 ? -1.0f : 1.0f) * (axis == 0 ? turn.cx : axis == 1 ? turn.cy : turn.cz);
+      float* lane = planes_ + 16 * (i / 4) + i % 4;
+      lane[0] = n.x, lane[4] = n.y, lane[8] = n.z, lane[12] = core.half[axis];
+    }
+  }
+}
+
+PlacedCorners::Before PlacedCorners::face_before(Vec3f p, Vec3f q, Vec3f r) const {
+  Four most = Four::splat(-3.4e38f);
+  math::WideInt<4> where = math::WideInt<4>::zero();
+  for (int i = 0; i < face_blocks_; ++i) {
+    const float* lane = planes_ + 16 * i;
+    const Four x = Four::load(lane), y = Four::load(lane + 4), z = Four::load(lane + 8);
+    const Four a = x * Four::splat(p.x) + y * Four::splat(p.y) + z * Four::splat(p.z),
+               b = x * Four::splat(q.x) + y * Four::splat(q.y) + z * Four::splat(q.z),
+               c = x * Four::splat(r.x) + y * Four::splat(r.y) + z * Four::splat(r.z);
+    const Four s = min(a, min(b, c)) - Four::load(lane + 12);
+    const math::WideMask<4> more = s > most;
+    most = select(more, s, most);
+    where = select(more, math::WideInt<4>::splat(i), where);
+  }
+  int best = 0;
+  for (int lane = 1; lane < 4; ++lane)
+    if (most[lane] > most[best]) best = lane;
+  const float* lane = planes_ + 16 * where[best] + best;
+  return {most[best], {lane[0], lane[4], lane[8]}};
+}
+void PlacedCorners::go(const Approach& approach) {
+  const Four way[3] = {Four::splat(approach.way.x), Four::splat(approach.way.y), Four::splat(approach.way.z)},
+             turn[3] = {Four::splat(approach.turn.x), Four::splat(approach.turn.y), Four::splat(approach.turn.z)};
+  for (int i = 0; i < blocks_; ++i) {
+    const float* p = lanes_ + 12 * i;
+    const Four at[3] = {Four::load(p), Four::load(p + 4), Four::load(p + 8)};
+    for (int k = 0; k < 3; ++k) {
+      const int u = (k + 1) % 3, v = (k + 2) % 3;
+      (at[k] + way[k] + (turn[u] * at[v] - turn[v] * at[u])).store(then_ + 12 * i + 4 * k);
+    }
+  }
+}
+Bounds3f PlacedCorners::bounds() const {
+  Bounds3f b;
+  for (int k = 0; k < 3; ++k) {
+    Four low = Four::load(lanes_ + 4 * k), high = low;
+    for (int i = 0; i < blocks_; ++i)
+      for (const float* p : {lanes_, then_}) {
+        const Four at = Four::load(p + 12 * i + 4 * k);
+        low = min(low, at), high = max(high, at);
+      }
+    b.low[k] = min(min(low[0], low[1]), min(low[2], low[3]));
+    b.high[k] = max(max(high[0], high[1]), max(high[2], high[3]));
+  }
+  return b;
+}
+
+}  // namespace carom::geometry::detail

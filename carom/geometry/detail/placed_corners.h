@@ -1,0 +1,56 @@
+// The corners of a box or hull where it stands, four at a time: what is asked of the same shape for many triangles.
+#pragma once
+
+#include "carom/geometry/detail/contact_points.h"
+#include "carom/math/simd.h"
+
+namespace carom::geometry::detail {
+
+/// Corners of a core in the frame of a surface, seen from the origin of the core's own frame.
+class PlacedCorners {
+ public:
+  using Four = math::WideFloat<4>;
+
+  PlacedCorners(const Convex& core, const Transform3f& x);
+  /// False for shapes that have none, or too many.
+  bool known() const { return blocks_ > 0; }
+  bool has_faces() const { return face_blocks_ > 0; }
+  Vec3f origin() const { return origin_; }
+  Vec3f corner(int i) const {
+    const float* p = lanes_ + 12 * (i / 4) + i % 4;
+    return {p[0], p[4], p[8]};
+  }
+  /// The least that any corner lies along d (m, times its length), and then, when it has gone on.
+  float least(Vec3f d) const { return least_of(lanes_, d); }
+  float least_then(Vec3f d) const { return least_of(then_, d); }
+  /// The face before whose plane a triangle (seen from the origin) lies farthest.
+  struct Before {
+    float distance;  ///< m, of its nearest corner
+    Vec3f normal;
+  };
+  Before face_before(Vec3f p, Vec3f q, Vec3f r) const;
+  /// Lets the corners go on.
+  void go(const Approach& approach);
+  /// From the origin, of now and then.
+  Bounds3f bounds() const;
+  /// Which of them lies farthest along d; the first among equals.
+  int farthest(Vec3f d) const { return detail::farthest(lanes_, blocks_, d); }
+
+ private:
+  float least_of(const float* p, Vec3f d) const {
+    const Four x = Four::splat(d.x), y = Four::splat(d.y), z = Four::splat(d.z);
+    Four low = Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z;
+    for (int i = 1; i < blocks_; ++i) {
+      p += 12;
+      low = min(low, Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z);
+    }
+    return min(min(low[0], low[1]), min(low[2], low[3]));
+  }
+
+  static constexpr int capacity = 64;
+  Vec3f origin_;
+  int blocks_ = 0, face_blocks_ = 0;
+  float lanes_[3 * capacity], then_[3 * capacity], planes_[4 * capacity];
+};
+
+}  // namespace carom::geometry::detail
