@@ -168,7 +168,7 @@ core::Result<std::unique_ptr<host::Demo>> open_demo(const std::string& name) {
     if (!scene.ok()) return scene.error();
     return host::make_scene_demo(std::move(scene).value(), fs::path(path).stem().string());
   }
-  for (const host::DemoFactory make : host::demos()) known.push_back(make()->declaration().id);
+  for (const host::DemoEntry& demo : host::demos()) known.emplace_back(demo.id);
   for (const std::unique_ptr<host::Demo>& demo : host::stress_demos()) known.push_back(demo->declaration().id);
   const std::string nearest = host::nearest_name(name, {known.begin(), known.end()});
   return core::Error{"no demo or scene file \"" + name + "\"" +

@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 int list(bool json) {
   Json demos = Json::array(), scenes = Json::array(), presets = Json::array();
   if (!json) std::printf("Demos (carom run NAME)\n");
-  for (const host::DemoFactory make : host::demos()) {
-    const host::Declaration d = make()->declaration();
+  for (const host::DemoEntry& demo : host::demos()) {
+    const host::Declaration d = demo.make()->declaration();
     demos.push_back(Json::parse(host::declaration_json(d, -1)));
     if (!json) std::printf("  %-20s %dD  %s\n", d.id.c_str(), d.dimension, d.summary.c_str());
   }

@@ -23,19 +23,21 @@ struct SimulationHost::Handlers {
     if (version != protocol_version)
       return core::Error{"this host speaks protocol " + std::to_string(protocol_version) +
                          "; reload the page to get the one that belongs to it"};
+    host.greeted_ = true;
+    if (host.options_.game)
+      host.send(welcome_message("game", menu_json({&host.options_.game->declaration, 1})));
+    else
+      host.send(welcome_message(this_build().engine.c_str(), host.options_.menu.empty() ? menu() : host.options_.menu));
+    return {};
+  }
+
+  /// All that can be opened, each asked what it declares.
+  std::string menu() const {
     std::vector<Declaration> list;
-    if (host.options_.game) {
-      list.push_back(host.options_.game->declaration);
-      host.greeted_ = true;
-      host.send(welcome_message("game", list));
-      return {};
-    }
-    for (const DemoFactory make : demos()) list.push_back(make()->declaration());
+    for (const DemoEntry& demo : demos()) list.push_back(demo.make()->declaration());
     for (const MenuScene& scene : host.options_.scenes) list.push_back(scene.summary);
     for (const std::unique_ptr<Demo>& demo : stress_demos()) list.push_back(demo->declaration());
-    host.greeted_ = true;
-    host.send(welcome_message(this_build().engine.c_str(), list));
-    return {};
+    return menu_json(list);
   }
 
   core::Status open() {
@@ -56,9 +58,9 @@ struct SimulationHost::Handlers {
       if (scene.text) name_of_scene = id.substr(id.find(':') + 1), text_of_scene = scene.text();
     }
     if (!demo) {
-      std::vector<std::string> ids;
-      for (const DemoFactory make : demos()) ids.push_back(make()->declaration().id);
-      const std::string nearest = nearest_name(id, {ids.begin(), ids.end()});
+      std::vector<std::string_view> ids;
+      for (const DemoEntry& one : demos()) ids.push_back(one.id);
+      const std::string nearest = nearest_name(id, ids);
       return core::Error{"no demo \"" + id.substr(0, 64) + "\"" +
                          (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?")};
     }

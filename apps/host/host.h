@@ -49,6 +49,9 @@ struct HostOptions {
   std::size_t max_recording = 64 << 20;  ///< bytes of one that a page sends or makes
   HistoryOptions history;                ///< what can be gone back to
   std::vector<MenuScene> scenes;
+  /// The list of demos and scenes as a host of this build with these scenes once made it (menu_json); empty: every demo
+  /// is asked what it declares. With a menu only the id of a scene's summary is read.
+  std::string menu;
   std::shared_ptr<const Game> game;  ///< the only thing in the menu, where there is one
   /// Reads a scene's text for `open_scene`; empty: refused.
   std::function<core::Result<std::unique_ptr<Demo>>(std::string_view name, std::string_view text)> parse_scene;

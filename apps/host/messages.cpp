@@ -184,18 +184,23 @@ Json bodies_json(std::span<const BodyView> bodies) {
 
 }  // namespace
 
-std::string welcome_message(const char* engine, std::span<const Declaration> demos) {
+std::string menu_json(std::span<const Declaration> demos) {
   Json list = Json::array();
   for (const Declaration& demo : demos) list.push_back(summary_json(demo));
+  return text_of(list);
+}
+
+std::string welcome_message(const char* engine, std::string_view menu) {
   Json layers = Json::array();
   for (const DebugLayer& layer : debug_layers)
     layers.push_back({{"name", layer.name}, {"label", layer.label}, {"legend", layer.legend}});
-  return text_of({{"type", "welcome"},
-                  {"layers", std::move(layers)},
-                  {"protocol", protocol_version},
-                  {"version", CAROM_VERSION_STRING},
-                  {"engine", engine},
-                  {"demos", std::move(list)}});
+  std::string text = text_of({{"type", "welcome"},
+                              {"layers", std::move(layers)},
+                              {"protocol", protocol_version},
+                              {"version", CAROM_VERSION_STRING},
+                              {"engine", engine}});
+  text.back() = ',';  // the list of demos is text already
+  return text + "\"demos\":" + std::string(menu) + "}";
 }
 
 std::string opened_message(const Declaration& declaration) {

@@ -16,7 +16,10 @@ inline constexpr int protocol_version = 1;
 inline constexpr char file_message_kind = 3;
 
 /// JSON text, always valid UTF-8.
-std::string welcome_message(const char* engine, std::span<const Declaration> demos);
+/// A JSON array: id, title, summary, group, chapter and dimension of each, as `welcome` lists them.
+std::string menu_json(std::span<const Declaration> demos);
+/// `menu`: such an array.
+std::string welcome_message(const char* engine, std::string_view menu);
 std::string opened_message(const Declaration& declaration);
 std::string scene_message(const Declaration& declaration, std::span<const BodyView> bodies);
 std::string bodies_message(std::span<const BodyView> added, std::span<const std::uint32_t> removed);

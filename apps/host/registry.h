@@ -9,9 +9,12 @@
 
 namespace carom::host {
 
-using DemoFactory = std::unique_ptr<Demo> (*)();
-std::span<const DemoFactory> demos();
-/// Everything by this id, the stress scenes (stress_demo.h) too; null where none has it.
+struct DemoEntry {
+  std::string_view id;  ///< as the demo declares it, so that one is found without making the others
+  std::unique_ptr<Demo> (*make)();
+};
+std::span<const DemoEntry> demos();
+/// The one of this id, of the stress scenes (stress_demo.h) too; null where none has it.
 std::unique_ptr<Demo> make_demo(std::string_view id);
 
 }  // namespace carom::host

@@ -5,7 +5,7 @@ import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} fro
 import {dirname, join, relative, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
-import {split} from '../wasm/split.mjs';
+import {menuOf, split} from '../wasm/split.mjs';
 import {thumbnails} from './thumbnails.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url)), root = join(here, '../..');
@@ -61,8 +61,9 @@ const page = readFileSync(join(here, 'src/index.html'), 'utf8').replace('name="t
 writeFileSync(join(out, 'index.html'), web ? page.replace('name="engine" content="native"', 'name="engine" content="wasm"') : page);
 
 if (web) {
-  const files = dataFiles();
+  const engine = module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), files = dataFiles();
+  files.menu = await menuOf(engine, files);
   writeFileSync(join(out, 'files.json'), JSON.stringify(files));
-  for (const [name, {bytes}] of Object.entries(await split(module ?? join(root, 'build/wasm/apps/wasm/carom.wasm'), files, out)))
+  for (const [name, {bytes}] of Object.entries(await split(engine, files, out)))
     console.log(`${name}: ${(bytes / 1000).toFixed(0)} kB gzipped`);
 }

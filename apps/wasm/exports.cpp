@@ -16,7 +16,7 @@ namespace {
 
 using namespace carom;
 
-constexpr std::string_view presets = "presets/";
+constexpr std::string_view presets = "presets/", menu = "menu";
 
 /// Scene files and presets by name: what a server finds in its folders, the page hands over.
 struct Files {
@@ -60,7 +60,8 @@ CAROM_MODULE("carom_room") char* carom_room(std::uint32_t size) {
 }
 
 /// The room holds a file's name and, from byte `name_size` on, its text. Scenes go by NAME.json, presets by
-/// presets/KIND/NAME.json. Before `carom_start`.
+/// presets/KIND/NAME.json. `menu` is the `demos` of the `welcome` that an instance of this module said which had these
+/// files and no menu: with it the start needs no demo's code and no scene is read. Before `carom_start`.
 CAROM_MODULE("carom_file") void carom_file(std::uint32_t name_size) {
   std::string& in = module().in;
   const std::size_t end = std::min<std::size_t>(name_size, in.size());
@@ -68,15 +69,21 @@ CAROM_MODULE("carom_file") void carom_file(std::uint32_t name_size) {
 }
 
 CAROM_MODULE("carom_start") void carom_start() {
-  const Files& files = module().files;
+  Files& files = module().files;
   host::HostOptions options;
   options.threads = core::hardware_threads();
+  if (const auto list = files.text.extract(std::string(menu))) options.menu = std::move(list.mapped());
   for (const auto& [name, text] : files.text) {
     if (name.compare(0, presets.size(), presets) == 0) continue;
     const std::string id = "scene:" + name.substr(0, name.rfind('.'));
-    const core::Result<scene::Scene> scene = scene::parse_scene(text, name, files.resolver());
-    if (!scene.ok()) continue;
-    options.scenes.push_back({host::declaration_of(*scene, id),
+    host::Declaration summary;
+    summary.id = id;
+    if (options.menu.empty()) {
+      const core::Result<scene::Scene> scene = scene::parse_scene(text, name, files.resolver());
+      if (!scene.ok()) continue;
+      summary = host::declaration_of(*scene, id);
+    }
+    options.scenes.push_back({std::move(summary),
                               [&files, name = name, id] { return files.demo(name, files.text.at(name), id); },
                               [&files, name = name] { return files.text.at(name); }});
   }

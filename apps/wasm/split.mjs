@@ -117,6 +117,11 @@ export function makeHost(module, files, {frame = () => {}, threads = 1, count = 
   }};
 }
 
+/** The list of demos and scenes (`menu` of exports.cpp), as the module itself declares it. */
+export async function menuOf(modulePath, files) {
+  return JSON.stringify(makeHost(await WebAssembly.compile(readFileSync(modulePath)), files).demos);
+}
+
 /** What the first seconds of these demos call, within so much time of this machine each, and what is done with any. */
 async function runDemos({module, files, count}, {demos, seconds, patience, threads}) {
   const host = makeHost(module, files, {threads, count});
@@ -156,15 +161,16 @@ async function runAll(data, sets) {
 }
 
 /**
- * Function → the part that holds it, from what the first demo and every set of demos call. In `main`: what start-up, the
- * first demo and many sets call, and whatever takes vectors, because a call that loads a part goes through JavaScript,
- * which has none. What nobody calls (errors, tools, what a hand does) is the `rest`.
+ * Function → the part that holds it, from what the first demo and every set of demos call. In `main`: what start-up and
+ * the first demo call, and whatever takes vectors, because a call that loads a part goes through JavaScript, which has
+ * none. What the demos of one group call is a part of its own (scene files, which have the models of every group, use
+ * those parts), what several call is `plane` or `shared`, what nobody calls (errors, tools, what a hand does) the `rest`.
  */
-function assign(functions, first, sets, called, many) {
-  const small = 40e3;  // bytes that are worth a request of their own
+function assign(functions, first, sets, called) {
+  const small = 20e3;  // bytes that are worth a request of their own
   const part = functions.map((f, i) => {
-    const users = sets.filter((_, s) => called[s][i]);
-    if (f.vector || f.exported || first.some((called) => called[i]) || users.length >= many) return 'main';
+    if (f.vector || f.exported || first.some((called) => called[i])) return 'main';
+    const all = sets.filter((_, s) => called[s][i]), demos = all.filter((s) => s.group !== 'Scenes'), users = demos.length > 0 ? demos : all;
     if (users.length === 0) return 'rest';
     if (users.every((s) => s.group === users[0].group)) return users[0].group;
     return users.every((s) => s.dimension === 2) ? 'plane' : 'shared';
@@ -172,17 +178,6 @@ function assign(functions, first, sets, called, many) {
   const size = {};
   functions.forEach((f, i) => { size[part[i]] = (size[part[i]] ?? 0) + f.code.length; });
   return part.map((name) => (size[name] < small ? 'small' : name));
-}
-
-/** The assignment with as much in `main` as a first file of `most` bytes gzipped has room for. */
-function fill(module, functions, first, sets, called, most) {
-  const packed = (parts) => gzipSync(Buffer.concat(parts)).length;
-  const data = packed([module]) - packed(functions.map((f) => f.code));
-  const seams = 40e3;  // what cutting adds: exports and imports, ways round through the table
-  for (let many = 4;; ++many) {
-    const part = assign(functions, first, sets, called, many);
-    if (many > sets.length || data + seams + packed(functions.flatMap((f, i) => (part[i] === 'main' ? [f.code] : []))) <= most) return part;
-  }
 }
 
 /** Splits `modulePath` into OUT/carom.wasm and its parts; returns what was made, by name: file and bytes gzipped. */
@@ -204,8 +199,10 @@ export async function split(modulePath, files, out) {
     }
     const starts = [1, 2].map((threads) => ({demos: [demos[0].id], seconds: 20, patience: 20, threads}));
     const all = await runAll(data, [...starts, ...sets]), first = all.slice(0, starts.length), called = all.slice(starts.length);
-    const part = fill(whole, functions, first, sets, called, 580e3);
-    const names = [...new Set(part)].filter((name) => name !== 'main').sort();
+    const part = assign(functions, first, sets, called);
+    // The parts that most demos need are fetched first.
+    const users = (name) => sets.filter((_, s) => part.some((p, i) => p === name && called[s][i])).length;
+    const names = [...new Set(part)].filter((name) => name !== 'main').sort().sort((a, b) => users(b) - users(a));
     const made = {}, listed = {};
     let primary = modulePath;
     names.forEach((name, k) => {

@@ -27,8 +27,8 @@ void print_models(int width) {
 bool print_demos(int threads) {
   carom::host::SimulationOptions options;
   options.threads = threads;
-  for (const carom::host::DemoFactory make : carom::host::demos()) {
-    auto demo = make();
+  for (const carom::host::DemoEntry& entry : carom::host::demos()) {
+    auto demo = entry.make();
     carom::host::Demo& opener = *demo;
     auto opened = opener.open(std::move(demo), {}, options);
     if (!opened) {

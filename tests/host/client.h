@@ -221,7 +221,7 @@ class Page {
 
 inline std::vector<std::string> demo_ids() {
   std::vector<std::string> out;
-  for (const DemoFactory make : demos()) out.push_back(make()->declaration().id);
+  for (const DemoEntry& demo : demos()) out.emplace_back(demo.id);
   return out;
 }
 

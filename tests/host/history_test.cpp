@@ -22,8 +22,8 @@ void step(History& history, Simulation& simulation) {
 }
 
 TEST(History, EveryDemoShowsItsPastBitForBit) {
-  for (const DemoFactory make : demos()) {
-    std::unique_ptr<Simulation> simulation = opened(make());
+  for (const DemoEntry& demo : demos()) {
+    std::unique_ptr<Simulation> simulation = opened(demo.make());
     const std::string id = simulation->declaration().id;
     History history;
     history.begin(*simulation);

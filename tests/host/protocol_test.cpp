@@ -21,6 +21,43 @@ TEST(Protocol, HelloIsAnsweredByEveryDemo) {
       EXPECT_TRUE(demo.contains(field));
 }
 
+TEST(Protocol, EveryDemoIsFoundByTheIdThatItDeclares) {
+  for (const DemoEntry& demo : demos()) EXPECT_EQ(demo.make()->declaration().id, demo.id);
+  for (const std::unique_ptr<Demo>& demo : stress_demos()) {
+    const std::string id = demo->declaration().id;
+    ASSERT_NE(make_demo(id), nullptr) << id;
+    EXPECT_EQ(make_demo(id)->declaration().id, id);
+  }
+  Page page;
+  page.hello();
+  page.send({{"type", "open"}, {"demo", "piramids"}});
+  EXPECT_EQ(page.last("error")["message"], "no demo \"piramids\"; did you mean \"pyramids\"?");
+}
+
+TEST(Protocol, AMenuMadeBeforeIsSaidAsItIs) {
+  Declaration scene;
+  scene.id = "scene:one";
+  scene.title = "a \"scene\" of its own";
+  const auto load = []() -> core::Result<std::unique_ptr<Demo>> { return make_demo("pyramids"); };
+  HostOptions first;
+  first.scenes.push_back({scene, load, {}});
+  Page asked(std::move(first));
+  asked.hello();
+  HostOptions second;
+  second.menu = asked.last("welcome")["demos"].dump();
+  scene = {};
+  scene.id = "scene:one";
+  second.scenes.push_back({scene, load, {}});
+  Page told(std::move(second));
+  told.hello();
+  EXPECT_EQ(told.last("welcome"), asked.last("welcome"));
+  for (const char* id : {"rolling", "scene:one"}) {
+    told.send({{"type", "open"}, {"demo", id}});
+    EXPECT_EQ(told.count("error"), 0) << told.last("error");
+  }
+  EXPECT_EQ(told.count("opened"), 2);
+}
+
 TEST(Protocol, NothingBeforeHello) {
   Page page;
   page.send({{"type", "open"}, {"demo", "pyramids"}});

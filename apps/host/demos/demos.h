@@ -13,17 +13,17 @@ namespace carom::host::demo {
 using namespace math;
 
 /// The demos of each folder here, in the order of the gallery.
-std::span<const DemoFactory> particle_demos();
-std::span<const DemoFactory> fluid_demos();
-std::span<const DemoFactory> rope_demos();
-std::span<const DemoFactory> environment_demos();
-std::span<const DemoFactory> ballistics_demos();
-std::span<const DemoFactory> blast_demos();
-std::span<const DemoFactory> sports_demos();
-std::span<const DemoFactory> billiards_demos();
-std::span<const DemoFactory> figure_demos();
-std::span<const DemoFactory> terrain_demos();
-std::span<const DemoFactory> rule_demos();
+std::span<const DemoEntry> particle_demos();
+std::span<const DemoEntry> fluid_demos();
+std::span<const DemoEntry> rope_demos();
+std::span<const DemoEntry> environment_demos();
+std::span<const DemoEntry> ballistics_demos();
+std::span<const DemoEntry> blast_demos();
+std::span<const DemoEntry> sports_demos();
+std::span<const DemoEntry> billiards_demos();
+std::span<const DemoEntry> figure_demos();
+std::span<const DemoEntry> terrain_demos();
+std::span<const DemoEntry> rule_demos();
 
 std::unique_ptr<Demo> make_wrecking_ball();
 std::unique_ptr<Demo> make_pyramids();

@@ -23,7 +23,7 @@ class Rounded final : public Repeatable<Rounded, Demo3> {
         "A convex core swept by a ball of radius r is as quick to collide as the core alone: the distance of two cores "
         "less the two radii. Volume and inertia of the swept body are closed forms, and Steiner's formula holds for "
         "its "
-        "volume, with surface S and mean width M of the core:\n\n"
+        "volume, with the core's surface S and M, 2π times its mean width:\n\n"
         "  V = V₀ + S r + M r² + 4/3 π r³\n\n"
         "A cone of half angle α that rolls on a plane turns about the point where its side would come to a tip, here "
         "r/sin α beyond the core's. On a slope β it swings there like a pendulum, with I about the line on which it "

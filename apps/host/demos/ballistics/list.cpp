@@ -2,9 +2,13 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> ballistics_demos() {
-  static constexpr DemoFactory list[] = {make_trajectory_lab, make_rocket_launch, make_artillery,
-                                         make_shooting_range, make_turret,        make_ballistic_pendulum};
+std::span<const DemoEntry> ballistics_demos() {
+  static constexpr DemoEntry list[] = {{"trajectory-lab", make_trajectory_lab},
+                                       {"rocket-launch", make_rocket_launch},
+                                       {"artillery", make_artillery},
+                                       {"shooting-range", make_shooting_range},
+                                       {"turret", make_turret},
+                                       {"ballistic-pendulum", make_ballistic_pendulum}};
   return list;
 }
 

@@ -2,8 +2,11 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> billiards_demos() {
-  static constexpr DemoFactory list[] = {make_pool_table, make_break_shot, make_billiards_lab, make_masse};
+std::span<const DemoEntry> billiards_demos() {
+  static constexpr DemoEntry list[] = {{"pool-table", make_pool_table},
+                                       {"break-shot", make_break_shot},
+                                       {"billiards-lab", make_billiards_lab},
+                                       {"masse", make_masse}};
   return list;
 }
 

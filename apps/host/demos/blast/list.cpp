@@ -2,9 +2,10 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> blast_demos() {
-  static constexpr DemoFactory list[] = {make_blast_field, make_grenade, make_shatter,
-                                         make_pane,        make_vase,    make_fracture_mesh};
+std::span<const DemoEntry> blast_demos() {
+  static constexpr DemoEntry list[] = {
+      {"blast-field", make_blast_field}, {"grenade", make_grenade}, {"shatter-wall", make_shatter},
+      {"glass-pane", make_pane},         {"vase", make_vase},       {"fracture-mesh", make_fracture_mesh}};
   return list;
 }
 

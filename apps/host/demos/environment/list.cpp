@@ -4,8 +4,11 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> environment_demos() {
-  static constexpr DemoFactory list[] = {make_sea_state, make_drag_crisis, make_windy_field, make_orbit_painter};
+std::span<const DemoEntry> environment_demos() {
+  static constexpr DemoEntry list[] = {{"sea_state", make_sea_state},
+                                       {"drag_crisis", make_drag_crisis},
+                                       {"windy_field", make_windy_field},
+                                       {"orbit_painter", make_orbit_painter}};
   return list;
 }
 

@@ -2,8 +2,8 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> figure_demos() {
-  static constexpr DemoFactory list[] = {make_powered_ragdoll, make_robot_arm};
+std::span<const DemoEntry> figure_demos() {
+  static constexpr DemoEntry list[] = {{"powered_ragdoll", make_powered_ragdoll}, {"robot_arm", make_robot_arm}};
   return list;
 }
 

@@ -2,8 +2,11 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> fluid_demos() {
-  static constexpr DemoFactory list[] = {make_fluid_tank, make_dam_break, make_water_fountain, make_sand_pile};
+std::span<const DemoEntry> fluid_demos() {
+  static constexpr DemoEntry list[] = {{"fluid-tank", make_fluid_tank},
+                                       {"dam-break", make_dam_break},
+                                       {"water-fountain", make_water_fountain},
+                                       {"sand-pile", make_sand_pile}};
   return list;
 }
 

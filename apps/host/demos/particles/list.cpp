@@ -2,10 +2,15 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> particle_demos() {
-  static constexpr DemoFactory list[] = {make_wind_on_obstacles, make_spark_burst, make_snow,
-                                         make_drop_fountain,     make_hail,        make_fire,
-                                         make_fireball,          make_sand_heap};
+std::span<const DemoEntry> particle_demos() {
+  static constexpr DemoEntry list[] = {{"wind-on-obstacles", make_wind_on_obstacles},
+                                       {"spark-burst", make_spark_burst},
+                                       {"snow", make_snow},
+                                       {"drop-fountain", make_drop_fountain},
+                                       {"hail-on-pegs", make_hail},
+                                       {"fire-and-smoke", make_fire},
+                                       {"fireball", make_fireball},
+                                       {"sand-heap", make_sand_heap}};
   return list;
 }
 

@@ -2,9 +2,10 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> rope_demos() {
-  static constexpr DemoFactory list[] = {make_rope_bridge, make_flag_and_sail, make_trebuchet,
-                                         make_capstan,     make_torsion_chain, make_soft_bodies};
+std::span<const DemoEntry> rope_demos() {
+  static constexpr DemoEntry list[] = {{"rope-bridge", make_rope_bridge},     {"flag-and-sail", make_flag_and_sail},
+                                       {"trebuchet", make_trebuchet},         {"capstan", make_capstan},
+                                       {"torsion-chain", make_torsion_chain}, {"soft-bodies", make_soft_bodies}};
   return list;
 }
 

@@ -2,8 +2,11 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> rule_demos() {
-  static constexpr DemoFactory all[] = {make_time_scale, make_body_rules, make_filters, make_substeps};
+std::span<const DemoEntry> rule_demos() {
+  static constexpr DemoEntry all[] = {{"time-scale", make_time_scale},
+                                      {"body-rules", make_body_rules},
+                                      {"filters", make_filters},
+                                      {"substeps", make_substeps}};
   return all;
 }
 

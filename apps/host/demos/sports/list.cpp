@@ -2,8 +2,12 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> sports_demos() {
-  static constexpr DemoFactory list[] = {make_golf_hole, make_golf_swing, make_home_run, make_spin_lab, make_bowling};
+std::span<const DemoEntry> sports_demos() {
+  static constexpr DemoEntry list[] = {{"golf-hole", make_golf_hole},
+                                       {"golf-swing", make_golf_swing},
+                                       {"home-run", make_home_run},
+                                       {"ball-spin", make_spin_lab},
+                                       {"bowling", make_bowling}};
   return list;
 }
 

@@ -2,8 +2,8 @@
 
 namespace carom::host::demo {
 
-std::span<const DemoFactory> terrain_demos() {
-  static constexpr DemoFactory list[] = {make_craters, make_quarry, make_fortress};
+std::span<const DemoEntry> terrain_demos() {
+  static constexpr DemoEntry list[] = {{"craters", make_craters}, {"quarry", make_quarry}, {"fortress", make_fortress}};
   return list;
 }
 
