@@ -179,6 +179,9 @@ void ClothState::connect() {
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int a = 0; a < 3; ++a)
       mass[corners[3 * t + std::size_t(a)]] += float(fabric.mass_per_area / 3) * triangles[t].area;
+  far_share = 0;
+  for (int i = 0; i < n; ++i)
+    if (mass[std::size_t(i)] > 0) far_share = math::max(far_share, matrix.far_size(i) / mass[std::size_t(i)]);
   velocity.resize(std::size_t(n));
   touches.resize(std::size_t(n));
   pin_of.resize(std::size_t(n), -1);

@@ -26,8 +26,13 @@ struct ClothPatch {
   float weight[3][6] = {};       ///< of the positions: curvatures uu, vv, uv, times the root of area and stiffness
 };
 
+/// A vertex above or below a triangle of another fold.
 struct ClothPair {
   std::uint32_t vertex = 0, triangle = 0;
+  Vec3f share{};     ///< of the corners, below the vertex
+  Vec3f normal{};    ///< from the triangle to the vertex
+  float wanted = 0;  ///< m/s, at least, apart
+  float mass = 0;    ///< kg, of the two against each other
 };
 
 struct ClothState {
@@ -55,12 +60,15 @@ struct ClothState {
   SoftMatrix matrix;
   std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
   float smallest_edge = 0, mean_edge = 0;
+  float far_share = 0;  ///< 1/s²: greatest sum of a vertex's links to those beyond its triangles, by its mass
 
   // Of a step.
   SoftSolver solver;
   SoftObstacles obstacles;
   std::vector<ClothPair> pairs;
-  std::vector<int> cell_first, cell_list;
+  std::vector<int> cell_first, cell_list, cell_of;
+  std::vector<float> cell_place[3];  ///< m, of the vertices in the order of their cells
+  std::vector<Vec3f> local;          ///< m, by vertex, from the cells' corner
   math::Vec3d wind_force{}, wind_impulse{};
   double greatest_tension = 0;
   int iterations = 0;
@@ -76,6 +84,7 @@ struct ClothState {
   void hold(float h);
   SoftTouching touching() { return {touches, pins, pinned, position, velocity}; }
   void keep_apart(float h);  ///< folds
+  void find_fold_pairs(float h, float apart);
   void tear();
 };
 

@@ -9,7 +9,6 @@ constexpr int rows_at_once = 128;
 using Lanes = SoftBlock::Lanes;
 using math::Vec3d;
 Lanes lanes(Vec3f v) { return Lanes{v.x, v.y, v.z, 0}; }
-Vec3f vector(Lanes v) { return {v[0], v[1], v[2]}; }
 }  // namespace
 
 void SoftMatrix::build(int vertices, std::span<const std::uint32_t> elements, int element_size,
@@ -41,6 +40,7 @@ void SoftMatrix::build(int vertices, std::span<const std::uint32_t> elements, in
   near.assign(column_.size(), 0.0f);
   far_first_.assign(std::size_t(vertices) + 1, 0);
   far_middle_.assign(std::size_t(vertices), 0);
+  far_sum_.assign(std::size_t(vertices), 0.0f);
   far_column_.clear();
   far_value_.clear();
   std::size_t at = 0;
@@ -63,6 +63,10 @@ void SoftMatrix::build(int vertices, std::span<const std::uint32_t> elements, in
       far_value_.push_back(float(sum));
     }
     far_first_[std::size_t(i) + 1] = int(far_column_.size());
+    double sum = 0;
+    for (int k = far_first_[std::size_t(i)]; k < far_first_[std::size_t(i) + 1]; ++k)
+      sum += double(far_value_[std::size_t(k)]);
+    far_sum_[std::size_t(i)] = float(sum);
     if (far_middle_[std::size_t(i)] < 0) far_middle_[std::size_t(i)] = int(far_column_.size());
   }
   find_order();
@@ -81,6 +85,23 @@ void SoftMatrix::find_order() {
   }
   std::stable_sort(order_.begin(), order_.end(),
                    [&](int a, int b) { return level[std::size_t(a)] < level[std::size_t(b)]; });
+  std::vector<std::uint32_t> place(n);
+  for (std::size_t p = 0; p < n; ++p) place[std::size_t(order_[p])] = std::uint32_t(p);
+  lower_ = {};
+  const auto take = [&](int from, int to, const std::vector<std::uint32_t>& columns) {
+    for (int k = from; k < to; ++k) {
+      lower_.column.push_back(place[columns[std::size_t(k)]]);
+      lower_.source.push_back(k);
+    }
+  };
+  for (const int row : order_) {
+    const std::size_t i = std::size_t(row);
+    lower_.first.push_back(int(lower_.column.size()));
+    take(first_[i], diagonal_[i], column_);
+    lower_.far.push_back(int(lower_.column.size()));
+    take(far_first_[i], far_middle_[i], far_column_);
+  }
+  lower_.first.push_back(int(lower_.column.size()));
 }
 
 int SoftMatrix::slot(std::uint32_t i, std::uint32_t j) const {
@@ -99,22 +120,40 @@ Vec3f SoftMatrix::pull_of_links(int row, const math::Vec3d* x) const {
   return sum;
 }
 
-void SoftMatrix::multiply(const Vec3f* x, Vec3f* y, core::TaskScheduler& scheduler) const {
+float SoftMatrix::far_size(int row) const {
+  float sum = 0;
+  for (int k = far_first_[std::size_t(row)]; k < far_first_[std::size_t(row) + 1]; ++k)
+    sum += math::abs(far_value_[std::size_t(k)]);
+  return sum;
+}
+
+void SoftMatrix::multiply(const SoftVector* x, SoftVector* y, core::TaskScheduler& scheduler) const {
+  scheduler.parallel_for(rows(), rows_at_once, [&](int from, int to, int) {
+    for (int row = from; row < to; ++row) y[row] = whole_row(std::size_t(row), x);
+  });
+}
+
+void SoftMatrix::multiply_all(const SoftVector* x, SoftVector* y, core::TaskScheduler& scheduler) const {
+  multiply(x, y, scheduler);
+  if (!far_ahead) return;
   scheduler.parallel_for(rows(), rows_at_once, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
-      y[i] = vector(side(first_[i], first_[i + 1], far_first_[i], far_first_[i + 1], x));
+      Lanes far{};
+      for (int k = far_first_[i]; k < far_first_[i + 1]; ++k)
+        far += far_value_[std::size_t(k)] * (x[far_column_[std::size_t(k)]].v - x[i].v);
+      y[i].v += link_scale * far;
     }
   });
 }
 
 void SoftSolver::resize(std::size_t n) {
-  for (auto* list : {&right, &change, &guess, &reaction, &residual_, &weighted_residual_, &direction_, &back_,
-                     &forward_, &image_, &weighted_image_, &field_, &pull_})
+  for (auto* list : {&right, &change, &guess, &reaction, &residual_, &free_, &held_, &image_, &swept_, &direction_,
+                     &back_, &forward_, &sum_, &field_, &pull_})
     list->resize(n);
   diagonal.resize(n);
-  full_.resize(n);
-  inverse_.resize(n);
+  scale_.resize(n);
+  scale_transposed_.resize(n);
   holds.resize(n);
 }
 
@@ -123,64 +162,111 @@ void SoftSolver::begin(const SoftMatrix& matrix, const std::vector<Vec3f>& veloc
   for (const Vec3f v : velocity) common += v;
   common = common * (1 / float(velocity.size()));
   for (std::size_t i = 0; i < velocity.size(); ++i) change[i] = velocity[i] - common;
-  matrix.multiply(change.data(), reaction.data(), scheduler);
+  matrix.multiply_all(change.data(), reaction.data(), scheduler);
   for (std::size_t i = 0; i < velocity.size(); ++i) {
-    right[i] -= reaction[i];
+    right[i].v -= reaction[i].v;
     change[i] = guess[i];
     holds[i] = {};
   }
 }
 
-/// Of a particle on a plane only what acts along it counts: its inverse maps to and from there.
+namespace {
+
+/// W with Wᵀ m W = 1 within what a hold leaves free, and without the rest: from Cholesky's factor.
+SoftBlock scale_of(const Mat3f& m, const SoftHold& hold) {
+  SoftBlock out;
+  if (hold.rank == 3) return out;
+  const auto root = [](float square, float whole) { return 1 / math::sqrt(math::max(square, 1e-6f * whole)); };
+  if (hold.rank == 1) {
+    const Vec3f n = hold.normal;
+    const Vec3f a = math::normalize(math::abs(n.x) < 0.6f ? Vec3f{0, n.z, -n.y} : Vec3f{-n.z, 0, n.x}), b = cross(n, a);
+    const Vec3f ma = m * a, mb = m * b;
+    const float inverse = root(dot(a, ma), dot(a, ma)), below = dot(b, ma) * inverse;
+    const float last = root(dot(b, mb) - below * below, dot(b, mb));
+    out.add(inverse * a, last * (b - (below * inverse) * a), {});
+    return out;
+  }
+  const Vec3f x = m.column(0), y = m.column(1), z = m.column(2);
+  const float i0 = root(x.x, x.x), l10 = x.y * i0, l20 = x.z * i0;
+  const float i1 = root(y.y - l10 * l10, y.y), l21 = (y.z - l20 * l10) * i1;
+  const float i2 = root(z.z - l20 * l20 - l21 * l21, z.z);
+  // The transposed inverse of the factor.
+  const float w01 = -l10 * i0 * i1, w12 = -l21 * i1 * i2, w02 = -(l20 * i0 + l21 * w01) * i2;
+  out.add({i0, 0, 0}, {w01, i1, 0}, {w02, w12, i2});
+  return out;
+}
+
+}  // namespace
+
 void SoftSolver::prepare(const SoftMatrix& matrix) {
-  for (std::size_t i = 0; i < right.size(); ++i) {
-    const Mat3f whole = diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal(int(i)))].matrix();
-    full_[i] = SoftBlock::of(whole);
-    if (holds[i].rank == 3) {
-      inverse_[i] = {};
-    } else if (holds[i].rank == 0) {
-      inverse_[i] = SoftBlock::of(inverse(whole));
-    } else {
-      const Mat3f across = math::outer(holds[i].normal, holds[i].normal), within = Mat3f::identity() - across;
-      const Mat3f inner = within * whole * within + ((1.0f / 3) * trace(whole)) * across;
-      inverse_[i] = SoftBlock::of(within * inverse(inner) * within);
+  lower_.resize(matrix.lower_.column.size() + 1);
+  const bool all = !matrix.far_ahead;
+  for (std::size_t p = 0; p < right.size(); ++p) {
+    const std::size_t i = std::size_t(matrix.order_[p]);
+    scale_[p] = scale_of(diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal_[i])].matrix(), holds[i]);
+    const SoftBlock across = scale_transposed_[p] = scale_[p].transposed();
+    for (int k = matrix.lower_.first[p]; k < matrix.lower_.last(p, all); ++k) {
+      const SoftBlock& other = scale_[matrix.lower_.column[std::size_t(k)]];
+      const std::size_t source = std::size_t(matrix.lower_.source[std::size_t(k)]);
+      SoftBlock inner;
+      if (k < matrix.lower_.far[p]) {
+        inner = matrix.blocks[source].times(other);
+      } else {
+        const float link = matrix.link_scale * matrix.far_value_[source];
+        inner = {link * other.x, link * other.y, link * other.z};
+      }
+      lower_[std::size_t(k)].set(across.times(inner));
     }
   }
 }
 
-/// The guess of the free parts times the number that leaves the least error in energy.
+/// The guess of the free parts times the number that leaves the least error in energy, and the whole residual then.
 void SoftSolver::scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler) {
-  bool any = false;
+  bool any_free = false, any_held = false;
   for (std::size_t i = 0; i < right.size(); ++i) {
-    direction_[i] = holds[i].filter(change[i]);
-    back_[i] = change[i] - direction_[i];
-    any = any || direction_[i].x != 0 || direction_[i].y != 0 || direction_[i].z != 0;
+    free_[i] = holds[i].filter(change[i]);
+    held_[i].v = change[i].v - free_[i].v;
+    any_free = any_free || !free_[i].is_zero();
+    any_held = any_held || !held_[i].is_zero();
+    residual_[i] = right[i];
   }
-  if (!any) return;
-  matrix.multiply(direction_.data(), image_.data(), scheduler);
-  matrix.multiply(back_.data(), forward_.data(), scheduler);
+  if (any_held) {
+    matrix.multiply(held_.data(), image_.data(), scheduler);
+    for (std::size_t i = 0; i < right.size(); ++i)
+      residual_[i].v -= image_[i].v + lanes(diagonal[i] * held_[i].vector());
+  }
+  if (!any_free) return;
+  matrix.multiply(free_.data(), image_.data(), scheduler);
   double along = 0, energy = 0;
   for (std::size_t i = 0; i < right.size(); ++i) {
-    along += double(dot(direction_[i], right[i] - forward_[i] - diagonal[i] * back_[i]));
-    energy += double(dot(direction_[i], image_[i] + diagonal[i] * direction_[i]));
+    image_[i].v += lanes(diagonal[i] * free_[i].vector());
+    along += double(dot(free_[i], residual_[i]));
+    energy += double(dot(free_[i], image_[i]));
   }
   const float share = energy > 0 ? float(along / energy) : 0.0f;
-  for (std::size_t i = 0; i < right.size(); ++i) change[i] = back_[i] + share * direction_[i];
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    change[i].v = held_[i].v + share * free_[i].v;
+    residual_[i].v -= share * image_[i].v;
+  }
 }
 
-/// x ← (D + L)⁻¹ x, `weighted` = D x; returns x·D x.
-double SoftSolver::start_sweep(const SoftMatrix& matrix, std::vector<Vec3f>& x, std::vector<Vec3f>& weighted) {
+/// swept ← (1 + L)⁻¹ Wᵀ from; returns its square.
+double SoftSolver::start_sweep(const SoftMatrix& matrix, const std::vector<SoftVector>& from) {
+  const bool all = !matrix.far_ahead;
   double size = 0;
-  for (const int row : matrix.order_) {
-    const std::size_t i = std::size_t(row);
-    const Lanes lower =
-        matrix.side(matrix.first_[i], matrix.diagonal_[i], matrix.far_first_[i], matrix.far_middle_[i], x.data());
-    const Lanes here = inverse_[i].times(lanes(x[i]) - lower);
-    x[i] = vector(here);
-    weighted[i] = vector(full_[i].times(here));
-    size += double(dot(x[i], weighted[i]));
+  for (std::size_t p = 0; p < swept_.size(); ++p) {
+    Lanes sum{};
+    for (int k = matrix.lower_.first[p]; k < matrix.lower_.last(p, all); ++k)
+      sum += lower_[std::size_t(k)].times(swept_[matrix.lower_.column[std::size_t(k)]].v);
+    swept_[p] = scale_transposed_[p].times(from[std::size_t(matrix.order_[p])].v) - sum;
+    size += double(dot(swept_[p], swept_[p]));
   }
   return size;
+}
+
+void SoftSolver::unscale(const SoftMatrix& matrix, const std::vector<SoftVector>& x,
+                         std::vector<SoftVector>& out) const {
+  for (std::size_t p = 0; p < x.size(); ++p) out[std::size_t(matrix.order_[p])] = scale_[p].times(x[p].v);
 }
 
 int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, int most,
@@ -188,68 +274,69 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
   const std::size_t n = right.size(), bodies = ties.empty() ? 0 : movers.size();
   prepare(matrix);
   prepare_movers(matrix);
-  scale_guess(matrix, scheduler);
   // Against the right-hand side, not the first residual: a good guess needs fewer iterations. At rest nothing is left
   // to be relative to: a change of `least` for every particle is what does not matter.
   double small = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    residual_[i] = holds[i].filter(right[i]);
-    const Lanes push = lanes(holds[i].filter(diagonal[i] * Vec3f{least, least, least}));
-    small += double(dot(vector(push), vector(inverse_[i].times(push))));
+  for (std::size_t p = 0; p < n; ++p) {
+    const Vec3f push = diagonal[std::size_t(matrix.order_[p])] * Vec3f{least, least, least};
+    const SoftVector scaled = scale_transposed_[p].times(lanes(push));
+    small += double(dot(scaled, scaled));
   }
-  double scale = start_sweep(matrix, residual_, weighted_residual_);
+  double scale = start_sweep(matrix, right);
   if (bodies > 0) {
     right_of_movers(mover_residual_);
-    scale += start_movers(matrix, residual_);
+    scale += start_movers(matrix, swept_);
   }
   scale = math::max(scale, small);
 
-  matrix.multiply(change.data(), image_.data(), scheduler);
-  for (std::size_t i = 0; i < n; ++i) residual_[i] = right[i] - image_[i] - diagonal[i] * change[i];
+  scale_guess(matrix, scheduler);
   if (bodies > 0) residual_of_movers(mover_residual_);
-  for (std::size_t i = 0; i < n; ++i) residual_[i] = holds[i].filter(residual_[i]);
-  double size = start_sweep(matrix, residual_, weighted_residual_);
-  if (bodies > 0) size += start_movers(matrix, residual_);
+  double size = start_sweep(matrix, residual_);
+  if (bodies > 0) size += start_movers(matrix, swept_);
+  for (std::size_t p = 0; p < n; ++p) direction_[p] = sum_[p] = forward_[p] = {};
+  const bool all = !matrix.far_ahead;
+  const SoftMatrix::Side& below = matrix.lower_;
   int iterations = 0;
   float keep = 0;
   while (iterations < most && size > tolerance * tolerance * scale && size > 1e-30) {
-    // q ← r + β q, t = (D + Lᵀ)⁻¹ D q
+    // q ← r + β q, t = (1 + Lᵀ)⁻¹ q
     if (bodies > 0) {
       for (std::size_t b = 0; b < bodies; ++b)
         mover_direction_[b] =
             iterations == 0 ? mover_residual_[b] : mover_residual_[b] + double(keep) * mover_direction_[b];
       sweep_up(matrix, mover_direction_, mover_back_);
     }
-    for (std::size_t k = n; k-- > 0;) {
-      const std::size_t i = std::size_t(matrix.order_[k]);
-      direction_[i] = iterations == 0 ? residual_[i] : residual_[i] + keep * direction_[i];
-      Lanes upper = matrix.side(matrix.diagonal_[i] + 1, matrix.first_[i + 1], matrix.far_middle_[i],
-                                matrix.far_first_[i + 1], back_.data());
-      if (bodies > 0) upper += lanes(pull_[i]);
-      back_[i] = vector(lanes(direction_[i]) - inverse_[i].times(upper));
+    // What lies above the diagonal is pushed on from row to row, in `forward_`, which is zero before.
+    if (bodies > 0)
+      for (std::size_t p = 0; p < n; ++p)
+        forward_[p] = scale_transposed_[p].times(pull_[std::size_t(matrix.order_[p])].v);
+    for (std::size_t p = n; p-- > 0;) {
+      const Lanes towards = swept_[p].v + keep * direction_[p].v, t = towards - forward_[p].v;
+      direction_[p] = towards;
+      back_[p] = t;
+      for (int k = below.first[p]; k < below.last(p, all); ++k)
+        forward_[below.column[std::size_t(k)]].v += lower_[std::size_t(k)].transposed_times(t);
     }
-    // w = t + u, u = (D + L)⁻¹ D (q − t)
+    // w = t + u, u = (1 + L)⁻¹ (q − t)
     double curvature = 0;
-    for (const int row : matrix.order_) {
-      const std::size_t i = std::size_t(row);
-      const Lanes lower = matrix.side(matrix.first_[i], matrix.diagonal_[i], matrix.far_first_[i],
-                                      matrix.far_middle_[i], forward_.data());
-      const Lanes t = lanes(back_[i]), u = lanes(direction_[i]) - t - inverse_[i].times(lower), w = t + u;
-      forward_[i] = vector(u);
-      image_[i] = vector(w);
-      weighted_image_[i] = vector(full_[i].times(w));
-      curvature += double(dot(direction_[i], weighted_image_[i]));
+    for (std::size_t p = 0; p < n; ++p) {
+      Lanes sum{};
+      for (int k = below.first[p]; k < below.last(p, all); ++k)
+        sum += lower_[std::size_t(k)].times(forward_[below.column[std::size_t(k)]].v);
+      forward_[p] = direction_[p].v - back_[p].v - sum;
+      curvature += double(dot(direction_[p], SoftVector(back_[p].v + forward_[p].v)));
     }
     if (bodies > 0) curvature += finish_movers(matrix);
     ++iterations;
     if (!(curvature > 0)) break;
     const double along = size / curvature;
+    const float stride = float(along);
     double next = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      change[i] += float(along) * back_[i];
-      residual_[i] -= float(along) * image_[i];
-      weighted_residual_[i] -= float(along) * weighted_image_[i];
-      next += double(dot(residual_[i], weighted_residual_[i]));
+    for (std::size_t p = 0; p < n; ++p) {
+      sum_[p].v += stride * back_[p].v;
+      swept_[p].v -= stride * (back_[p].v + forward_[p].v);
+      forward_[p] = {};
+      next += double(dot(swept_[p], swept_[p]));
     }
     for (std::size_t b = 0; b < bodies; ++b) {
       if (movers[b].from == movers[b].to) continue;
@@ -260,6 +347,7 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
     keep = float(next / size);
     size = next;
   }
+  for (std::size_t p = 0; p < n; ++p) change[std::size_t(matrix.order_[p])].v += scale_[p].times(sum_[p].v);
   if (bodies > 0)
     for (const SoftTie& tie : ties)
       change[std::size_t(tie.node)] +=
@@ -272,15 +360,15 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
 /// What is left of the residual would be momentum out of nothing: where nothing is pinned, all that is free takes it as
 /// a shift of the whole, which the elements do not feel. And what the holds had to give.
 void SoftSolver::settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler) {
-  matrix.multiply(change.data(), image_.data(), scheduler);
   const std::size_t bodies = ties.empty() ? 0 : movers.size();
   bool pinned = false;
   for (std::size_t i = 0; i < right.size(); ++i) pinned |= holds[i].rank == 3;
+  if (!pinned) matrix.multiply(change.data(), image_.data(), scheduler);
   for (int pass = 0; pass < 3 && !pinned; ++pass) {
     Vec3f lost{};
     float all = 0;
     for (std::size_t i = 0; i < right.size(); ++i) {
-      reaction[i] = right[i] - image_[i] - diagonal[i] * change[i];
+      reaction[i] = right[i].v - image_[i].v - lanes(diagonal[i] * change[i].vector());
       all += (1.0f / 3) * trace(diagonal[i]);
     }
     if (bodies > 0)  // which go along with the shift, so that nothing rubs more
@@ -293,14 +381,16 @@ void SoftSolver::settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& 
     for (std::size_t i = 0; i < right.size(); ++i) lost += holds[i].filter(reaction[i]);
     if (!(all > 0)) break;
     const Vec3f shift = lost * (1 / all);
-    for (Vec3f& x : change) x += shift;
+    for (SoftVector& x : change) x += shift;
     for (std::size_t b = 0; b < bodies; ++b)
       if (movers[b].from != movers[b].to) movers[b].change.linear += Vec3d(shift);
-    if (pass == 0) matrix.multiply(change.data(), image_.data(), scheduler);
   }
   for (std::size_t i = 0; i < right.size(); ++i) {
-    reaction[i] = holds[i].rank == 0 ? Vec3f{} : image_[i] + diagonal[i] * change[i] - right[i];
-    if (holds[i].rank == 1) reaction[i] = dot(holds[i].normal, reaction[i]) * holds[i].normal;
+    reaction[i] = {};
+    if (holds[i].rank == 0) continue;
+    const Vec3f given =
+        SoftVector(matrix.whole_row(i, change.data())).vector() + diagonal[i] * change[i].vector() - right[i].vector();
+    reaction[i] = holds[i].rank == 1 ? dot(holds[i].normal, given) * holds[i].normal : given;
   }
 }
 

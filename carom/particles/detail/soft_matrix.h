@@ -31,14 +31,57 @@ struct SoftBlock {
     y[1] += d;
     z[2] += d;
   }
-  static SoftBlock of(const Mat3f& m) {
-    SoftBlock out;
-    out.add(m.column(0), m.column(1), m.column(2));
-    return out;
-  }
   Lanes times(Lanes v) const { return x * v[0] + y * v[1] + z * v[2]; }
+  SoftBlock times(const SoftBlock& b) const { return {times(b.x), times(b.y), times(b.z)}; }
+  SoftBlock transposed() const {
+    return {Lanes{x[0], y[0], z[0], 0}, Lanes{x[1], y[1], z[1], 0}, Lanes{x[2], y[2], z[2], 0}};
+  }
   Mat3f matrix() const { return {{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}; }
 };
+
+/// A 3×3 block by columns without padding: what a sweep reads again and again must stay in the cache. It lies in a list
+/// with room for one more; fourth lanes hold what is next in memory and mean nothing.
+struct SoftPacked {
+  typedef float Loose __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
+  using Lanes = SoftBlock::Lanes;
+  float value[9];
+
+  Lanes column(int k) const { return *reinterpret_cast<const Loose*>(value + 3 * k); }
+  Lanes times(Lanes v) const { return column(0) * v[0] + column(1) * v[1] + column(2) * v[2]; }
+  Lanes transposed_times(Lanes v) const {
+    const Lanes a = column(0) * v, b = column(1) * v, c = column(2) * v;
+    const Lanes ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), last = __builtin_shufflevector(a, b, 2, 6, 2, 6);
+    return __builtin_shufflevector(ab, c, 0, 1, 4, 4) + __builtin_shufflevector(ab, c, 2, 3, 5, 5) +
+           __builtin_shufflevector(last, c, 0, 1, 6, 6);
+  }
+  void set(const SoftBlock& b) {
+    for (int k = 0; k < 3; ++k) value[k] = b.x[k], value[3 + k] = b.y[k], value[6 + k] = b.z[k];
+  }
+};
+
+/// Three numbers of a vertex in four lanes: one load.
+struct SoftVector {
+  SoftBlock::Lanes v{};
+
+  SoftVector() = default;
+  SoftVector(SoftBlock::Lanes lanes) : v(lanes) {}  // NOLINT(google-explicit-constructor)
+  SoftVector(Vec3f a) : v{a.x, a.y, a.z, 0} {}      // NOLINT(google-explicit-constructor)
+  operator Vec3f() const { return vector(); }       // NOLINT(google-explicit-constructor)
+  Vec3f vector() const { return {v[0], v[1], v[2]}; }
+  bool is_zero() const { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+  SoftVector& operator+=(Vec3f a) {
+    v += SoftBlock::Lanes{a.x, a.y, a.z, 0};
+    return *this;
+  }
+  SoftVector& operator-=(Vec3f a) {
+    v -= SoftBlock::Lanes{a.x, a.y, a.z, 0};
+    return *this;
+  }
+};
+inline float dot(const SoftVector& a, const SoftVector& b) {
+  const SoftBlock::Lanes product = a.v * b.v;
+  return product[0] + product[1] + product[2];
+}
 
 /// What of a particle's change of velocity is given: nothing, its part along a normal, or all.
 struct SoftHold {
@@ -70,35 +113,49 @@ class SoftMatrix {
   std::vector<SoftBlock> blocks;
   std::vector<float> near;  ///< the links' numbers, by slot; whoever fills the blocks adds them
   float link_scale = 1;     ///< times all links that are not in blocks
+  /// Links that are not in blocks answer to the velocities before a solve and not to what it changes: for those so weak
+  /// that an explicit step of them is stable. Whoever fills the blocks adds `far_sum` to the diagonal then, so that
+  /// what is common to all changes drops out as before.
+  bool far_ahead = false;
+  float far_sum(int row) const { return far_sum_[std::size_t(row)]; }
+  /// Σ |link| over the links of a row that are not in blocks.
+  float far_size(int row) const;
 
   /// y = blocks·x
-  void multiply(const Vec3f* x, Vec3f* y, core::TaskScheduler& scheduler) const;
+  void multiply(const SoftVector* x, SoftVector* y, core::TaskScheduler& scheduler) const;
+  /// The same with the links that are ahead.
+  void multiply_all(const SoftVector* x, SoftVector* y, core::TaskScheduler& scheduler) const;
   /// Σ (link) (x_j − x_i) over all links of a row, near and far.
   Vec3f pull_of_links(int row, const math::Vec3d* x) const;
 
  private:
   friend class SoftSolver;
   /// Blocks and links of a row from one side of its diagonal, times x.
-  SoftBlock::Lanes side(int from, int to, int far_from, int far_to, const Vec3f* x) const {
+  SoftBlock::Lanes side(int from, int to, int far_from, int far_to, const SoftVector* x) const {
     SoftBlock::Lanes sum{}, far{};
-    for (int k = from; k < to; ++k) {
-      const SoftBlock& block = blocks[std::size_t(k)];
-      const Vec3f v = x[column_[std::size_t(k)]];
-      sum += block.x * v.x + block.y * v.y + block.z * v.z;
-    }
-    for (int k = far_from; k < far_to; ++k) {
-      const Vec3f v = x[far_column_[std::size_t(k)]];
-      far += far_value_[std::size_t(k)] * SoftBlock::Lanes{v.x, v.y, v.z, 0};
-    }
+    for (int k = from; k < to; ++k) sum += blocks[std::size_t(k)].times(x[column_[std::size_t(k)]].v);
+    if (far_ahead) return sum;
+    for (int k = far_from; k < far_to; ++k) far += far_value_[std::size_t(k)] * x[far_column_[std::size_t(k)]].v;
     return sum + link_scale * far;
   }
+  SoftBlock::Lanes whole_row(std::size_t i, const SoftVector* x) const {
+    return side(first_[i], first_[i + 1], far_first_[i], far_first_[i + 1], x);
+  }
   void find_order();
+  /// What lies below the diagonal, by places in the order of a sweep: blocks of a row, then its links.
+  struct Side {
+    std::vector<int> first, far;        ///< by place: first entry; first link. One more than places.
+    std::vector<std::uint32_t> column;  ///< place
+    std::vector<int> source;            ///< slot of the block, or number of the link
+    int last(std::size_t place, bool all) const { return all ? first[place + 1] : far[place]; }
+  };
   std::vector<int> first_, diagonal_;
   std::vector<std::uint32_t> column_;
   std::vector<int> order_;  ///< of a sweep: rows after what they hang on, and beside each other where they are apart
+  Side lower_;
   std::vector<int> far_first_, far_middle_;  ///< links of a row; the first of them above the diagonal
   std::vector<std::uint32_t> far_column_;
-  std::vector<float> far_value_;
+  std::vector<float> far_value_, far_sum_;
 };
 
 /// A motion of a rigid body: of its centre of mass, and about it.
@@ -139,16 +196,17 @@ struct SoftTie {
 /// (D + K) x = b for particles that are free, b + reaction for those that are held, by conjugate gradients with the
 /// holds projected out (Baraff and Witkin 1998, "Large steps in cloth simulation"; Ascher and Boxerman 2003).
 /// Preconditioned by a symmetric sweep of block Gauss–Seidel in Eisenstat's form (SIAM J. Sci. Stat. Comput. 2 (1981)
-/// 1): an iteration goes through every block once. The bodies that they touch are six unknowns each, after the
+/// 1): an iteration goes through every block once. The unknowns are scaled so that the diagonal is the unit matrix
+/// within what is free, and lie in the order of the sweep. The bodies that they touch are six unknowns each, after the
 /// particles: held particles take their motion over, so that light and heavy ones are as stable as what does not move.
 class SoftSolver {
  public:
-  std::vector<Mat3f> diagonal;  ///< D, by particle
-  std::vector<Vec3f> right;     ///< b, N·s
-  std::vector<Vec3f> change;    ///< x, m/s: at the start the held parts and a guess of the free ones
-  std::vector<Vec3f> guess;     ///< x of the last solve
+  std::vector<Mat3f> diagonal;     ///< D, by particle
+  std::vector<SoftVector> right;   ///< b, N·s
+  std::vector<SoftVector> change;  ///< x, m/s: at the start the held parts and a guess of the free ones
+  std::vector<SoftVector> guess;   ///< x of the last solve
   std::vector<SoftHold> holds;
-  std::vector<Vec3f> reaction;  ///< (D + K) x − b
+  std::vector<SoftVector> reaction;  ///< (D + K) x − b of what is held
   std::vector<SoftMover> movers;
   std::vector<SoftTie> ties;  ///< by body, then by particle
 
@@ -164,24 +222,27 @@ class SoftSolver {
   void prepare(const SoftMatrix& matrix);
   // soft_movers.cpp
   Vec3f carried(const SoftTie& tie, const SoftTwist& motion) const;  ///< of the tie's particle, where it is held
-  Vec3f row(const SoftMatrix& matrix, int node, const Vec3f* x) const;
+  Vec3f row(const SoftMatrix& matrix, int node, const SoftVector* x) const;
   void prepare_movers(const SoftMatrix& matrix);
-  void answer(const SoftMatrix& matrix, const SoftTie& tie, const Vec3f* x, SoftTwist& out) const;
+  void answer(const SoftMatrix& matrix, const SoftTie& tie, const SoftVector* x, SoftTwist& out) const;
   void right_of_movers(std::vector<SoftTwist>& out) const;
   void residual_of_movers(std::vector<SoftTwist>& out);
-  void sweep_down(const SoftMatrix& matrix, const std::vector<Vec3f>& x, std::vector<SoftTwist>& motions);
+  void sweep_down(const SoftMatrix& matrix, const std::vector<SoftVector>& x, std::vector<SoftTwist>& motions);
   void sweep_up(const SoftMatrix& matrix, const std::vector<SoftTwist>& from, std::vector<SoftTwist>& to);
   static SoftTwist times(const double (&m)[6][6], const SoftTwist& x);
   double finish_movers(const SoftMatrix& matrix);  ///< images; their share of the curvature
-  double start_movers(const SoftMatrix& matrix, const std::vector<Vec3f>& x);
+  double start_movers(const SoftMatrix& matrix, const std::vector<SoftVector>& x);
   void scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
-  double start_sweep(const SoftMatrix& matrix, std::vector<Vec3f>& x, std::vector<Vec3f>& weighted);
+  double start_sweep(const SoftMatrix& matrix, const std::vector<SoftVector>& from);
+  void unscale(const SoftMatrix& matrix, const std::vector<SoftVector>& x, std::vector<SoftVector>& out) const;
   void settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
 
-  std::vector<Vec3f> residual_, weighted_residual_, direction_, back_, forward_, image_, weighted_image_;
-  std::vector<Vec3f> field_, pull_;  ///< of the particles, by the bodies' motion
+  std::vector<SoftVector> residual_, free_, held_, image_;            // by vertex
+  std::vector<SoftVector> swept_, direction_, back_, forward_, sum_;  // scaled, in the order of the sweep
+  std::vector<SoftVector> field_, pull_;                              ///< of the particles, by the bodies' motion
   std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_;
-  std::vector<SoftBlock> full_, inverse_;  ///< of the diagonal: as it is, and inverted within what is free
+  std::vector<SoftBlock> scale_, scale_transposed_;  ///< W with W Wᵀ the inverse of the diagonal within what is free
+  std::vector<SoftPacked> lower_;                    ///< Wᵀ K W below the diagonal, by the matrix's entries
 };
 
 }  // namespace carom::particles::detail

@@ -55,15 +55,13 @@ Vec3f SoftSolver::carried(const SoftTie& tie, const SoftTwist& motion) const {
 }
 
 /// Row of D + K times x.
-Vec3f SoftSolver::row(const SoftMatrix& matrix, int node, const Vec3f* x) const {
+Vec3f SoftSolver::row(const SoftMatrix& matrix, int node, const SoftVector* x) const {
   const std::size_t i = std::size_t(node);
-  const SoftBlock::Lanes sum =
-      matrix.side(matrix.first_[i], matrix.first_[i + 1], matrix.far_first_[i], matrix.far_first_[i + 1], x);
-  return Vec3f{sum[0], sum[1], sum[2]} + diagonal[i] * x[i];
+  return SoftVector(matrix.whole_row(i, x)).vector() + diagonal[i] * x[i].vector();
 }
 
 /// Adds what a body has to give by a tie for a motion x of the particles.
-void SoftSolver::answer(const SoftMatrix& matrix, const SoftTie& tie, const Vec3f* x, SoftTwist& out) const {
+void SoftSolver::answer(const SoftMatrix& matrix, const SoftTie& tie, const SoftVector* x, SoftTwist& out) const {
   const SoftHold& hold = holds[std::size_t(tie.node)];
   Vec3f impulse{};
   if (hold.rank != 0) {
@@ -81,7 +79,7 @@ void SoftSolver::prepare_movers(const SoftMatrix& matrix) {
   if (ties.empty()) return;
   for (auto* list : {&mover_residual_, &mover_direction_, &mover_back_, &mover_image_, &mover_start_})
     list->resize(movers.size());
-  for (Vec3f& v : field_) v = {};
+  for (SoftVector& v : field_) v = {};
   for (std::size_t b = 0; b < movers.size(); ++b) {
     SoftMover& mover = movers[b];
     mover_start_[b] = mover.change;
@@ -144,7 +142,7 @@ void SoftSolver::residual_of_movers(std::vector<SoftTwist>& out) {
       const Vec3f whole = residual_[i];
       Vec3f impulse = whole - holds[i].filter(whole);
       if (tie.grip > 0) {
-        const Vec3f body(mover.change.at(tie.arm)), v = change[i] - body;
+        const Vec3f body(mover.change.at(tie.arm)), v = change[i].vector() - body;
         impulse += tie.grip * (tie.slip + v - dot(tie.normal, v) * tie.normal);
         residual_[i] += tie.grip * (body - dot(tie.normal, body) * tie.normal);
       }
@@ -153,9 +151,10 @@ void SoftSolver::residual_of_movers(std::vector<SoftTwist>& out) {
   }
 }
 
-/// motions ← (D + L)⁻¹ motions for the bodies, after the particles' x.
-void SoftSolver::sweep_down(const SoftMatrix& matrix, const std::vector<Vec3f>& x, std::vector<SoftTwist>& motions) {
-  field_ = x;
+/// motions ← (D + L)⁻¹ motions for the bodies, after the particles' x (scaled).
+void SoftSolver::sweep_down(const SoftMatrix& matrix, const std::vector<SoftVector>& x,
+                            std::vector<SoftTwist>& motions) {
+  unscale(matrix, x, field_);
   for (std::size_t b = 0; b < movers.size(); ++b) {
     const SoftMover& mover = movers[b];
     if (mover.from == mover.to) {
@@ -197,19 +196,19 @@ void SoftSolver::sweep_up(const SoftMatrix& matrix, const std::vector<SoftTwist>
     }
     if (holds[i].rank == 0) continue;
     const Vec3f v = field_[i];
-    const SoftBlock::Lanes wide{v.x, v.y, v.z, 0};
+    const SoftBlock::Lanes wide = field_[i].v;
     const auto sum = [](SoftBlock::Lanes l) { return l[0] + l[1] + l[2]; };
     for (int k = matrix.first_[i]; k < matrix.first_[i + 1]; ++k) {
       const SoftBlock& block = matrix.blocks[std::size_t(k)];
       pull_[matrix.column_[std::size_t(k)]] += Vec3f{sum(block.x * wide), sum(block.y * wide), sum(block.z * wide)};
     }
-    for (int k = matrix.far_first_[i]; k < matrix.far_first_[i + 1]; ++k)
+    for (int k = matrix.far_first_[i]; k < matrix.far_first_[i + 1] && !matrix.far_ahead; ++k)
       pull_[matrix.far_column_[std::size_t(k)]] += (matrix.link_scale * matrix.far_value_[std::size_t(k)]) * v;
     pull_[i] += diagonal[i] * v;
   }
 }
 
-double SoftSolver::start_movers(const SoftMatrix& matrix, const std::vector<Vec3f>& x) {
+double SoftSolver::start_movers(const SoftMatrix& matrix, const std::vector<SoftVector>& x) {
   sweep_down(matrix, x, mover_residual_);
   double size = 0;
   for (std::size_t b = 0; b < movers.size(); ++b)
@@ -219,7 +218,7 @@ double SoftSolver::start_movers(const SoftMatrix& matrix, const std::vector<Vec3
 
 double SoftSolver::finish_movers(const SoftMatrix& matrix) {
   // u = (D + L)⁻¹ D (q − t): D's product is undone by the sweep's division but for what lies below.
-  field_ = forward_;
+  unscale(matrix, forward_, field_);
   double curvature = 0;
   for (std::size_t b = 0; b < movers.size(); ++b) {
     const SoftMover& mover = movers[b];

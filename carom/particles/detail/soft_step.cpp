@@ -131,7 +131,7 @@ void SoftState::step(rigid::World3& world, double dt) {
     iterations += solve_touches(touching(), matrix, h, obstacles, solver, tasks);
     react_touches(touching(), h, obstacles, solver, nullptr);
     for (std::size_t i = 0; i < position.size(); ++i) {
-      velocity[i] += solver.change[i];
+      velocity[i] += solver.change[i].vector();
       position[i] += Vec3d(h * velocity[i]);
     }
     obstacles.advance(double(h), solver);

@@ -111,7 +111,7 @@ void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, c
                    Vec3d* pin_impulse) {
   for (std::size_t k = 0; k < all.pins.size(); ++k) {
     const std::size_t i = std::size_t(all.pinned[k]);
-    const Vec3d impulse = -Vec3d(solver.reaction[i]);
+    const Vec3d impulse = -Vec3d(solver.reaction[i].vector());
     if (pin_impulse) pin_impulse[k] += impulse;
     obstacles.push(all.pins[k].index, all.position[i], impulse);
   }
@@ -120,7 +120,7 @@ void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, c
     if (!touch.near) continue;
     const Vec3f n(touch.plane.normal);
     touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
-    Vec3f impulse = touch.active ? solver.reaction[i] : Vec3f{};
+    Vec3f impulse = touch.active ? solver.reaction[i].vector() : Vec3f{};
     if (touch.grip > 0) {  // as the system had it
       const Vec3f change = solver.change[i] - surface_change(touch, all.position[i], obstacles, solver);
       impulse -= touch.grip * (touch.slip + change - dot(n, change) * n);
