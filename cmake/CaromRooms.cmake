@@ -99,3 +99,13 @@ function(carom_add_library)
     target_link_libraries(carom PUBLIC Threads::Threads)
   endif()
 endfunction()
+
+# All rooms as one translation unit, which is read and never built: a tool that goes through it meets each header once.
+function(carom_add_single_unit NAME)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/carom/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "_avx(2|512)\\.cpp$")
+  add_library(${NAME} OBJECT EXCLUDE_FROM_ALL ${sources})
+  target_link_libraries(${NAME} PRIVATE carom_flags)
+  target_compile_options(${NAME} PRIVATE -fno-exceptions -fno-rtti)
+  set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+endfunction()

@@ -219,9 +219,9 @@ void Destruction::add_to(core::StateHash& hash) const {
 }
 
 namespace {
-enum List { explosion_list, gun_list, structure_list };
+enum DestructionList { explosion_list, gun_list, structure_list };
 constexpr std::string_view list_names[] = {"explosion", "gun", "structure"};
-enum Field {
+enum DestructionField {
   front,
   reached,
   impulse,

@@ -17,21 +17,20 @@ struct Extent {
     sum += p;
     ++count;
   }
+  void add(math::Vec2d p) { add(Vec3d{p.x, p.y, 0}); }
   Vec3d middle() const { return count > 0 ? sum / double(count) : Vec3d{}; }
 };
-Vec3d in_space(math::Vec2d p) { return {p.x, p.y, 0}; }
-Vec3d in_space(Vec3d p) { return p; }
 
 template <class List>
 Extent extent_of(const List& positions) {
   Extent out;
-  for (const auto& p : positions) out.add(in_space(p));
+  for (const auto& p : positions) out.add(p);
   return out;
 }
 template <class Many>
 Extent extent_of_many(const Many& many) {
   Extent out;
-  for (int i = 0; i < many.size(); ++i) out.add(in_space(many.position(i)));
+  for (int i = 0; i < many.size(); ++i) out.add(many.position(i));
   return out;
 }
 
@@ -47,16 +46,16 @@ enum MatterField {
   of_area,
   of_volume
 };
-struct FieldName {
+struct MatterFieldName {
   std::string_view name, unit;
   bool vector;
 };
-constexpr FieldName fields[] = {{"count", "", false},    {"mass", "kg", false},   {"kinetic_energy", "J", false},
-                                {"center", "m", true},   {"lower", "m", true},    {"upper", "m", true},
-                                {"length", "m", false},  {"tension", "N", false}, {"area", "m^2", false},
-                                {"volume", "m^3", false}};
-enum List { rope_list, cloth_list, soft_list, liquid_list, grain_list, particle_list, list_count };
-constexpr std::string_view list_names[] = {"rope", "cloth", "soft_body", "liquid", "grains", "particles"};
+constexpr MatterFieldName matter_fields[] = {
+    {"count", "", false},   {"mass", "kg", false},   {"kinetic_energy", "J", false}, {"center", "m", true},
+    {"lower", "m", true},   {"upper", "m", true},    {"length", "m", false},         {"tension", "N", false},
+    {"area", "m^2", false}, {"volume", "m^3", false}};
+enum MatterList { rope_list, cloth_list, soft_list, liquid_list, grain_list, particle_list, list_count };
+constexpr std::string_view matter_lists[] = {"rope", "cloth", "soft_body", "liquid", "grains", "particles"};
 constexpr unsigned common =
     1u << of_count | 1u << of_mass | 1u << of_kinetic_energy | 1u << of_center | 1u << of_lower | 1u << of_upper;
 constexpr unsigned has[] = {common | 1u << of_length | 1u << of_tension,
@@ -258,7 +257,8 @@ void Matter::add_to(core::StateHash& hash) const {
 bool Matter::find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const {
   const auto names = [this](const auto& see) { each_name(*this, see); };
   const auto known = [](int list, int field) { return (has[list] >> field & 1) != 0; };
-  if (!detail::find_quantity<FieldName>(text, dimension, list_names, fields, names, known, source, unit)) return false;
+  if (!detail::find_quantity<MatterFieldName>(text, dimension, matter_lists, matter_fields, names, known, source, unit))
+    return false;
   source.kind = Probe::Source::Kind::matter;
   if (source.list == cloth_list && source.field == of_tension) unit = "N/m";
   if (dimension == 2 && source.field == of_volume) unit = "m^2";
@@ -274,7 +274,7 @@ double Matter::read(const Probe::Source& s) const {
 }
 
 std::vector<std::string> Matter::names() const {
-  return detail::quantity_names(list_names, [this](const auto& see) { each_name(*this, see); });
+  return detail::quantity_names(matter_lists, [this](const auto& see) { each_name(*this, see); });
 }
 
 }  // namespace carom::scene
