@@ -2,7 +2,7 @@
 // folder that any web server can host, with the engine as WebAssembly, the scenes and the presets.
 import {build} from 'esbuild';
 import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
-import {dirname, join, relative, resolve} from 'node:path';
+import {basename, dirname, join, relative, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
 import {menuOf, split} from '../wasm/split.mjs';
@@ -14,9 +14,9 @@ const out = web ? resolve(web) : join(here, 'dist');
 
 rmSync(out, {recursive: true, force: true});
 mkdirSync(out, {recursive: true});
-await build({
+const {metafile} = await build({
   absWorkingDir: here,
-  entryPoints: {main: 'src/main.ts', worker: 'src/worker.ts', thread: 'src/thread.ts', style: 'src/style.css'},
+  entryPoints: {main: 'src/main.ts', worker: 'src/worker.ts', thread: 'src/thread.ts', ...(web ? {early: 'src/early.ts'} : {}), style: 'src/style.css'},
   bundle: true,
   minify: true,
   sourcemap: false,
@@ -26,6 +26,7 @@ await build({
   target: ['es2021'],
   outdir: out,
   legalComments: 'linked',
+  metafile: true,
 });
 cpSync(join(here, 'src/icon.svg'), join(out, 'icon.svg'));
 
@@ -57,7 +58,12 @@ const sources = demoSources();
 writeFileSync(join(out, 'lessons.json'), JSON.stringify(JSON.parse(readFileSync(join(here, 'lessons.json'), 'utf8'))));
 writeFileSync(join(out, 'sources.json'), JSON.stringify(sources));
 const pictures = await thumbnails(root, out, sources);
-const page = readFileSync(join(here, 'src/index.html'), 'utf8').replace('name="thumbnails" content=""', `name="thumbnails" content="${pictures.join(' ')}"`);
+// What the page's script imports, and the engine, are asked for while that script is on its way.
+const imported = Object.entries(metafile.outputs).find(([name]) => name.endsWith('/main.js'))[1].imports.filter((i) => i.kind === 'import-statement')
+  .map((i) => `<link rel="modulepreload" href="${basename(i.path)}">`);
+const early = '<script type="module" src="early.js"></script>';
+const page = readFileSync(join(here, 'src/index.html'), 'utf8').replace('name="thumbnails" content=""', `name="thumbnails" content="${pictures.join(' ')}"`)
+  .replace('</head>', `${[...imported, ...(web ? [early] : [])].map((line) => `  ${line}\n`).join('')}</head>`);
 writeFileSync(join(out, 'index.html'), web ? page.replace('name="engine" content="native"', 'name="engine" content="wasm"') : page);
 
 if (web) {

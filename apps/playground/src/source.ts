@@ -1,5 +1,6 @@
 // Where a simulation comes from. A source carries the protocol's messages whole and in order; the page does not know
 // whether a server, a Worker or a recording is behind it.
+import type {WithEngine} from './early';
 import {decode, type Frame, type HostMessage, type Mesh, type Points, type Surface} from './protocol';
 
 export interface Listener {
@@ -35,9 +36,9 @@ function deliver(data: string | ArrayBuffer, listener: Listener, source: Source)
   }
 }
 
-/** The engine as WebAssembly in a Worker of this page. */
+/** The engine as WebAssembly in a Worker of this page: the one that early.ts started. */
 export class WorkerSource implements Source {
-  private worker = new Worker(new URL('worker.js', document.baseURI), {type: 'module'});
+  private worker = (window as WithEngine).engine ?? new Worker(new URL('worker.js', document.baseURI), {type: 'module'});
 
   constructor(listener: Listener) {
     this.worker.onmessage = (event: MessageEvent<string | ArrayBuffer>) => deliver(event.data, listener, this);

@@ -25,6 +25,7 @@ const text = {encode: new TextEncoder(), decode: new TextDecoder()};
 let host: Exports | undefined;
 let last = performance.now();
 const early: (string | ArrayBuffer)[] = [];
+let failure = '';
 
 function put(bytes: Uint8Array): void {
   const at = host!.carom_room(bytes.length);
@@ -41,11 +42,15 @@ function drain(): void {
 }
 
 function receive(data: string | ArrayBuffer): void {
+  if (failure) complain();
   if (!host) { early.push(data); return; }
   put(typeof data === 'string' ? text.encode.encode(data) : new Uint8Array(data));
   if (typeof data === 'string') host.carom_receive(); else host.carom_receive_binary();
   drain();
 }
+
+/** To a page that listens: one that has spoken. */
+function complain(): void { postMessage(JSON.stringify({type: 'error', message: failure})); }
 
 function tick(): void {
   const now = performance.now();
@@ -88,4 +93,7 @@ async function start(): Promise<void> {
 }
 
 onmessage = (event: MessageEvent<string | ArrayBuffer>) => receive(event.data);
-start().catch((error) => postMessage(JSON.stringify({type: 'error', message: `The engine cannot be loaded: ${error}`})));
+start().catch((error) => {
+  failure = `The engine cannot be loaded: ${error}`;
+  if (early.length > 0) complain();
+});

@@ -62,6 +62,17 @@ test('the first demo runs with the first file of the engine alone, at most 450 k
   await page.done();
 });
 
+test('an engine that is not there is named, whether it is missed before the page listens or after', async () => {
+  for (const [pattern, late] of [[/carom\.wasm$/, /\/main\.js$/], [/carom\.wasm$/, /nothing/], [/worker\.js$/, /\/main\.js$/]]) {
+    const page = await visit('about:blank', {}, false);
+    await page.route(late, async (route) => { await new Promise((resolve) => setTimeout(resolve, 2000)); await route.continue(); });
+    await page.route(pattern, (route) => route.fulfill({status: 404}));
+    await page.goto(`${server.url}#wrecking-ball`);
+    await page.waitForFunction(() => /engine (cannot be loaded|of this page stopped)/.test(document.querySelector('#notice').textContent), null, {timeout: 60000});
+    await page.close();
+  }
+});
+
 test('a part of the engine that is not there is named', async () => {
   const page = await visit('about:blank', {}, false);
   await page.route(/carom-[a-z-]+-[0-9a-f]{8}\.wasm$/, (route) => route.fulfill({status: 404}));
