@@ -106,6 +106,12 @@ struct ContactKernels {
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h,
                 float counted) = nullptr;
   void (*restitute)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
+  /// As many bodies as there are lanes through a substep, from a place of the awake list on (2D; stage_integrate.cpp).
+  /// flights: Flight<D> as floats; max_turn: rad. False, and nothing done, where one of them has locks.
+  bool (*integrate_velocities)(SolverBody<D>* bodies, const BodyDrive<D>* drives, float* flights, float h,
+                               float max_speed, float max_turn) = nullptr;
+  bool (*integrate_positions)(SolverBody<D>* bodies, const BodyDrive<D>* drives, const float* flights,
+                              float h) = nullptr;
 };
 
 namespace contact_kernels_baseline {

@@ -106,16 +106,19 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 // The passes use what the preparation left.
 #include "carom/rigid/detail/contact_kernel2.inl"
 #include "carom/rigid/detail/contact_kernel3.inl"
+// And bodies go on with the velocities that these leave.
+#include "carom/rigid/detail/body_kernel2.inl"
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
 ContactKernels<Dim2> kernels2() {
   constexpr int W = CAROM_CONTACT_WIDTH;
-  return {W, prepare2<W>, warm_start2<W>, solve2<W>, relax2<W>, restitute2<W>};
+  return {W,         prepare2<W>,   warm_start2<W>,           solve2<W>,
+          relax2<W>, restitute2<W>, integrate_velocities2<W>, integrate_positions2<W>};
 }
 ContactKernels<Dim3> kernels3() {
   constexpr int W = CAROM_CONTACT_WIDTH;
-  return {W, prepare3<W>, warm_start3<W>, solve3<W>, relax3<W>, restitute3<W>};
+  return {W, prepare3<W>, warm_start3<W>, solve3<W>, relax3<W>, restitute3<W>, nullptr, nullptr};
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -83,9 +83,11 @@ void prepare_drives(StepContext<D>& context) {
       const BodyRecord& record = bodies.record[std::size_t(drive.body)];
       const BodyMotion<D>& m = bodies.motion[std::size_t(drive.body)];
       drive.locks = record.locks;
+      if (record.locks != 0) drive.kind = 3;
       if (record.type != BodyType::dynamic) continue;
       drive.flags = BodyDrive<D>::dynamic;
       if (record.constraint_count == 0) drive.flags |= BodyDrive<D>::in_flight;
+      if (record.locks == 0) drive.kind = record.constraint_count == 0 ? 2 : 1;
       if (may_turn_freely(m, record)) drive.flags |= BodyDrive<D>::gyroscopic;
       const float pace = bodies.pace(drive.body), share = h * load_share(m) * (pace * pace);
       drive.linear_gain = share * (m.gravity_scale * gravity + m.inverse_mass * m.force);
@@ -96,8 +98,19 @@ void prepare_drives(StepContext<D>& context) {
   });
 }
 
+namespace {
+
+/// Of the places [begin, end) as many as a kernel takes at once, the others one by one: the same arithmetic.
+template <class D, class Kernel, class Single>
+void by_lanes(const StepContext<D>& context, int begin, int end, Kernel&& kernel, Single&& single) {
+  const int width = context.world.kernels.width;
+  for (; D::dimension == 2 && begin + width <= end; begin += width)
+    if (!kernel(begin)) single(begin, begin + width);
+  if (begin < end) single(begin, end);
+}
+
 template <class D>
-void integrate_velocities(StepContext<D>& context, int begin, int end) {
+void accelerate_bodies(StepContext<D>& context, int begin, int end) {
   const float h = context.h, max_speed = context.world.definition.maximum_linear_speed;
   for (int i = begin; i < end; ++i) {
     const BodyDrive<D>& drive = context.drives[i];
@@ -121,14 +134,20 @@ void integrate_velocities(StepContext<D>& context, int begin, int end) {
   }
 }
 
-namespace {
-
 template <int W>
 void move_bodies(StepContext<Dim2>& context, int begin, int end) {
-  for (int i = begin; i < end; ++i) {
-    move_center(context, i);
-    turn_body(context.bodies[context.drives[i].body], context.h);
-  }
+  by_lanes(
+      context, begin, end,
+      [&](int first) {
+        return context.world.kernels.integrate_positions(
+            context.bodies, context.drives + first, reinterpret_cast<const float*>(context.flights + first), context.h);
+      },
+      [&](int first, int last) {
+        for (int i = first; i < last; ++i) {
+          move_center(context, i);
+          turn_body(context.bodies[context.drives[i].body], context.h);
+        }
+      });
 }
 template <int W>
 void move_bodies(StepContext<Dim3>& context, int begin, int end) {
@@ -148,6 +167,19 @@ void move_bodies(StepContext<Dim3>& context, int begin, int end) {
 }
 
 }  // namespace
+
+template <class D>
+void integrate_velocities(StepContext<D>& context, int begin, int end) {
+  static_assert(sizeof(Flight<D>) == 2 * D::dimension * sizeof(float));
+  by_lanes(
+      context, begin, end,
+      [&](int first) {
+        return context.world.kernels.integrate_velocities(context.bodies, context.drives + first,
+                                                          reinterpret_cast<float*>(context.flights + first), context.h,
+                                                          context.world.definition.maximum_linear_speed, max_turn);
+      },
+      [&](int first, int last) { accelerate_bodies(context, first, last); });
+}
 
 template <class D>
 void integrate_positions(StepContext<D>& context, int begin, int end) {

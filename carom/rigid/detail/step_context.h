@@ -37,7 +37,9 @@ struct BodyDrive {
   float linear_keep = 1, angular_keep = 1;  ///< what damping leaves of velocities
   typename D::Vector linear_gain{};         ///< m/s, of gravity and forces
   typename D::Angular angular_gain{};       ///< rad/s
+  float kind = 0;  ///< the same for lanes: 0 kinematic, 1 dynamic, 2 in flight; above: with locks
 };
+static_assert(sizeof(BodyDrive<Dim2>) == 32);  // a row of eight floats
 
 template <class D>
 struct StepContext {
