@@ -7,7 +7,7 @@ namespace carom::geometry::detail {
 namespace sweep {
 
 /// A point on its way, seen from where it comes near the target, so that squares of long ways do not cancel.
-struct Approach {
+struct Oncoming {
   Vec3d from, way;
   double start = 0, limit = 1;  ///< of the whole way: where `from` is, and the end
 
@@ -162,7 +162,7 @@ Sweep at_start(Vec3d p) {
   s.core_point = p;
   return s;
 }
-Sweep result(const First& first, const Approach& way) {
+Sweep result(const First& first, const Oncoming& way) {
   Sweep s;
   if (!first.hit) return s;
   s.hit = true;
@@ -344,7 +344,7 @@ void ball_on_box(const Convex& a, Vec3d center, Vec3d way, double r, double limi
     leave = min(leave, max(to_low, to_high));
   }
   if (enter > leave) return;
-  Approach on{center + way * enter, way, enter, limit - enter};
+  Oncoming on{center + way * enter, way, enter, limit - enter};
   const Vec3d p = on.from;
   const Vec3d core = max(min(p, half), -half);
   const int outside = (math::abs(p.x) > half.x) + (math::abs(p.y) > half.y) + (math::abs(p.z) > half.z);
@@ -383,7 +383,7 @@ void ball_on_segment(Vec3d a, Vec3d e, Vec3d center, Vec3d way, double r, double
     out = at_start(near);
     return;
   }
-  Approach on{center, way, 0, limit};
+  Oncoming on{center, way, 0, limit};
   if (!on.toward(a + e * 0.5, r + 0.5 * math::sqrt(ee))) return;
   First first{on.limit};
   if (ee > 0) {
@@ -409,7 +409,7 @@ void capsule_on_triangle(const Corners& c, Vec3d center, Vec3d s, Vec3d way, dou
   const double reach = math::sqrt(max(length_squared(c.p[0] - middle),
                                       max(length_squared(c.p[1] - middle), length_squared(c.p[2] - middle)))) +
                        r + (ball ? 0 : math::length(s));
-  Approach on{center, way, 0, limit};
+  Oncoming on{center, way, 0, limit};
   const bool comes = on.toward(middle, reach);
   if (on.start == 0) {
     const double size2 = dot(c.normal, c.normal), high = math::abs(dot(c.normal, center - c.p[0]));
@@ -465,7 +465,7 @@ bool closed_cast(const Convex& a, const Convex& b, const Transform3f& x, Vec3d w
     return false;
   }
   if (a.kind != CoreKind::box || b.kind != CoreKind::box || r != 0) return false;
-  Approach near{center, way, 0, limit};
+  Oncoming near{center, way, 0, limit};
   const double reach = math::length(Vec3d(a.half)) + math::length(Vec3d(b.half));
   out = {};
   if (length_squared(center) > reach * reach && !near.toward({}, reach)) return true;
