@@ -84,6 +84,7 @@ void GranularState<D>::reserve() {
   const std::size_t n = std::size_t(definition.max_grains);
   for (auto* list : {&grains, &sorted}) list->reserve(n);
   cell_of.reserve(n);
+  for (auto& list : near_by) list.reserve(n + 3);
   for (auto* list : {&contacts, &old_contacts, &sorted_old}) list->reserve(n * (N == 2 ? 4 : 8));
   for (auto* list : {&surface_contacts, &old_surface_contacts}) list->reserve(n + 16);
   old_start.assign(n + 1, 0);

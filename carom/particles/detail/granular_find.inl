@@ -1,6 +1,9 @@
 // Which grains touch each other, walls and bodies.
 #pragma once
 
+#include <bit>
+
+#include "carom/math/simd.h"
 #include "carom/particles/detail/fluid_distance.h"
 #include "carom/particles/detail/granular_state.h"
 
@@ -74,16 +77,33 @@ void GranularState<D>::find_contacts(float dt) {
   const float reach =
       math::min(2 * statistics.max_speed * dt + 0.02f * definition.radius, cell - 2 * definition.radius);
   slab_start.clear();
-  const auto try_pair = [&](int i, int j) {
-    const Vector d = grains[j].x - grains[i].x;
-    const float touch = grains[i].radius + grains[j].radius + reach;
-    if (dot(d, d) >= touch * touch) return;
-    Contact c;
-    c.a = i;
-    c.b = j;
-    c.key = grains[j].id;
-    remember(c, sorted_old, grains[i].id, grains[j].id);
-    contacts.push_back(c);
+  for (auto& list : near_by) list.resize(grains.size() + 3);  // read by fours
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    for (int axis = 0; axis < N; ++axis) near_by[axis][i] = grains[i].x[axis];
+    near_by[N][i] = grains[i].radius;
+  }
+  using F = math::WideFloat<4>;
+  /// Four grains at a time of a run of neighbours in memory.
+  const auto try_run = [&](int i, int from, int to) {
+    const Grain<D>& grain = grains[i];
+    for (int j = from; j < to; j += 4) {
+      F square = F::zero();
+      for (int axis = 0; axis < N; ++axis) {
+        const F d = F::load(&near_by[axis][j]) - F::splat(grain.x[axis]);
+        square = square + d * d;
+      }
+      const F touch = F::splat(grain.radius) + F::load(&near_by[N][j]) + F::splat(reach);
+      std::uint32_t hits = math::bitmask(square < touch * touch);
+      if (to - j < 4) hits &= (1u << (to - j)) - 1;
+      for (; hits != 0; hits &= hits - 1) {
+        Contact c;
+        c.a = i;
+        c.b = j + std::countr_zero(hits);
+        c.key = grains[c.b].id;
+        remember(c, sorted_old, grain.id, c.key);
+        contacts.push_back(c);
+      }
+    }
   };
   for (int z = 0; z < cells[2]; ++z)
     for (int y = 0; y < cells[1]; ++y) {
@@ -91,17 +111,16 @@ void GranularState<D>::find_contacts(float dt) {
         slab_start.push_back(int(contacts.size()));
       for (int x = 0; x < cells[0]; ++x) {
         const int c = x + y * stride[1] + z * stride[2];
-        const int first = cell_start[c], last = cell_start[c + 1];
-        for (int i = first; i < last; ++i) {
-          for (int j = i + 1; j < last; ++j) try_pair(i, j);
-          // The half of the neighbours that come later.
-          for (int n = N == 2 ? 5 : 14; n < (N == 2 ? 9 : 27); ++n) {
-            const int at[3] = {x + n % 3 - 1, y + n / 3 % 3 - 1, z + (N == 3 ? n / 9 - 1 : 0)};
-            if (at[0] < 0 || at[1] < 0 || at[2] < 0 || at[0] >= cells[0] || at[1] >= cells[1] || at[2] >= cells[2])
-              continue;
-            const int other = at[0] + at[1] * stride[1] + at[2] * stride[2];
-            for (int j = cell_start[other]; j < cell_start[other + 1]; ++j) try_pair(i, j);
-          }
+        // The half of the neighbours that come later: rows of up to three cells, which lie side by side.
+        const int left = math::max(x - 1, 0) - x, right = math::min(x + 1, cells[0] - 1) - x;
+        for (int i = cell_start[c]; i < cell_start[c + 1]; ++i) {
+          try_run(i, i + 1, cell_start[c + right + 1]);
+          for (int up = 0; up < (N == 2 ? 1 : 2); ++up)
+            for (int row = up == 0 ? 1 : -1; row <= 1; ++row) {
+              if (y + row < 0 || y + row >= cells[1] || z + up >= cells[2]) continue;
+              const int middle = c + row * stride[1] + up * stride[2];
+              try_run(i, cell_start[middle + left], cell_start[middle + right + 1]);
+            }
         }
       }
     }

@@ -100,8 +100,8 @@ V limited_change(V& held, V wanted, float limit) {
 }  // namespace
 
 template <class D>
-void GranularState<D>::solve_pair(Contact& c, float h) {
-  const Grain<D>&a = grains[c.a], &b = grains[c.b];
+[[gnu::always_inline]] inline void GranularState<D>::solve_pair(Contact& c, float h) {
+  Grain<D>&a = grains[c.a], &b = grains[c.b];
   const float masses = a.inverse_mass + b.inverse_mass;
   const Vector across = b.v - a.v;
   const float speed = dot(across, c.normal);
@@ -110,7 +110,9 @@ void GranularState<D>::solve_pair(Contact& c, float h) {
   const float normal = next - c.normal_impulse;
   c.normal_impulse = next;
   if (next == 0 && normal == 0 && grain_size(c.rolling) == 0 && dot(c.friction, c.friction) == 0) return;
-  apply_pair(c, normal, Vector{}, Angular{});
+  const Vector push = normal * c.normal;
+  a.v -= a.inverse_mass * push;
+  b.v += b.inverse_mass * push;
   const Vector slip = b.v - a.v - grain_turn(b.radius * b.spin + a.radius * a.spin, c.normal);
   const Vector tangent = slip - dot(slip, c.normal) * c.normal;
   const float turning = masses + a.radius * a.radius * a.inverse_inertia + b.radius * b.radius * b.inverse_inertia;
@@ -120,7 +122,11 @@ void GranularState<D>::solve_pair(Contact& c, float h) {
   if (definition.rolling_friction > 0)
     rolling = limited_change(c.rolling, (a.spin - b.spin) / (a.inverse_inertia + b.inverse_inertia),
                              definition.rolling_friction * lever * next);
-  apply_pair(c, 0, friction, rolling);
+  a.v -= a.inverse_mass * friction;
+  b.v += b.inverse_mass * friction;
+  const Angular twist = grain_cross(c.normal, friction);
+  a.spin -= a.inverse_inertia * (a.radius * twist + rolling);
+  b.spin -= b.inverse_inertia * (b.radius * twist - rolling);
 }
 
 template <class D>
@@ -163,19 +169,28 @@ void GranularState<D>::solve_surface(Contact& c, float h) {
 }
 
 /// Every second slab of layers at a time: no two threads then touch the same grain, and the order is always the same.
+/// A thread goes through several slabs in step: each contact waits for the one before it in its slab, and meanwhile the
+/// processor has those of the other slabs to do.
 template <class D>
 template <class F>
 void GranularState<D>::for_slabs(bool back, F&& f) {
+  constexpr int together = 4;
   const int slabs = int(slab_start.size()) - 1;
   for (int color = 0; color < 2; ++color) {
-    const int odd = back ? 1 - color : color;
-    scheduler->parallel_for((slabs + 1 - odd) / 2, 1, [&](int begin, int end, int) {
-      for (int s = begin; s < end; ++s) {
-        const int first = slab_start[2 * s + odd], last = slab_start[2 * s + odd + 1];
-        if (back)
-          for (int k = last; k-- > first;) f(contacts[k]);
-        else
-          for (int k = first; k < last; ++k) f(contacts[k]);
+    const int odd = back ? 1 - color : color, count = (slabs + 1 - odd) / 2;
+    const int share = math::clamp(count / scheduler->thread_count(), 1, together);
+    scheduler->parallel_for(count, share, [&](int begin, int end, int) {
+      for (int s = begin; s < end; s += together) {
+        const int streams = math::min(together, end - s);
+        int first[together], size[together], longest = 0;
+        for (int k = 0; k < streams; ++k) {
+          first[k] = slab_start[2 * (s + k) + odd];
+          size[k] = slab_start[2 * (s + k) + odd + 1] - first[k];
+          longest = math::max(longest, size[k]);
+        }
+        for (int n = 0; n < longest; ++n)
+          for (int k = 0; k < streams; ++k)
+            if (n < size[k]) f(contacts[back ? first[k] + size[k] - 1 - n : first[k] + n]);
       }
     });
   }

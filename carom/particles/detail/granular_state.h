@@ -77,6 +77,7 @@ struct GranularState {
   std::uint32_t next_id = 0;
   std::uint64_t added = 0;  ///< in all, the stream of the next one's radius
   std::vector<int> cell_of, cell_start;
+  std::vector<float> near_by[N + 1];  ///< places, then radii, in the order of the cells
   std::vector<Contact> contacts, old_contacts, sorted_old, surface_contacts, old_surface_contacts;
   std::vector<int> slab_start;           ///< first contact of each slab of layers
   std::vector<int> old_start, place_of;  ///< by id: first old contact; where a grain lies now
