@@ -163,7 +163,7 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
 /// Returns −1 for what meets nothing.
 int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
                    const detail::PlacedCorners& corners, const Transform3f& x, float margin,
-                   const detail::Approach& approach, Bounds3f box, std::span<Manifold3> out) {
+                   const detail::ShapeWay& approach, Bounds3f box, std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
@@ -226,7 +226,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
 }
 
 int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
-                   const detail::Approach& approach, std::span<Manifold3> out) {
+                   const detail::ShapeWay& approach, std::span<Manifold3> out) {
   const detail::Convex b = detail::convex_of(shape);
   const Bounds3f tight = bounds(shape, x);
   detail::PlacedCorners corners(b, x);
@@ -331,7 +331,7 @@ int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transf
   return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, out), 0);
 }
 int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
-                                const Approach& approach, std::span<Manifold3> out) {
+                                const ShapeWay& approach, std::span<Manifold3> out) {
   return many3::surface_convex(surface, b, b_in_a, margin, approach, out);
 }
 

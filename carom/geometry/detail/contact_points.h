@@ -56,7 +56,7 @@ bool collide_triangle(const Convex& triangle, std::uint8_t edges, bool solid, co
                       Vec3f& normal);
 
 /// How a shape goes past a surface while their contacts hold, in the surface's frame.
-struct Approach {
+struct ShapeWay {
   Vec3f way{};           ///< m, of the origin of the shape's frame
   Vec3f turn{};          ///< rad
   float bend = 0;        ///< m: no point strays farther from where these take it
@@ -64,7 +64,7 @@ struct Approach {
 };
 /// `collide_many` of a surface and a convex shape, for triangles that the shape may come near.
 int collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
-                        const Approach& approach, std::span<Manifold3> out);
+                        const ShapeWay& approach, std::span<Manifold3> out);
 
 /// `collide_many` of a surface and a convex shape, without the distance where they do not meet, for the triangles that
 /// meet `box` (in A's frame) alone.

@@ -64,7 +64,7 @@ PlacedCorners::Before PlacedCorners::face_before(Vec3f p, Vec3f q, Vec3f r) cons
   const float* lane = planes_ + 16 * where[best] + best;
   return {most[best], {lane[0], lane[4], lane[8]}};
 }
-void PlacedCorners::go(const Approach& approach) {
+void PlacedCorners::go(const ShapeWay& approach) {
   const Four way[3] = {Four::splat(approach.way.x), Four::splat(approach.way.y), Four::splat(approach.way.z)},
              turn[3] = {Four::splat(approach.turn.x), Four::splat(approach.turn.y), Four::splat(approach.turn.z)};
   for (int i = 0; i < blocks_; ++i) {

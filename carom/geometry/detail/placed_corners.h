@@ -30,7 +30,7 @@ class PlacedCorners {
   };
   Before face_before(Vec3f p, Vec3f q, Vec3f r) const;
   /// Lets the corners go on.
-  void go(const Approach& approach);
+  void go(const ShapeWay& approach);
   /// From the origin, of now and then.
   Bounds3f bounds() const;
   /// Which of them lies farthest along d; the first among equals.

@@ -16,12 +16,12 @@ struct TriangleReach {
   Vec3f end{};       ///< of the line, from the middle
   Vec3f box_middle{}, half[3]{};
   const PlacedCorners& corners;
-  const Approach& approach;
+  const ShapeWay& approach;
   float radius = 0;
   bool line = false, solid = false;
 
   TriangleReach(const Shape3& shape, const Convex& core, const PlacedCorners& placed, const Transform3f& x,
-                float margin, const Approach& goes, bool below)
+                float margin, const ShapeWay& goes, bool below)
       : middle(transform_point(x, inner_point(core))),
         origin(x.p),
         own(grow(bounds(shape, {}), margin)),

@@ -58,7 +58,7 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
   found.count = count;
 }
 inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
-                        const geometry::detail::Approach& approach, Found<Dim3>& found) {
+                        const geometry::detail::ShapeWay& approach, Found<Dim3>& found) {
   const bool some = is_surface(a) && is_convex(b);
   if (some)
     found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, found.manifold);

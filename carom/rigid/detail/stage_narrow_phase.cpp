@@ -90,8 +90,8 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
   return least_way(world, c, [&](const BodySweep<D>& s) { return max(s.turning - dot(normal, s.way), 0.0f); });
 }
 /// How B's shape goes past A in this step, in the frame of A's.
-geometry::detail::Approach approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c) {
-  geometry::detail::Approach approach;
+geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c) {
+  geometry::detail::ShapeWay approach;
   const Dim3::Pose pose = shape_pose(world, world.shapes.at(c.shape[1]));
   for (int side = 0; side < 2; ++side) {
     const std::size_t body = std::size_t(c.body[side]);
