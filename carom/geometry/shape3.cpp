@@ -9,6 +9,7 @@
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/geometry/voxels.h"
+#include "carom/math/simd.h"
 
 namespace carom::geometry {
 
@@ -65,11 +66,18 @@ Bounds3f bounds_of_plane(const Plane& plane, const Transform3f& t) {
 }
 
 Bounds3f bounds_of_hull(const Hull& hull, const Transform3f& t) {
+  using Four = math::WideFloat<4>;
   const Mat3f r = to_matrix(t.q);
-  Vec3f low = r * hull.vertices[0], high = low;
-  for (const Vec3f& v : hull.vertices) {
-    const Vec3f p = r * v;
-    low = min(low, p), high = max(high, p);
+  Vec3f low, high;
+  for (int k = 0; k < 3; ++k) {
+    const Four x = Four::splat(r.cx[k]), y = Four::splat(r.cy[k]), z = Four::splat(r.cz[k]);
+    Four least = Four::splat(3.4e38f), most = -least;
+    for (const float *p = hull.vertex_lanes.data(), *end = p + hull.vertex_lanes.size(); p != end; p += 12) {
+      const Four along = x * Four::load(p) + y * Four::load(p + 4) + z * Four::load(p + 8);
+      least = min(least, along), most = max(most, along);
+    }
+    low[k] = min(min(least[0], least[1]), min(least[2], least[3]));
+    high[k] = max(max(most[0], most[1]), max(most[2], most[3]));
   }
   return grow(Bounds3f{low + t.p, high + t.p}, hull.radius);
 }

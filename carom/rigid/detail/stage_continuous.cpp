@@ -86,6 +86,32 @@ bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, float part) {
   return math::length(middle) + turn_of(own.q0, own.q1) * ball.radius <= part * shape.inner_extent;
 }
 
+/// The same as seen from what turns or slides along with it.
+template <class D>
+bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, const Sweep<D>& other, float part) {
+  using V = typename D::Vector;
+  const ShapeBall<D> ball = ball_about(shape);
+  const V arm = ball.middle - own.local_center;
+  const V begin = inverse_rotate(other.q0, own.c0 + rotate(own.q0, arm) - other.c0),
+          end = inverse_rotate(other.q1, own.c1 + rotate(own.q1, arm) - other.c1);
+  return math::length(end - begin) +
+             turn_of(conjugate(other.q0) * own.q0, conjugate(other.q1) * own.q1) * ball.radius <=
+         part * shape.inner_extent;
+}
+
+/// A box that all of a shape stays in on its way, found sooner than way_bounds and larger.
+template <class D>
+typename D::Bounds loose_way(const ShapeRecord<D>& shape, const Sweep<D>& own, const typename D::Position& base) {
+  using P = typename D::Position;
+  const ShapeBall<D> ball = ball_about(shape);
+  const auto arm = ball.middle - own.local_center, begin = own.c0 + rotate(own.q0, arm),
+             end = own.c1 + rotate(own.q1, arm);
+  // The arc of a point strays from its chord by less than its turn times the arm.
+  const double reach = double(ball.radius) + double(turn_of(own.q0, own.q1)) * double(math::length(arm)) +
+                       1e-5 * double(math::length(arm) + ball.radius);
+  return geometry::grow(typename D::Bounds{base + P(math::min(begin, end)), base + P(math::max(begin, end))}, reach);
+}
+
 template <class D>
 bool is_fast_bullet(const WorldImplementation<D>& world, std::int32_t body) {
   constexpr unsigned both = body_bullet | body_fast;
@@ -121,12 +147,9 @@ void carry_on(WorldImplementation<D>& world, std::int32_t body, std::int32_t mes
   pose_from_center(world, body);
 }
 
-/// Is nothing that forces do not move anywhere near the way of a body?
+/// Is nothing that forces do not move in a box?
 template <class D>
-bool goes_freely(const WorldImplementation<D>& world, const BodyMotion<D>& motion, const typename D::Position& start) {
-  const typename D::Bounds box =
-      geometry::grow(typename D::Bounds{math::min(start, motion.center), math::max(start, motion.center)},
-                     double(motion.outer_extent));
+bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) {
   bool any = false;
   for (const int tree : {tree_fixed, tree_kinematic})
     if (!any && world.shapes.trees[tree].size() > 0)
@@ -135,6 +158,13 @@ bool goes_freely(const WorldImplementation<D>& world, const BodyMotion<D>& motio
         return false;
       });
   return !any;
+}
+/// The same for the way of a body.
+template <class D>
+bool goes_freely(const WorldImplementation<D>& world, const BodyMotion<D>& motion, const typename D::Position& start) {
+  return is_free(world,
+                 geometry::grow(typename D::Bounds{math::min(start, motion.center), math::max(start, motion.center)},
+                                double(motion.outer_extent)));
 }
 
 /// Stops a body at what is not moved by forces; lists what it may meet of the rest.
@@ -145,9 +175,8 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   const BodyRecord& record = world.bodies.record[std::size_t(body)];
   const bool bullet = (record.flags & body_bullet) != 0;
   const SweepStart<D>& start = world.scratch.swept[place];
-  if (!any_bullets && world.shapes.moving_surfaces == 0 &&
-      goes_freely(world, world.bodies.motion[std::size_t(body)], start.center))
-    return;
+  const bool alone = !any_bullets && world.shapes.moving_surfaces == 0;  // what forces move does not stop it
+  if (alone && goes_freely(world, world.bodies.motion[std::size_t(body)], start.center)) return;
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
   float fraction = 1;
@@ -157,7 +186,9 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     if (shape.leaf == none) continue;
     const Sweep<D> own = way_of_shape(shape, sweep);
     const bool turns_far = start.turn != typename D::Angular{};
-    if (!turns_far && is_slow(shape, own, bullet ? 0.25f : 0.5f)) continue;
+    const float most_slow = bullet ? 0.25f : 0.5f;
+    if (!turns_far && is_slow(shape, own, most_slow)) continue;
+    if (alone && !turns_far && shape.next != none && is_free(world, loose_way(shape, own, start.center))) continue;
     typename D::Bounds box = way_bounds(shape, own, start.center);
     if (turns_far) {
       const double reach = double(math::length(own.local_center) + shape.outer_extent);
@@ -187,6 +218,9 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
               {s, o, {std::int32_t(place), world.bodies.record[std::size_t(other.body)].awake_index}, {none, none}});
         return;
       }
+      if (other.tree == tree_kinematic && !turns_far &&
+          is_slow(shape, own, way_of_body(world, other.body, start.center), most_slow))
+        return;
       const float t = meeting_time(world, shape, other, start.center, 0, 1, !one_way(world, o));
       if (t < fraction) fraction = t, at = is_moving_surface(world, o) ? other.body : none;
     });
