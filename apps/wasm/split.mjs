@@ -163,17 +163,21 @@ async function runAll(data, sets) {
 /**
  * Function → the part that holds it, from what the first demo and every set of demos call. In `main`: what start-up and
  * the first demo call, and whatever takes vectors, because a call that loads a part goes through JavaScript, which has
- * none. What the demos of one group call is a part of its own (scene files, which have the models of every group, use
- * those parts), what several call is `plane` or `shared`, what nobody calls (errors, tools, what a hand does) the `rest`.
+ * none. What the demos of one group call is a part of its own; a scene file, which may have the models of every group,
+ * loads the parts of those it has. What several groups, or one and most scene files, call is `plane` or `shared`, what
+ * nobody calls (errors, tools, what a hand does) the `rest`.
  */
 function assign(functions, first, sets, called) {
   const small = 20e3;  // bytes that are worth a request of their own
+  const isScene = (set) => set.group === 'Scenes', most = sets.filter(isScene).length / 2;
   const part = functions.map((f, i) => {
     if (f.vector || f.exported || first.some((called) => called[i])) return 'main';
-    const all = sets.filter((_, s) => called[s][i]), demos = all.filter((s) => s.group !== 'Scenes'), users = demos.length > 0 ? demos : all;
+    const users = sets.filter((_, s) => called[s][i]), demos = users.filter((s) => !isScene(s));
     if (users.length === 0) return 'rest';
-    if (users.every((s) => s.group === users[0].group)) return users[0].group;
-    return users.every((s) => s.dimension === 2) ? 'plane' : 'shared';
+    if (demos.length === 0) return 'Scenes';
+    if (users.length - demos.length > most) return 'shared';
+    if (demos.every((s) => s.group === demos[0].group)) return demos[0].group;
+    return demos.every((s) => s.dimension === 2) ? 'plane' : 'shared';
   });
   const size = {};
   functions.forEach((f, i) => { size[part[i]] = (size[part[i]] ?? 0) + f.code.length; });
@@ -193,7 +197,7 @@ export async function split(modulePath, files, out) {
     const demos = makeHost(module, files).demos.filter((d) => !d.group.startsWith('Stress'));
     const sets = [];
     for (const {id, group, dimension} of demos) {
-      let set = sets.find((s) => s.group === group && s.dimension === dimension);
+      let set = group === 'Scenes' ? undefined : sets.find((s) => s.group === group && s.dimension === dimension);  // each scene file is another
       if (!set) sets.push(set = {group, dimension, demos: [], seconds: 1.5, patience: 2, threads: 2});
       set.demos.push(id);
     }
