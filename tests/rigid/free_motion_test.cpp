@@ -119,5 +119,42 @@ TEST(FreeRotation, IntermediateAxisFlip) {
   EXPECT_LT(worst_angle, 1e-3);
 }
 
+// Bodies of the plane go through a substep side by side where there are enough of them: each as if it were alone, to
+// the bit, also the fastest, who is damped, who is moved by hand and who stands beside one with a lock.
+TEST(FreeMotionInLanes, CompanyChangesNothing) {
+  const auto definition = [](int i) {
+    BodyDef<Dim2> d;
+    d.type = i % 11 == 5 ? BodyType::kinematic : BodyType::dynamic;
+    d.position = {10.0 * i, 3};
+    d.linear_velocity = {i == 7 ? 900.0f : 0.3f * float(i), 2 - 0.1f * float(i)};
+    d.angular_velocity = i == 9 ? 4000.0f : 0.7f * float(i - 20);
+    d.linear_damping = i % 3 == 0 ? 0.2f : 0;
+    d.angular_damping = i % 4 == 0 ? 0.3f : 0;
+    d.locks.x = i == 40;
+    return d;
+  };
+  WorldDef<Dim2> world_definition = world_with<Dim2>();
+  world_definition.maximum_linear_speed = 300;
+  constexpr int count = 50;  // three times sixteen and two, of which a lock spoils one sixteen
+  World<Dim2> all(world_definition);
+  std::vector<BodyId> bodies;
+  const auto add = [](World<Dim2>& world, const BodyDef<Dim2>& d) {
+    const BodyId body = world.create_body(d).value();
+    world.add_shape(body, box_shape<Dim2>(0.5f, 0.25f, 0)).value();
+    return body;
+  };
+  for (int i = 0; i < count; ++i) bodies.push_back(add(all, definition(i)));
+  for (int step = 0; step < 30; ++step) all.step(frame).value();
+  for (int i = 0; i < count; ++i) {
+    World<Dim2> alone(world_definition);
+    const BodyId body = add(alone, definition(i));
+    for (int step = 0; step < 30; ++step) alone.step(frame).value();
+    const BodyState<Dim2> one = alone.state(body).value(), other = all.state(bodies[std::size_t(i)]).value();
+    EXPECT_EQ(one.pose, other.pose) << i;
+    EXPECT_EQ(one.linear_velocity, other.linear_velocity) << i;
+    EXPECT_EQ(one.angular_velocity, other.angular_velocity) << i;
+  }
+}
+
 }  // namespace
 }  // namespace carom::rigid::test
