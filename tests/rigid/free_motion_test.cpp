@@ -125,7 +125,7 @@ TEST(FreeMotionInLanes, CompanyChangesNothing) {
   const auto definition = [](int i) {
     BodyDef<Dim2> d;
     d.type = i % 11 == 5 ? BodyType::kinematic : BodyType::dynamic;
-    d.position = {10.0 * i, 3};
+    d.position = {3, 100.0 * i};  // nobody comes near anybody
     d.linear_velocity = {i == 7 ? 900.0f : 0.3f * float(i), 2 - 0.1f * float(i)};
     d.angular_velocity = i == 9 ? 4000.0f : 0.7f * float(i - 20);
     d.linear_damping = i % 3 == 0 ? 0.2f : 0;
