@@ -73,9 +73,9 @@ struct alignas(64) ContactRaw {
   Placed base;                                     ///< B in A when the manifold was made
   float recycled[W];                               ///< 1: the manifold was made at `base`, 0: now
   float anchor_a[dimension][W], anchor_b[dimension][W];
-  float anchor_state[W];  ///< 0: friction slides freely, 1: no anchor yet, 2: anchored; out: 1 for a new anchor
+  float anchor_state[W];  ///< 0: friction slides freely, 1: no anchor yet, 2: holds, 3: settles; out: 1: a new anchor
   float friction_impulse[dimension][W];
-  float tangent_speed[W], patch_factor[W];
+  float tangent_speed[W], patch_factor[W], point_factor[W];
 };
 
 /// Only where a contact of the colour rolls with resistance or bounces.

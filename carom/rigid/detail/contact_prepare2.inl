@@ -91,6 +91,7 @@ CAROM_SIMD_INLINE void prepare_friction2(ContactBlock<Dim2, W>& c, ContactRaw<Di
   const auto holds = (state > one) & (dot(b, b) < reach * reach);
   const WideVec2<W> none = {zero, zero}, slip = select(holds, subtract(b, a), none);
   select(holds, zero, min(state, one)).store(raw.anchor_state);
+  rate = select(state > F::splat(2), rate + rate, rate);
   dot(load2<W>(raw.friction_impulse), t).store(c.tangent_impulse);
   (F::load(raw.tangent_speed) - rate * dot(slip, t)).store(c.tangent_target);
 }

@@ -110,21 +110,26 @@ CAROM_SIMD_INLINE void prepare_friction3(ContactBlock<Dim3, W>& c, ContactRaw<Di
     const WideVec3<W> d = subtract(load3<W>(c.point[i].r_a), center);
     radius += sqrt(dot(d, d)) * select(loaded, F::load(c.point[i].impulse), F::load(c.point[i].normal_mass));
   }
-  radius = keep(count > one, radius * F::load(raw.patch_factor) * share);
+  // A single point, where something is round, is a small disc by the depth to which it is pressed in: of radius √(R δ),
+  // and its elliptic pressure turns on 3π/16 of that (Hertz; Johnson, Contact Mechanics, §3.4 and §7.4).
+  const WideVec3<W> center_b = add(center, load3<W>(c.center_offset));
+  const F arm = min(sqrt(dot(center, center)), sqrt(dot(center_b, center_b)));
+  const F disc = F::load(raw.point_factor) * sqrt(arm * max(zero - F::load(c.point[0].separation), zero));
+  radius = select(count > one, radius * F::load(raw.patch_factor) * share, keep(loaded, disc));
   radius.store(c.twist_radius);
   keep(radius > zero, F::load(c.twist_impulse)).store(c.twist_impulse);
 
   const WideVec3<W> n = load3<W>(c.normal), t = perpendicular(n), u = cross(n, t);
   store3(t, c.tangent);
   // Where friction sticks is remembered on both bodies, so that a body at rest on a slope stays there for good.
-  const WideVec3<W> center_b = add(center, load3<W>(c.center_offset));
   const WideVec3<W> a = subtract(rotate(to_matrix(load_turn<W>(raw.rotation_a)), load3<W>(raw.anchor_a)), center);
   const WideVec3<W> b = subtract(rotate(to_matrix(load_turn<W>(raw.rotation_b)), load3<W>(raw.anchor_b)), center_b);
-  const F reach = F::splat(0.05f) * min(sqrt(dot(center, center)), sqrt(dot(center_b, center_b))) + F::splat(0.01f);
+  const F reach = F::splat(0.05f) * arm + F::splat(0.01f);
   const F state = F::load(raw.anchor_state);
   const auto holds = (state > one) & (dot(b, b) < reach * reach);
   const WideVec3<W> none = {zero, zero, zero}, slip = select(holds, subtract(b, a), none);
   select(holds, zero, min(state, one)).store(raw.anchor_state);
+  rate = select(state > F::splat(2), rate + rate, rate);
   const WideVec3<W> impulse = load3<W>(raw.friction_impulse);
   dot(impulse, t).store(c.tangent_impulse[0]);
   dot(impulse, u).store(c.tangent_impulse[1]);

@@ -58,6 +58,10 @@ struct ManifoldImpulses {
   typename D::Angular rolling{};        ///< N·m·s on B
 };
 
+/// Whether friction remembers where it sticks. A new contact takes up its load later than gravity pulls; while it
+/// settles, the way that it slips meanwhile is remembered and taken back.
+enum class Anchor : std::uint8_t { none, holds, settles };
+
 /// One patch of contact: a unit of the constraint graph.
 template <class D>
 struct ManifoldRecord {
@@ -70,7 +74,7 @@ struct ManifoldRecord {
   typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass
   float approach_speed = 0;                   ///< m/s at the start of the step, for hit events
   float slip_speed = 0;                       ///< m/s across the surface at the start of the step, for hit events
-  bool anchored = false;
+  Anchor anchor = Anchor::none;
   bool disabled = false;  ///< pushes nothing in this step
 };
 

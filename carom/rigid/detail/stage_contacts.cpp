@@ -50,12 +50,14 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   put(raw.anchor_a, lane, m.anchor_a);
   put(raw.anchor_b, lane, m.anchor_b);
   const bool slides = m.tangent_speed != 0 || (c.flags & contact_round) != 0;
-  raw.anchor_state[lane] = slides ? 0 : (m.anchored ? 2 : 1);
+  raw.anchor_state[lane] = slides ? 0 : 1 + float(m.anchor);
   put(raw.friction_impulse, lane, m.impulses.friction);
   raw.tangent_speed[lane] = m.tangent_speed;
   // Radius of the patch for the twist over the mean distance of its points, under uniform pressure: a disc turns on 2/3
   // of its radius, rectangles from square to thin line on .54 … .5 of the distance of their corners.
   raw.patch_factor[lane] = (c.flags & contact_on_disc) != 0 ? 2.0f / 3.0f : 0.53f;
+  // What a single point's disc turns on (prepare_friction3); rolling resistance holds against spin too.
+  raw.point_factor[lane] = m.rolling_lever > 0 ? 0 : 0.589f;
 
   block.read_a[lane] = a;
   block.read_b[lane] = b;
@@ -94,16 +96,38 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   return deepest * soft.bias_rate < -context.push_speed ? mark_pushed : 0;
 }
 
-/// After the kernel: friction that sticks anew remembers where.
+/// m: by so much a contact that settles may slip.
+template <class D>
+float settling_slip(const StepContext<D>& context) {
+  return context.rest_speed / rest_falls * context.dt;
+}
+
+/// After the kernel: friction that sticks anew remembers where. A contact that settles has a new anchor where its load
+/// moved on the patch, and keeps its slip.
 template <class D, int W>
 void set_anchor(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block, int lane) {
+  using V = typename D::Vector;
   ManifoldRecord<D>& m = context.world.contacts.manifold(index);
   const ContactRecord<D>& c = context.world.contacts.at(m.contact);
-  const auto& pose = context.world.bodies.pose;
-  const typename D::Vector center = get(block.patch_r_a, lane), offset = get(block.center_offset, lane);
-  m.anchored = true;
-  m.anchor_a = inverse_rotate(pose[std::size_t(c.body[0])].rotation, center);
-  m.anchor_b = inverse_rotate(pose[std::size_t(c.body[1])].rotation, center + offset);
+  const auto &qa = context.world.bodies.pose[std::size_t(c.body[0])].rotation,
+             &qb = context.world.bodies.pose[std::size_t(c.body[1])].rotation;
+  const V center = get(block.patch_r_a, lane), center_b = center + get(block.center_offset, lane);
+  V slip{};
+  if (m.anchor == Anchor::settles) {
+    const V n = get(block.normal, lane);
+    slip = (rotate(qb, m.anchor_b) - center_b) - (rotate(qa, m.anchor_a) - center);
+    slip -= dot(n, slip) * n;
+    const float most = settling_slip(context);
+    if (math::length_squared(slip) > most * most) slip = {}, m.anchor = Anchor::holds;
+  } else {
+    float load = 0;
+    for (const auto& point : block.point) load += point.impulse[lane];
+    // What meets with a corner or an edge may roll on it.
+    const bool face = m.manifold.count == D::max_points;
+    m.anchor = load > 0 || !face ? Anchor::holds : Anchor::settles;
+  }
+  m.anchor_a = inverse_rotate(qa, center);
+  m.anchor_b = inverse_rotate(qb, center_b + slip);
 }
 
 /// After the kernel: how fast the surfaces close, and with what speed they are to part. Returns the lane's mark.
@@ -169,7 +193,7 @@ void prepare_special(const StepContext<D>& context, std::int32_t index, ContactB
   if (c.flags & contact_special) {
     const V belt = surface_slip(context.world, c, m.manifold.material);
     if (!(belt == V{})) {
-      m.anchored = false;  // nothing sticks to one place of a belt
+      m.anchor = Anchor::none;  // nothing sticks to one place of a belt
       if constexpr (D::dimension == 2) {
         block.tangent_target[lane] = m.tangent_speed + dot(belt, Vec2f{-n.y, n.x});
       } else {
@@ -186,7 +210,7 @@ void prepare_special(const StepContext<D>& context, std::int32_t index, ContactB
     m.slip_speed = math::length(v - n * dot(n, v));
   }
   if (!m.disabled) return;
-  m.anchored = false;
+  m.anchor = Anchor::none;
   for (int i = 0; i < D::max_points; ++i) {
     block.point[i].separation[lane] = 1e3f;
     block.point[i].impulse[lane] = 0;
@@ -252,6 +276,17 @@ void add_load(StepContext<D>& context, const ContactBlock<D, W>& block, int lane
   }
 }
 
+/// (m/s)²: of the speed at which the slip since the anchor was set is taken back.
+template <int W>
+float taken_back_squared(const ContactBlock<Dim2, W>& block, int lane) {
+  return block.tangent_target[lane] * block.tangent_target[lane];
+}
+template <int W>
+float taken_back_squared(const ContactBlock<Dim3, W>& block, int lane) {
+  return block.tangent_target[0][lane] * block.tangent_target[0][lane] +
+         block.tangent_target[1][lane] * block.tangent_target[1][lane];
+}
+
 template <class D, int W>
 void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
                 const ContactExtra<D, W>* extra, int lane) {
@@ -279,8 +314,18 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
                             extra->rolling_impulse[2][lane]};
   }
   add_load(context, block, lane, load);
-  // What slides, or lies loosely, lets go of its anchor.
-  if (math::length_squared(m.impulses.friction) >= limit * limit) m.anchored = false;
+  // What slides, or lies loosely, lets go of its anchor, and a contact that settles does once it has slipped too far.
+  const bool at_limit = math::length_squared(m.impulses.friction) >= limit * limit;
+  if (m.anchor == Anchor::settles) {
+    const float back = taken_back_squared(block, lane);
+    const float most = 2 * anchor_rate * context.inverse_dt * settling_slip(context);
+    if (at_limit && (load <= 0 || back > most * most))
+      m.anchor = Anchor::none;
+    else if (!at_limit && back > 0 && back < 1e-4f * most * most)
+      m.anchor = Anchor::holds;  // 0: the anchor is new
+  } else if (at_limit) {
+    m.anchor = Anchor::none;
+  }
 }
 
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
