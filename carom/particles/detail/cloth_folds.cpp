@@ -125,7 +125,7 @@ void ClothState::find_fold_pairs(float h, float apart) {
           std::uint32_t hits = above(plane, margin, at);
           if (end - k < 4) hits &= (1u << (end - k)) - 1;
           for (; hits != 0; hits &= hits - 1) {
-            const std::uint32_t v = std::uint32_t(cell_list[std::size_t(k + std::countr_zero(hits))]);
+            const std::uint32_t v = std::uint32_t(cell_list[std::size_t(k) + std::size_t(std::countr_zero(hits))]);
             if (v == c[0] || v == c[1] || v == c[2]) continue;
             const Vec3f way = local[v] - a;
             const float beta = dot(way, plane.second), gamma = dot(way, plane.third), height = dot(way, plane.normal);
