@@ -223,6 +223,7 @@ export class Viewer {
   /** The ray through a place of the canvas (CSS pixels), in world coordinates. */
   ray(x: number, y: number): THREE.Ray {
     const box = this.canvas.getBoundingClientRect();
+    this.camera.updateMatrixWorld();  // it may have been put elsewhere since the last picture
     const caster = new THREE.Raycaster();
     caster.setFromCamera(new THREE.Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
     caster.ray.origin.add(this.origin);
@@ -289,6 +290,7 @@ export class Viewer {
     const drawn = this.bodies.get(id);
     if (!drawn) return undefined;
     const box = this.canvas.getBoundingClientRect();
+    this.camera.updateMatrixWorld();
     const p = drawn.position.clone().project(this.camera);
     return {x: box.left + (p.x + 1) / 2 * box.width, y: box.top + (1 - p.y) / 2 * box.height};
   }
