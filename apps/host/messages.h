@@ -15,8 +15,9 @@ inline constexpr int protocol_version = 1;
 /// Of the binary message that carries a file: a recording, either way.
 inline constexpr char file_message_kind = 3;
 
-/// JSON text, always valid UTF-8.
-/// A JSON array: id, title, summary, group, chapter and dimension of each, as `welcome` lists them.
+// All of these are JSON text, always valid UTF-8.
+
+/// An array: id, title, summary, group, chapter and dimension of each, as `welcome` lists them.
 std::string menu_json(std::span<const Declaration> demos);
 /// `menu`: such an array.
 std::string welcome_message(const char* engine, std::string_view menu);
