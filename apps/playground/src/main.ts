@@ -315,11 +315,19 @@ class Page implements Listener {
   }
 }
 
-// The tests drive the page through this object; nothing in the page reads it.
-try {
-  (window as unknown as {caromPage: Page}).caromPage = new Page();
-} catch (error) {
-  byId('notice').textContent = `This browser cannot show the page: it needs WebGL2 (${error instanceof Error ? error.message : String(error)}).`;
+function complain(text: string): void {
+  byId('notice').textContent = text;
   byId('notice').hidden = false;
-  throw error;
+}
+
+if (document.createElement('canvas').getContext('webgl2')) {
+  try {
+    // The tests drive the page through this object; nothing in the page reads it.
+    (window as unknown as {caromPage: Page}).caromPage = new Page();
+  } catch (error) {
+    complain(`This browser cannot show the page: ${error instanceof Error ? error.message : String(error)}.`);
+    throw error;
+  }
+} else {
+  complain('This browser cannot show the page: it needs WebGL2, which browsers have had since 2021. Here it is turned off, or the graphics driver lacks it.');
 }

@@ -6,7 +6,8 @@ const decoder = new TextDecoder();
 
 /** Memory and threads for this page: several where it is isolated from others, which only its server can do. */
 export function share(most: number): {memory: WebAssembly.Memory; threads: number} {
-  const threads = globalThis.crossOriginIsolated ? Math.min(most, navigator.hardwareConcurrency) : 1;
+  // An isolated page of WebKitGTK may make shared memory and yet send it to no Worker: there is no SharedArrayBuffer then.
+  const threads = globalThis.crossOriginIsolated && typeof SharedArrayBuffer === 'function' ? Math.min(most, navigator.hardwareConcurrency) : 1;
   if (threads > 1) {
     try {
       // All that a shared memory may ever take is set aside at once; a phone has less room for it.

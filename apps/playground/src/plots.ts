@@ -1,4 +1,5 @@
 // Live plots of what the demo declared, with the fixed (analytic or published) curves beside them.
+import './locale';  // before uPlot, which formats numbers as it loads
 import uPlot from 'uplot';
 import type {PlotDeclaration} from './protocol';
 import {byId, download} from './dom';

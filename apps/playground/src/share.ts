@@ -79,7 +79,9 @@ export class Share {
     const link = this.link();
     if (!link) return;
     history.replaceState(null, '', writeLink(link));
-    navigator.clipboard?.writeText(location.href).then(() => this.say('The link is in the clipboard.'), () => this.say('The link is in the address line.'));
+    // A page that came without encryption from another machine has no clipboard.
+    const copied = navigator.clipboard?.writeText(location.href) ?? Promise.reject(new Error('no clipboard'));
+    copied.then(() => this.say('The link is in the clipboard.'), () => this.say('The link is in the address line.'));
   }
 
   private name(suffix: string): string { return `carom-${(this.opened?.demo ?? 'scene').replace(/[^\w-]/g, '_')}-${this.step}.${suffix}`; }

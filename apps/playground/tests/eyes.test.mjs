@@ -138,3 +138,19 @@ test('a browser without WebGL2 is told what it lacks', async () => {
   await page.waitForSelector('#notice:not([hidden])');
   assert.match(await page.textContent('#notice'), /needs WebGL2/);
 });
+
+test('a browser whose system has no language, and that lacks what the page can do without', async () => {
+  const page = await visit('about:blank', {}, false);
+  await page.addInitScript(() => {
+    Object.defineProperty(navigator, 'language', {value: 'C', configurable: true});
+    for (const name of ['SharedArrayBuffer', 'OffscreenCanvas', 'createImageBitmap']) delete window[name];
+    Object.defineProperty(Navigator.prototype, 'getGamepads', {value: undefined});
+    Object.defineProperty(Navigator.prototype, 'clipboard', {value: undefined});
+  });
+  await page.goto(`${server.url}#chain`);
+  await beyond(page, 10);
+  await page.waitForSelector('#plot canvas');
+  await page.click('#share >> text=Copy link');
+  await page.waitForFunction(() => document.querySelector('#notice').textContent.includes('address line'));
+  await page.done();
+});

@@ -73,6 +73,16 @@ test('an engine that is not there is named, whether it is missed before the page
   }
 });
 
+test('a browser without SIMD in WebAssembly is told from when on browsers have it', async () => {
+  const page = await visit('about:blank', {}, false);
+  await page.route(/worker\.js$/, async (route) => {
+    const answer = await route.fetch();
+    await route.fulfill({response: answer, body: `WebAssembly.validate = () => false;\n${await answer.text()}`});
+  });
+  await page.goto(`${server.url}#chain`);
+  await page.waitForFunction(() => /SIMD.*Safari from 16\.4/.test(document.querySelector('#notice').textContent));
+});
+
 test('a part of the engine that is not there is named', async () => {
   const page = await visit('about:blank', {}, false);
   await page.route(/carom-[a-z-]+-[0-9a-f]{8}\.wasm$/, (route) => route.fulfill({status: 404}));
