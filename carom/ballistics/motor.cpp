@@ -118,19 +118,25 @@ core::Result<std::vector<Motor>> read_rasp(std::string_view text, std::string_vi
     motors.back().curve = std::move(curve).value();
     return {};
   };
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark, as some editors write it
   while (!text.empty()) {
     ++number;
     const std::size_t end = math::min(text.find('\n'), text.size());
     const std::vector<std::string_view> words = detail::words_of(text.substr(0, end));
     text.remove_prefix(math::min(end + 1, text.size()));
     if (words.empty()) continue;
+    // A thrust of 0 ends a motor, but measured curves touch it between, too: what follows tells.
+    const bool ended = in_motor && points.size() > 1 && points.back().thrust == 0;
+    if (ended && words.size() != 2)
+      if (const core::Result<void> done = finish(); !done.ok()) return done.error();
     if (!in_motor) {
-      if (words.size() != 7)
+      if (words.size() < 7)
         return error(number, core::text(words.size(), " words"),
                      "the header of a motor: name, diameter, length, delays, propellant mass, mass, manufacturer");
       Motor motor;
       motor.name = words[0];
-      motor.manufacturer = words[6];
+      // Some makers have names of several words.
+      motor.manufacturer = std::string(words[6].data(), words.back().data() + words.back().size());
       const struct {
         std::size_t word;
         const char* what;
@@ -176,10 +182,11 @@ core::Result<std::vector<Motor>> read_rasp(std::string_view text, std::string_vi
       return error(number, core::text("the time ", *time), "times that rise from 0");
     if (*thrust < 0) return error(number, core::text("the thrust ", *thrust), "a thrust >= 0");
     points.push_back({*time, *thrust});
-    if (*thrust == 0 && points.size() > 1)
-      if (const core::Result<void> done = finish(); !done.ok()) return done.error();
   }
-  if (in_motor) return error(number, "the end of the file", "the motor's last line, with thrust 0");
+  if (in_motor && !(points.size() > 1 && points.back().thrust == 0))
+    return error(number, "the end of the file", "the motor's last line, with thrust 0");
+  if (in_motor)
+    if (const core::Result<void> done = finish(); !done.ok()) return done.error();
   if (motors.empty()) return error(number, "no motor", "at least one");
   return motors;
 }

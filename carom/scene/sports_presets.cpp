@@ -15,10 +15,11 @@ core::Error in_file(std::string_view file, const core::Error& error) {
 }  // namespace
 
 core::Result<sports::Ball> parse_ball(std::string_view text, std::string_view file) {
-  static constexpr std::string_view side[] = {"side_kind"};
-  const auto values = read_preset(text, file, sports::ball_number_names(), side);
+  static constexpr std::string_view names[] = {"side_kind", "lift_shape"};
+  const auto values = read_preset(text, file, sports::ball_number_names(), names);
   if (!values) return values.error();
-  auto ball = sports::ball_from_numbers(values->numbers, values->text("side_kind", "none"));
+  auto ball = sports::ball_from_numbers(values->numbers, values->text("side_kind", "none"),
+                                        values->text("lift_shape", "rational"));
   return ball ? std::move(ball) : core::Result<sports::Ball>(in_file(file, ball.error()));
 }
 

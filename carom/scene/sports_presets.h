@@ -10,8 +10,9 @@
 
 namespace carom::scene {
 
-/// presets/flight/NAME.json. Values are quantities with units ("45.93 g") or plain numbers, and "side_kind" by name.
-/// Errors name file, line, value, what was found and what was expected; `file` is how they call the text.
+/// presets/flight/NAME.json. Values are quantities with units ("45.93 g") or plain numbers, "side_kind" and
+/// "lift_shape" by name. Errors name file, line, value, what was found and what was expected; `file` is how they call
+/// the text.
 CAROM_API core::Result<sports::Ball> parse_ball(std::string_view text, std::string_view file);
 /// presets/surface/NAME.json.
 CAROM_API core::Result<sports::Surface> parse_surface(std::string_view text, std::string_view file);

@@ -29,10 +29,13 @@ CAROM_API std::vector<double> surface_numbers(const Surface& surface);
 CAROM_API std::vector<double> club_numbers(const ClubHead& head);
 
 /// A ball from named numbers; those that are not named stay as in a `Ball`. `side` says which side force, by the names
-/// none, held_seam, turning_seam, wandering_wake. Errors: an unknown name, a number named twice, or one that cannot be.
-CAROM_API core::Result<Ball> ball_from_numbers(std::span<const Number> numbers, std::string_view side = "none");
+/// none, held_seam, turning_seam, wandering_wake; `lift` the shape of the lift, rational or hyperbolic. Errors: an
+/// unknown name, a number named twice, or one that cannot be.
+CAROM_API core::Result<Ball> ball_from_numbers(std::span<const Number> numbers, std::string_view side = "none",
+                                               std::string_view lift = "rational");
 CAROM_API core::Result<Surface> surface_from_numbers(std::span<const Number> numbers);
 CAROM_API core::Result<ClubHead> club_from_numbers(std::span<const Number> numbers);
 CAROM_API std::string_view to_string(SideForce::Kind kind);
+CAROM_API std::string_view to_string(LiftLaw::Shape shape);
 
 }  // namespace carom::sports

@@ -12,20 +12,19 @@ std::vector<BallPreset> make_presets() {
       {"golf",
        "A dimpled golf ball.",
        "rules of golf (mass, diameter); curves of the form of Bearman & Harvey, Aeronautical Quarterly 27 (1976) 112, "
-       "their constants fitted to the TrackMan tour averages of twelve clubs (every club within 2 % of carry, 2.5 yd "
-       "of "
-       "apex, 2.5 deg of landing); spin decay: Smits & Ogg 2004",
+       "their constants fitted to two years of TrackMan's tour averages, twelve clubs each (every club within "
+       "2.7 % of carry, 3 yd of apex, 2.3 deg of landing); spin decay: Smits & Ogg 2004",
        .08,
        .10,
        {.mass = .04593,
         .radius = .021335,
-        .drag = {.fast = .186,
-                 .crisis = .273,
-                 .critical_reynolds = 7.2e4,
-                 .steepness = 10,
-                 .spin_rise = .0905,
-                 .spin_scale = .156},
-        .lift = {Shape::hyperbolic, .301, .180, .577},
+        .drag = {.fast = .175,
+                 .crisis = .246,
+                 .critical_reynolds = 7.26e4,
+                 .steepness = 14,
+                 .spin_rise = .0975,
+                 .spin_scale = .1328},
+        .lift = {Shape::hyperbolic, .2864, .1566, .71},
         .spin_damping = .0197}});
   list.push_back(
       {"baseball",

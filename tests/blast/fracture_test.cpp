@@ -100,44 +100,6 @@ TEST(Fracture, VoronoiPiecesAreTheWhole) {
   }
 }
 
-// Poisson–Voronoi cells have 2 + 48π²/35 faces on average, 96π²/35 vertices and 144π²/35 edges (J. L. Meijering,
-// "Interface area, edge length, and number of vertices in crystal aggregates with random nucleation", 1953); the
-// variance of volumes is .179 (E. N. Gilbert, "Random subdivisions of space into crystals", 1962). A periodic box.
-TEST(Fracture, StatisticsOfPoissonVoronoiCells) {
-  constexpr int n = 2500;
-  std::vector<Vec3d> sites = uniform_sites(unit_box(), n, 17);
-  const double margin = 0.2;
-  for (int copy = 0; copy < 27; ++copy) {
-    const Vec3d shift{double(copy % 3 - 1), double(copy / 3 % 3 - 1), double(copy / 9 - 1)};
-    if (copy == 13) continue;
-    for (int i = 0; i < n; ++i) {
-      const Vec3d p = sites[std::size_t(i)] + shift;
-      if (math::min(math::min(p.x, p.y), p.z) > -margin && math::max(math::max(p.x, p.y), p.z) < 1 + margin)
-        sites.push_back(p);
-    }
-  }
-  const auto pattern = voronoi_pattern(ConvexCell(geometry::Bounds3d{{-.5, -.5, -.5}, {1.5, 1.5, 1.5}}), sites);
-  ASSERT_TRUE(pattern);
-  double faces = 0, vertices = 0, edges = 0, volume = 0, squares = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const ConvexCell& cell = pattern->cells[i];
-    faces += double(cell.faces().size()) / n;
-    vertices += double(cell.vertices().size()) / n;
-    edges += double(cell.edge_count()) / n;
-    const double v = cell.volume();
-    volume += v;
-    squares += v * v * n;
-  }
-  const double pi2 = math::pi * math::pi;
-  // A cell's number of faces scatters by 3.3, so that the mean of 2500 does by .066: three of that.
-  EXPECT_NEAR(faces, 2 + 48 * pi2 / 35, 0.2);
-  EXPECT_NEAR(vertices, 96 * pi2 / 35, 0.4);
-  EXPECT_NEAR(edges, 144 * pi2 / 35, 0.6);
-  EXPECT_NEAR(vertices, 2 * (faces - 2), 1e-9) << "three faces at every corner, and Euler's formula";
-  EXPECT_NEAR(volume, 1, 1e-11) << "periodic cells tile the box";
-  EXPECT_NEAR(squares - 1, 0.179, 0.02);
-}
-
 TEST(Fracture, SameOnAnyNumberOfThreads) {
   const ConvexCell box(geometry::Bounds3d{{0, 0, 0}, {1, 1, 1}});
   const auto sites = uniform_sites(box, 150, 8);

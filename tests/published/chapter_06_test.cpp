@@ -1,5 +1,5 @@
 // Chapter 6, projectiles: closed forms and reference integrations (shared references "mechanics" ch. 6 and "ballistics"
-// 2.7), asked of forces and ballistics. Quadratic drag at 45°, wind, aiming and staging: tests/ballistics.
+// 2.7), asked of forces and ballistics.
 #include <gtest/gtest.h>
 
 #include "carom/ballistics/rocket.h"
@@ -71,6 +71,31 @@ TEST(Chapter06, QuadraticDragUpAndDown) {
     EXPECT_NEAR(flight->apex().time, row.up, 1e-6);
     EXPECT_NEAR(flight->end().time, row.up + row.down, 1e-7);
     EXPECT_NEAR(flight->end().velocity.y, -row.impact, 1e-6);
+  }
+}
+
+// Quadratic drag in units L = v_t²/g, T = v_t/g; 45°, landing at the height of the start.
+TEST(Chapter06, QuadraticDragIsTheCanonicalCase) {
+  const struct {
+    double ratio, range, time, apex_x, height, impact, angle;
+  } table[] = {{.5, .210305515, .673628358, .109033012, .056779297, .424945139, -49.41708},
+               {1, .589011800, 1.204724756, .325101693, .182763576, .638226942, -57.27302},
+               {2, 1.177778444, 1.876083493, .710899610, .450864745, .804353278, -68.09125},
+               {4, 1.804926897, 2.544087987, 1.184439862, .843425342, .907132843, -76.69245},
+               {8, 2.391283647, 3.150739194, 1.676760347, 1.299218898, .959469649, -82.03117}};
+  const double vt = 50, g = 9.80665, length = vt * vt / g;
+  const Conditions still{.air = environment::AirColumn::uniform(1.225)};
+  for (const auto& row : table) {
+    const auto flight = fly(projectile_from_terminal_speed(vt), still, {{}, row.ratio * vt * direction(45 * degree)},
+                            {.time = 60, .ground = 0, .tolerance = 1e-12});
+    ASSERT_TRUE(flight) << flight.error().message;
+    const auto end = flight->end(), apex = flight->apex();
+    EXPECT_NEAR(end.position.x / length, row.range, 2e-9);
+    EXPECT_NEAR(end.time * g / vt, row.time, 2e-9);
+    EXPECT_NEAR(apex.position.x / length, row.apex_x, 2e-9);
+    EXPECT_NEAR(apex.position.y / length, row.height, 2e-9);
+    EXPECT_NEAR(math::length(end.velocity) / vt, row.impact, 2e-9);
+    EXPECT_NEAR(math::atan2(end.velocity.y, end.velocity.x) / degree, row.angle, 1e-5);
   }
 }
 

@@ -34,6 +34,40 @@ BilliardPhysics frictionless() {
   return p;
 }
 
+// Parameters of section 2.13: pooltool's sets of pool, snooker and carom, the sizes of play, the fit of TP A.14.
+TEST(Chapter19Billiards, PublishedParameters) {
+  const BilliardPhysics pool = pool_physics(), snooker = snooker_physics(), carom_game = carom_physics();
+  EXPECT_EQ(pool.ball.mass, .170097);
+  EXPECT_EQ(pool.ball.radius, .028575);
+  EXPECT_EQ(pool.cloth.sliding_friction, .2);
+  EXPECT_EQ(pool.cloth.rolling_friction, .01);
+  EXPECT_NEAR(pool.cloth.spinning_friction, .444 * .028575, 1e-15);
+  EXPECT_EQ(pool.cloth.restitution, .5);
+  EXPECT_EQ(pool.balls.restitution, .95);
+  EXPECT_EQ(pool.balls.friction_floor, .009951);
+  EXPECT_EQ(pool.balls.friction_range, .108);
+  EXPECT_EQ(pool.balls.friction_rate, 1.088);
+  EXPECT_EQ(pool.cushion.restitution, .85);
+  EXPECT_EQ(pool.cushion.friction, .2);
+  EXPECT_EQ(pool.cushion.model, CushionModel::stronge);
+  EXPECT_EQ(pool.cushion.frequency_ratio, 1.8);
+  EXPECT_EQ(snooker.ball.mass, .140);
+  EXPECT_EQ(snooker.ball.radius, .02619375);
+  EXPECT_EQ(snooker.cloth.sliding_friction, .5);
+  EXPECT_EQ(snooker.cushion.friction, .5);
+  EXPECT_EQ(carom_game.ball.mass, .210);
+  EXPECT_EQ(carom_game.ball.radius, .03075);
+  EXPECT_EQ(carom_game.cushion.friction, .15);
+  EXPECT_EQ(seven_foot_pool().length, 1.9812);
+  EXPECT_EQ(carom_table().length, 2.84);
+  EXPECT_EQ(carom_table().width, 1.42);
+  EXPECT_EQ(carom_table().nose_height, .037);
+  EXPECT_EQ(snooker_table().length, 3.5445);
+  EXPECT_EQ(snooker_table().width, 1.7465);
+  EXPECT_NEAR(seven_foot_pool().nose_height, .64 * 2 * pool.ball.radius, 1e-12);
+  EXPECT_NEAR(snooker_table().nose_height, .64 * 2 * snooker.ball.radius, 1e-12);
+}
+
 // Exact: t = 2 v₀/(7 μ g), x = 12 v₀²/(49 μ g), v = 5/7 v₀. The reference prints g 9.80665 beside its second case, but
 // its numbers are those of 9.81 (with 9.80665: .291347 s, .499453 m).
 TEST(Chapter19Billiards, AStunnedBallSlidesThenRolls) {

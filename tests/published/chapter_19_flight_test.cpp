@@ -17,10 +17,13 @@ Landing shot(const Ball& ball, double speed, double elevation, double spin, cons
   return flight ? landing(*flight) : Landing{};
 }
 
-// Averages of the PGA tour as published by TrackMan (blog; the set with a club speed of 112 to 113 mph for the driver).
-// Bar: carry within 3 %, apex within 3 yd, landing angle within 3 deg. Read in a named source: driver and 7-iron,
-// without the landing angles, and the driver of 2023. The other ten rows and all landing angles are from memory: they
-// hold the model to what clubs do, and are not more than that.
+// Averages of the PGA tour as published by TrackMan: the set whose drivers have a club speed of 112 to 113 mph (blog),
+// and that of the season of 2023 (115 mph; also Golf Monthly, December 2023). Bar: carry within 3 %, apex within 3 yd,
+// landing angle within 3 deg, in both. Read in a named source: driver and 7-iron of the first set, without the landing
+// angles, and the driver of the second. The other rows and all landing angles are from memory: they hold the model to
+// what clubs do, and are not more than that. The second set's driver leaves with less climb (30.9 mph upward against
+// 31.6) and less spin than the first's and is told to rise 3 yd higher: averages of many players and days, which no one
+// ball can meet both at once but within such a bar.
 TEST(Chapter19, GolfFlightIsThatOfLaunchMonitors) {
   const struct {
     const char* club;
@@ -30,19 +33,27 @@ TEST(Chapter19, GolfFlightIsThatOfLaunchMonitors) {
                {"3-iron", 142, 10.4, 4630, 212, 27, 46}, {"4-iron", 137, 11.0, 4836, 203, 28, 48},
                {"5-iron", 132, 12.1, 5361, 194, 31, 49}, {"6-iron", 127, 14.1, 6231, 183, 30, 50},
                {"7-iron", 120, 16.3, 7097, 172, 32, 50}, {"8-iron", 115, 18.1, 7998, 160, 31, 50},
-               {"9-iron", 109, 20.4, 8647, 148, 30, 51}, {"wedge", 102, 24.2, 9304, 136, 29, 52}};
+               {"9-iron", 109, 20.4, 8647, 148, 30, 51}, {"wedge", 102, 24.2, 9304, 136, 29, 52},
+               {"driver", 171, 10.4, 2545, 282, 35, 39}, {"3-wood", 162, 9.3, 3663, 249, 32, 44},
+               {"5-wood", 156, 9.7, 4322, 236, 33, 48},  {"hybrid", 149, 10.2, 4587, 231, 31, 49},
+               {"3-iron", 145, 10.3, 4404, 218, 29, 48}, {"4-iron", 140, 10.8, 4782, 209, 31, 49},
+               {"5-iron", 135, 11.9, 5280, 199, 33, 50}, {"6-iron", 130, 14.0, 6204, 188, 32, 50},
+               {"7-iron", 123, 16.1, 7124, 176, 34, 51}, {"8-iron", 118, 17.8, 8078, 164, 33, 51},
+               {"9-iron", 112, 20.0, 8793, 152, 32, 52}, {"wedge", 104, 23.7, 9316, 142, 32, 52}};
   const Ball golf = *ball_preset("golf");
-  double worst = 0;
+  double carry = 0, apex = 0, angle = 0;
   for (const auto& row : table) {
     const Landing found = shot(golf, row.ball * mph, row.launch * degree, row.spin * rpm);
-    EXPECT_NEAR(found.carry / yard, row.carry, .03 * row.carry) << row.club;
-    EXPECT_NEAR(found.apex / yard, row.apex, 3) << row.club;
-    EXPECT_NEAR(found.angle / degree, row.angle, 3) << row.club;
-    worst = math::max(worst, math::abs(found.carry / yard / row.carry - 1));
+    EXPECT_NEAR(found.carry / yard, row.carry, .03 * row.carry) << row.club << ' ' << row.ball;
+    EXPECT_NEAR(found.apex / yard, row.apex, 3) << row.club << ' ' << row.ball;
+    EXPECT_NEAR(found.angle / degree, row.angle, 3) << row.club << ' ' << row.ball;
+    carry = math::max(carry, math::abs(found.carry / yard / row.carry - 1));
+    apex = math::max(apex, math::abs(found.apex / yard - row.apex));
+    angle = math::max(angle, math::abs(found.angle / degree - row.angle));
   }
-  EXPECT_LT(worst, .021) << "what docs/sports.md says";
-  // Another year's drivers (171 mph, 10.4 deg, 2545 rpm: 282 yd), which the fit has not seen.
-  EXPECT_NEAR(shot(golf, 171 * mph, 10.4 * degree, 2545 * rpm).carry / yard, 282, .03 * 282);
+  EXPECT_LT(carry, .027) << "what docs/sports.md says";
+  EXPECT_LT(apex, 2.95);
+  EXPECT_LT(angle, 2.3);
   // Lift carries farther than vacuum would (chapter 6.3).
   Ball none = golf;
   none.drag = {.fast = 0};

@@ -54,6 +54,10 @@ TEST(Chapter19, GolfSwingTextbook) {
   const Swing s = textbook_swing();
   const double arm = s.links[0].inertia + s.links[0].mass * math::square(s.links[0].centre);
   EXPECT_NEAR(arm, 1.0164, 5e-5);
+  EXPECT_EQ(s.links[0].length, .66);
+  EXPECT_EQ(s.links[0].mass, 7);
+  EXPECT_NEAR(s.links[0].mass * s.links[0].centre, 2.31, 1e-12);
+  EXPECT_NEAR(s.links[1].mass, .34, 1e-12);
   EXPECT_NEAR(s.links[1].mass * s.links[1].centre, .297, 1e-12);
   EXPECT_NEAR(s.links[1].inertia + s.links[1].mass * math::square(s.links[1].centre), .298467, 5e-7);
   const auto result = swing(s);

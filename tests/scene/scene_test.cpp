@@ -417,7 +417,7 @@ TEST(Schema, InTheRepositoryIsTheOneOfTheLoader) {
 
 TEST(Presets, AllStateTheirSourceAndLoad) {
   for (const char* name : {"ball/golf", "ball/tennis", "ball/basketball", "ball/soccer", "ball/baseball",
-                           "ball/bowling", "ball/billiard"}) {
+                           "ball/bowling", "ball/billiard", "ball/cricket"}) {
     const Result<Scene> scene =
         parse_scene(std::string("{\"bodies\": [{\"name\": \"b\", \"preset\": \"") + name + "\"}]}", "t",
                     [](std::string_view path) -> Result<std::string> {

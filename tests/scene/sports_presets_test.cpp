@@ -32,6 +32,7 @@ TEST(SportsPresets, FilesAreTheLibrarysNumbers) {
     ASSERT_TRUE(ball) << ball.error().message;
     expect_same(sports::ball_numbers(*ball), sports::ball_numbers(preset.ball), preset.name);
     EXPECT_EQ(ball->side.kind, preset.ball.side.kind);
+    EXPECT_EQ(ball->lift.shape, preset.ball.lift.shape) << preset.name;
   }
   for (const sports::SurfacePreset& preset : sports::surface_presets()) {
     const std::string name = "surface/" + std::string(preset.name) + ".json";

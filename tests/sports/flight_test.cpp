@@ -32,10 +32,11 @@ TEST(SportsFlight, PresetsAreSound) {
     const std::vector<double> values = ball_numbers(preset.ball);
     for (std::size_t i = 0; i < values.size(); ++i) numbers.push_back({ball_number_names()[i].name, values[i]});
     const char* const sides[] = {"none", "held_seam", "turning_seam", "wandering_wake"};
-    const auto again = ball_from_numbers(numbers, sides[int(preset.ball.side.kind)]);
+    const auto again = ball_from_numbers(numbers, sides[int(preset.ball.side.kind)], to_string(preset.ball.lift.shape));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(ball_numbers(*again), values);
     EXPECT_EQ(again->side.kind, preset.ball.side.kind);
+    EXPECT_EQ(again->lift.shape, preset.ball.lift.shape);
   }
   for (const SurfacePreset& preset : surface_presets()) EXPECT_TRUE(check(preset.surface)) << preset.name;
   EXPECT_EQ(ball_preset("egg").error().message.substr(0, 41), "the ball \"egg\" is not known, expected one");
@@ -238,6 +239,7 @@ TEST(SportsFlight, BadInputIsNamed) {
   EXPECT_EQ(ball_from_numbers(unknown).error().message, "a ball has no number \"weight\"");
   EXPECT_FALSE(ball_from_numbers(bad));
   EXPECT_FALSE(ball_from_numbers({}, "spiral"));
+  EXPECT_FALSE(ball_from_numbers({}, "none", "square"));
   Surface grass = *surface_preset("green");
   grass.restitution = 1.2;
   EXPECT_FALSE(play(golf, {}, launch_state(drive), grass));

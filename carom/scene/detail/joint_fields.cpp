@@ -13,7 +13,7 @@ constexpr std::string_view joint_types[] = {"distance",    "ball",    "hinge",  
 constexpr std::string_view effector_types[] = {
     "spherical_gravity", "linear_drag",   "quadratic_drag",        "wind",         "spring",
     "buoyancy",          "thrust",        "radial_field",          "vortex_field", "body_drag",
-    "magnus_lift",       "turning_frame", "electromagnetic_field", "projectile"};
+    "magnus_lift",       "turning_frame", "electromagnetic_field", "projectile",   "ball_flight"};
 constexpr std::string_view drag_laws[] = {"constant", "sphere", "cylinder", "disc", "by_reynolds", "by_mach"};
 constexpr std::string_view lift_balls[] = {"rough_ball", "baseball", "tennis_ball"};
 }  // namespace
@@ -138,7 +138,8 @@ constexpr Field effector_fields[] = {
     {"minimum_radius", T::quantity, M::length, "spherical gravity"},
     {"coefficient", T::quantity, M::damping, "linear drag"},
     {"angular_coefficient", T::quantity, M::count_, "linear drag: N*m*s; quadratic drag: N*m*s^2"},
-    {"density", T::quantity, M::density, "of the medium; projectile: the standard atmosphere where absent"},
+    {"density", T::quantity, M::density,
+     "of the medium; projectile: the standard atmosphere where absent; ball_flight: 1.225"},
     {"drag_coefficient", T::quantity, M::plain, "quadratic drag, projectile; body drag whose law is constant"},
     {"area", T::quantity, M::area, "quadratic drag; body drag, that of a disc of its diameter unless given"},
     {"point", T::vector, M::length, "quadratic and body drag and thrust, in the body"},
@@ -146,7 +147,7 @@ constexpr Field effector_fields[] = {
     {"table", T::number_list, M::plain, "body drag by Reynolds or Mach number: x, C_d, x, C_d …"},
     {"logarithmic", T::flag, M::plain, "the table is linear over the logarithm of x"},
     {"diameter", T::quantity, M::length, "body drag, of the Reynolds number; projectile, of its frontal area"},
-    {"viscosity", T::quantity, M::viscosity, "body drag, where the scene has no environment"},
+    {"viscosity", T::quantity, M::viscosity, "ball_flight; body drag, where the scene has no environment"},
     {"speed_of_sound", T::quantity, M::speed, "body drag, where the scene has no environment"},
     {"radius", T::quantity, M::length, "magnus lift"},
     {"ball", T::choice, M::plain, "magnus lift: whose measurements; rough_ball unless given", nullptr, lift_balls},
@@ -162,7 +163,7 @@ constexpr Field effector_fields[] = {
     {"magnetic", T::vector, M::flux_density, "electromagnetic field; a number in the plane"},
     {"added_mass", T::vector, M::plain, "buoyancy: shares of the displaced mass along the body's axes"},
     {"added_inertia", T::vector, M::area, "buoyancy: the same for turning; a number in the plane"},
-    {"velocity", T::vector, M::speed, "wind; projectile: of the air"},
+    {"velocity", T::vector, M::speed, "wind; projectile, ball_flight: of the air"},
     {"body_a", T::name, M::plain, "spring"},
     {"body_b", T::name, M::plain, "spring; the world where absent"},
     {"point_a", T::vector, M::length, "spring, in body A"},
@@ -180,7 +181,7 @@ constexpr Field effector_fields[] = {
     {"reference", T::quantity, M::length, "radial field: where the strength holds"},
     {"exponent", T::quantity, M::plain, "radial field"},
     {"range", T::quantity, M::length, "radial field"},
-    {"axis", T::vector, M::plain, "vortex field", nullptr, {}, false, 3},
+    {"axis", T::vector, M::plain, "vortex field; ball_flight: across a held seam", nullptr, {}, false, 3},
     {"circulation", T::quantity, M::circulation, "vortex field"},
     {"core_radius", T::quantity, M::length, "vortex field"},
     {"rate", T::quantity, M::rate, "vortex field"},
@@ -188,6 +189,14 @@ constexpr Field effector_fields[] = {
     {"ballistic_coefficient", T::quantity, M::plain, "projectile, lb/in^2; or its diameter and mass"},
     {"mass", T::quantity, M::mass, "projectile"},
     {"form_factor", T::quantity, M::plain, "projectile: multiplies the drag"},
+    {"flight",
+     T::object,
+     M::plain,
+     "ball_flight: the ball, {\"preset\": \"flight/golf\"}",
+     &ball_air_kind,
+     {},
+     false,
+     3},
 };
 const ObjectKind effector_kind{"effector", "A force that acts on its own every step.", effector_fields};
 

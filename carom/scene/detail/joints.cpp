@@ -1,6 +1,7 @@
 #include "carom/scene/detail/joints.h"
 
 #include "carom/environment/frame.h"
+#include "carom/scene/detail/ball_flight.h"
 #include "carom/scene/detail/projectile.h"
 
 namespace carom::scene::detail {
@@ -495,6 +496,8 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
     }
     case 13:
       return read_projectile<D>(reader, o, target.body);
+    case 14:
+      return read_ball_flight<D>(reader, o, target.body);
     default: {
       VortexField<D> e{target};
       e.center = position_of(reader.vector(o, "center"), d);

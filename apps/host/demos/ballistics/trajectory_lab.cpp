@@ -1,9 +1,14 @@
 // One throw by six laws: vacuum, linear and quadratic drag, a measured drag curve, spin and wind (chapters 4.4, 6).
 #include "apps/host/demos/ballistics/range.h"
 #include "carom/forces/projectile.h"
+#include "carom/sports/presets.h"
 
 namespace carom::host::demo {
 namespace {
+
+/// Balls to throw instead of one whose terminal speed alone is told.
+constexpr const char* sport_balls[] = {"golf",       "baseball", "soccer",  "tennis", "table_tennis",
+                                       "basketball", "cricket",  "bowling", "arrow",  "shuttlecock"};
 
 class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
  public:
@@ -25,7 +30,11 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         "it part from the third. Spin deflects the fifth by the Magnus force,\n\n"
         "  F = ½ ρ A C_L v² (ω × v)/|ω × v|,   C_L = 1/(2.32 + 0.4/S),   S = r ω/v\n\n"
         "and the sixth flies in wind. For v = v_t and 45° the ranges are v_t²/g times 1, .490986 (linear) and .589012 "
-        "(quadratic).";
+        "(quadratic).\n\n"
+        "With a ball of a sport the terminal speed is its own, and the last two fly by what was measured of it: "
+        "C_D through the crisis and with spin, C_L by spin, in still air with the spin that is set, and without spin "
+        "in "
+        "wind.";
     d.duration = 9;
     d.loop = true;
     d.camera = {.position = {175, 70, 330}, .target = {175, 42, 0}, .width = 410};
@@ -38,6 +47,10 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         {"spin", "Backspin", "rad/s", "rpm", "of a ball with 37 mm radius", -400, 400, 0, 190, false},
         {"wind", "Wind along", "m/s", "m/s", "positive: from behind", -30, 30, 0.5, -8, false},
         {"cross", "Wind across", "m/s", "m/s", "positive: toward the viewer", -30, 30, 0.5, 6, false},
+        {"ball", "Ball", "", "",
+         "0 by its terminal speed, 1 golf, 2 baseball, 3 soccer, 4 tennis, 5 table tennis, 6 basketball, 7 cricket, "
+         "8 bowling, 9 arrow, 10 shuttlecock",
+         0, 10, 1, 0, false},
     };
     d.plots = {
         {"Side view",
@@ -58,6 +71,12 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
     spin_ = stage.value("spin");
     wind_ = {stage.value("wind"), 0, stage.value("cross")};
     direction_ = ballistics::direction(stage.value("elevation"));
+    const int chosen = clamp(stage.count("ball"), 0, int(std::size(sport_balls)));
+    of_sport_ = chosen > 0;
+    if (of_sport_) {
+      ball_ = sports::ball_preset(sport_balls[chosen - 1]).value();
+      terminal_ = sports::terminal_speed(ball_, {}, g_);
+    }
     // As much drag as the others where C_D is that of slow balls.
     g1_ = ballistics::projectile_from_terminal_speed(terminal_, 1.225, g_);
     const ballistics::DragCurve curve(ballistics::DragFunction::g1);
@@ -118,6 +137,8 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
     Vec3d a{0, -g_, 0};
     const double k = g_ / (terminal_ * terminal_);
     const Vec3d w = law == 5 ? v - wind_ : v;
+    if (law >= 4 && of_sport_)
+      return a + sports::air_load(ball_, {}, {.velocity = w, .spin = {0, 0, law == 4 ? spin_ : 0}}).force / ball_.mass;
     if (law == 1) a -= (g_ / terminal_) * v;
     if (law == 2 || law >= 4) a -= (k * length(w)) * w;
     if (law == 3) {
@@ -178,6 +199,8 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
   double speed_ = 60, terminal_ = 60, spin_ = 0;
   Vec3d wind_{}, direction_{};
   ballistics::Projectile g1_{};
+  sports::Ball ball_{};
+  bool of_sport_ = false;
 };
 
 }  // namespace
