@@ -116,11 +116,12 @@ bool sunk(const HeightField& field, const detail::Convex& b, const Transform3f& 
   return true;
 }
 
-/// A shape that meets nothing of a surface is at least this far (m) from all of it; at most `limit`. What lies below a
-/// height field is solid, so of its triangles only what keeps the shape above or beside them counts.
+/// A shape that meets nothing of a surface is at least this far (m) from all of it; at most `limit`, and 0 where it is
+/// less than `worth`. What lies below a height field is solid, so of its triangles only what keeps the shape above or
+/// beside them counts.
 float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
-                const detail::PlacedCorners& corners, const Transform3f& x, const Bounds3f& tight, float limit,
-                bool solid) {
+                const detail::PlacedCorners& corners, const detail::OffDirections& off, const Transform3f& x,
+                const Bounds3f& tight, float limit, float worth, bool solid) {
   const Mat3f turn = to_matrix(x.q);
   const Vec3f axis[3] = {turn.cx, turn.cy, turn.cz};
   const Bounds3f own = bounds(shape, {});
@@ -128,19 +129,22 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
   if (solid) box.high.y = 3.4e38f;
   float least = limit;
   detail::visit_triangles(surface, box, false, [&](const detail::SurfaceTriangle& t) {
+    const Vec3f p = t.corner[0] - x.p, q = t.corner[1] - x.p, r = t.corner[2] - x.p;
+    float gap = off.distance(p, q, r) - b.radius;
+    if (gap >= least) return true;
     const Vec3f low = min(t.corner[0], min(t.corner[1], t.corner[2])),
                 high = max(t.corner[0], max(t.corner[1], t.corner[2]));
-    float gap = solid ? max(tight.low.y - high.y, max(max(low.x - tight.high.x, tight.low.x - high.x),
-                                                      max(low.z - tight.high.z, tight.low.z - high.z)))
-                      : 0.0f;
+    gap = max(gap, solid ? max(tight.low.y - high.y, max(max(low.x - tight.high.x, tight.low.x - high.x),
+                                                         max(low.z - tight.high.z, tight.low.z - high.z)))
+                         : 0.0f);
     Vec3f normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
     const float size = length(normal);
-    if (size > 0) {
+    if (size > 0 && gap < least) {
       normal = normal * (1 / size);
       for (const float side : {1.0f, -1.0f}) {
         if (side < 0 && solid) continue;
         if (corners.known()) {
-          gap = max(gap, corners.least(side * normal) - side * dot(normal, t.corner[0] - x.p) - b.radius);
+          gap = max(gap, corners.least(side * normal) - side * dot(normal, p) - b.radius);
           continue;
         }
         const Vec3f facing = inverse_rotate(x.q, normal * -side);
@@ -148,22 +152,22 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
         gap = max(gap, side * dot(normal, nearest - t.corner[0]) - b.radius);
       }
     }
-    if (!solid)
+    if (!solid && gap < least)
       for (int k = 0; k < 3; ++k) {
-        const float p = dot(axis[k], t.corner[0] - x.p), q = dot(axis[k], t.corner[1] - x.p),
-                    r = dot(axis[k], t.corner[2] - x.p);
-        gap = max(gap, max(min(p, min(q, r)) - own.high[k], own.low[k] - max(p, max(q, r))));
+        const float u = dot(axis[k], p), v = dot(axis[k], q), w = dot(axis[k], r);
+        gap = max(gap, max(min(u, min(v, w)) - own.high[k], own.low[k] - max(u, max(v, w))));
       }
     least = min(least, gap);
-    return least > 0;
+    return least > worth;
   });
-  return max(least, 0.0f);
+  return least > worth ? least : 0;
 }
 
 /// Returns −1 for what meets nothing.
 int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
                    const detail::PlacedCorners& corners, const Transform3f& x, float margin,
-                   const detail::ShapeWay& approach, Bounds3f box, std::span<Manifold3> out) {
+                   const detail::ShapeWay& approach, Bounds3f box, detail::OffDirections& off,
+                   std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
@@ -173,11 +177,11 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
   Patch patches[max_patches];
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
-    if (!reach.meets(t.corner)) return true;
+    if (!reach.meets(t.corner, off)) return true;
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
-    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, points, n)) return true;
+    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, off, points, n)) return true;
     // Corners of the moving shape keep their names from triangle to triangle; points cut by an edge are the triangle's.
     for (int i = 0; i < points.count; ++i)
       if (points.point[i].feature > 0xff) points.point[i].feature ^= t.index * 2654435761u;
@@ -238,12 +242,14 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
     box.low = max(box.low, x.p + way.low - Vec3f{most, most, most});
     box.high = min(box.high, x.p + way.high + Vec3f{most, most, most});
   }
-  const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, out);
+  const bool solid = surface.type == ShapeType3::height_field;
+  detail::OffDirections off(corners, approach, b.radius, margin, solid);
+  const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, off, out);
   if (count >= 0) return count;
   out[0] = {};
   // A little less than what was measured, for rounding.
-  const bool solid = surface.type == ShapeType3::height_field;
-  const float apart = clearance(surface, shape, b, corners, x, tight, margin + 0.5f * detail::inner_size(b), solid);
+  const float limit = margin + 0.5f * detail::inner_size(b);
+  const float apart = clearance(surface, shape, b, corners, off, x, tight, limit, approach.worth, solid);
   out[0].points[0].separation = apart - 1e-5f * (1 + length(x.p));
   return 0;
 }
@@ -328,7 +334,8 @@ int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transf
                             const Bounds3f& box, std::span<Manifold3> out) {
   const Convex core = convex_of(b);
   const PlacedCorners corners(core, b_in_a);
-  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, out), 0);
+  OffDirections off(corners, {}, core.radius, margin, false);
+  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, off, out), 0);
 }
 int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
                                 const ShapeWay& approach, std::span<Manifold3> out) {

@@ -6,6 +6,7 @@
 
 namespace carom::geometry::detail {
 
+class OffDirections;
 class PlacedCorners;
 
 /// Candidates along one normal, in the frame of A.
@@ -50,10 +51,11 @@ void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_
 /// One side of a surface's triangle (A): adds to `out` and sets its normal. `edges` are EdgeFlags: contacts that lean
 /// over a flat edge are the neighbour's, and nothing that hardly dips below the plane catches on an open one. `solid`:
 /// there is matter below, to any depth. False where there is none.
-/// `corners` are those of b; where they are known, the caller has seen that the triangle is within reach.
+/// `corners` are those of b; where they are known, the caller has seen that the triangle is within reach. What is off
+/// as b goes on does not count, and is remembered in `off`.
 bool collide_triangle(const Convex& triangle, std::uint8_t edges, bool solid, const Convex& b,
-                      const PlacedCorners& corners, const Transform3f& b_in_a, float margin, ContactPoints& out,
-                      Vec3f& normal);
+                      const PlacedCorners& corners, const Transform3f& b_in_a, float margin, OffDirections& off,
+                      ContactPoints& out, Vec3f& normal);
 
 /// How a shape goes past a surface while their contacts hold, in the surface's frame.
 struct ShapeWay {
@@ -61,6 +63,7 @@ struct ShapeWay {
   Vec3f turn{};          ///< rad
   float bend = 0;        ///< m: no point strays farther from where these take it
   float margin = 1e30f;  ///< m: what the shape stays farther from than so does not count
+  float worth = 0;       ///< m: to be less far from all is not worth knowing
 };
 /// `collide_many` of a surface and a convex shape, for triangles that the shape may come near.
 int collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,

@@ -1,7 +1,7 @@
 // Contacts of general convex cores: the axis by distance or depth, the points by clipping the features that face it.
 #include "carom/geometry/detail/contact_points.h"
 #include "carom/geometry/detail/gjk.h"
-#include "carom/geometry/detail/placed_corners.h"
+#include "carom/geometry/detail/off_directions.h"
 #include "carom/geometry/triangle_mesh.h"
 
 namespace carom::geometry::detail {
@@ -277,7 +277,7 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
 }
 
 bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const PlacedCorners& corners,
-                      const Transform3f& x, float margin, ContactPoints& out, Vec3f& normal) {
+                      const Transform3f& x, float margin, OffDirections& off, ContactPoints& out, Vec3f& normal) {
   using namespace core_pair;
   const int flat_edges = edges & (edge0_flat | edge1_flat | edge2_flat);
   const Pair pair{t, b, x, margin};
@@ -358,6 +358,9 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
     if (found.overlap && !core_depth(pa, pb, found)) return on_face();
   }
   if (!found.overlap && found.distance > cutoff) return false;
+  if (!found.overlap && corners.known() &&
+      off.learn(Vec3f(found.normal), t.corner[0] - x.p, t.corner[1] - x.p, t.corner[2] - x.p))
+    return false;
   const Vec3f n = normalize(Vec3f(found.normal)), p = Vec3f(found.point_a);
   // The Gauss map of the surface, edge by edge: a direction that leans over a flat or concave edge is not on it.
   bool legal = dot(n, t.normal) > -1e-3f;

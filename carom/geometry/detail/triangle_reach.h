@@ -1,8 +1,7 @@
 // Which triangles of a surface a convex shape may meet: told by a few planes, before anything is asked about the shape.
 #pragma once
 
-#include "carom/geometry/detail/contact_points.h"
-#include "carom/geometry/detail/placed_corners.h"
+#include "carom/geometry/detail/off_directions.h"
 #include "carom/math/mat.h"
 
 namespace carom::geometry::detail {
@@ -49,8 +48,8 @@ struct TriangleReach {
     return dot(normal, box_middle - corner) - abs(dot(normal, half[0])) - abs(dot(normal, half[1])) -
            abs(dot(normal, half[2]));
   }
-  bool meets(const Vec3f (&corner)[3]) const {
-    if (corners.known()) return near_corners(corner[0] - origin, corner[1] - origin, corner[2] - origin);
+  bool meets(const Vec3f (&corner)[3], OffDirections& off) const {
+    if (corners.known()) return near_corners(corner[0] - origin, corner[1] - origin, corner[2] - origin, off);
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const float above = max(line_height(normal, corner[0]), 0.0f), size = length_squared(normal),
                 most = around * around;
@@ -86,12 +85,17 @@ struct TriangleReach {
     return then > 0 && then * then > size;
   }
   /// By the corners themselves; p, q, r are seen from the origin of the shape.
-  bool near_corners(Vec3f p, Vec3f q, Vec3f r) const {
+  bool near_corners(Vec3f p, Vec3f q, Vec3f r, OffDirections& off) const {
+    if (off.keeps_off(p, q, r)) return false;
     const Vec3f edge[3] = {q - p, r - q, p - r}, start[3] = {p, q, r}, normal = cross(edge[0], edge[1]);
     const float level = dot(normal, p);
     if (!solid && dot(normal, middle) < level) return false;
     const float above = max(corners.least(normal) - level, 0.0f), size = length_squared(normal), most = around * around;
-    if (above * above > most * size || keeps_off(above, normal, level)) return false;
+    if (above * above > most * size) return false;
+    if (keeps_off(above, normal, level)) {
+      off.learn(normal, p, q, r);
+      return false;
+    }
     for (int e = 0; e < 3; ++e) {
       // Above the plane and beside an edge of it: both are parts of the distance.
       const Vec3f outward = cross(edge[e], normal);

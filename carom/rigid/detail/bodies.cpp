@@ -210,6 +210,23 @@ void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
   m.center = world_point(world.bodies.pose[std::size_t(body)], m.local_center);
 }
 
+/// Lets the arms of a body reach a shape, in the body's frame seen from its centre of mass.
+static void reach(float& arms, const ShapeRecord<Dim2>& shape, const Vec2f& center) {
+  arms = max(arms, math::length(shape.local.p - center) + shape.outer_extent);
+}
+static void reach(Vec3f& arms, const ShapeRecord<Dim3>& shape, const Vec3f& center) {
+  const auto reach_point = [&arms](const Vec3f& p) {
+    const Vec3f s{p.x * p.x, p.y * p.y, p.z * p.z};
+    arms = max(arms, Vec3f{math::sqrt(s.y + s.z), math::sqrt(s.z + s.x), math::sqrt(s.x + s.y)});
+  };
+  if (shape.geometry.type == geometry::ShapeType3::hull && shape.geometry.hull->radius == 0) {
+    for (const Vec3f& v : shape.geometry.hull->vertices) reach_point(transform_point(shape.local, v) - center);
+    return;
+  }
+  const geometry::Bounds3f box = geometry::bounds(shape.geometry, shape.local);
+  reach_point(max(abs(box.low - center), abs(box.high - center)));
+}
+
 template <class D>
 void update_mass(WorldImplementation<D>& world, std::int32_t body) {
   world.joints.trees.stale = true;
@@ -218,6 +235,7 @@ void update_mass(WorldImplementation<D>& world, std::int32_t body) {
   const typename D::Vector old_center = m.local_center;
   m.inner_extent = 0;
   m.outer_extent = 0;
+  m.arms = {};
   typename D::MassProperties sum{};  // nothing yet: mass and inertia zero
   bool first = true;
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
@@ -247,6 +265,7 @@ void update_mass(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     m.outer_extent = max(m.outer_extent, math::length(shape.local.p - m.local_center) + shape.outer_extent);
+    reach(m.arms, shape, m.local_center);
   }
   center_from_pose(world, body);
   SolverBody<D>& solver = world.bodies.solver[std::size_t(body)];

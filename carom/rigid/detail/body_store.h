@@ -56,10 +56,22 @@ struct BodyMotion {
       no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
-  float inner_extent = 0;  ///< m: half the smallest extent of its shapes; how far is "fast"
-  float outer_extent = 0;  ///< m: farthest point of its shapes from the centre of mass
-  float slack = 0;         ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
+  float inner_extent = 0;      ///< m: half the smallest extent of its shapes; how far is "fast"
+  float outer_extent = 0;      ///< m: farthest point of its shapes from the centre of mass
+  typename D::Angular arms{};  ///< m: the same from the axes of its own frame through that (2D: from the centre)
+  float slack = 0;             ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
 };
+
+/// How far a turn (rad, world axes) moves the surface of a body at most: a long one that rolls moves it little.
+inline float way_of_turn(const BodyMotion<Dim2>& m, const Rot2f&, float turn) {
+  return math::abs(turn) * m.outer_extent;
+}
+inline float way_of_turn(const BodyMotion<Dim3>& m, const Quatf& rotation, const Vec3f& turn) {
+  const float ball = math::length(turn) * m.outer_extent;
+  if (m.outer_extent < 2 * m.inner_extent) return ball;
+  const Vec3f own = abs(inverse_rotate(rotation, turn));
+  return min(ball, dot(own, m.arms));
+}
 
 enum BodyFlag : std::uint16_t {
   body_awake = 1,

@@ -267,7 +267,7 @@ void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  const float radius = max(round_radius(a.geometry), round_radius(b.geometry));
+  const float round = max(round_radius(a.geometry), round_radius(b.geometry)), radius = round > 0 ? round : c.inner;
   const Material &ma = material_at(world, c.shape[0], m.manifold.material),
                  &mb = material_at(world, c.shape[1], m.manifold.material);
   if (const PairRule* rule = find_pair_rule(world, ma.user_id, mb.user_id))

@@ -15,6 +15,7 @@ struct Found {
   std::uint32_t child[max_manifolds];
   int count = 0;
   float apart = 0;  ///< m: where nothing is found, the shapes are known to be that far from each other
+  float near = 0;   ///< m: what keeps farther off than so in this step may be left out; 0: all is there
 };
 
 /// Segments of a chain are children, like the triangles of a mesh.
@@ -60,6 +61,7 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
 inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
                         const geometry::detail::ShapeWay& approach, Found<Dim3>& found) {
   const bool some = is_surface(a) && is_convex(b);
+  found.near = some ? approach.margin : 0;
   if (some)
     found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, found.manifold);
   else

@@ -146,7 +146,7 @@ void group_moved(WorldImplementation<D>& world) {
     const std::int32_t place = scratch.moved_place[item];
     if (place < 0) return;
     const Bounds more = count > 0 ? merge(all, box) : box;
-    if (count == most_in_group || (count > 0 && surface(more) > surface(all) + surface(box))) {
+    if (count == most_in_group || (count > 0 && surface(more) > 2 * (surface(all) + surface(box)))) {
       scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
       count = 0;
     }
@@ -213,13 +213,29 @@ void find_pairs(WorldImplementation<D>& world) {
   scratch.old_bounds.clear();
 }
 
+/// Did a quarter of the shapes that forces move leave their bounds?
+template <class D>
+bool most_outgrew(const WorldImplementation<D>& world) {
+  const std::vector<std::uint8_t>& changes = world.scratch.body_changes;
+  std::size_t outgrown = 0;
+  const std::size_t quarter = std::size_t(world.shapes.trees[tree_dynamic].size()) / 4;
+  for (const std::uint8_t change : changes) outgrown += change != 0 ? 1 : 0;
+  if (outgrown == 0 || outgrown > quarter) return outgrown > quarter;
+  for (std::size_t i = 0; i < world.bodies.awake.size() && outgrown <= quarter; ++i) {
+    if (changes[i] == 0) continue;
+    // The first of each body is counted already.
+    std::int32_t s = world.bodies.record[std::size_t(world.bodies.awake[i])].first_shape;
+    for (s = s == none ? none : world.shapes.at(s).next; s != none; s = world.shapes.at(s).next)
+      outgrown += (world.shapes.at(s).flags & shape_outgrown) != 0 ? 1 : 0;
+  }
+  return outgrown > quarter;
+}
+
 template <class D>
 void update_trees(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   // Where most of a tree moves, its boxes are made anew from below in one go.
-  std::size_t outgrown = 0;
-  for (const std::uint8_t change : scratch.body_changes) outgrown += change != 0 ? 1 : 0;
-  const bool refit = 4 * outgrown > std::size_t(world.shapes.trees[tree_dynamic].size());
+  const bool refit = most_outgrew(world);
   scratch.old_bounds.resize(scratch.moved.size(), nowhere<D>());
   bool enlarged[3] = {};
   for (std::size_t i = 0; i < world.bodies.awake.size(); ++i) {

@@ -16,6 +16,9 @@ float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
 float turn_of(const Rot2f& q) { return math::abs(q.s) + max(0.0f, -2 * q.c); }
 float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
+/// rad, or a little less; what it moves by are chords.
+float small_turn(const Rot2f& q) { return q.s; }
+Vec3f small_turn(const Quatf& q) { return 2 * q.vector(); }
 
 /// m/s², of what acts on the body from afar.
 template <class D>
@@ -130,16 +133,18 @@ void finalize_bodies(StepContext<D>& context) {
       }
       const float travel = math::length(s.delta_position), spin = spin_of(s.angular_velocity);
       float turned = turn_of(s.delta_rotation);
+      float surface_way =
+          turned < 0.2f ? way_of_turn(m, pose.rotation, small_turn(s.delta_rotation)) : turned * m.outer_extent;
       typename D::Angular whole{};
       if (spin * context.dt > 2) {
         const float slowed = min(1.0f, max_turn / (context.h * spin));
         whole = whole_turn(s.delta_rotation, s.angular_velocity, slowed * context.dt);
         turned = max(turned, spin_of(whole));
+        surface_way = turned * m.outer_extent;
       }
       const bool bullet = (record.flags & body_bullet) != 0;
       if (context.world.definition.continuous && record.type == BodyType::dynamic &&
-          (record.flags & body_has_collider) != 0 &&
-          travel + turned * m.outer_extent > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
+          (record.flags & body_has_collider) != 0 && travel + surface_way > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
         record.flags |= body_fast;
       }
       const float pace = world.bodies.pace(body);
@@ -153,7 +158,7 @@ void finalize_bodies(StepContext<D>& context) {
       m.torque = {};
       pose_from_center(world, body);
       const float linear = math::length(s.linear_velocity);
-      float speed = max(linear, spin * max(m.outer_extent, 0.01f));
+      float speed = max(max(linear, 0.01f * spin), way_of_turn(m, pose.rotation, s.angular_velocity));
       // What is still being pushed out of an overlap is not at rest: that way is not in its velocity.
       const float pushed = math::length(s.delta_position * context.inverse_dt - s.linear_velocity);
       const float sleep_speed = record.sleep_speed * pace;
@@ -170,7 +175,7 @@ void finalize_bodies(StepContext<D>& context) {
       if (record.flags & body_fast) continue;  // its bounds wait for the end of its way
       update_world_inertia(world, body);
       // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
-      m.slack = turned < 0.2f ? m.slack - (travel + turned * m.outer_extent) : 0;
+      m.slack = turned < 0.2f ? m.slack - (travel + surface_way) : 0;
       const bool quick = travel > quick_share * m.inner_extent;
       if ((m.slack <= 0 || quick) && leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
     }

@@ -25,6 +25,28 @@ float smallest_separation(const typename D::Manifold& m) {
   return s;
 }
 
+/// How far a turn (rad, times a scale) in its own frame moves the surface of a shape about its middle, at most: about
+/// its long axis little. `ball`: m, about all of it.
+float way_of_turn(const ShapeRecord<Dim2>&, float turn, float ball) { return math::abs(turn) * ball; }
+float way_of_turn(const ShapeRecord<Dim3>& shape, const Vec3f& turn, float ball) {
+  const float most = math::length(turn) * ball;
+  if (shape.geometry.type != geometry::ShapeType3::hull || ball < 2 * shape.inner_extent) return most;
+  const Vec3f e = shape.geometry.hull->bounds.extents();
+  const float rounding = math::length(turn) * shape.geometry.hull->radius;
+  const Vec3f arms{math::sqrt(e.y * e.y + e.z * e.z), math::sqrt(e.z * e.z + e.x * e.x),
+                   math::sqrt(e.x * e.x + e.y * e.y)};
+  return min(most, dot(abs(turn), arms) + rounding);
+}
+/// Chords are twice this.
+float half_chord(const Rot2f& a, const Rot2f& b) { return 0.5f * chord(a, b); }
+Vec3f half_chord(const Quatf& a, const Quatf& b) { return (conjugate(a) * b).vector(); }
+
+/// How far a point strays from the tangent of its way while it turns (rad) about something at the other end of an arm.
+float bend_of(float turn, const Vec2f& arm) { return 0.5f * turn * turn * math::length(arm); }
+float bend_of(const Vec3f& turn, const Vec3f& arm) {
+  return 0.5f * math::length(turn) * math::length(cross(turn, arm));
+}
+
 /// How B moved, seen from A, from when its manifolds were made to `now`: its middle, and its surface about that by the
 /// turn, at most.
 template <class D>
@@ -35,7 +57,7 @@ struct Moved {
   Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b, const typename D::Transform& now) {
     const typename D::Vector middle = ball_about(b).middle;
     way = transform_point(now, middle) - transform_point(c.base, middle);
-    turn = chord(c.base.q, now.q) * c.extent;
+    turn = 2 * way_of_turn(b, half_chord(c.base.q, now.q), c.extent);
   }
   /// An upper bound for any point of B.
   float most() const { return math::length(way) + turn; }
@@ -43,24 +65,26 @@ struct Moved {
   float across(const typename D::Vector& normal) const { return math::length(way - normal * dot(normal, way)) + turn; }
 };
 
-float spin(const SolverBody<Dim2>& s) { return math::abs(s.angular_velocity); }
-float spin(const SolverBody<Dim3>& s) { return math::length(s.angular_velocity); }
+/// A turn of the world in a shape's frame.
+float in_frame(const Rot2f&, float turn) { return turn; }
+Vec3f in_frame(const Quatf& frame, const Vec3f& turn) { return inverse_rotate(frame, turn); }
 
 /// How B's shape goes past A in this step by the velocities of their bodies, seen from A: its middle, and what the
 /// turns add to that anywhere in it. Long bodies turn fast at their ends only.
 template <class D>
 BodySweep<D> sweep_of_shape(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
   const ShapeRecord<D>& shape = world.shapes.at(c.shape[1]);
-  const typename D::Position middle = world_point(shape_pose(world, shape), ball_about(shape).middle);
+  const typename D::Pose pose = shape_pose(world, shape);
+  const typename D::Position middle = world_point(pose, ball_about(shape).middle);
   BodySweep<D> sweep;
   for (int side = 0; side < 2; ++side) {
     const std::size_t body = std::size_t(c.body[side]);
     const SolverBody<D>& s = world.bodies.solver[body];
     const typename D::Vector arm = typename D::Vector(middle - world.bodies.motion[body].center);
     const typename D::Vector way = (s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
-    const float angle = spin(s) * world.last_dt;
     sweep.way = side == 0 ? sweep.way - way : sweep.way + way;
-    sweep.turning += angle * c.extent + 0.5f * angle * angle * math::length(arm);
+    const typename D::Angular turn = s.angular_velocity * world.last_dt;
+    sweep.turning += way_of_turn(shape, in_frame(pose.rotation, turn), c.extent) + bend_of(turn, arm);
   }
   return sweep;
 }
@@ -90,9 +114,13 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
   return least_way(world, c, [&](const BodySweep<D>& s) { return max(s.turning - dot(normal, s.way), 0.0f); });
 }
 /// How B's shape goes past A in this step, in the frame of A's.
-geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c) {
+geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
+                                       float reach) {
   geometry::detail::ShapeWay approach;
-  const Dim3::Pose pose = shape_pose(world, world.shapes.at(c.shape[1]));
+  const ShapeRecord<Dim3>& shape = world.shapes.at(c.shape[1]);
+  const Dim3::Pose pose = shape_pose(world, shape);
+  const ShapeBall<Dim3> ball = ball_about(shape);
+  const Vec3f to_middle = rotate(pose.rotation, ball.middle);
   for (int side = 0; side < 2; ++side) {
     const std::size_t body = std::size_t(c.body[side]);
     const SolverBody<Dim3>& s = world.bodies.solver[body];
@@ -101,11 +129,14 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
     const Vec3f way = s.linear_velocity * world.last_dt + cross(turn, arm);
     approach.way = side == 0 ? approach.way - way : approach.way + way;
     approach.turn = side == 0 ? approach.turn - turn : approach.turn + turn;
-    approach.bend += 0.5f * length_squared(turn) * (math::length(arm) + world.shapes.at(c.shape[1]).outer_extent);
+    approach.bend += bend_of(turn, arm + to_middle) + 0.5f * length_squared(turn) * ball.radius;
   }
   const Quatf frame = shape_pose(world, world.shapes.at(c.shape[0])).rotation;
   approach.way = inverse_rotate(frame, approach.way), approach.turn = inverse_rotate(frame, approach.turn);
-  approach.margin = 2 * c.margin();
+  // What moves fast is looked at again in the next step anyway.
+  const float margin = c.margin(), ahead = reach - 2 * margin;
+  approach.margin = margin + clamp(margin - ahead, 0.0f, margin);
+  approach.worth = margin + 2 * ahead;
   return approach;
 }
 /// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
@@ -215,8 +246,9 @@ void measure_sweeps(WorldImplementation<D>& world) {
     for (int i = begin; i < end; ++i) {
       const std::size_t body = std::size_t(world.bodies.awake[std::size_t(i)]);
       const SolverBody<D>& s = world.bodies.solver[body];
-      scratch.sweeps[body] = {s.linear_velocity * world.last_dt,
-                              spin(s) * world.bodies.motion[body].outer_extent * world.last_dt};
+      scratch.sweeps[body] = {
+          s.linear_velocity * world.last_dt,
+          way_of_turn(world.bodies.motion[body], world.bodies.pose[body].rotation, s.angular_velocity) * world.last_dt};
     }
   });
 }
@@ -276,9 +308,8 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
       const std::size_t body = std::size_t(c.body[side]);
       const SolverBody<D>& s = world.bodies.solver[body];
       const V arm = V(point - world.bodies.motion[body].center);
-      const float turn = spin(s) * world.last_dt;
       const float way = dot(normal, s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
-      closing += (side == 0 ? way : -way) + 0.5f * turn * turn * math::length(arm);
+      closing += (side == 0 ? way : -way) + bend_of(s.angular_velocity * world.last_dt, arm);
     }
     farthest = max(farthest, closing - m.points[i].separation);
   }
@@ -333,7 +364,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   ContactStore<D>& store = world.contacts;
   Found<D> found;
   if constexpr (D::dimension == 3)
-    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c), found);
+    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c, reach), found);
   else
     collide_all(a.geometry, b.geometry, c.base, reach, found);
   c.gap = found.count == 0 ? found.apart : reach;
@@ -349,6 +380,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
     }
     ++kept;
   }
+  if (kept == 0 && found.count > 0 && found.near > 0) c.gap = min(c.gap, found.near);
   found.count = kept;
   if (found.count == 0) return part(world, c, a, b);
   int matched = 0;

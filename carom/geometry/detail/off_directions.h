@@ -1,0 +1,66 @@
+// Directions along which a shape keeps off the triangles that it passes.
+#pragma once
+
+#include "carom/geometry/detail/contact_points.h"
+#include "carom/geometry/detail/placed_corners.h"
+
+namespace carom::geometry::detail {
+
+/// Directions along which a shape keeps off parts of what it passes: its neighbours are mostly off along the same.
+class OffDirections {
+ public:
+  using Four = math::WideFloat<4>;
+
+  OffDirections(const PlacedCorners& corners, const ShapeWay& approach, float radius, float margin, bool solid)
+      : corners_(corners), most_(approach.margin + approach.bend + radius), solid_(solid) {
+    used_ = corners.known() && approach.margin < margin;
+    for (float& x : lanes_) x = 0;
+    for (float& x : now_) x = -3.4e38f;
+    for (float& x : floor_) x = -3.4e38f;
+  }
+  /// Is a triangle (seen from the origin of the corners) out of reach, now and as the shape goes on?
+  bool keeps_off(Vec3f p, Vec3f q, Vec3f r) const {
+    for (int i = 0; i < count_; i += 4)
+      if (any(Four::load(floor_ + i) - farthest(i, p, q, r) > Four::splat(most_))) return true;
+    return false;
+  }
+  /// Looks along a direction of any length, and remembers it if it does.
+  bool learn(Vec3f n, Vec3f p, Vec3f q, Vec3f r) {
+    if (!used_ || (solid_ && n.y <= 0)) return false;
+    const float size = length(n);
+    if (!(size > 1e-12f)) return false;
+    n = n * (1 / size);
+    const float now = corners_.least(n), floor = min(now, corners_.least_then(n));
+    if (!(floor - max(dot(n, p), max(dot(n, q), dot(n, r))) > most_)) return false;
+    const int i = next_;
+    next_ = (next_ + 1) % capacity;
+    count_ = max(count_, i + 1);
+    float* lane = lanes_ + 12 * (i / 4) + i % 4;
+    lane[0] = n.x, lane[4] = n.y, lane[8] = n.z;
+    now_[i] = now, floor_[i] = floor;
+    return true;
+  }
+  /// How far the shape is from a triangle, along the best of them.
+  float distance(Vec3f p, Vec3f q, Vec3f r) const {
+    Four most = Four::splat(-3.4e38f);
+    for (int i = 0; i < count_; i += 4) most = max(most, Four::load(now_ + i) - farthest(i, p, q, r));
+    return max(max(most[0], most[1]), max(most[2], most[3]));
+  }
+
+ private:
+  Four farthest(int i, Vec3f p, Vec3f q, Vec3f r) const {
+    const float* lane = lanes_ + 3 * i;
+    const Four x = Four::load(lane), y = Four::load(lane + 4), z = Four::load(lane + 8);
+    const auto along = [&](Vec3f v) { return x * Four::splat(v.x) + y * Four::splat(v.y) + z * Four::splat(v.z); };
+    return max(along(p), max(along(q), along(r)));
+  }
+
+  static constexpr int capacity = 8;
+  const PlacedCorners& corners_;
+  float most_;
+  bool used_, solid_;
+  int count_ = 0, next_ = 0;
+  float lanes_[3 * capacity], now_[capacity], floor_[capacity];
+};
+
+}  // namespace carom::geometry::detail
