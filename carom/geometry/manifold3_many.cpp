@@ -124,7 +124,7 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
                 const Bounds3f& tight, float limit, float worth, bool solid) {
   const Mat3f turn = to_matrix(x.q);
   const Vec3f axis[3] = {turn.cx, turn.cy, turn.cz};
-  const Bounds3f own = bounds(shape, {});
+  const Bounds3f own = detail::own_bounds(shape);
   Bounds3f box = grow(tight, limit);
   if (solid) box.high.y = 3.4e38f;
   float least = limit;

@@ -1,6 +1,6 @@
 #include "carom/geometry/detail/gjk.h"
 
-#include "carom/geometry/detail/placed_corners.h"
+#include "carom/geometry/detail/off_directions.h"
 
 namespace carom::geometry::detail {
 namespace gjk {
@@ -23,17 +23,15 @@ Reduced of_segment(const SimplexVertex* s, int i, int j) {
   return {2, {i, j}, {1 - u, u}, a + d * u};
 }
 
-// The regions of a triangle, after Ericson 2005, §5.1.5.
+// The regions of a triangle, after Ericson 2005, §5.1.5. The side of the first two was as near as it gets before the
+// third came: here and in a tetrahedron, only what the last vertex is part of can be nearer.
 Reduced of_triangle(const SimplexVertex* s, int i, int j, int k) {
   const Vec3d a = s[i].w, b = s[j].w, c = s[k].w, ab = b - a, ac = c - a;
   const Vec3d n = cross(ab, ac);
   const double nn = dot(n, n);
   const auto best_edge = [&] {
-    Reduced r = of_segment(s, i, j);
-    const Reduced r2 = of_segment(s, j, k), r3 = of_segment(s, k, i);
-    if (length_squared(r2.closest) < length_squared(r.closest)) r = r2;
-    if (length_squared(r3.closest) < length_squared(r.closest)) r = r3;
-    return r;
+    const Reduced one = of_segment(s, i, k), two = of_segment(s, j, k);
+    return length_squared(two.closest) < length_squared(one.closest) ? two : one;
   };
   if (!(nn > 1e-28 * dot(ab, ab) * dot(ac, ac))) return best_edge();
   // Signed areas of the origin's projection against the edges.
@@ -46,7 +44,7 @@ Reduced of_triangle(const SimplexVertex* s, int i, int j, int k) {
 }
 
 Reduced of_tetrahedron(const SimplexVertex* s) {
-  constexpr int faces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
+  constexpr int faces[3][4] = {{0, 2, 3, 1}, {1, 0, 3, 2}, {2, 1, 3, 0}};
   Reduced best{4, {0, 1, 2, 3}, {0.25, 0.25, 0.25, 0.25}, {}};
   double least = -1;
   for (const auto& f : faces) {
@@ -162,8 +160,9 @@ bool triangle_segment_distance(const Vec3d (&p)[3], Vec3d near, Vec3d far, doubl
 namespace gjk {
 
 /// From the first vertex of the simplex on. support(direction): the vertex of b − a that lies nearest along it.
-template <class Support>
-void search(const SimplexVertex& first, double cutoff, Support&& support, CoreDistance& out) {
+/// enough(direction, reach): is it to end with the distance along a direction, which is `reach` over its length?
+template <class Support, class Enough>
+void search(const SimplexVertex& first, double cutoff, Support&& support, Enough&& enough, CoreDistance& out) {
   SimplexVertex* s = out.simplex.items;
   s[0] = first;
   out.overlap = false;
@@ -178,7 +177,7 @@ void search(const SimplexVertex& first, double cutoff, Support&& support, CoreDi
     const Vec3d v = r.closest;
     const SimplexVertex next = support(v);
     const double reach = dot(v, next.w);
-    if (reach > 0 && reach * reach > cutoff * cutoff * vv) {
+    if (reach > 0 && (reach * reach > cutoff * cutoff * vv || enough(v, reach))) {
       out.distance = reach / math::sqrt(vv);
       out.normal = v / math::sqrt(vv);
       return;
@@ -219,11 +218,13 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
   }
   if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
   if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
-  gjk::search(gjk::support_of(a, b, guess), cutoff, [&](Vec3d v) { return gjk::support_of(a, b, v); }, out);
+  gjk::search(
+      gjk::support_of(a, b, guess), cutoff, [&](Vec3d v) { return gjk::support_of(a, b, v); },
+      [](const Vec3d&, double) { return false; }, out);
 }
 
-void triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
-                       CoreDistance& out) {
+bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
+                       OffDirections& off, CoreDistance& out) {
   const Vec3d origin(b.origin());
   const Vec3d p[3] = {corner[0] - origin, corner[1] - origin, corner[2] - origin};
   const auto support = [&](Vec3d v) {
@@ -234,10 +235,18 @@ void triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d t
     s.w = s.b - s.a;
     return s;
   };
-  gjk::search(support(toward_b), cutoff, support, out);
+  bool is_off = false;
+  const Vec3f q[3] = {Vec3f(p[0]), Vec3f(p[1]), Vec3f(p[2])};
+  const auto keeps_off = [&](const Vec3d& v, double reach) {
+    is_off = off.may_learn(reach, v) && off.learn(Vec3f(v), q[0], q[1], q[2]);
+    return is_off;
+  };
+  gjk::search(support(toward_b), cutoff, support, keeps_off, out);
+  if (is_off) return false;
   out.point_a += origin, out.point_b += origin;
-  if (!out.overlap) return;
+  if (!out.overlap) return true;
   for (int i = 0; i < out.count; ++i) out.simplex[i].a += origin, out.simplex[i].b += origin;
+  return true;
 }
 
 namespace epa {

@@ -18,6 +18,7 @@ struct Placed {
   Vec3d center() const { return rotation * Vec3d(inner_point(*core)) + position; }
 };
 
+class OffDirections;
 class PlacedCorners;
 
 struct SimplexVertex {
@@ -35,9 +36,9 @@ struct CoreDistance {
 /// known to be farther apart than `cutoff`. `guess` is a direction from A to B to begin with (zero: the centres').
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out);
 
-/// The same for a triangle and corners that are placed already.
-void triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
-                       CoreDistance& out);
+/// The same for a triangle and corners that are placed already. False, and all else unknown, where these keep off.
+bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
+                       OffDirections& off, CoreDistance& out);
 
 /// The same for a triangle and a segment (or a point, twice) in closed form. False where they touch, or the triangle is
 /// none.

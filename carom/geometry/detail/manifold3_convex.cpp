@@ -351,16 +351,13 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   };
   if (!in_closed_form() && !stands_over()) {
     const Placed pa(t), pb(b, x);
-    if (corners.known())
-      triangle_distance(own, corners, Vec3d(t.normal), cutoff, found);
-    else
+    if (!corners.known())
       core_distance(pa, pb, cutoff, {}, found);
+    else if (!triangle_distance(own, corners, Vec3d(t.normal), cutoff, off, found))
+      return false;
     if (found.overlap && !core_depth(pa, pb, found)) return on_face();
   }
   if (!found.overlap && found.distance > cutoff) return false;
-  if (!found.overlap && corners.known() &&
-      off.learn(Vec3f(found.normal), t.corner[0] - x.p, t.corner[1] - x.p, t.corner[2] - x.p))
-    return false;
   const Vec3f n = normalize(Vec3f(found.normal)), p = Vec3f(found.point_a);
   // The Gauss map of the surface, edge by edge: a direction that leans over a flat or concave edge is not on it.
   bool legal = dot(n, t.normal) > -1e-3f;

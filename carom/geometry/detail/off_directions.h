@@ -24,6 +24,10 @@ class OffDirections {
       if (any(Four::load(floor_ + i) - farthest(i, p, q, r) > Four::splat(most_))) return true;
     return false;
   }
+  /// Is it worth a look: off now by so much (m, times its length)?
+  bool may_learn(double now, const Vec3d& direction) const {
+    return used_ && now * now > double(most_) * double(most_) * length_squared(direction);
+  }
   /// Looks along a direction of any length, and remembers it if it does.
   bool learn(Vec3f n, Vec3f p, Vec3f q, Vec3f r) {
     if (!used_ || (solid_ && n.y <= 0)) return false;

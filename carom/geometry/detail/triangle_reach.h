@@ -6,6 +6,11 @@
 
 namespace carom::geometry::detail {
 
+/// Bounds in the shape's own frame.
+inline Bounds3f own_bounds(const Shape3& shape) {
+  return shape.type == ShapeType3::hull ? grow(shape.hull->bounds, shape.hull->radius) : bounds(shape, {});
+}
+
 /// What a triangle must reach to be worth a look: in front of it the shape's middle, near its plane and its sides, and
 /// in the shape's own frame its box, which fits closer than the one in the surface's frame.
 struct TriangleReach {
@@ -23,7 +28,7 @@ struct TriangleReach {
                 float margin, const ShapeWay& goes, bool below)
       : middle(transform_point(x, inner_point(core))),
         origin(x.p),
-        own(grow(bounds(shape, {}), margin)),
+        own(grow(own_bounds(shape), margin)),
         box_middle(transform_point(x, own.center())),
         corners(placed),
         approach(goes),

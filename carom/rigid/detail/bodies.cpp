@@ -210,10 +210,7 @@ void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
   m.center = world_point(world.bodies.pose[std::size_t(body)], m.local_center);
 }
 
-/// Lets the arms of a body reach a shape, in the body's frame seen from its centre of mass.
-static void reach(float& arms, const ShapeRecord<Dim2>& shape, const Vec2f& center) {
-  arms = max(arms, math::length(shape.local.p - center) + shape.outer_extent);
-}
+/// Lets the distances from the axes through the centre of mass of a body's frame reach all of a shape.
 static void reach(Vec3f& arms, const ShapeRecord<Dim3>& shape, const Vec3f& center) {
   const auto reach_point = [&arms](const Vec3f& p) {
     const Vec3f s{p.x * p.x, p.y * p.y, p.z * p.z};
@@ -226,6 +223,16 @@ static void reach(Vec3f& arms, const ShapeRecord<Dim3>& shape, const Vec3f& cent
   const geometry::Bounds3f box = geometry::bounds(shape.geometry, shape.local);
   reach_point(max(abs(box.low - center), abs(box.high - center)));
 }
+static std::uint8_t slenderness(const WorldImplementation<Dim2>&, std::int32_t) { return 0; }
+static std::uint8_t slenderness(const WorldImplementation<Dim3>& world, std::int32_t body) {
+  const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(body)];
+  Vec3f arms{};
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
+    reach(arms, world.shapes.at(s), m.local_center);
+  const int axis = arms.x <= arms.y && arms.x <= arms.z ? 0 : (arms.y <= arms.z ? 1 : 2);
+  if (!(3 * arms[axis] < m.outer_extent)) return 0;
+  return std::uint8_t(1 + axis + 4 * (int(63 * arms[axis] / m.outer_extent) + 1));
+}
 
 template <class D>
 void update_mass(WorldImplementation<D>& world, std::int32_t body) {
@@ -235,7 +242,6 @@ void update_mass(WorldImplementation<D>& world, std::int32_t body) {
   const typename D::Vector old_center = m.local_center;
   m.inner_extent = 0;
   m.outer_extent = 0;
-  m.arms = {};
   typename D::MassProperties sum{};  // nothing yet: mass and inertia zero
   bool first = true;
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
@@ -265,8 +271,8 @@ void update_mass(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     m.outer_extent = max(m.outer_extent, math::length(shape.local.p - m.local_center) + shape.outer_extent);
-    reach(m.arms, shape, m.local_center);
   }
+  m.slender = slenderness(world, body);
   center_from_pose(world, body);
   SolverBody<D>& solver = world.bodies.solver[std::size_t(body)];
   const typename D::Vector shift = rotate(world.bodies.pose[std::size_t(body)].rotation, m.local_center - old_center);
@@ -297,9 +303,26 @@ void learn_bounce(WorldImplementation<D>& world) {
 }
 
 template <class D>
-typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+bool among_several(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  const std::int32_t first = world.bodies.record[std::size_t(shape.body)].first_shape;
+  return first != none && world.shapes.at(first).next != none;
+}
+
+/// m, of the middle of a shape in the next step, by the velocity that it has.
+template <class D>
+static typename D::Vector way_of_middle(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   using V = typename D::Vector;
-  V way = world.bodies.solver[std::size_t(shape.body)].linear_velocity * world.last_dt;
+  const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
+  if (!among_several(world, shape)) return s.linear_velocity * world.last_dt;
+  const V middle = transform_point(shape.local, ball_about(shape).middle),
+          arm = rotate(world.bodies.pose[std::size_t(shape.body)].rotation,
+                       middle - world.bodies.motion[std::size_t(shape.body)].local_center);
+  return (s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
+}
+
+template <class D>
+typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  typename D::Vector way = way_of_middle(world, shape);
   const float most = 0.5f * shape.inner_extent, length_squared = math::length_squared(way);
   if (world.shapes.bounce == Bounce::none && length_squared > most * most) way *= most / math::sqrt(length_squared);
   return typename D::Position(way);
@@ -316,7 +339,8 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
     box = merge(box, geometry::grow(typename D::Bounds{m.center, m.center}, reach));
   }
   box = geometry::grow(box, double(shape.margin));
-  const P ahead = way_ahead(world, shape);
+  // A body of several shapes would have all of them leave their bounds in every step of a fall.
+  const P ahead = among_several(world, shape) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 
@@ -432,6 +456,7 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
   template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&); \
   template void learn_bounce<D>(WorldImplementation<D>&);                                   \
   template D::Position way_ahead<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);  \
+  template bool among_several<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);     \
   template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);   \
   template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
   template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                 \

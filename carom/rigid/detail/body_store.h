@@ -50,16 +50,16 @@ struct BodyMotion {
   typename D::Angular torque{};       ///< N·m, about the centre of mass
   float mass = 0, inverse_mass = 0;   ///< 0 where forces do not move the body (inverse_mass), or it has none
   bool gyroscopic = false;            ///< 3D: inertia is not isotropic
-  std::uint16_t load_level = 0;       ///< the contact solver sees more mass (load.h)
+  std::uint8_t slender = 0;      ///< 3D: 0, or 1 + its long axis + 4·(63 · greatest distance from that / outer_extent)
+  std::uint16_t load_level = 0;  ///< the contact solver sees more mass (load.h)
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
   typename D::Inertia world_inverse_inertia =
       no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
-  float inner_extent = 0;      ///< m: half the smallest extent of its shapes; how far is "fast"
-  float outer_extent = 0;      ///< m: farthest point of its shapes from the centre of mass
-  typename D::Angular arms{};  ///< m: the same from the axes of its own frame through that (2D: from the centre)
-  float slack = 0;             ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
+  float inner_extent = 0;  ///< m: half the smallest extent of its shapes; how far is "fast"
+  float outer_extent = 0;  ///< m: farthest point of its shapes from the centre of mass
+  float slack = 0;         ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
 };
 
 /// How far a turn (rad, world axes) moves the surface of a body at most: a long one that rolls moves it little.
@@ -68,9 +68,12 @@ inline float way_of_turn(const BodyMotion<Dim2>& m, const Rot2f&, float turn) {
 }
 inline float way_of_turn(const BodyMotion<Dim3>& m, const Quatf& rotation, const Vec3f& turn) {
   const float ball = math::length(turn) * m.outer_extent;
-  if (m.outer_extent < 2 * m.inner_extent) return ball;
-  const Vec3f own = abs(inverse_rotate(rotation, turn));
-  return min(ball, dot(own, m.arms));
+  if (m.slender == 0) return ball;
+  Vec3f across = inverse_rotate(rotation, turn);
+  float& along = across[(m.slender & 3) - 1];
+  const float rolls = math::abs(along) * m.outer_extent * (float(m.slender >> 2) * (1.0f / 63));
+  along = 0;
+  return min(ball, math::length(across) * m.outer_extent + rolls);
 }
 
 enum BodyFlag : std::uint16_t {

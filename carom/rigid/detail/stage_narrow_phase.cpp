@@ -41,10 +41,11 @@ float way_of_turn(const ShapeRecord<Dim3>& shape, const Vec3f& turn, float ball)
 float half_chord(const Rot2f& a, const Rot2f& b) { return 0.5f * chord(a, b); }
 Vec3f half_chord(const Quatf& a, const Quatf& b) { return (conjugate(a) * b).vector(); }
 
-/// How far a point strays from the tangent of its way while it turns (rad) about something at the other end of an arm.
-float bend_of(float turn, const Vec2f& arm) { return 0.5f * turn * turn * math::length(arm); }
-float bend_of(const Vec3f& turn, const Vec3f& arm) {
-  return 0.5f * math::length(turn) * math::length(cross(turn, arm));
+/// How far a point strays at most from the tangent of its way while its body turns (rad); what is slender may roll.
+float bend_of(const BodyMotion<Dim2>&, float turn, const Vec2f& arm) { return 0.5f * turn * turn * math::length(arm); }
+float bend_of(const BodyMotion<Dim3>& m, const Vec3f& turn, const Vec3f& arm) {
+  const float angle = math::length(turn);
+  return 0.5f * angle * (m.slender == 0 ? angle * math::length(arm) : math::length(cross(turn, arm)));
 }
 
 /// How B moved, seen from A, from when its manifolds were made to `now`: its middle, and its surface about that by the
@@ -84,7 +85,8 @@ BodySweep<D> sweep_of_shape(const WorldImplementation<D>& world, const ContactRe
     const typename D::Vector way = (s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
     sweep.way = side == 0 ? sweep.way - way : sweep.way + way;
     const typename D::Angular turn = s.angular_velocity * world.last_dt;
-    sweep.turning += way_of_turn(shape, in_frame(pose.rotation, turn), c.extent) + bend_of(turn, arm);
+    sweep.turning +=
+        way_of_turn(shape, in_frame(pose.rotation, turn), c.extent) + bend_of(world.bodies.motion[body], turn, arm);
   }
   return sweep;
 }
@@ -129,7 +131,8 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
     const Vec3f way = s.linear_velocity * world.last_dt + cross(turn, arm);
     approach.way = side == 0 ? approach.way - way : approach.way + way;
     approach.turn = side == 0 ? approach.turn - turn : approach.turn + turn;
-    approach.bend += bend_of(turn, arm + to_middle) + 0.5f * length_squared(turn) * ball.radius;
+    approach.bend +=
+        bend_of(world.bodies.motion[body], turn, arm + to_middle) + 0.5f * length_squared(turn) * ball.radius;
   }
   const Quatf frame = shape_pose(world, world.shapes.at(c.shape[0])).rotation;
   approach.way = inverse_rotate(frame, approach.way), approach.turn = inverse_rotate(frame, approach.turn);
@@ -309,7 +312,7 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
       const SolverBody<D>& s = world.bodies.solver[body];
       const V arm = V(point - world.bodies.motion[body].center);
       const float way = dot(normal, s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;
-      closing += (side == 0 ? way : -way) + bend_of(s.angular_velocity * world.last_dt, arm);
+      closing += (side == 0 ? way : -way) + bend_of(world.bodies.motion[body], s.angular_velocity * world.last_dt, arm);
     }
     farthest = max(farthest, closing - m.points[i].separation);
   }
