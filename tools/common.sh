@@ -60,13 +60,16 @@ setup_build() {
 }
 
 jobs=$(nproc)
+# Sources to a translation unit: what all of them include is then read a few times only, as long as every processor has
+# units enough.
+unity=(-DCAROM_UNITY=ON "-DCAROM_UNITY_BATCH=$((jobs < 6 ? 48 / jobs : 8))")
 
 # build_native: the release build in build/release, as few translation units (a cold build is short).
 build_native() {
   local extra=()
   command -v ccache >/dev/null && extra+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   say "configuring build/release"
-  quietly configure cmake --preset release -DCAROM_UNITY=ON "${extra[@]}" "$@"
+  quietly configure cmake --preset release "${unity[@]}" "${extra[@]}" "$@"
   say "building with $jobs jobs"
   if [ -t 1 ]; then cmake --build build/release --parallel "$jobs" || fail "the build"
   else quietly build cmake --build build/release --parallel "$jobs"; fi
@@ -75,13 +78,15 @@ build_native() {
 # What building for WebAssembly needs, given the version that newest_clang names.
 wasm_packages() { echo "clang-$1" "lld-$1" wasi-libc "libc++-$1-dev-wasm32" "libclang-rt-$1-dev-wasm32" binaryen; }
 
-# build_wasm TARGET…: in build/wasm.
+# build_wasm TARGET…: in build/wasm. More that is wanted later (wasm_too) is linked beside it: a link takes one
+# processor for a minute.
+wasm_too=()
 build_wasm() {
   local extra=()
   command -v ccache >/dev/null && extra+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   say "building for WebAssembly"
-  quietly configure-wasm cmake --preset wasm -DCAROM_UNITY=ON "${extra[@]}"
-  quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "$@"
+  quietly configure-wasm cmake --preset wasm "${unity[@]}" "${extra[@]}"
+  quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "$@" "${wasm_too[@]}"
 }
 
 # build_page: for `carom serve`, in apps/playground/dist.
