@@ -231,7 +231,7 @@ static std::uint8_t slenderness(const WorldImplementation<Dim3>& world, std::int
     reach(arms, world.shapes.at(s), m.local_center);
   const int axis = arms.x <= arms.y && arms.x <= arms.z ? 0 : (arms.y <= arms.z ? 1 : 2);
   if (!(3 * arms[axis] < m.outer_extent)) return 0;
-  return std::uint8_t(1 + axis + 4 * (int(63 * arms[axis] / m.outer_extent) + 1));
+  return std::uint8_t(1 + axis + 4 * (int(63 * math::sqrt(arms[axis] / m.outer_extent)) + 1));
 }
 
 template <class D>

@@ -50,7 +50,7 @@ struct BodyMotion {
   typename D::Angular torque{};       ///< N·m, about the centre of mass
   float mass = 0, inverse_mass = 0;   ///< 0 where forces do not move the body (inverse_mass), or it has none
   bool gyroscopic = false;            ///< 3D: inertia is not isotropic
-  std::uint8_t slender = 0;      ///< 3D: 0, or 1 + its long axis + 4·(63 · greatest distance from that / outer_extent)
+  std::uint8_t slender = 0;      ///< 3D: 0, or 1 + its long axis + 4·(63 √(greatest distance from that / outer_extent))
   std::uint16_t load_level = 0;  ///< the contact solver sees more mass (load.h)
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
   typename D::Inertia world_inverse_inertia =
@@ -71,7 +71,8 @@ inline float way_of_turn(const BodyMotion<Dim3>& m, const Quatf& rotation, const
   if (m.slender == 0) return ball;
   Vec3f across = inverse_rotate(rotation, turn);
   float& along = across[(m.slender & 3) - 1];
-  const float rolls = math::abs(along) * m.outer_extent * (float(m.slender >> 2) * (1.0f / 63));
+  const float share = float(m.slender >> 2) * (1.0f / 63);
+  const float rolls = math::abs(along) * m.outer_extent * (share * share);
   along = 0;
   return min(ball, math::length(across) * m.outer_extent + rolls);
 }

@@ -82,8 +82,8 @@ struct alignas(64) ContactRaw {
 template <class D, int W>
 struct alignas(64) ContactExtra {
   static constexpr int angular = D::dimension == 2 ? 1 : 3;
-  float rolling_lever[W];  ///< m: the torque is at most this times the normal force
-  float rolling_mass[D::dimension == 2 ? 1 : 6][W];
+  float rolling_lever[W];                                ///< m: the torque is at most this times the normal force
+  float rolling_response[D::dimension == 2 ? 1 : 6][W];  ///< 2D: its inverse, 0: none
   float rolling_impulse[angular][W];
   float bounce_speed[D::max_points][W];  ///< m/s to leave the surface with, 0: does not bounce
   float closing_acceleration[W];         ///< m/s² along the normal

@@ -134,7 +134,9 @@ CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a,
                                       WideMask<W> takes_part, const WideSymmetric<W>& ia, const WideSymmetric<W>& ib) {
   using F = WideFloat<W>;
   const WideVec3<W> old = load3<W>(e.rolling_impulse);
-  const WideVec3<W> step = multiply(load_symmetric<W>(e.rolling_mass), subtract(b.w, a.w));
+  // Against the spin, as friction is: not along what its inertia would ask for, or logs roll on while they tilt.
+  const WideVec3<W> spin = subtract(b.w, a.w), turned = multiply(load_symmetric<W>(e.rolling_response), spin);
+  const WideVec3<W> step = multiply(spin, dot(spin, spin) / (dot(spin, turned) + F::splat(1e-30f)));
   WideVec3<W> lambda = subtract(old, step);
   const F limit = F::load(e.rolling_lever) * load, size = sqrt(dot(lambda, lambda));
   const F scale = select(size > limit, limit / max(size, F::splat(1e-30f)), F::splat(1));

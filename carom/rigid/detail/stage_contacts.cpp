@@ -173,10 +173,10 @@ void prepare_rolling(const StepContext<D>& context, std::int32_t index, ContactE
   const auto k = a.world_inverse_inertia * load_share(a) + b.world_inverse_inertia * load_share(b);
   extra.rolling_lever[lane] = m.rolling_lever;
   if constexpr (D::dimension == 2) {
-    extra.rolling_mass[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
+    extra.rolling_response[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
     extra.rolling_impulse[0][lane] = m.rolling_lever > 0 ? m.impulses.rolling : 0;
   } else {
-    put(extra.rolling_mass, lane, m.rolling_lever > 0 ? inverse(k) : Mat3f::zero());
+    put(extra.rolling_response, lane, k);
     put(extra.rolling_impulse, lane, m.rolling_lever > 0 ? m.impulses.rolling : Vec3f{});
   }
 }

@@ -167,8 +167,11 @@ void finalize_bodies(StepContext<D>& context) {
       const bool may_sleep = record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0;
       const float slow = settling_speed * sleep_speed;
       if (may_sleep && world.definition.allow_sleep && load.size > 0 && spin > 0 && record.joint_count == 0 &&
-          speed < slow && rolls(world.shapes.at(record.first_shape).geometry.type))
-        speed = max(linear, settle(context, m, s, load.size, spin, 1 - speed / slow) * max(m.outer_extent, 0.01f));
+          speed < slow && rolls(world.shapes.at(record.first_shape).geometry.type)) {
+        const float left = settle(context, m, s, load.size, spin, 1 - speed / slow);
+        speed = max(linear, m.slender != 0 ? way_of_turn(m, pose.rotation, s.angular_velocity)
+                                           : left * max(m.outer_extent, 0.01f));
+      }
       if (may_sleep && speed < sleep_speed && pushed < 0.2f * sleep_speed)
         record.sleep_timer += context.dt * pace;
       else

@@ -139,7 +139,7 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
   // What moves fast is looked at again in the next step anyway.
   const float margin = c.margin(), ahead = reach - 2 * margin;
   approach.margin = margin + clamp(margin - ahead, 0.0f, margin);
-  approach.worth = margin + 2 * ahead;
+  approach.worth = margin + 3 * ahead;  // two steps
   return approach;
 }
 /// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
