@@ -327,9 +327,24 @@ CAROM_SIMD_INLINE Four load_four(const float* p) {
 template <int W, int K>
 CAROM_SIMD_INLINE typename WideVectors<W>::Floats join_four(const float* const (&p)[W], int offset) {
   const Four a = load_four(p[K] + offset);
-  if constexpr (W == 4) {
-    return a;
-  } else {
+  if constexpr (W == 4) return a;
+  // gcc makes shuffles of registers of what follows, of which a core does one at a time: the loads can place their
+  // rows.
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  if constexpr (W == 16) {
+    __m512 r = _mm512_castps128_ps512(__m128(a));
+    r = _mm512_mask_broadcast_f32x4(r, __mmask16(0x00f0), __m128(load_four(p[K + 4] + offset)));
+    r = _mm512_mask_broadcast_f32x4(r, __mmask16(0x0f00), __m128(load_four(p[K + 8] + offset)));
+    return WideVectors<16>::Floats(
+        _mm512_mask_broadcast_f32x4(r, __mmask16(0xf000), __m128(load_four(p[K + 12] + offset))));
+  }
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 8)
+    return WideVectors<8>::Floats(
+        _mm256_insertf128_ps(_mm256_castps128_ps256(__m128(a)), __m128(load_four(p[K + 4] + offset)), 1));
+#endif
+  if constexpr (W > 4) {
     const auto ab = __builtin_shufflevector(a, load_four(p[K + 4] + offset), 0, 1, 2, 3, 4, 5, 6, 7);
     if constexpr (W == 8) {
       return ab;
@@ -342,14 +357,23 @@ CAROM_SIMD_INLINE typename WideVectors<W>::Floats join_four(const float* const (
 }
 template <int W, int Block>
 CAROM_SIMD_INLINE Four block_of(typename WideVectors<W>::Floats v) {
-  if constexpr (W == 4) {
-    return v;
-  } else {
-    return __builtin_shufflevector(v, v, 4 * Block, 4 * Block + 1, 4 * Block + 2, 4 * Block + 3);
+  if constexpr (W == 4) return v;
+#if defined(__AVX__)
+  // As in join_four: what is stored need not be shuffled before.
+  if constexpr (W == 8) return Four(_mm256_extractf128_ps(__m256(v), Block));
+#if defined(__AVX512F__)
+  if constexpr (W == 16) {
+    using Half = WideVectors<8>::Floats;
+    constexpr int first = Block / 2 * 8;
+    const Half half = __builtin_shufflevector(v, v, first, first + 1, first + 2, first + 3, first + 4, first + 5,
+                                              first + 6, first + 7);
+    return block_of<8, Block % 2>(half);
   }
+#endif
+#endif
+  if constexpr (W > 4) return __builtin_shufflevector(v, v, 4 * Block, 4 * Block + 1, 4 * Block + 2, 4 * Block + 3);
 }
 
-/// Shuffles that stay inside each block of four lanes; A..D below 4 pick from a, from 4 on from b.
 template <int W, int A, int B, int C, int D>
 CAROM_SIMD_INLINE typename WideVectors<W>::Floats blockwise(typename WideVectors<W>::Floats a,
                                                             typename WideVectors<W>::Floats b) {

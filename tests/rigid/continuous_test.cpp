@@ -1,6 +1,8 @@
 // Fast bodies and thin walls (rigid-body.md 6.1, 15).
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/rigid/scene_pieces.h"
 
 namespace carom::rigid::test {
@@ -198,6 +200,44 @@ TYPED_TEST(Continuous, AStopAddsNoEnergy) {
       ASSERT_LT((s.pose.position.y - 0.5) * 9.81 + 0.5 * v * v, 1.0002 * 9.81 * h) << i;
     }
   }
+}
+
+// The bounds of a wall round all that flies hold it all: what is near the wall is told by its segments, wherever it
+// stands and however it is turned.
+TEST(ContinuousChain, NothingLeavesARing) {
+  constexpr int corners = 180, count = 128;
+  constexpr double radius = 50;
+  const Vec2d middle{4000, -900};
+  World<Dim2> world(world_with<Dim2>(0));
+  std::vector<Vec2f> points;
+  for (int i = 0; i < corners; ++i) {  // clockwise: free space is inside
+    const double a = -2 * pi * i / corners;
+    points.push_back(Vec2f(Vec2d{radius * std::cos(a) - 30, radius * std::sin(a) + 12}));
+  }
+  BodyDef<Dim2> wall;
+  wall.type = BodyType::fixed;
+  wall.rotation = {std::cos(0.7f), std::sin(0.7f)};
+  ShapeDef<Dim2> ring;
+  ring.local = {{25, -12}, {std::cos(1.9f), -std::sin(1.9f)}};
+  const Vec2f center = rotate(wall.rotation, ring.local.p + rotate(ring.local.q, Vec2f{-30, 12}));
+  wall.position = middle - Vec2d(center);
+  const BodyId body = world.create_body(wall).value();
+  world.add_shape(body, geometry::make_chain(points, true).value(), ring).value();
+  std::vector<BodyId> balls;
+  for (int i = 0; i < count; ++i) {
+    const double a = 2 * pi * i / count;
+    const Vec2d way{std::cos(a), std::sin(a)};
+    balls.push_back(add_ball<Dim2>(world, middle + (3.0 + 0.2 * (i % 7)) * way, 0.05f, {.restitution = 0.5f},
+                                   Vec2f(way * (150.0 + 2 * i))));
+  }
+  double farthest = 0;
+  for (int i = 0; i < 30; ++i) {
+    world.step(frame).value();
+    for (const BodyId ball : balls)
+      farthest = std::max(farthest, math::length(world.state(ball).value().pose.position - middle));
+  }
+  EXPECT_LT(farthest, radius);
+  EXPECT_GT(farthest, 0.99 * radius);  // they did come there
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ void grow_by_a_quarter(std::vector<T>& v) {
   if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
 }
 
-inline void prefetch_lines(const void* p, std::size_t bytes) {
+/// Always inlined: to gcc a function that only pre-loads has no effect, and calls of it go.
+[[gnu::always_inline]] inline void prefetch_lines(const void* p, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(p) + k);
 }
 
@@ -41,20 +42,22 @@ void level_room(std::vector<std::vector<T>>& lists) {
     if (list.capacity() < total) list.reserve(total + total / 2);
 }
 
-/// Mass, forces and what the integrator needs. Read at the start and end of a step, not inside the contact solver.
+/// Mass, forces and what the integrator needs. Read at the start and end of a step, not inside the contact solver. In
+/// the plane the centre in its frame and the inverse masses are a row of four floats (contact_gather2.inl).
 template <class D>
 struct BodyMotion {
   typename D::Position center{};      ///< m, centre of mass in the world
   typename D::Vector local_center{};  ///< m, centre of mass in the body's frame
-  typename D::Vector force{};         ///< N, gathered for the next step
-  typename D::Angular torque{};       ///< N·m, about the centre of mass
-  float mass = 0, inverse_mass = 0;   ///< 0 where forces do not move the body (inverse_mass), or it has none
-  bool gyroscopic = false;            ///< 3D: inertia is not isotropic
+  float inverse_mass = 0;             ///< 1/kg, 0 where forces do not move the body
+  typename D::Inertia world_inverse_inertia =
+      no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
+  typename D::Vector force{};             ///< N, gathered for the next step
+  typename D::Angular torque{};           ///< N·m, about the centre of mass
+  float mass = 0;                         ///< kg, 0: it has none
+  bool gyroscopic = false;                ///< 3D: inertia is not isotropic
   std::uint8_t slender = 0;      ///< 3D: 0, or 1 + its long axis + 4·(63 √(greatest distance from that / outer_extent))
   std::uint16_t load_level = 0;  ///< the contact solver sees more mass (load.h)
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
-  typename D::Inertia world_inverse_inertia =
-      no_inertia<typename D::Inertia>();  ///< at the start of the step, world axes, locked axes zero
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
   float inner_extent = 0;  ///< m: half the smallest extent of its shapes; how far is "fast"

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "carom/rigid/detail/contact_watch.h"
 #include "carom/rigid/detail/step_context.h"
 
 namespace carom::rigid::detail {
@@ -90,11 +91,49 @@ struct alignas(64) ContactExtra {
   std::int32_t struck[W];                ///< what stage_impact.cpp knows of it
 };
 
+/// Where the records of contacts and bodies are, for kernels that read and write them by themselves.
+template <class D>
+struct ContactSources {
+  ManifoldRecord<D>* manifolds = nullptr;
+  const ContactRecord<D>* contacts = nullptr;
+  const BodyMotion<D>* motion = nullptr;
+  const typename D::Pose* pose = nullptr;
+  const BodyRecord* record = nullptr;
+  const SolverBody<D>* bodies = nullptr;
+  const float* load_shares = nullptr;  ///< by level
+  float* loads = nullptr;              ///< BodyLoad<D> by slot of the body
+  Softness contact_softness, fixed_contact_softness;
+  typename D::Vector gravity{};     ///< m/s²
+  float restitution_threshold = 0;  ///< m/s
+  float push_speed = 0;             ///< m/s
+  float rest_speed_squared = 0;     ///< (m/s)², of what is at rest,
+  float restless_load = 0;          ///< and what others count for (load.h)
+};
+/// Bits by lane.
+struct GatheredLanes {
+  std::uint32_t placed =
+      0;  ///< a shape stands elsewhere than its body: ContactRaw::shape_a and shape_b are not right yet
+  std::uint32_t pushed = 0;  ///< so deep that it is pushed out with the push speed
+};
+
 /// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.
 template <class D>
 struct ContactKernels {
   using Blocks = void*;
   int width = 4;
+  /// Which of `count` watches in a row, at most the width, tell that nothing is new. Bits by lane. Null in 3D.
+  std::uint32_t (*nothing_new)(const ContactWatch<D>* watches, int count, const typename D::Pose* poses,
+                               const BodySweep<D>* sweeps, float dt) = nullptr;
+  /// Fills `block` and `raw` from the records of the manifolds in `list`; lanes without one are like the first, but
+  /// move nobody. Null where stage_contacts.cpp does this (3D).
+  GatheredLanes (*gather)(const ContactSources<D>& from, const std::int32_t* list, int lanes, void* block,
+                          void* raw) = nullptr;
+  /// Rolling resistance and restitution of a prepared block. Bits by lane: may bounce in this step. Not for worlds
+  /// where bodies have clocks of their own, or hits are told.
+  std::uint32_t (*approach)(const ContactSources<D>& from, const std::int32_t* list, int lanes, const void* block,
+                            void* extra) = nullptr;
+  /// The impulses of a block to the records and to the loads of its bodies. Bits by lane: friction is at its limit.
+  std::uint32_t (*store)(const ContactSources<D>& to, const std::int32_t* list, int lanes, const void* block) = nullptr;
   /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back.
   void (*prepare)(void* block, void* raw, float anchor_rate) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;

@@ -101,8 +101,10 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE
 
+#include "carom/rigid/detail/contact_gather2.inl"
 #include "carom/rigid/detail/contact_prepare2.inl"
 #include "carom/rigid/detail/contact_prepare3.inl"
+#include "carom/rigid/detail/contact_watch2.inl"
 // The passes use what the preparation left.
 #include "carom/rigid/detail/contact_kernel2.inl"
 #include "carom/rigid/detail/contact_kernel3.inl"
@@ -113,12 +115,31 @@ namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
 ContactKernels<Dim2> kernels2() {
   constexpr int W = CAROM_CONTACT_WIDTH;
-  return {W,         prepare2<W>,   warm_start2<W>,           solve2<W>,
-          relax2<W>, restitute2<W>, integrate_velocities2<W>, integrate_positions2<W>};
+  ContactKernels<Dim2> k;
+  k.width = W;
+  k.nothing_new = nothing_new2<W>;
+  k.gather = gather2<W>;
+  k.prepare = prepare2<W>;
+  k.approach = approach2<W>;
+  k.store = store2<W>;
+  k.warm_start = warm_start2<W>;
+  k.solve = solve2<W>;
+  k.relax = relax2<W>;
+  k.restitute = restitute2<W>;
+  k.integrate_velocities = integrate_velocities2<W>;
+  k.integrate_positions = integrate_positions2<W>;
+  return k;
 }
 ContactKernels<Dim3> kernels3() {
   constexpr int W = CAROM_CONTACT_WIDTH;
-  return {W, prepare3<W>, warm_start3<W>, solve3<W>, relax3<W>, restitute3<W>, nullptr, nullptr};
+  ContactKernels<Dim3> k;
+  k.width = W;
+  k.prepare = prepare3<W>;
+  k.warm_start = warm_start3<W>;
+  k.solve = solve3<W>;
+  k.relax = relax3<W>;
+  k.restitute = restitute3<W>;
+  return k;
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -187,6 +187,7 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
     const ContactExtra<Dim2, W>& e = static_cast<const ContactExtra<Dim2, W>*>(extra)[k];
     const F zero = F::splat(0);
+    if (!any(max(F::load(e.bounce_speed[0]), F::load(e.bounce_speed[1])) > zero)) continue;
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);

@@ -26,26 +26,39 @@ enum ContactFlag : std::uint16_t {
   contact_dynamic = 32768,   ///< both bodies are dynamic
 };
 
-/// A pair of shapes. `shape[0]` is A: normals point from it to B.
+/// In the plane, whose records are small, what a step touches of them lies in whole cache lines. Snapshots copy bytes:
+/// none of them may be left to chance.
 template <class D>
-struct ContactRecord {
-  std::int32_t shape[2] = {none, none};
+inline constexpr std::size_t record_alignment = D::dimension == 2 ? 64 : 4;
+template <int Count>
+struct RecordRest {
+  float unused[Count] = {};
+};
+template <>
+struct RecordRest<0> {};
+
+/// A pair of shapes. `shape[0]` is A: normals point from it to B. What the solver's preparation reads comes first.
+template <class D>
+struct alignas(record_alignment<D>) ContactRecord {
   std::int32_t body[2] = {none, none};
-  std::int32_t next[2] = {none, none};  ///< edge keys (2·contact + side) in the lists of the bodies
-  std::int32_t previous[2] = {none, none};
-  std::int32_t awake_index = none;  ///< place in ContactStore::awake
-  std::int32_t first_manifold = none;
+  std::int32_t shape[2] = {none, none};
   std::uint16_t flags = 0;
   std::uint16_t manifold_count = 0;
-  float extent = 0;           ///< m: how far a turn of B by one radian about its middle (ball_about) moves its surface
-  float inner = 0;            ///< m: half the thickness of the thinner shape
-  float gap = 0;              ///< m: without manifolds, the shapes were at least this far apart at `base`
+  std::int32_t first_manifold = none;
+  std::int32_t awake_index = none;  ///< place in ContactStore::awake
+  typename D::Transform base{};     ///< B in A when the manifolds were last computed in full
+  float extent = 0;  ///< m: how far a turn of B by one radian about its middle (ball_about) moves its surface
+  float inner = 0;   ///< m: half the thickness of the thinner shape
+  float gap = 0;     ///< m: without manifolds, the shapes were at least this far apart at `base`
+  std::int32_t next[2] = {none, none};  ///< edge keys (2·contact + side) in the lists of the bodies
+  std::int32_t previous[2] = {none, none};
   typename D::Vector axis{};  ///< and, unless zero, that far along it (unit, in A's shape frame)
   geometry::PairCache cache{};
-  typename D::Transform base{};  ///< B in A when the manifolds were last computed in full
+  [[no_unique_address]] RecordRest<D::dimension == 2 ? 10 : 0> rest;
   /// m: contacts up to this separation are of interest.
   float margin() const { return math::clamp(0.25f * inner, 0.001f, 0.02f); }
 };
+static_assert(sizeof(ContactRecord<Dim2>) == 128 && sizeof(ContactRecord<Dim3>) == 104);
 
 /// What the solver did for a manifold, kept for warm starting, events and pictures.
 template <class D>
@@ -54,29 +67,34 @@ struct ManifoldImpulses {
   float total[D::max_points] = {};      ///< N·s, over the last step
   typename D::Vector friction{};        ///< N·s on B, world axes, of the last substep
   typename D::Vector friction_total{};  ///< N·s on B over the last step
-  float twist = 0;                      ///< N·m·s about the normal (3D)
   typename D::Angular rolling{};        ///< N·m·s on B
+  float twist = 0;                      ///< N·m·s about the normal (3D)
 };
 
 /// Whether friction remembers where it sticks. A new contact takes up its load later than gravity pulls; while it
 /// settles, the way that it slips meanwhile is remembered and taken back.
 enum class Anchor : std::uint8_t { none, holds, settles };
 
-/// One patch of contact: a unit of the constraint graph.
+/// One patch of contact: a unit of the constraint graph. What every step reads and writes comes first.
 template <class D>
-struct ManifoldRecord {
+struct alignas(record_alignment<D>) ManifoldRecord {
   std::int32_t contact = none;
-  std::int32_t next = none;  ///< of the same contact
-  GraphPlace place{};
-  float friction = 0, restitution = 0, rolling_lever = 0, tangent_speed = 0;
-  typename D::Manifold manifold{};  ///< in A's shape frame, at the contact's `base`
-  ManifoldImpulses<D> impulses{};
-  typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass
-  float approach_speed = 0;                   ///< m/s at the start of the step, for hit events
-  float slip_speed = 0;                       ///< m/s across the surface at the start of the step, for hit events
   Anchor anchor = Anchor::none;
   bool disabled = false;  ///< pushes nothing in this step
+  std::uint16_t unused_too = 0;
+  float friction = 0, restitution = 0, rolling_lever = 0, tangent_speed = 0;
+  typename D::Manifold manifold{};            ///< in A's shape frame, at the contact's `base`
+  typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass
+  ManifoldImpulses<D> impulses{};
+  std::int32_t next = none;  ///< of the same contact
+  GraphPlace place{};
+  float approach_speed = 0;  ///< m/s at the start of the step, for hit events
+  float slip_speed = 0;      ///< m/s across the surface at the start of the step, for hit events
+  [[no_unique_address]] RecordRest<D::dimension == 2 ? 10 : 0> rest;
+
+  static constexpr std::size_t hot_bytes = D::dimension == 2 ? 128 : 256;
 };
+static_assert(sizeof(ManifoldRecord<Dim2>) == 192 && sizeof(ManifoldRecord<Dim3>) == 244);
 
 template <class D>
 struct ContactStore {

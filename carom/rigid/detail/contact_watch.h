@@ -6,9 +6,9 @@
 
 namespace carom::rigid::detail {
 
-/// How far a body may come in this step by the velocity it has.
+/// How far a body may come in this step by the velocity it has. A row of four floats, which lanes transpose.
 template <class D>
-struct BodySweep {
+struct alignas(16) BodySweep {
   typename D::Vector way{};  ///< m, of its centre; 0 for who sleeps
   float turning = 0;         ///< m, of its farthest surface by the spin
 };

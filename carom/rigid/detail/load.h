@@ -16,12 +16,13 @@
 
 namespace carom::rigid::detail {
 
-/// What the contacts of a body did to it in the last substep.
+/// What the contacts of a body did to it in the last substep. Rows of four floats, which lanes transpose.
 template <class D>
-struct BodyLoad {
+struct alignas(16) BodyLoad {
   typename D::Vector sum{};  ///< N·s
   float size = 0;            ///< N·s; below zero: something slides along it or strikes it
 };
+static_assert(sizeof(BodyLoad<Dim2>) == 16 && sizeof(BodyLoad<Dim3>) == 16);
 inline constexpr float restless_load = -1e30f;
 
 inline constexpr float load_weights = 2;         ///< of its own, that a body carries as it is
@@ -63,14 +64,20 @@ std::uint16_t follow_load(const StepContext<D>& context, const BodyMotion<D>& m,
   if (load.size < 0) return 0;
   const float squeeze = 0.5f * (load.size - math::length(load.sum)) * m.inverse_mass * context.inverse_h;  // m/s²
   const float borne = min(load_weights * gravity, load_yield * m.inner_extent * context.contact_stiffness);
-  int wanted = 0;
-  if (borne > 0 && squeeze > borne) {  // the least level at which the body bears the load
-    const float* const first = load_shares.share;
-    wanted = int(std::lower_bound(first, first + LoadShares::count - 1, borne / squeeze, std::greater<>()) - first);
-  }
   const int level = m.load_level;
-  if (wanted <= level) return std::uint16_t(wanted > level - load_play ? level : max(wanted, level - load_fall));
-  return std::uint16_t(max(min(wanted, level + load_rise), wanted - load_lag));
+  const float* const shares = load_shares.share;
+  const float share = borne / squeeze;  // at the least level that has it or less, the body bears the load
+  const int last = LoadShares::count - 1;
+  if (!(borne > 0 && squeeze > borne) || level == last || !(shares[level] > share)) {
+    const int low = level - load_play;
+    const bool stays = low < 0 || (borne > 0 && squeeze > borne && shares[low] > share);
+    return std::uint16_t(stays ? level : level - load_fall);
+  }
+  // Compared with where it is: most change little, and a search costs more than all the rest here.
+  static_assert(load_rise == 1 && load_fall <= load_play);
+  const int far = level + load_rise + load_lag;
+  if (far >= last || !(shares[far] > share)) return std::uint16_t(level + load_rise);
+  return std::uint16_t(int(std::lower_bound(shares + far, shares + last, share, std::greater<>()) - shares) - load_lag);
 }
 
 /// A body that is struck or kicked, or starts to slide, is its own self before momentum is exchanged.

@@ -31,13 +31,16 @@ void fold_body(typename D::Pose& pose, BodyMotion<D>& motion, const BodyRecord& 
 template <class D>
 std::vector<std::uint64_t> canonical_image(const SnapshotData<D>& data) {
   std::vector<std::uint64_t> image = data.image;
-  ManifoldRecord<D>* const manifolds = section_values<ManifoldRecord<D>>(image, data, data.manifolds_at);
+  std::byte* const manifolds = section_values<std::byte>(image, data, data.manifolds_at);
   for (std::size_t i = 0; i < data.sections[data.manifolds_at].count; ++i) {
-    ManifoldRecord<D>& m = manifolds[i];
+    ManifoldRecord<D> m;  // an image is not aligned as records are
+    std::byte* const at = manifolds + i * sizeof m;
+    std::memcpy(static_cast<void*>(&m), at, sizeof m);
     if (m.contact == none || m.place.color < 0) continue;
     for (float& total : m.impulses.total) total = 0;
     m.impulses.friction_total = {};
     m.approach_speed = 0;
+    std::memcpy(at, &m, sizeof m);
   }
   return image;
 }

@@ -1,4 +1,6 @@
 // From manifolds to the blocks of the wide solver, and from the solved blocks back.
+#include <bit>
+
 #include "carom/math/cpu.h"
 #include "carom/math/simd.h"
 #include "carom/rigid/detail/contact_lanes.h"
@@ -24,6 +26,28 @@ void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const ty
   const typename D::Transform local = at_origin ? typename D::Transform{} : world.shapes.at(shape).local;
   put(to.p, lane, local.p - center);
   put(to.q, lane, local.q);
+}
+
+template <class D>
+ContactSources<D> sources_of(const StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  ContactSources<D> s;
+  s.manifolds = world.contacts.manifolds.data();
+  s.contacts = world.contacts.contacts.data();
+  s.motion = world.bodies.motion.data();
+  s.pose = world.bodies.pose.data();
+  s.record = world.bodies.record.data();
+  s.bodies = context.bodies;
+  s.load_shares = load_shares.share;
+  s.loads = reinterpret_cast<float*>(world.scratch.loads.data());
+  s.contact_softness = context.contact_softness;
+  s.fixed_contact_softness = context.fixed_contact_softness;
+  s.gravity = world.definition.gravity;
+  s.restitution_threshold = world.definition.restitution_threshold;
+  s.push_speed = context.push_speed;
+  s.rest_speed_squared = context.rest_speed * context.rest_speed;
+  s.restless_load = restless_load;
+  return s;
 }
 
 /// Copies what the records hold to a lane; what follows from it the kernel computes for all lanes at once. Returns the
@@ -87,13 +111,51 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   }
   block.friction[lane] = m.friction;
   block.settles[lane] = 0;
-  if constexpr (D::dimension == 2) {
-    block.tangent_total[lane] = 0;
-  } else {
-    block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
-    block.twist_impulse[lane] = m.impulses.twist;
-  }
+  block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
+  block.twist_impulse[lane] = m.impulses.twist;
   return deepest * soft.bias_rate < -context.push_speed ? mark_pushed : 0;
+}
+
+template <class Block>
+void zero_lane(Block& block, int width, int lane) {
+  for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
+    reinterpret_cast<float*>(&block)[i + std::size_t(lane)] = 0;
+}
+/// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
+template <class D, int W>
+void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, int lane) {
+  zero_lane(block, W, lane);
+  zero_lane(raw, W, lane);
+  if (extra != nullptr) zero_lane(*extra, W, lane);
+  block.read_a[lane] = block.read_a[0];
+  block.read_b[lane] = block.read_b[0];
+  block.write_a[lane] = block.write_b[lane] = none;
+}
+
+/// The lanes of a block from the records of `list`, and their marks.
+template <class D, int W>
+void gather_block(const StepContext<D>& context, const ContactSources<D>& sources, std::span<const std::int32_t> list,
+                  ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, std::uint8_t* marks) {
+  const int lanes = int(list.size());
+  if constexpr (D::dimension == 2) {
+    const WorldImplementation<D>& world = context.world;
+    const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
+    for (int lane = 0; lane < lanes; ++lane) {
+      marks[lane] = (found.pushed >> lane & 1u) != 0 ? mark_pushed : 0;
+      if ((found.placed >> lane & 1u) == 0) continue;
+      const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);
+      put_shape<D, W>(world, c.shape[0], world.bodies.motion[std::size_t(c.body[0])].local_center, false, raw.shape_a,
+                      lane);
+      put_shape<D, W>(world, c.shape[1], world.bodies.motion[std::size_t(c.body[1])].local_center, false, raw.shape_b,
+                      lane);
+    }
+    if (extra == nullptr || lanes == W) return;
+    for (int lane = lanes; lane < W; ++lane) zero_lane(*extra, W, lane);
+  } else {
+    for (int lane = 0; lane < lanes; ++lane)
+      marks[lane] = gather_lane(context, list[std::size_t(lane)], block, raw, lane);
+    for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+  }
 }
 
 /// m: by so much a contact that settles may slip.
@@ -238,22 +300,6 @@ std::uint8_t bounce_mark(ContactExtra<D, W>& extra, int lane) {
   return 0;
 }
 
-template <class Block>
-void zero_lane(Block& block, int width, int lane) {
-  for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
-    reinterpret_cast<float*>(&block)[i + std::size_t(lane)] = 0;
-}
-/// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
-template <class D, int W>
-void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, int lane) {
-  zero_lane(block, W, lane);
-  zero_lane(raw, W, lane);
-  if (extra != nullptr) zero_lane(*extra, W, lane);
-  block.read_a[lane] = block.read_a[0];
-  block.read_b[lane] = block.read_b[0];
-  block.write_a[lane] = block.write_b[lane] = none;
-}
-
 /// The bodies feel the load of the contact between them. Bodies of a colour's contacts differ, and those of the
 /// overflow come in order, so this needs no lock.
 template <class D, int W>
@@ -287,35 +333,10 @@ float taken_back_squared(const ContactBlock<Dim3, W>& block, int lane) {
          block.tangent_target[1][lane] * block.tangent_target[1][lane];
 }
 
+/// What slides, or lies loosely, lets go of its anchor, and a contact that settles does once it has slipped too far.
 template <class D, int W>
-void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block,
-                const ContactExtra<D, W>* extra, int lane) {
-  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
-  float load = 0;
-  for (int i = 0; i < m.manifold.count; ++i) {
-    m.impulses.normal[i] = block.point[i].impulse[lane];
-    m.impulses.total[i] = block.point[i].total[lane];
-    load += block.point[i].impulse[lane];
-  }
-  const float limit = 0.999f * m.friction * load;
-  if constexpr (D::dimension == 2) {
-    const Vec2f t{-block.normal[1][lane], block.normal[0][lane]};
-    m.impulses.friction = t * block.tangent_impulse[lane];
-    m.impulses.friction_total = t * block.tangent_total[lane];
-    if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
-  } else {
-    const Vec3f n{block.normal[0][lane], block.normal[1][lane], block.normal[2][lane]};
-    const Vec3f t{block.tangent[0][lane], block.tangent[1][lane], block.tangent[2][lane]}, u = cross(n, t);
-    m.impulses.friction = t * block.tangent_impulse[0][lane] + u * block.tangent_impulse[1][lane];
-    m.impulses.friction_total = t * block.tangent_total[0][lane] + u * block.tangent_total[1][lane];
-    m.impulses.twist = block.twist_impulse[lane];
-    if (extra != nullptr)
-      m.impulses.rolling = {extra->rolling_impulse[0][lane], extra->rolling_impulse[1][lane],
-                            extra->rolling_impulse[2][lane]};
-  }
-  add_load(context, block, lane, load);
-  // What slides, or lies loosely, lets go of its anchor, and a contact that settles does once it has slipped too far.
-  const bool at_limit = math::length_squared(m.impulses.friction) >= limit * limit;
+void let_go(const StepContext<D>& context, ManifoldRecord<D>& m, const ContactBlock<D, W>& block, int lane, float load,
+            bool at_limit) {
   if (m.anchor == Anchor::settles) {
     const float back = taken_back_squared(block, lane);
     const float most = 2 * anchor_rate * context.inverse_dt * settling_slip(context);
@@ -328,6 +349,48 @@ void store_lane(StepContext<D>& context, std::int32_t index, const ContactBlock<
   }
 }
 
+template <int W>
+void store_lane(StepContext<Dim3>& context, std::int32_t index, const ContactBlock<Dim3, W>& block,
+                const ContactExtra<Dim3, W>* extra, int lane) {
+  ManifoldRecord<Dim3>& m = context.world.contacts.manifold(index);
+  float load = 0;
+  for (int i = 0; i < m.manifold.count; ++i) {
+    m.impulses.normal[i] = block.point[i].impulse[lane];
+    m.impulses.total[i] = block.point[i].total[lane];
+    load += block.point[i].impulse[lane];
+  }
+  const float limit = 0.999f * m.friction * load;
+  const Vec3f n{block.normal[0][lane], block.normal[1][lane], block.normal[2][lane]};
+  const Vec3f t{block.tangent[0][lane], block.tangent[1][lane], block.tangent[2][lane]}, u = cross(n, t);
+  m.impulses.friction = t * block.tangent_impulse[0][lane] + u * block.tangent_impulse[1][lane];
+  m.impulses.friction_total = t * block.tangent_total[0][lane] + u * block.tangent_total[1][lane];
+  m.impulses.twist = block.twist_impulse[lane];
+  if (extra != nullptr)
+    m.impulses.rolling = {extra->rolling_impulse[0][lane], extra->rolling_impulse[1][lane],
+                          extra->rolling_impulse[2][lane]};
+  add_load(context, block, lane, load);
+  let_go(context, m, block, lane, load, math::length_squared(m.impulses.friction) >= limit * limit);
+}
+
+template <int W>
+void store_block(StepContext<Dim3>& context, const ContactSources<Dim3>&, std::span<const std::int32_t> list,
+                 const ContactBlock<Dim3, W>& block, const ContactExtra<Dim3, W>* extra) {
+  for (std::size_t lane = 0; lane < list.size(); ++lane) store_lane(context, list[lane], block, extra, int(lane));
+}
+template <int W>
+void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources, std::span<const std::int32_t> list,
+                 const ContactBlock<Dim2, W>& block, const ContactExtra<Dim2, W>* extra) {
+  const int lanes = int(list.size());
+  const std::uint32_t at_limit = context.world.kernels.store(sources, list.data(), lanes, &block);
+  for (int lane = 0; lane < lanes; ++lane) {
+    ManifoldRecord<Dim2>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
+    if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
+    if (m.anchor != Anchor::none)
+      let_go(context, m, block, lane, block.point[0].impulse[lane] + block.point[1].impulse[lane],
+             (at_limit >> lane & 1u) != 0);
+  }
+}
+
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
 /// of the one before it waits. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
@@ -336,10 +399,10 @@ CAROM_SIMD_INLINE void prefetch_manifold(const WorldImplementation<D>& world, st
                                          std::size_t i, bool velocities) {
   constexpr std::size_t manifold_lanes = 64, contact_lanes = 40, body_lanes = 18;
   if (i + manifold_lanes < list.size())
-    prefetch_lines(&world.contacts.manifold(list[i + manifold_lanes]), sizeof(ManifoldRecord<D>));
+    prefetch_lines(&world.contacts.manifold(list[i + manifold_lanes]), ManifoldRecord<D>::hot_bytes);
   if (i + contact_lanes < list.size())
     prefetch_lines(&world.contacts.at(world.contacts.manifold(list[i + contact_lanes]).contact),
-                   sizeof(ContactRecord<D>));
+                   D::dimension == 2 ? 64 : sizeof(ContactRecord<D>));
   if (i + body_lanes < list.size()) {
     const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[i + body_lanes]).contact);
     for (const std::int32_t body : c.body) {
@@ -354,28 +417,41 @@ CAROM_SIMD_INLINE void prefetch_manifold(const WorldImplementation<D>& world, st
 /// May blocks of the overflow, which share bodies, be taken at once?
 enum class Overflow : std::uint8_t { at_once, in_order };
 
-/// Calls f(manifolds of the colour, first, lanes, block, extra, marks) for the blocks of every colour, in parallel.
+/// Calls f(manifolds of the colour, first, lanes, block, extra, marks) for the blocks of every colour, in parallel;
+/// those of all colours at once, or colour by colour, the overflow in its order.
 template <class D, int W, class F>
 void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
   WorldImplementation<D>& world = context.world;
-  for (int color = 0; color <= overflow_color; ++color) {
+  const auto run = [&](int color, int begin, int end) {
     const std::vector<std::int32_t>& manifolds = world.graph.colors[color].manifolds;
-    if (manifolds.empty()) continue;
     const ColorBlocks& blocks = world.scratch.blocks[color];
     const int lanes = color == overflow_color ? 1 : W;
-    const auto run = [&](int begin, int end, int) {
-      for (int k = begin; k < end; ++k) {
-        const int first = k * lanes;
-        f(std::span<const std::int32_t>(manifolds), std::size_t(first), min(lanes, int(manifolds.size()) - first),
-          static_cast<ContactBlock<D, W>*>(blocks.blocks)[k],
-          blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k, blocks.marks + first);
-      }
-    };
-    if (blocks.count <= block_grain || (color == overflow_color && overflow == Overflow::in_order))
-      run(0, blocks.count, 0);
+    for (int k = begin; k < end; ++k) {
+      const int first = k * lanes;
+      f(std::span<const std::int32_t>(manifolds), std::size_t(first), min(lanes, int(manifolds.size()) - first),
+        static_cast<ContactBlock<D, W>*>(blocks.blocks)[k],
+        blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k, blocks.marks + first);
+    }
+  };
+  int ends[color_count + 1], total = 0;
+  for (int color = 0; color <= overflow_color; ++color) {
+    const int count = world.scratch.blocks[color].count;
+    ends[color] = total += count;
+    if (overflow == Overflow::at_once || count == 0) continue;
+    if (count <= block_grain || color == overflow_color)
+      run(color, 0, count);
     else
-      context.scheduler.parallel_for(blocks.count, block_grain, run);
+      context.scheduler.parallel_for(count, block_grain, [&](int begin, int end, int) { run(color, begin, end); });
   }
+  if (overflow == Overflow::in_order || total == 0) return;
+  context.scheduler.parallel_for(total, block_grain, [&](int begin, int end, int) {
+    for (int color = 0; begin < end; ++color) {
+      if (ends[color] <= begin) continue;
+      const int before = color == 0 ? 0 : ends[color - 1], stop = min(end, ends[color]);
+      run(color, begin - before, stop - before);
+      begin = stop;
+    }
+  });
 }
 
 template <class D, int W>
@@ -393,21 +469,31 @@ void prepare_blocks(StepContext<D>& context) {
       blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
     blocks.marks = context.arena.template allocate_zeroed<std::uint8_t>((c.manifolds.size() + 7) / 8 * 8).data();
   }
+  const ContactSources<D> sources = sources_of(context);
   const bool any_special = !world.shapes.extras.empty() || world.hit_event_shapes > 0;
+  // Where nothing rare is asked for, lanes find by themselves how their contacts roll and bounce.
+  const bool by_kernel = world.kernels.approach != nullptr && !any_special && world.bodies.time_scale.empty();
   for_blocks<D, W>(context, Overflow::at_once,
                    [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
                        ContactExtra<D, W>* extra, std::uint8_t* marks) {
                      ContactRaw<D, W> raw;
                      const bool approaches = extra != nullptr || world.hit_event_shapes > 0;
-                     for (int lane = 0; lane < lanes; ++lane) {
+                     const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
+                     for (int lane = 0; lane < lanes; ++lane)
                        prefetch_manifold(world, manifolds, first + std::size_t(lane), approaches);
-                       marks[lane] = gather_lane(context, manifolds[first + std::size_t(lane)], block, raw, lane);
-                     }
-                     for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+                     gather_block(context, sources, list, block, raw, extra, marks);
                      world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
+                     for (int lane = 0; lane < lanes; ++lane)
+                       if (raw.anchor_state[lane] > 0) set_anchor(context, list[std::size_t(lane)], block, lane);
+                     if (by_kernel) {
+                       if (extra == nullptr) return;
+                       std::uint32_t bounces = world.kernels.approach(sources, list.data(), lanes, &block, extra);
+                       for (; bounces != 0; bounces &= bounces - 1)
+                         if (const int lane = std::countr_zero(bounces); lane < lanes) marks[lane] |= mark_bounces;
+                       return;
+                     }
                      for (int lane = 0; lane < lanes; ++lane) {
-                       const std::int32_t m = manifolds[first + std::size_t(lane)];
-                       if (raw.anchor_state[lane] > 0) set_anchor(context, m, block, lane);
+                       const std::int32_t m = list[std::size_t(lane)];
                        if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
                        if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
                        if (any_special) prepare_special(context, m, block, extra, lane);
@@ -461,6 +547,7 @@ void prepare_and_mark(StepContext<D>& context) {
 
 template <class D, int W>
 void store_blocks(StepContext<D>& context) {
+  const ContactSources<D> sources = sources_of(context);
   for_blocks<D, W>(context, Overflow::in_order,
                    [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
                        ContactExtra<D, W>* extra, std::uint8_t*) {
@@ -474,11 +561,11 @@ void store_blocks(StepContext<D>& context) {
                        if (i + 12 < manifolds.size()) {
                          const char* record =
                              reinterpret_cast<const char*>(&context.world.contacts.manifold(manifolds[i + 12]));
-                         for (std::size_t k = 0; k < sizeof(ManifoldRecord<D>); k += 64)
+                         for (std::size_t k = 0; k < ManifoldRecord<D>::hot_bytes; k += 64)
                            __builtin_prefetch(record + k, 1);
                        }
-                       store_lane<D, W>(context, manifolds[i], block, extra, lane);
                      }
+                     store_block(context, sources, manifolds.subspan(first, std::size_t(lanes)), block, extra);
                    });
 }
 

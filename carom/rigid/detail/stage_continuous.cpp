@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "carom/geometry/compound.h"
+#include "carom/geometry/detail/chain_tree.h"
 #include "carom/rigid/detail/body_way.h"
 
 namespace carom::rigid::detail {
@@ -147,15 +148,33 @@ void carry_on(WorldImplementation<D>& world, std::int32_t body, std::int32_t mes
   pose_from_center(world, body);
 }
 
+/// Does a fixed shape, whose bounds meet the box, come as near as its parts tell? The bounds of a chain may hold all
+/// that there is.
+bool comes_near(const WorldImplementation<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Bounds&) { return true; }
+bool comes_near(const WorldImplementation<Dim2>& world, const ShapeRecord<Dim2>& shape, const Dim2::Bounds& box) {
+  if (shape.geometry.type != geometry::ShapeType2::chain) return true;
+  const Dim2::Pose pose = shape_pose(world, shape);
+  const Vec2f middle = inverse_rotate(pose.rotation, Vec2f(box.center() - pose.position));
+  const Vec2f half(box.extents()), c = math::abs(Vec2f{pose.rotation.c, pose.rotation.s});
+  const Vec2f reach = Vec2f{c.x * half.x + c.y * half.y, c.y * half.x + c.x * half.y} +
+                      1e-5f * (math::abs(middle) + half) + Vec2f{1e-3f, 1e-3f};
+  bool any = false;
+  geometry::detail::visit_segments(*shape.geometry.chain, {middle - reach, middle + reach}, [&](int) {
+    any = true;
+    return false;
+  });
+  return any;
+}
+
 /// Is nothing that forces do not move in a box?
 template <class D>
 bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) {
   bool any = false;
   for (const int tree : {tree_fixed, tree_kinematic})
     if (!any && world.shapes.trees[tree].size() > 0)
-      world.shapes.trees[tree].query(box, [&](std::uint32_t) {
-        any = true;
-        return false;
+      world.shapes.trees[tree].query(box, [&](std::uint32_t item) {
+        any = tree != tree_fixed || comes_near(world, world.shapes.at(std::int32_t(item)), box);
+        return !any;
       });
   return !any;
 }

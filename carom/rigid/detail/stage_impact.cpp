@@ -239,8 +239,10 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
     block.tangent_impulse[0][lane] = block.tangent_impulse[1][lane] = block.twist_impulse[lane] = 0;
   }
   for (auto& rolling : extra.rolling_impulse) rolling[lane] = 0;
-  m.approach_speed = max(m.approach_speed, fastest);
-  if ((contact.flags & contact_hit_events) != 0) context.world.scratch.hits.push_back(contact.awake_index);
+  if ((contact.flags & contact_hit_events) != 0) {
+    m.approach_speed = max(m.approach_speed, fastest);
+    context.world.scratch.hits.push_back(contact.awake_index);
+  }
   return true;
 }
 

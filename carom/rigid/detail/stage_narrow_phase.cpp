@@ -90,14 +90,25 @@ BodySweep<D> sweep_of_shape(const WorldImplementation<D>& world, const ContactRe
   }
   return sweep;
 }
+/// The same, found when it is first asked for.
+template <class D>
+struct ShapeSweep {
+  BodySweep<D> sweep;
+  bool known = false;
+
+  const BodySweep<D>& of(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+    if (!known) sweep = sweep_of_shape(world, c), known = true;
+    return sweep;
+  }
+};
 /// Calls way(sweep) for the sweep of the bodies and, where they turn, for that of the shape: both are bounds.
 template <class D, class Way>
-float least_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, Way&& way) {
+float least_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& shape, Way&& way) {
   const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
   const BodySweep<D>&a = sweeps[std::size_t(c.body[0])], &b = sweeps[std::size_t(c.body[1])];
   const float turning = min(a.turning + b.turning, most_turning * world.last_dt);
   float least = way(BodySweep<D>{b.way - a.way, turning});
-  if (turning > 0.1f * c.inner) least = min(least, way(sweep_of_shape(world, c)));
+  if (turning > 0.1f * c.inner) least = min(least, way(shape.of(world, c)));
   return (c.flags & contact_bouncy) != 0 ? least : min(least, 0.5f * c.inner);
 }
 
@@ -105,15 +116,16 @@ float least_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, 
 /// happen at the surface, with the energy a body has there; those that do not bounce look no farther than half their
 /// thickness.
 template <class D>
-float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
-  return least_way(world, c, [](const BodySweep<D>& s) { return math::length(s.way) + s.turning; });
+float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& shape) {
+  return least_way(world, c, shape, [](const BodySweep<D>& s) { return math::length(s.way) + s.turning; });
 }
 /// The same for a contact with this normal (in the frame of A's shape): what counts is what closes along it.
 template <class D>
-float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c, typename D::Vector normal) {
+float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& shape,
+                 typename D::Vector normal) {
   if ((c.flags & contact_at_origin) == 0) normal = rotate(world.shapes.at(c.shape[0]).local.q, normal);
   normal = rotate(world.bodies.pose[std::size_t(c.body[0])].rotation, normal);
-  return least_way(world, c, [&](const BodySweep<D>& s) { return max(s.turning - dot(normal, s.way), 0.0f); });
+  return least_way(world, c, shape, [&](const BodySweep<D>& s) { return max(s.turning - dot(normal, s.way), 0.0f); });
 }
 /// How B's shape goes past A in this step, in the frame of A's.
 geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
@@ -259,11 +271,11 @@ void measure_sweeps(WorldImplementation<D>& world) {
 /// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow.
 template <class D>
 bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
-           std::uint8_t& change) {
+           ShapeSweep<D>& sweep, std::uint8_t& change) {
   if ((c.flags & contact_known) == 0) return false;
   const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
   if (c.first_manifold == none) {
-    const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, c.axis);
+    const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, sweep, c.axis);
     if (!(near < slack_of(c, moved))) return false;
     watch_apart(world, c, moved);
     return true;
@@ -321,17 +333,18 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
 
 /// Nearer than the margin, or so near that they may meet in this step?
 template <class D>
-bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m,
-                 float separation) {
+bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& sweep,
+                 const typename D::Manifold& m, float separation) {
   if (separation <= c.margin()) return true;
-  if (separation > c.margin() + look_ahead(world, c, m.normal)) return false;
+  if (separation > c.margin() + look_ahead(world, c, sweep, m.normal)) return false;
   return separation <= c.margin() + look_ahead(world, c, m);
 }
 
 /// Two convex shapes, or a plane: one manifold at most.
 template <class D>
 std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
-                           const ShapeRecord<D>& b, float reach, std::vector<FoundManifold<D>>& list) {
+                           const ShapeRecord<D>& b, float reach, ShapeSweep<D>& sweep,
+                           std::vector<FoundManifold<D>>& list) {
   typename D::Manifold m;
   geometry::collide(a.geometry, b.geometry, c.base, reach, c.cache, m);
   c.gap = reach;
@@ -344,7 +357,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   }
   const float separation = smallest_separation<D>(m);
   c.gap = min(reach, separation);
-  if (!of_interest(world, c, m, separation)) return part(world, c, a, b);
+  if (!of_interest(world, c, sweep, m, separation)) return part(world, c, a, b);
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
   if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
     c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
@@ -363,7 +376,8 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
 /// One of the shapes has many parts.
 template <class D>
 std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
-                         const ShapeRecord<D>& b, float reach, std::vector<FoundManifold<D>>& list) {
+                         const ShapeRecord<D>& b, float reach, ShapeSweep<D>& sweep,
+                         std::vector<FoundManifold<D>>& list) {
   ContactStore<D>& store = world.contacts;
   Found<D> found;
   if constexpr (D::dimension == 3)
@@ -376,7 +390,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   for (int i = 0; i < found.count; ++i) {
     const float s = smallest_separation<D>(found.manifold[i]);
     c.gap = min(c.gap, s);
-    if (!of_interest(world, c, found.manifold[i], s)) continue;
+    if (!of_interest(world, c, sweep, found.manifold[i], s)) continue;
     if (kept != i) {
       found.manifold[kept] = found.manifold[i];
       found.child[kept] = found.child[i];
@@ -424,14 +438,15 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
     b_in_a = relative(shape_pose(world, a), shape_pose(world, b));
   if (c.flags & contact_sensor) return update_sensor(world, c, a, b, b_in_a);
 
-  const float ahead = look_ahead(world, c), reach = 2 * c.margin() + ahead;
+  ShapeSweep<D> sweep;
+  const float ahead = look_ahead(world, c, sweep), reach = 2 * c.margin() + ahead;
   std::uint8_t change = 0;
   world.scratch.watches[std::size_t(awake_index)].body[0] = none;  // an old one knows nothing of what changes now
-  if (stays(world, c, b_in_a, ahead, change)) return change;
+  if (stays(world, c, b_in_a, ahead, sweep, change)) return change;
   c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
   c.base = b_in_a;
-  return (c.flags & contact_many) != 0 ? update_many(world, c, a, b, reach, list)
-                                       : update_convex(world, c, a, b, reach, list);
+  return (c.flags & contact_many) != 0 ? update_many(world, c, a, b, reach, sweep, list)
+                                       : update_convex(world, c, a, b, reach, sweep, list);
 }
 
 /// Replaces the manifolds of a contact by those found; children that stay keep their impulses and place.
@@ -521,25 +536,43 @@ void update_contacts(WorldImplementation<D>& world) {
     while (begin < end) {
       const int stop = min(begin + contact_grain, end);
       int number = 0;
-      for (; begin < stop; ++begin) {
-        if (const std::int32_t* soon = scratch.watches[std::size_t(min(begin + 12, stop - 1))].body; soon[0] != none)
-          for (int side = 0; side < 2; ++side) {
-            __builtin_prefetch(&world.bodies.pose[std::size_t(soon[side])]);
-            __builtin_prefetch(&scratch.sweeps[std::size_t(soon[side])]);
+      const int width = world.kernels.width;
+      for (; begin < stop; begin += width) {
+        const int lanes = min(width, stop - begin);
+        std::uint32_t old = 0;  // bits by lane
+        for (int lane = 0; lane < lanes; ++lane) {
+          const ContactWatch<D>& soon = scratch.watches[std::size_t(min(begin + width + lane, stop - 1))];
+          if (soon.body[0] == none) continue;
+          for (const std::int32_t body : soon.body) {
+            __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
+            __builtin_prefetch(&scratch.sweeps[std::size_t(body)]);
           }
-        if (!nothing_new(scratch.watches[std::size_t(begin)], world.bodies.pose, scratch.sweeps, world.last_dt))
-          due[number++] = begin;
-      }
-      for (int k = 0; k < number; ++k) {
-        if (k + 16 < number)
-          prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(due[k + 16])]), sizeof(ContactRecord<D>));
-        if (k + 6 < number) {
-          const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k + 6])]);
-          for (const std::int32_t body : soon.body) __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
-          for (const std::int32_t shape : soon.shape) prefetch_lines(&world.shapes.at(shape), 192);
-          if (soon.first_manifold != none)
-            prefetch_lines(&world.contacts.manifold(soon.first_manifold), sizeof(ManifoldRecord<D>));
         }
+        if (world.kernels.nothing_new != nullptr) {
+          old = world.kernels.nothing_new(&scratch.watches[std::size_t(begin)], lanes, world.bodies.pose.data(),
+                                          scratch.sweeps.data(), world.last_dt);
+        } else {
+          for (int lane = 0; lane < lanes; ++lane)
+            old |= std::uint32_t(nothing_new(scratch.watches[std::size_t(begin + lane)], world.bodies.pose,
+                                             scratch.sweeps, world.last_dt))
+                   << lane;
+        }
+        for (int lane = 0; lane < lanes; ++lane) {
+          if ((old >> lane & 1u) != 0) continue;
+          prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(begin + lane)]), sizeof(ContactRecord<D>));
+          due[number++] = begin + lane;
+        }
+      }
+      const auto look_at_soon = [&](int k) __attribute__((always_inline)) {  // as prefetch_lines
+        const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k])]);
+        for (const std::int32_t body : soon.body) __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
+        for (const std::int32_t shape : soon.shape) prefetch_lines(&world.shapes.at(shape), 192);
+        if (soon.first_manifold != none)
+          prefetch_lines(&world.contacts.manifold(soon.first_manifold), ManifoldRecord<D>::hot_bytes);
+      };
+      for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
+      for (int k = 0; k < number; ++k) {
+        if (k + 6 < number) look_at_soon(k + 6);
         scratch.contact_changes[std::size_t(due[k])] =
             update_contact(world, due[k], scratch.found_manifolds[std::size_t(worker)]);
       }

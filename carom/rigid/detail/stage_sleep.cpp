@@ -30,18 +30,14 @@ std::int32_t dynamic_place(const WorldImplementation<D>& world, std::int32_t bod
   return world.bodies.record[std::size_t(body)].awake_index;
 }
 
-/// Joins what constraints of the graph join. Calls restless(place) for bodies touched by a moving kinematic one.
-template <class D, class F>
-void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t>& parent, F&& restless) {
+/// Joins what constraints of the graph join.
+template <class D>
+void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t>& parent) {
   parent.resize(world.bodies.awake.size());
   for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = std::int32_t(i);
   const auto join = [&](std::int32_t a, std::int32_t b) {
     const std::int32_t pa = dynamic_place(world, a), pb = dynamic_place(world, b);
-    if (pa != none && pb != none) return unite(parent, pa, pb);
-    const std::int32_t other = pa != none ? b : a, place = pa != none ? pa : pb;
-    if (place == none || other == none) return;
-    const BodyRecord& record = world.bodies.record[std::size_t(other)];
-    if (record.type == BodyType::kinematic && record.awake_index != none && record.sleep_timer == 0) restless(place);
+    if (pa != none && pb != none) unite(parent, pa, pb);
   };
   for (const GraphColor& color : world.graph.colors) {
     for (const std::int32_t m : color.manifolds) {
@@ -53,6 +49,51 @@ void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t
       join(header.body[0], header.body[1]);
     }
   }
+}
+
+template <class D>
+bool in_graph(const ContactStore<D>& contacts, const ContactRecord<D>& c) {
+  return c.first_manifold != none && contacts.manifold(c.first_manifold).place.color >= 0;
+}
+
+/// The same for islands in which nothing is restless: only what their bodies touch is looked at. In the end the roots
+/// of islands that may sleep are not restless.
+template <class D>
+void unite_tired(const WorldImplementation<D>& world, std::vector<std::int32_t>& parent,
+                 std::vector<std::uint8_t>& restless) {
+  parent.resize(world.bodies.awake.size());
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = std::int32_t(i);
+  const auto join = [&](std::int32_t place, std::int32_t other) {
+    if (other == none) return;
+    if (const std::int32_t there = dynamic_place(world, other); there != none) {
+      if (restless[std::size_t(there)] != 0)
+        restless[std::size_t(place)] = 1;
+      else
+        unite(parent, place, there);
+      return;
+    }
+    const BodyRecord& record = world.bodies.record[std::size_t(other)];
+    if (record.type == BodyType::kinematic && record.awake_index != none && record.sleep_timer == 0)
+      restless[std::size_t(place)] = 1;
+  };
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    const std::int32_t body = world.bodies.awake[i];
+    if (restless[i] != 0 || !world.bodies.is_dynamic(body)) continue;
+    for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none && restless[i] == 0;) {
+      const ContactRecord<D>& c = world.contacts.at(key >> 1);
+      const int side = key & 1;
+      key = c.next[side];
+      if ((c.flags & contact_touching) != 0 && in_graph(world.contacts, c)) join(std::int32_t(i), c.body[1 - side]);
+    }
+  }
+  for (const GraphColor& color : world.graph.colors)
+    for (const std::int32_t j : color.joints) {
+      const JointHeader& header = world.joints.headers[std::size_t(j)];
+      for (int side = 0; side < 2; ++side)
+        if (const std::int32_t place = dynamic_place(world, header.body[side]);
+            place != none && restless[std::size_t(place)] == 0)
+          join(place, header.body[1 - side]);
+    }
 }
 
 }  // namespace
@@ -74,7 +115,7 @@ void sleep_islands(StepContext<D>& context) {
   std::vector<std::uint8_t>& restless = scratch.island_restless;
   restless.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) restless[i] = tired(i) ? 0 : 1;
-  unite_islands(world, parent, [&](std::int32_t place) { restless[std::size_t(place)] = 1; });
+  unite_tired(world, parent, restless);
   for (std::size_t i = 0; i < count; ++i)
     if (restless[i] != 0) restless[std::size_t(find_root(parent, std::int32_t(i)))] = 1;
   scratch.island_list.clear();
@@ -108,7 +149,7 @@ void sleep_islands(StepContext<D>& context) {
 template <class D>
 int count_islands(const WorldImplementation<D>& world) {
   std::vector<std::int32_t> parent;
-  unite_islands(world, parent, [](std::int32_t) {});
+  unite_islands(world, parent);
   int count = world.sleeping.count();
   for (std::size_t i = 0; i < parent.size(); ++i)
     if (parent[i] == std::int32_t(i) && world.bodies.is_dynamic(world.bodies.awake[i])) ++count;
