@@ -110,7 +110,7 @@ struct BodyDef {
 struct Material {
   float friction = 0.6f;         ///< Coulomb's μ, ≥ 0
   float restitution = 0;         ///< 0 … 1
-  float rolling_resistance = 0;  ///< lever arm / radius, ≥ 0
+  float rolling_resistance = 0;  ///< lever arm / radius (what is not round: half its thickness), ≥ 0
   float tangent_speed = 0;       ///< m/s along the surface (2D), a conveyor
   std::uint32_t user_id = 0;
   friend bool operator==(const Material&, const Material&) = default;
