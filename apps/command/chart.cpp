@@ -135,7 +135,14 @@ void curves(cairo_t* c, const Chart& chart, const Frame& f) {
 }
 
 void legend(cairo_t* c, const Chart& chart, const Frame& f) {
-  font(c, 14);
+  // Smaller where there are many.
+  double size = 14, whole = 0;
+  do {
+    font(c, size);
+    whole = -18;
+    for (const ChartSeries& s : chart.series) whole += 52 + text_width(c, s.name);
+    size -= 0.5;
+  } while (f.left + whole > f.right + 10 && size > 9);
   double x = f.left;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& s = chart.series[i];

@@ -135,8 +135,11 @@ core::Result<std::vector<Motor>> read_rasp(std::string_view text, std::string_vi
                      "the header of a motor: name, diameter, length, delays, propellant mass, mass, manufacturer");
       Motor motor;
       motor.name = words[0];
-      // Some makers have names of several words.
-      motor.manufacturer = std::string(words[6].data(), words.back().data() + words.back().size());
+      motor.manufacturer = words[6];
+      for (std::size_t i = 7; i < words.size(); ++i) {  // some makers have names of several words
+        motor.manufacturer += ' ';
+        motor.manufacturer += words[i];
+      }
       const struct {
         std::size_t word;
         const char* what;

@@ -1,6 +1,8 @@
 // What demos and scenes show: their expectations, ropes as lines, loops.
 #include "apps/host/registry.h"
 #include "apps/host/scene_demo.h"
+#include "carom/sports/flight.h"
+#include "carom/sports/presets.h"
 #include "tests/host/client.h"
 
 namespace carom::host::test {
@@ -32,6 +34,43 @@ INSTANTIATE_TEST_SUITE_P(Demos, DemoExpectations, testing::ValuesIn(demo_ids()),
     if (c == '-') c = '_';
   return name;
 });
+
+// The trajectory lab throws each of its ten balls of sports where the model says that it lands, with spin (which the
+// lab keeps) and without it in wind.
+TEST(TrajectoryLab, ThrowsTheBallsOfSports) {
+  const char* const balls[] = {"golf",       "baseball", "soccer",  "tennis", "table_tennis",
+                               "basketball", "cricket",  "bowling", "arrow",  "shuttlecock"};
+  for (int k = 0; k < 10; ++k) {
+    std::unique_ptr<Demo> owner = make_demo("trajectory-lab");
+    Demo& demo = *owner;
+    std::vector<double> values;
+    for (const Parameter& p : demo.declaration().parameters) {
+      double value = p.value;
+      if (p.name == "speed") value = 30;
+      if (p.name == "elevation") value = .6;
+      if (p.name == "spin") value = 60;
+      if (p.name == "wind") value = -4;
+      if (p.name == "cross") value = 2;
+      if (p.name == "ball") value = k + 1;
+      values.push_back(value);
+    }
+    auto simulation = demo.open(std::move(owner), values, {});
+    ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+    while ((*simulation)->time() < 8) ASSERT_TRUE((*simulation)->step().ok());
+    std::vector<BodyPlace> places;
+    (*simulation)->places(places);
+    ASSERT_EQ(places.size(), 6u);
+    sports::Ball ball = *sports::ball_preset(balls[k]);
+    ball.spin_damping = 0;
+    sports::Conditions wind;
+    wind.wind = environment::WindColumn(math::Vec3d{-4, 0, 2});
+    const auto spun = sports::fly(ball, {}, sports::launch_state({.speed = 30, .elevation = .6, .spin = 60}));
+    const auto blown = sports::fly(ball, wind, sports::launch_state({.speed = 30, .elevation = .6}));
+    ASSERT_TRUE(spun && blown);
+    EXPECT_LT(math::length(places[4].position - spun->end().position), .02) << balls[k];
+    EXPECT_LT(math::length(places[5].position - blown->end().position), .02) << balls[k];
+  }
+}
 
 HostOptions with_scenes() {
   HostOptions options;

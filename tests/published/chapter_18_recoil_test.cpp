@@ -6,6 +6,7 @@
 #include "carom/ballistics/dispersion.h"
 #include "carom/ballistics/penetration.h"
 #include "carom/ballistics/recoil.h"
+#include "carom/ballistics/sway.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
 
@@ -66,6 +67,33 @@ TEST(Chapter18Penetration, Formulas) {
   EXPECT_NEAR(lambert_jonas_residual(900, 600, 1, 2), recht_ipson_residual(900, 600, 1, 0), 1e-9);
   EXPECT_NEAR(water_ricochet_angle(7.85) * 180 / math::pi, 6.4, .05);
   EXPECT_NEAR(water_ricochet_angle(11.34) * 180 / math::pi, 5.4, .06);
+}
+
+// Amplitudes and frequencies of marksmen, of the order that is told (no measured table is known): an average shooter
+// offhand 1 to 3 mrad, with a rest .1 to .3; breath .2 to .3 Hz, heart 1 to 1.5, tremor 8 to 12. Experts are steadier.
+TEST(Chapter18Sway, OrdersOfMagnitude) {
+  const auto all = [](const Sway& s) {
+    return 1e3 * math::sqrt(s.breath * s.breath + s.heartbeat * s.heartbeat + s.tremor * s.tremor + s.drift * s.drift);
+  };
+  EXPECT_GT(all(sway_of(Stance::offhand)), 1);
+  EXPECT_LT(all(sway_of(Stance::offhand)), 3);
+  EXPECT_GT(all(sway_of(Stance::supported)), .1);
+  EXPECT_LT(all(sway_of(Stance::supported)), .3);
+  double before = 1e300;
+  for (const Stance stance : {Stance::offhand, Stance::kneeling, Stance::sitting, Stance::prone, Stance::supported}) {
+    const Sway s = sway_of(stance);
+    EXPECT_LT(all(s), before);
+    before = all(s);
+    EXPECT_LT(all(sway_of(stance, 1)), all(s));
+    EXPECT_GT(all(sway_of(stance, 0)), all(s));
+    EXPECT_GT(all(sway_of(stance, .5, 1)), all(s));
+    EXPECT_GE(s.breath_frequency, .2);
+    EXPECT_LE(s.breath_frequency, .3);
+    EXPECT_GE(s.heartbeat_frequency, 1);
+    EXPECT_LE(s.heartbeat_frequency, 1.5);
+    EXPECT_EQ(s.tremor_low, 8);
+    EXPECT_EQ(s.tremor_high, 12);
+  }
 }
 
 }  // namespace published_chapter_18_recoil_test

@@ -75,6 +75,28 @@ TEST(SceneBallFlight, TerminalSpeedsOfBodies) {
   }
 }
 
+// Every body of presets/ball flies with the air of its sport (the billiard ball with that of a smooth sphere), an arrow
+// point first.
+TEST(SceneBallFlight, EveryBodyOfTheBallPresetsFlies) {
+  int flown = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(CAROM_SOURCE_DIR) + "/presets/ball")) {
+    const std::string name = entry.path().stem().string(), air = name == "billiard" ? "sphere" : name;
+    const auto scene = parse(R"("preset": "ball/)" + name + R"(", "velocity": [40, 20, 0])",
+                             R"("flight": {"preset": "flight/)" + air + R"("})");
+    ASSERT_TRUE(scene) << scene.error().message;
+    auto world = scene->instantiate();
+    ASSERT_TRUE(world) << world.error().message;
+    for (int i = 0; i < 240; ++i) ASSERT_TRUE(world->step().ok());
+    const auto state = world->world3->state(world->bodies[0].id);
+    EXPECT_GT(state->center_of_mass.x, 5) << name;
+    EXPECT_LT(state->center_of_mass.x, 40.01) << name;
+    const auto ball = sports::ball_preset(air);
+    if (name != "billiard") EXPECT_NEAR(world->world3->totals().mass / ball->mass, 1, .05) << name;
+    ++flown;
+  }
+  EXPECT_EQ(flown, 11);
+}
+
 TEST(SceneBallFlight, SaysWhatIsWrong) {
   const auto complains = [&](const std::string& effector, const char* of) {
     const auto scene = parse(R"("shape": {"type": "sphere", "radius": "3 cm"})", effector);

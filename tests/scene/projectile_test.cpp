@@ -1,6 +1,10 @@
 // The effector "projectile" of a scene file: flies like the model, and says what is wrong with it.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+#include <tuple>
+
 #include "carom/ballistics/flight.h"
 #include "carom/scene/scene.h"
 
@@ -45,6 +49,33 @@ TEST(SceneProjectile, PresetsGiveTheDrag) {
   EXPECT_LT(world->world3->state(world->bodies[0].id)->center_of_mass.x, 195);
 }
 
+// A measured curve, as a preset and as a text file, is one projectile.
+TEST(SceneProjectile, FliesByAMeasuredTable) {
+  const auto read = [](const std::string& name) {
+    std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/presets/" + name);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+  };
+  for (const auto& [name, mass, diameter] :
+       {std::tuple{"308_168_smk", .01089, .00782}, std::tuple{"120mm_mortar", 13.585, .11956}}) {
+    const std::string file = std::string(name) + (mass < 1 ? "_measured" : "");
+    const std::string preset = read("projectile/" + file + ".json");
+    const auto scene = parse(R"("preset": "projectile/any", "density": 1.225)", preset.c_str());
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    auto world = scene->instantiate();
+    ASSERT_TRUE(world.ok()) << world.error().message;
+    const auto curve = ballistics::read_drag_table(read("drag/" + std::string(name) + ".txt"), name);
+    ASSERT_TRUE(curve) << curve.error().message;
+    const auto path =
+        ballistics::fly(ballistics::projectile_from_size(*curve, mass, diameter),
+                        {.air = environment::AirColumn::uniform(1.225)}, {{}, {200, 100, 0}}, {.time = 4});
+    for (int i = 0; i < 960; ++i) ASSERT_TRUE(world->step().ok());
+    const math::Vec3d off = world->world3->state(world->bodies[0].id)->center_of_mass - path->end().position;
+    EXPECT_LT(math::length(off), .02) << name;
+  }
+}
+
 TEST(SceneProjectile, SaysWhatIsWrong) {
   const auto complains = [](const std::string& effector, const char* of) {
     const auto scene = parse(effector);
@@ -57,6 +88,12 @@ TEST(SceneProjectile, SaysWhatIsWrong) {
   complains(R"("drag_function": "g7")", "\"diameter\" and a \"mass\"");
   complains(R"("diameter": "5 kg", "mass": "1 kg")", "diameter");
   complains(R"("diameter": "5 cm", "mass": "1 kg", "form_factor": 0)", "form_factor");
+  complains(R"("diameter": "5 cm", "mass": "1 kg", "table": [0, 0.2, 1])", "pairs of Mach number and C_d");
+  complains(R"("diameter": "5 cm", "mass": "1 kg", "table": [])", "pairs of Mach number and C_d");
+  complains(R"("diameter": "5 cm", "mass": "1 kg", "table": [0, 0.2, 1, 0.5, 0.9, 0.4])",
+            "node 3 of a drag curve: Mach number is 0.9, expected more than the 1 before");
+  complains(R"("diameter": "5 cm", "mass": "1 kg", "table": [0, -0.2])", "table");
+  complains(R"("diameter": "5 cm", "mass": "1 kg", "drag_function": "g1", "table": [0, 0.2])", "one of \"table\"");
 }
 
 }  // namespace scene_projectile_test

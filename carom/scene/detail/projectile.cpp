@@ -19,6 +19,22 @@ rigid::EffectorDef<D> read_projectile(Reader& reader, const Object& o, rigid::Bo
   ballistics::DragCurve drag(reader.number(o, "drag_coefficient", 0.47));
   if (o.has("drag_function"))
     drag = ballistics::DragCurve(ballistics::DragFunction(reader.choice(o, "drag_function", 0)));
+  if (o.has("table")) {
+    if (o.has("drag_function") || o.has("drag_coefficient"))
+      missing("a projectile has one of \"table\", \"drag_function\" and \"drag_coefficient\"");
+    const std::vector<double> table = reader.numbers(o, "table");
+    if (!reader.failed() && (table.empty() || table.size() % 2 != 0))
+      reader.expected(*o.find("table"), o.path_of("table"), "pairs of Mach number and C_d, one after another");
+    std::vector<ballistics::DragPoint> points;
+    for (std::size_t i = 0; i + 1 < table.size(); i += 2) points.push_back({table[i], table[i + 1]});
+    if (!reader.failed()) {
+      auto curve = ballistics::DragCurve::from_points(points);
+      if (curve)
+        drag = std::move(*curve);
+      else
+        reader.fail(*o.find("table"), o.path_of("table"), curve.error().message);
+    }
+  }
   const double form = reader.number(o, "form_factor", 1);
   if (!(form > 0)) reader.expected(*o.find("form_factor"), o.path_of("form_factor"), "a number above zero");
   if (o.has("ballistic_coefficient")) {

@@ -35,7 +35,10 @@ class Artillery final : public Repeatable<Artillery, Demo3> {
         {"six", "Six degrees of freedom", "", "", "1: the axis swings", 0, 1, 1, 0, false},
         {"pace", "Pace", "", "", "seconds of flight for one of ours", 1, 10, 0.5, 3, true},
     };
-    d.plots = {{"Side view", {"distance", "m"}, {"height", "m"}, {{"shell"}, {"without air"}}},
+    d.plots = {{"Side view",
+                {"distance", "m"},
+                {"height", "m"},
+                {{"shell"}, {"without air"}, {"firing table: range, and height over this top", Series::Style::points}}},
                {"Range by elevation",
                 {"elevation (mils)", ""},
                 {"range", "m"},
@@ -68,6 +71,11 @@ class Artillery final : public Repeatable<Artillery, Demo3> {
       const double t = 2 * v.y / g_ * i / 60;
       stage.sample(0, 1, v.x * t, v.y * t - 0.5 * g_ * t * t);
     }
+    for (const Row& row : rows_)
+      if (row.charge == stage.count("charge") && abs(row.mils - stage.value("elevation")) < 0.05) {
+        stage.sample(0, 2, row.range, 0);
+        stage.sample(0, 2, path.apex().position.x, row.height);  // the table does not say where it is highest
+      }
     const float size = float(max(reach / 130, 8.0));
     shell_body_ = add_marker(stage, "shell", geometry::Capsule3{2 * size, size}, {}, orange);
     howitzer_ = add_marker(stage, "barrel", geometry::Cylinder{3 * size, 0.8f * size}, {}, dark);
@@ -120,10 +128,11 @@ class Artillery final : public Repeatable<Artillery, Demo3> {
   static constexpr double g_ = 9.80665;
   struct Row {
     int charge;
-    double mils, range, drift;
+    double mils, range, drift, height;
   };
-  static constexpr Row rows_[] = {{4, 97.2, 2000, 3.2},   {4, 152.0, 3000, 7.8},  {4, 211.6, 4000, 15.2},
-                                  {6, 258.4, 7000, 45.5}, {6, 378.6, 9000, 88.2}, {6, 539.9, 11000, 169.4}};
+  static constexpr Row rows_[] = {{4, 97.2, 2000, 3.2, 50},     {4, 152.0, 3000, 7.8, 119},
+                                  {4, 211.6, 4000, 15.2, 224},  {6, 258.4, 7000, 45.5, 548},
+                                  {6, 378.6, 9000, 88.2, 1059}, {6, 539.9, 11000, 169.4, 1924}};
   static std::vector<Vec2d> table(int which) {
     std::vector<Vec2d> points;
     for (const Row& row : rows_)

@@ -52,15 +52,13 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
          "8 bowling, 9 arrow, 10 shuttlecock",
          0, 10, 1, 0, false},
     };
-    d.plots = {
-        {"Side view",
-         {"distance", "m"},
-         {"height", "m"},
-         {{"vacuum"}, {"linear"}, {"quadratic"}, {"G1"}, {"spin"}, {"wind"}, {"closed forms", Series::Style::points}}},
-        {"Speed",
-         {"time", "s"},
-         {"speed", "m/s"},
-         {{"vacuum"}, {"linear"}, {"quadratic"}, {"G1"}, {"spin"}, {"wind"}}}};
+    Plot side{"Side view", {"distance", "m"}, {"height", "m"}, {}}, speed{"Speed", {"time", "s"}, {"speed", "m/s"}, {}};
+    for (int k = 0; k < laws; ++k) {  // in the colors of the trails
+      side.series.push_back({names[k], Series::Style::line, {}, colors[k]});
+      speed.series.push_back({names[k], Series::Style::line, {}, colors[k]});
+    }
+    side.series.push_back({"closed forms", Series::Style::points, {}, steel});
+    d.plots = {side, speed};
     return d;
   }
 
