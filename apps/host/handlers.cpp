@@ -101,7 +101,13 @@ struct SimulationHost::Handlers {
   }
 
   core::Status source() {
-    host.send(source_message(host.source_name_, host.source_text_));
+    if (!host.source_text_.empty() || host.options_.game) {
+      host.send(source_message(host.source_name_, host.source_text_, false));
+      return {};
+    }
+    const core::Result<std::string> written = host.simulation_->scene_file();
+    if (!written.ok()) return written.error();
+    host.send(source_message(host.simulation_->declaration().id, *written, true));
     return {};
   }
 

@@ -131,7 +131,7 @@ class Inspection {
   Json advice_json() const {
     Json out = Json::array();
     for (const rigid::Advice& advice : rigid::advise(world_, float(stage_.declaration().dt))) {
-      bool mine = advice.body == body_;
+      bool mine = advice.body == body_ || (advice.body.is_null() && advice.joint.is_null());  // or of the whole world
       if (const auto joint = world_.joint_state(advice.joint); joint.ok())
         mine = mine || joint->body_a == body_ || joint->body_b == body_;
       if (mine) out.push_back(advice.message);

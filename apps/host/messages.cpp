@@ -290,8 +290,10 @@ std::string verified_message(const ReplayReport& report) {
   return text_of(out);
 }
 
-std::string source_message(std::string_view name, std::string_view text) {
-  return text_of({{"type", "source"}, {"name", std::string(name)}, {"text", std::string(text)}});
+std::string source_message(std::string_view name, std::string_view text, bool written) {
+  Json out = {{"type", "source"}, {"name", std::string(name)}, {"text", std::string(text)}};
+  if (written) out["written"] = true;
+  return text_of(out);
 }
 
 std::string error_message(std::string_view message) {

@@ -40,7 +40,8 @@ std::string probed_message(std::string_view kind, const ProbeAnswer& answer);
 /// `report`: the JSON object of Simulation::inspect, or empty where the body is gone.
 std::string inspected_message(std::string_view report);
 std::string verified_message(const ReplayReport& report);
-std::string source_message(std::string_view name, std::string_view text);
+/// `written`: of the world as it is now, which a program made.
+std::string source_message(std::string_view name, std::string_view text, bool written);
 std::string error_message(std::string_view message);
 struct StatusFields {
   bool running = false;

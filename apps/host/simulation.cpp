@@ -10,6 +10,7 @@
 #include "apps/host/messages.h"
 #include "carom/core/spelling.h"
 #include "carom/rigid/path.h"
+#include "carom/scene/write_scene.h"
 
 namespace carom::host {
 
@@ -245,6 +246,22 @@ class SimulationOf final : public Simulation {
   std::vector<scene::RecordedFile> files() const override { return owner_->files(); }
   int threads() const override { return options_.threads; }
   void expectations(std::vector<Expectation>& out) override { demo_.expectations(stage_, out); }
+  core::Result<std::string> scene_file() const override {
+    constexpr std::size_t most = 4000;  // bodies: a text that an editor bears
+    if (stage_.actors().size() > most)
+      return core::Error{"the scene has " + std::to_string(stage_.actors().size()) +
+                         " bodies; as a file beside the view at most " + std::to_string(most) + " are shown"};
+    std::vector<scene::SceneBody> known;
+    for (const auto& actor : stage_.actors()) {
+      const auto definition = stage_.world().body_definition(actor.body);
+      if (!definition.ok()) continue;
+      const std::string name =
+          definition->name.empty() ? "body_" + std::to_string(actor.id) : std::string(definition->name);
+      known.push_back({name, actor.body, actor.color, actor.color != 0});
+    }
+    return scene::write_scene(
+        stage_.world(), {declaration_.title, declaration_.summary, declaration_.dt, declaration_.duration}, known);
+  }
   rigid::World2* world2() override {
     if constexpr (D::dimension == 2)
       return &world();

@@ -122,6 +122,11 @@ class Simulation {
   /// The same demo from its start with these values.
   virtual core::Result<std::unique_ptr<Simulation>> reopen(const std::vector<double>& values) const = 0;
   virtual void expectations(std::vector<Expectation>& out) = 0;
+  /// The world as it is now as a scene file: its bodies, joints, effectors and settings. What a demo has beside its
+  /// world (particles, ropes, its own rules) is not in it.
+  virtual core::Result<std::string> scene_file() const {
+    return core::Error{"this is a recording, and has no world to write"};
+  }
   /// The world itself, for a recorder; the other one is null.
   virtual rigid::World2* world2() { return nullptr; }
   virtual rigid::World3* world3() { return nullptr; }

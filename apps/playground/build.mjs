@@ -48,9 +48,27 @@ function demoSources() {
   for (const name of readdirSync(join(root, 'apps/host/demos'), {recursive: true}).sort()) {
     if (!name.endsWith('.cpp')) continue;
     const text = readFileSync(join(root, 'apps/host/demos', name), 'utf8');
-    const ids = [...text.matchAll(/\bd\.id = "([^"]+)"/g)].map((m) => m[1]);
+    const ids = [...text.matchAll(/\bd\.id = ([^;]+);/g)].flatMap((m) => [...m[1].matchAll(/"([^"]+)"/g)].map((id) => id[1]));
     const code = text.replace(/^#include.*\n/gm, '').replace(/^  Declaration declaration\(\) const override \{\n[^]*?\n  \}\n\n?/gm, '').replace(/^namespace [^\n]*\{\n+|^\}  \/\/ namespace.*\n*/gm, '').replace(/\n{3,}/g, '\n\n').trim();
     for (const id of ids) sources[id] = {file: `apps/host/demos/${name}`, code};
+  }
+  return {...sources, ...stressSources(), scene: {file: 'examples/scene_file.cpp', code: readFileSync(join(root, 'examples/scene_file.cpp'), 'utf8').replace(/^#include.*\n/gm, '').trim()}};
+}
+/** The same for the benchmark scenes: the class or function that the table of scenes names, with the comment above it. */
+function stressSources() {
+  const folder = join(root, 'benchmarks'), sources = {};
+  const texts = readdirSync(folder).filter((name) => name.endsWith('.cpp')).sort().map((file) => ({file: `benchmarks/${file}`, text: readFileSync(join(folder, file), 'utf8')}));
+  for (const {file, text} of texts) {
+    for (const [, suite, name, rest] of text.matchAll(/\.suite = "(\w+)",\s*\.name = "(\w+)",([^]*?)(?=\n\s*\{\.suite|\n  \};|\n\s*\{\n?\s*\.suite)/g)) {
+      // make<Class>, make_function, or a lambda that calls one.
+      const maker = (rest.match(/make<(\w+)/) ?? rest.match(/\.make[23] = (\w+)[,}]/) ?? rest.match(/list_scene<[\w:]+>\((\w+)\(/))?.[1];
+      const whole = new RegExp(`(?:^//.*\\n)*(?:^template .*\\n)?^(?:class ${maker}\\b|[\\w:<>]+ ${maker}\\()[^;{]*\\{\\n[^]*?\\n\\}.*`, 'm');
+      const short = new RegExp(`^[^;\\n]* ${maker}\\([^;{]*\\{.*\\}$`, 'm');  // it only makes a class, which is all of its file
+      const home = [{file, text}, ...texts].find((one) => whole.test(one.text) || short.test(one.text));
+      const code = home && (home.text.match(whole)?.[0] ?? home.text.replace(/^#include.*\n/gm, '').trim());
+      if (code) sources[`${suite}-${name}`.replace(/_/g, '-')] = {file: home.file, code};
+      else console.log(`no source of ${suite}/${name} (${maker})`);
+    }
   }
   return sources;
 }

@@ -131,7 +131,7 @@ async function runDemos({module, files, count}, {demos, seconds, patience, threa
     for (let frame = 0; frame < 60 * seconds && performance.now() < until; ++frame) host.advance(1 / 60);
   }
   const ray = {pointer: 1, origin: [0, 1, 10], direction: [0, 0, -1]};
-  for (const message of [{type: 'source'}, {type: 'pause'}, {type: 'step', count: 1}, {type: 'speed', value: 1}, {type: 'draw', layers: []}, {type: 'grab', ...ray},
+  for (const message of [{type: 'pause'}, {type: 'step', count: 1}, {type: 'speed', value: 1}, {type: 'draw', layers: []}, {type: 'grab', ...ray},
     {type: 'drag', pointer: 1, target: [0, 2, 0]}, {type: 'run'}, {type: 'release', pointer: 1}, {type: 'restart'}]) {
     host.send(message);
     host.advance(1 / 60);

@@ -185,6 +185,7 @@ class SceneWriter {
   }
 
   std::string quoted_name(BodyId id) const {
+    if (id.is_null()) return quote("world");
     const auto found = names_.find(id.packed());
     return quote(found == names_.end() ? "" : found->second);
   }
@@ -450,7 +451,7 @@ class SceneWriter {
   World<D> scratch_;
   std::map<std::uint64_t, const SceneBody*> given_;
   std::map<std::uint64_t, std::string> names_;
-  std::set<std::string> used_;
+  std::set<std::string> used_{"world"};  // as joints name what is no body
   bool failed_ = false;
   core::Error error_;
 };

@@ -72,6 +72,25 @@ TEST(TrajectoryLab, ThrowsTheBallsOfSports) {
   }
 }
 
+/// Its world is a scene file that a page shows and edits: read back, it is the same world.
+TEST_P(DemoExpectations, ItsWorldIsASceneFile) {
+  std::unique_ptr<Demo> owner = make_demo(GetParam());
+  Demo& demo = *owner;
+  auto simulation = demo.open(std::move(owner), {}, {});
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  for (int step = 0; step < 10; ++step) ASSERT_TRUE((*simulation)->step().ok());
+  const core::Result<std::string> text = (*simulation)->scene_file();
+  ASSERT_TRUE(text.ok()) << text.error().message;
+  core::Result<scene::Scene> scene = scene::parse_scene(*text, "written.json");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  std::unique_ptr<Demo> again = make_scene_demo(std::move(scene).value(), "written.json");
+  Demo& opener = *again;
+  auto read = opener.open(std::move(again), {}, {});
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const auto hash = [](Simulation& s) { return s.world2() ? s.world2()->state_hash() : s.world3()->state_hash(); };
+  EXPECT_EQ(hash(**read), hash(**simulation));
+}
+
 HostOptions with_scenes() {
   HostOptions options;
   options.parse_scene = [](std::string_view name, std::string_view text) -> core::Result<std::unique_ptr<Demo>> {

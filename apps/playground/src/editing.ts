@@ -35,13 +35,13 @@ export class Editing {
     document.body.classList.remove('editing');
   }
 
-  /** The text of the open scene, or none where the demo is a program; then there is one to begin with. */
-  async fill(name: string, text: string | undefined): Promise<void> {
+  /** The text of the open scene, or of a program's world (`written`); without either there is one to begin with. */
+  async fill(name: string, text: string | undefined, written = false): Promise<void> {
     const {STARTER} = await import('./editor');
     if (!this.editor) return;
     this.name = text === undefined ? 'scene.json' : name.endsWith('.json') ? name : `${name}.json`;
     this.editor.text = text ?? STARTER;
-    this.say(text === undefined ? 'A new scene. Ctrl-Space shows what may stand here.' : this.name);
+    this.say(text === undefined ? 'A new scene. Ctrl-Space shows what may stand here.' : written ? `${this.name} · the demo’s world as it is now; an edit makes a scene of it` : this.name);
     if (text === undefined) this.apply(this.editor.text);
   }
 

@@ -182,7 +182,10 @@ class Page implements Listener {
         this.tools.explain(message.legend);
         break;
       case 'verified': this.share.verified(message); break;
-      case 'source': void this.editing.fill(message.name, message.text || undefined); break;
+      case 'source':
+        this.panel.showScene(message.text, message.written === true);
+        if (this.editing.active) void this.editing.fill(message.name, message.text || undefined, message.written === true);
+        break;
       case 'probed': this.tools.probed(message); break;
       case 'inspected': showReport(message, this.opened?.dt ?? 1 / 60); break;
       case 'grabbed': this.hands.grabbed(message.pointer, message.body, message.point); break;

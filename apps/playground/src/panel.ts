@@ -3,7 +3,9 @@ import type {Numbers, Opened, Parameter, Stats} from './protocol';
 import {element} from './dom';
 import {fromDisplay, short, toDisplay, unitOf} from './quantities';
 
-interface Lesson { symbols: Record<string, string>; try: string[]; ends: string }
+interface Lesson { formulas?: string[]; symbols: Record<string, string>; try: string[]; ends: string }
+
+const LONG = 40000;  // characters of a scene file that the panel shows
 
 export class Panel {
   private shown = new Map<string, (si: number) => void>();
@@ -14,7 +16,7 @@ export class Panel {
     const about = document.getElementById('about')!;
     about.replaceChildren(element('p', {className: 'summary', textContent: demo.summary}));
     about.append(this.lesson(demo));
-    about.append(this.source(demo.demo));
+    about.append(this.source(demo.demo), this.sceneFile());
     const list = document.getElementById('parameters')!;
     this.shown.clear();
     list.replaceChildren(...demo.parameters.map((p) => this.slider(p)));
@@ -35,6 +37,7 @@ export class Panel {
       void fetch('lessons.json').then((answer) => answer.json() as Promise<Record<string, Lesson | undefined>>).then((all) => {
         const found = all[demo.demo] ?? (/^(common|box3d|box2d|jolt)-/.test(demo.demo) ? all.stress : undefined);
         if (!found) return;
+        if (found.formulas) text.append(element('h3', {textContent: 'Formulas'}), ...found.formulas.map((one) => element('p', {className: 'formula', textContent: one})));
         const symbols = Object.entries(found.symbols);
         if (symbols.length > 0) text.append(element('h3', {textContent: 'Symbols'}), element('dl', {className: 'symbols'}, ...symbols.flatMap(([sign, meaning]) => [element('dt', {textContent: sign}), element('dd', {textContent: meaning})])));
         text.append(element('h3', {textContent: 'Try'}), element('ul', {}, ...found.try.map((one) => element('li', {textContent: one}))),
@@ -48,14 +51,29 @@ export class Panel {
   /** The C++ that makes the demo, as it was compiled; fetched when somebody wants to see it. */
   private source(demo: string): HTMLElement {
     const code = element('pre', {className: 'source', tabIndex: 0, textContent: '…'});
-    const details = element('details', {id: 'source', open: false, hidden: demo.startsWith('scene:') || demo.endsWith('.json')}, element('summary', {textContent: 'The C++ that makes it'}), code);
+    const details = element('details', {id: 'source', open: false, hidden: demo.endsWith('.json')}, element('summary', {textContent: `The C++ that ${demo.startsWith('scene:') ? 'runs' : 'makes'} it`}), code);
     details.addEventListener('toggle', () => {
       void fetch('sources.json').then((answer) => answer.json() as Promise<Record<string, {file: string; code: string} | undefined>>).then((all) => {
-        const found = all[demo];
-        code.textContent = found ? `// ${found.file}\n${found.code}` : 'This one is a benchmark scene: benchmarks/scenes_*.cpp builds it.';
+        const found = all[demo.startsWith('scene:') ? 'scene' : demo];
+        code.textContent = found ? `// ${found.file}\n${found.code}` : 'The page that was built has no source of this one.';
       }, () => { code.textContent = 'The source cannot be loaded from here.'; });
     }, {once: true});
     return details;
+  }
+
+  /** The scene as a file: as it was read, or, of a demo that a program makes, its world as it is now. Asked for when somebody wants to see it. */
+  private sceneFile(): HTMLElement {
+    const text = element('pre', {className: 'source', tabIndex: 0, textContent: '…'});
+    const details = element('details', {id: 'scene-file', open: false}, element('summary', {textContent: 'The scene file'}), element('p', {className: 'note'}), text);
+    details.addEventListener('toggle', () => { if (details.open) this.send({type: 'source'}); });
+    return details;
+  }
+
+  showScene(text: string, written: boolean): void {
+    const details = document.getElementById('scene-file');
+    if (!details) return;
+    details.querySelector('p')!.textContent = `${written ? 'Bodies, joints and settings of the world as it is now. ' : ''}“Edit scene” opens it beside the view.`;
+    details.querySelector('pre')!.textContent = text.length > LONG ? `${text.slice(0, LONG)}\n… (${(text.length / 1000).toFixed(0)} kB in all)` : text;
   }
 
   setValues(values: Record<string, number>): void {

@@ -3,12 +3,8 @@
 // Every instance, and so every thread, has a table and parts of its own.
 import {withMemory} from '../../wasm/memory.mjs';
 
-/** So long after the start the other parts are fetched quietly, lest a click has to wait for one. */
-const QUIET = 1500;  // ms
-
 export class Parts {
   private files: Record<string, string> = {};
-  private compiled = new Map<string, WebAssembly.Module>();
   private loaded = new Set<string>();
   private main?: WebAssembly.Exports;
 
@@ -31,11 +27,6 @@ export class Parts {
     this.main = main;
   }
 
-  fetchQuietly(): void {
-    const {connection} = navigator as Navigator & {connection?: {saveData?: boolean}};
-    if (!connection?.saveData) setTimeout(() => { void this.fetchAll(); }, QUIET);
-  }
-
   private table(): WebAssembly.Table {
     return Object.values(this.main!).find((e) => e instanceof WebAssembly.Table) as WebAssembly.Table;
   }
@@ -44,8 +35,7 @@ export class Parts {
   private load(part: string): void {
     if (this.loaded.has(part)) return;
     this.loaded.add(part);
-    void new WebAssembly.Instance(this.compiled.get(part) ?? this.read(this.files[part]), {main: this.main as unknown as WebAssembly.ModuleImports});
-    this.compiled.delete(part);
+    void new WebAssembly.Instance(this.read(this.files[part]), {main: this.main as unknown as WebAssembly.ModuleImports});
   }
 
   private read(file: string): WebAssembly.Module {
@@ -55,15 +45,5 @@ export class Parts {
     request.send();
     if (request.status !== 200) throw new Error(`${file}: the server answers ${request.status}; it may hold a newer page than this one`);
     return new WebAssembly.Module(withMemory(new Uint8Array(request.response as ArrayBuffer), this.shared));
-  }
-
-  private async fetchAll(): Promise<void> {
-    for (const [part, file] of Object.entries(this.files)) {
-      if (this.loaded.has(part)) continue;
-      const answer = await fetch(file, {priority: 'low'});
-      if (!answer.ok) return;  // whoever needs it will say so
-      const module = await WebAssembly.compile(withMemory(new Uint8Array(await answer.arrayBuffer()), this.shared));
-      if (!this.loaded.has(part)) this.compiled.set(part, module);
-    }
   }
 }

@@ -51,7 +51,7 @@ export type HostMessage =
   | Probed
   | Numbers
   | Inspected
-  | {type: 'source'; name: string; text: string}
+  | {type: 'source'; name: string; text: string; written?: boolean}
   | {type: 'values'; values: Record<string, number>}
   | {type: 'error'; message: string};
 

@@ -81,7 +81,6 @@ async function start(): Promise<void> {
   const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: system(memory), env: {memory}, ...parts.imports()});
   const made = instance.exports as unknown as Exports;
   parts.begin(instance.exports);
-  parts.fetchQuietly();
   made._initialize();
   host = made;
   lend(module);

@@ -42,9 +42,19 @@ test('a scene file is edited beside the view', async () => {
   await page.done();
 });
 
-test('the schema completes keys and values', async () => {
+test('a demo becomes a scene, and the schema completes keys and values of a new one', async () => {
   const page = await visit(`${server.url}#pyramids`);
   await page.keyboard.press('e');
+  // A demo that a program makes: its world as it is now, which an edit makes a scene of.
+  await page.waitForFunction(() => window.caromPage.editing.editor?.text.includes('"bodies"'));
+  await status(page, 'as it is now');
+  const count = (await bodies(page, 'dynamic')).length, world = JSON.parse(await text(page));
+  assert.equal(world.bodies.filter((b) => (b.type ?? 'dynamic') === 'dynamic').length, count);
+  world.bodies.splice(world.bodies.findIndex((b) => (b.type ?? 'dynamic') === 'dynamic'), 1);
+  await write(page, JSON.stringify(world));
+  await status(page, 'runs');
+  await page.waitForFunction((n) => window.caromPage.viewer.bodyIds('dynamic').length === n, count - 1);
+  await page.click('#edit-new');
   await page.waitForFunction(() => window.caromPage.editing.editor?.text.includes('crate'));
   await page.waitForFunction(() => document.title.includes('mine') || window.caromPage.viewer.bodyIds('dynamic').length === 1);
   const complete = async (before, behind) => {

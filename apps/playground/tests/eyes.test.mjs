@@ -128,6 +128,33 @@ test('numbers: budget, stages, warnings with advice', async () => {
   await page.done();
 });
 
+/** For every kind of warning a scene that earns it, the body to ask about, and what the advice must say. */
+const WARNINGS = {
+  'a mass that is far too heavy for what bears it': [{world: {allow_sleep: false}, bodies: [{type: 'fixed', shape: {type: 'plane', normal: [0, 1, 0]}},
+    {name: 'light', position: [0, 0.5, 0], density: 1, shape: {type: 'box', size: [1, 1, 1]}}, {name: 'top', position: [0, 1.5, 0], density: 1e9, shape: {type: 'box', size: [1, 1, 1]}}]}, 'top', /will sink by/, /masses nearer/],
+  'a chain with a heavy end': [{world: {allow_sleep: false, joint_solver: 'iterative'}, bodies: [0, 1, 2, 3, 4, 5, 6, 7].map((i) => ({name: `c${i}`, position: [0, -0.5 - i, 0], density: i === 7 ? 20000 : 100, shape: {type: 'box', size: [0.2, 1, 0.2]}})),
+    joints: [0, 1, 2, 3, 4, 5, 6, 7].map((i) => ({type: 'ball', body_a: i ? `c${i - 1}` : 'world', body_b: `c${i}`, anchor: [0, -i, 0]}))}, 'c7', /hang low/, /substeps/],
+  'a spring too stiff': [{bodies: [{name: 'mass', position: [0, -1, 0], shape: {type: 'sphere', radius: 0.2}}],
+    joints: [{type: 'distance', body_a: 'world', body_b: 'mass', anchor_a: [0, 0, 0], anchor_b: [0, -1, 0], length: 1, spring: {frequency: 60, damping_ratio: 0}}]}, 'mass', /spring of 60 Hz/, /9 substeps/],
+  'contacts stiffer than the step permits': [{world: {contact_frequency: 60}, bodies: [{name: 'ball', position: [0, 1, 0], shape: {type: 'sphere', radius: 0.2}}]}, 'ball', /capped at 36 Hz/, /7 substeps/],
+  'a fast ball': [{gravity: [0, 0, 0], world: {continuous: false}, bodies: [{name: 'ball', velocity: [40, 0, 0], shape: {type: 'sphere', radius: 0.05}}]}, 'ball', /in a step/, /continuous/],
+};
+
+test('every kind of warning is told of the body that it is about, with what mends it', async () => {
+  const page = await open('chain');
+  for (const [name, [scene, body, what, cure]] of Object.entries(WARNINGS)) {
+    await page.evaluate((text) => window.caromPage.send({type: 'open_scene', name: 'warned.json', text}), JSON.stringify({name, dimension: 3, ...scene}));
+    await page.waitForFunction((title) => document.title.includes(title) && window.caromPage.shown > 3, name);
+    await page.evaluate((wanted) => { const {viewer} = window.caromPage; window.caromPage.choose(viewer.bodyIds('dynamic').find((id) => viewer.nameOf(id) === wanted)); }, body);
+    await page.waitForSelector('#why .warning');
+    const said = (await page.$$eval('#why .warning', (all) => all.map((e) => e.textContent))).join(' ');
+    assert.match(said, what, name);
+    assert.match(said, cure, name);
+  }
+  await picture(page, 'warnings');
+  await page.done();
+});
+
 test('a browser without WebGL2 is told what it lacks', async () => {
   const page = await visit('about:blank', {pause: 0}, false);
   await page.addInitScript(() => {

@@ -1,7 +1,8 @@
 // The page against the real engine: `carom serve` and headless Chromium.
 import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
 import {after, before, test} from 'node:test';
-import {at, barriers, beyond, bodies, demosOf, drawn, holding, movedFrom, paused, picture, place, runFor, screen, serve, stepOf, until, visit} from './harness.mjs';
+import {at, barriers, beyond, bodies, carom, demosOf, drawn, holding, movedFrom, paused, picture, place, root, runFor, screen, serve, stepOf, until, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
@@ -187,7 +188,7 @@ test('a lost connection is said, and mended when the server is back', async () =
   await again.close();
 });
 
-test('a demo has a page: words, formulas, symbols, what to try, where it ends, and the C++ that makes it', async () => {
+test('a demo has a page: words, formulas, symbols, what to try, where it ends, the C++ that makes it, and the scene file', async () => {
   const page = await open('rolling');
   await page.click('#lesson summary');
   await page.waitForSelector('#lesson h3:has-text("Where the model ends")');
@@ -195,13 +196,33 @@ test('a demo has a page: words, formulas, symbols, what to try, where it ends, a
   assert.ok(await page.locator('#lesson .symbols dt').count() >= 4);
   await picture(page, 'lesson');
   assert.deepEqual(await barriers(page, '#about'), []);
-  const lessons = await page.evaluate(() => fetch('lessons.json').then((answer) => answer.json()));
+  const read = (name) => page.evaluate((file) => fetch(file).then((answer) => answer.json()), name);
+  const lessons = await read('lessons.json'), sources = await read('sources.json');
+  const listed = JSON.parse(execFileSync(carom, ['list', '--json'], {maxBuffer: 1 << 28, cwd: root}));
+  const texts = new Map([...listed.demos, ...listed.stress].map((d) => [d.demo, d.text]).concat(listed.scenes.map((d) => [`scene:${d.demo}`, d.text])));
+  const said = [];  // what a page lacks
   for (const demo of await demosOf(page)) {
-    const lesson = lessons[/^(common|box3d|box2d|jolt)-/.test(demo) ? 'stress' : demo];
-    assert.ok(lesson?.try.length > 0 && lesson.ends.length > 20, `${demo} has its page`);
+    const lesson = lessons[/^(common|box3d|box2d|jolt)-/.test(demo) ? 'stress' : demo], words = texts.get(demo) ?? '';
+    const wanted = {
+      words: words.length > 60, formulas: (lesson?.formulas?.length ?? 0) > 0 || words.split('\n\n').some((p) => /[=≤≥]/.test(p) && /^\s{2,}|^[^.]{0,80}=[^.]{0,120}$/.test(p)),
+      symbols: Object.keys(lesson?.symbols ?? {}).length > 0, 'what to try': lesson?.try.length >= 2, 'where it ends': lesson?.ends.length > 25,
+      'C++': sources[demo.startsWith('scene:') ? 'scene' : demo]?.code.length > 150,
+    };
+    for (const [what, is] of Object.entries(wanted)) if (!is) said.push(`${demo}: ${what}`);
   }
+  assert.deepEqual(said, []);
   await page.click('text=The C++ that makes it');
   await page.waitForFunction(() => document.querySelector('.source').textContent.includes('void build(Stage3& stage)'));
   assert.ok(!(await page.textContent('.source')).includes('#include'));
+  await page.click('text=The scene file');
+  await page.waitForFunction(() => document.querySelector('#scene-file pre').textContent.includes('"bodies"'));
+  assert.match(await page.textContent('#scene-file p'), /as it is now/);
+  await page.evaluate(() => { location.hash = 'scene:pendulum'; });
+  await page.waitForFunction(() => document.title.includes('endulum'));
+  await page.click('text=What this shows');
+  await page.waitForSelector('#lesson h3:has-text("Formulas")');
+  await page.click('text=The scene file');
+  await page.waitForFunction(() => document.querySelector('#scene-file pre').textContent.includes('"hinge"'));
+  await picture(page, 'scene page');
   await page.done();
 });

@@ -54,7 +54,7 @@ bool read_material_pairs(Reader& reader, const Object& scene, World<D>& world) {
     std::uint32_t id[2] = {};
     for (std::size_t k = 0; k < 2; ++k) {
       const double x = reader.value(ids.children[k], index_path(o.path_of("materials"), k), Measure::plain);
-      if (!(x >= 0 && x <= 0x7FFFFFFF && x == double(std::uint32_t(x))))
+      if (!(x >= 0 && x <= 0xFFFFFFFF && x == double(std::uint32_t(x))))
         return reader.expected(ids.children[k], index_path(o.path_of("materials"), k), "a whole number"), false;
       id[k] = std::uint32_t(x);
     }

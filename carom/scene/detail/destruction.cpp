@@ -63,9 +63,9 @@ bool read_penetration(Reader& r, const Node& part, ballistics::BatchHits<D>& hit
     if (!r.open(list->children[i], index_path("penetration", i), penetration_kind, o)) return false;
     std::vector<ballistics::Layer> layers;
     if (!read_layers(r, *o.find("wall"), o.path_of("wall"), layers, ballistics::BatchHits<D>::through)) return false;
-    const int id = r.integer(o, "user_id", 0, 0, 0x7FFFFFFF);
+    const std::uint32_t id = r.user_id(o);
     if (r.failed()) return false;
-    const core::Status set = o.has("user_id") ? hits.set_material(std::uint32_t(id), layers) : hits.set_default(layers);
+    const core::Status set = o.has("user_id") ? hits.set_material(id, layers) : hits.set_default(layers);
     if (!r.accept(set, *o.find("wall"), o.path_of("wall"))) return false;
   }
   return true;

@@ -95,17 +95,28 @@ double Reader::number(const Object& o, std::string_view key, double fallback, Me
   return node == nullptr ? fallback : value(*node, o.path_of(key), measure);
 }
 
+namespace {
+double whole(Reader& reader, const Object& o, std::string_view key, double fallback, double low, double high) {
+  const Node* node = reader.failed() ? nullptr : o.find(key);
+  if (node == nullptr) return fallback;
+  const double found = reader.value(*node, o.path_of(key), Measure::plain);
+  if (reader.failed()) return fallback;
+  if (found == __builtin_floor(found) && found >= low && found <= high) return found;
+  reader.expected(
+      *node, o.path_of(key),
+      "a whole number from " + std::to_string(std::int64_t(low)) + " to " + std::to_string(std::int64_t(high)));
+  return fallback;
+}
+}  // namespace
+
 int Reader::integer(const Object& o, std::string_view key, int fallback, int low, int high) {
   field(o, key);
-  const Node* node = failed_ ? nullptr : o.find(key);
-  if (node == nullptr) return fallback;
-  const double found = value(*node, o.path_of(key), Measure::plain);
-  if (failed_) return fallback;
-  if (found != __builtin_floor(found) || found < low || found > high) {
-    expected(*node, o.path_of(key), "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    return fallback;
-  }
-  return int(found);
+  return int(whole(*this, o, key, fallback, low, high));
+}
+
+std::uint32_t Reader::user_id(const Object& o) {
+  field(o, "user_id");
+  return std::uint32_t(whole(*this, o, "user_id", 0, 0, 0xFFFFFFFF));
 }
 
 bool Reader::flag(const Object& o, std::string_view key, bool fallback) {

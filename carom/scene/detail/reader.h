@@ -61,6 +61,7 @@ class Reader {
   double number(const Object& o, std::string_view key, double fallback);
   double number(const Object& o, std::string_view key, double fallback, Measure measure);
   int integer(const Object& o, std::string_view key, int fallback, int low, int high);
+  std::uint32_t user_id(const Object& o);  ///< of a material, under that key: any 32 bits, 0 where absent
   bool flag(const Object& o, std::string_view key, bool fallback);
   /// With {expressions} in braces replaced by their values.
   std::string text(const Object& o, std::string_view key, std::string_view fallback = {});

@@ -65,7 +65,7 @@ void read_material(Reader& reader, const Library& library, const Node& node, std
   m.restitution = float(reader.number(o, "restitution", m.restitution));
   m.rolling_resistance = float(reader.number(o, "rolling_resistance", m.rolling_resistance));
   m.tangent_speed = float(reader.number(o, "tangent_speed", m.tangent_speed));
-  m.user_id = std::uint32_t(reader.integer(o, "user_id", 0, 0, 0x7FFFFFFF));
+  m.user_id = reader.user_id(o);
   out.material = m;
   out.density = reader.number(o, "density", out.density);
 }
