@@ -121,7 +121,8 @@ class SceneWriter {
     if (!found) return failed_ = true, error_ = found.error(), std::string();
     const BodyDef<D>& d = *found;
     const BodyDef<D> fallback;
-    const std::string name = name_of(id, d.name, index);
+    // Joints name what is no body "world".
+    const std::string name = name_of(id, d.name == "world" && d.type != BodyType::fixed ? "world_" : d.name, index);
     names_.emplace(id.packed(), name);
     constexpr const char* types[] = {"fixed", "kinematic", "dynamic"};
     Fields f;
@@ -451,7 +452,7 @@ class SceneWriter {
   World<D> scratch_;
   std::map<std::uint64_t, const SceneBody*> given_;
   std::map<std::uint64_t, std::string> names_;
-  std::set<std::string> used_{"world"};  // as joints name what is no body
+  std::set<std::string> used_;
   bool failed_ = false;
   core::Error error_;
 };

@@ -82,12 +82,14 @@ export class Panel {
 
   private slider(p: Parameter): HTMLElement {
     const id = `parameter-${p.name}`, unit = unitOf(p);
+    // A scene file may name its parameters as a program does.
+    const plain = p.label.replace(/_/g, ' '), label = plain.charAt(0).toUpperCase() + plain.slice(1);
     const shownStep = Math.abs(p.step * p.display_factor) || 'any';
     const range = element('input', {type: 'range', id, min: String(toDisplay(p, p.minimum)), max: String(toDisplay(p, p.maximum)), title: p.description});
     range.step = String(shownStep);
     const number = element('input', {type: 'number', className: 'number', min: range.min, max: range.max, title: p.description});
     number.step = 'any';
-    number.setAttribute('aria-label', `${p.label} in ${unit || 'units of one'}`);
+    number.setAttribute('aria-label', `${label} in ${unit || 'units of one'}`);
     const show = (si: number) => {
       const value = short(toDisplay(p, si), 5);
       range.value = String(toDisplay(p, si));
@@ -108,7 +110,7 @@ export class Panel {
     this.shown.set(p.name, (si) => { p.value = si; show(si); });
     show(p.value);
     return element('div', {className: 'parameter', title: p.description},
-      element('label', {htmlFor: id, textContent: p.label}),
+      element('label', {htmlFor: id, textContent: label}),
       element('span', {className: 'quantity'}, number, element('span', {className: 'unit', textContent: unit})), range);
   }
 

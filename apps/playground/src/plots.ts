@@ -145,7 +145,8 @@ export class Plots {
       if (low > high) return [0, 1];
       // What varies by less than a millionth of itself is drawn as the constant that it is.
       const size = Math.max(Math.abs(low), Math.abs(high));
-      const pad = k === 'x' ? 0 : high - low > 1e-6 * size ? 0.06 * (high - low) : 0.1 * size || 1;
+      // Along x only marks need room at the ends.
+      const pad = k === 'x' ? (d.series.some((s) => s.style === 'points') ? 0.02 * (high - low) : 0) : high - low > 1e-6 * size ? 0.06 * (high - low) : 0.1 * size || 1;
       return [low - pad, high > low || pad ? high + pad : low + 1];
     };
     // A series' path in its own x values; points beyond the pixel grid cost nothing.

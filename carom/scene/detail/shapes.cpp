@@ -235,6 +235,7 @@ bool read_hull(Reader& reader, const Object& o, geometry::Shape3& out) {
   geometry::HullOptions options;
   options.radius = radius_of(reader, o, 0);
   options.simplify = reader.flag(o, "simplify", false);
+  options.max_vertices = reader.integer(o, "max_corners", options.max_vertices, 8, 255);
   if (reader.failed()) return false;
   if (points.size() > 100000) return reader.fail(*o.node, o.path, "a hull may have at most 100000 points"), false;
   return put(reader, o, geometry::make_hull(points, options), out);

@@ -130,6 +130,8 @@ void put_geometry(const geometry::Shape3& s, Fields& f) {
     case geometry::ShapeType3::hull:
       f.put("type", quote("hull")).put("points", points_text(std::span<const math::Vec3f>(s.hull->vertices)));
       f.unless("radius", s.hull->radius, 0.0f);
+      if (const std::size_t corners = s.hull->vertices.size(); corners > 128)
+        f.put("max_corners", std::to_string(corners));
       return;
     case geometry::ShapeType3::mesh:
       f.put("type", quote("mesh")).put("vertices", points_text(std::span<const math::Vec3f>(s.mesh->vertices)));
