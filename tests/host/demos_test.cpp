@@ -92,7 +92,9 @@ TEST_P(DemoExpectations, ItsWorldIsASceneFile) {
     const bool joined = text->find("\"body_a\": \"world\"") != std::string::npos;
     EXPECT_EQ(found.counters().bodies, wanted.counters().bodies + (joined ? 1 : 0));
     EXPECT_EQ(found.counters().joints, wanted.counters().joints);
-    if (!joined) EXPECT_EQ(found.state_hash(), wanted.state_hash());
+    if (!joined) {
+      EXPECT_EQ(found.state_hash(), wanted.state_hash());
+    }
   };
   if ((*simulation)->world2())
     same(*(*read)->world2(), *(*simulation)->world2());
