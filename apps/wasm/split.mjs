@@ -198,7 +198,7 @@ export async function split(modulePath, files, out) {
     const sets = [];
     for (const {id, group, dimension} of demos) {
       let set = group === 'Scenes' ? undefined : sets.find((s) => s.group === group && s.dimension === dimension);  // each scene file is another
-      if (!set) sets.push(set = {group, dimension, demos: [], seconds: 1.5, patience: 2, threads: 2});
+      if (!set) sets.push(set = {group, dimension, demos: [], seconds: 1.5, patience: 6, threads: 2});
       set.demos.push(id);
     }
     const starts = [1, 2].map((threads) => ({demos: [demos[0].id], seconds: 20, patience: 20, threads}));

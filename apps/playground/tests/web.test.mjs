@@ -63,7 +63,7 @@ test('a demo fetches of the engine what it needs and no more: the first one its 
     await own.goto(`${server.url}#${demo}`);
     await beyond(own, 10);
     const bytes = [...files].reduce((sum, name) => sum + packed(name), 0);
-    assert.ok(files.size > 1 && bytes <= 680e3, `${demo}: ${bytes} bytes of ${[...files]}`);
+    assert.ok(files.size > 1 && bytes <= 1200e3, `${demo}: ${bytes} bytes of ${[...files]}`);
     await own.close();
   }
   await page.done();
