@@ -75,7 +75,7 @@ void batch_hits(benchmark::State& state) {
 }
 BENCHMARK(batch_hits)->Args({8, 0})->Args({8, 1})->Args({16, 1})->Unit(benchmark::kMillisecond)->Iterations(96);
 
-enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again };
+enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again, just_out, flees, flees_fast };
 void take_aim(benchmark::State& state) {
   const AimCase which = AimCase(state.range(0));
   Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
@@ -85,12 +85,17 @@ void take_aim(benchmark::State& state) {
   options.high_arc = which != low_arc;
   if (which == out_of_reach) target.position = {5500, 200, 0};
   if (which == moving) target.velocity = {-20, 2, 30};
+  if (which == just_out) target.position = {4800, 30, 200};
+  if (which == flees) target = {{1900, 30, 200}, {150, 0, 20}};
+  if (which == flees_fast) target = {{900, 200, 200}, {300, 10, 100}};
   if (which == mortar) {
     shot = projectile_from_size(DragCurve(.14), 13.585, .11956);
     shooter.muzzle_speed = 250;
     target.position = {3500, 50, 300};
   }
-  static const char* names[] = {"low arc", "both arcs", "out of reach", "moving, both", "mortar, both", "again, low"};
+  static const char* names[] = {"low arc",           "both arcs",          "out of reach",
+                                "moving, both",      "mortar, both",       "again, low",
+                                "just out of reach", "flees beyond reach", "flees faster than the shot"};
   if (which == again) {  // a frame later
     const Shot last = *aim(shot, windy, shooter, target, options)->low;
     target.position += Vec3d{0.5, 0, 0.3};
@@ -100,7 +105,7 @@ void take_aim(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(aim(shot, windy, shooter, target, options));
   state.SetLabel(names[which]);
 }
-BENCHMARK(take_aim)->DenseRange(low_arc, again)->Unit(benchmark::kMicrosecond);
+BENCHMARK(take_aim)->DenseRange(low_arc, flees_fast)->Unit(benchmark::kMicrosecond);
 
 /// The table of a weapon: made once, then asked.
 void aim_table(benchmark::State& state) {

@@ -67,7 +67,7 @@ bool AimSolver::two_arcs(Aims& aims, bool steady) const {
   if (peaks + (rises ? 1 : 0) > 1) return false;
   const bool far = steady && looks_far();
   if (far && out_of_reach()) return true;
-  return by_guesses(aims) || (steady && !far && out_of_reach()) || climb(aims);
+  return by_guesses(aims) || (steady && !far && out_of_reach()) || by_peak(aims);
 }
 
 /// Straight at the target, by the time of flight of quadratic drag.
@@ -154,19 +154,109 @@ bool AimSolver::out_of_reach() const {
   return a > 0 && over[best] + 2 * b * b / (4 * a) < -0.05 * away;
 }
 
-bool AimSolver::climb(Aims& aims) const {
+double AimSolver::best_in_vacuum() const {
   constexpr double golden = 0.6180339887498949;
   double low = math::log(1e-3), high = math::log(options_.longest_time);
-  const auto in_vacuum = [&](double x) { return vacuum_lack(math::exp(x)); };
   double a = high - golden * (high - low), b = low + golden * (high - low);
+  double at_a = vacuum_lack(math::exp(a)), at_b = vacuum_lack(math::exp(b));
   for (int i = 0; i < 24; ++i) {
-    (in_vacuum(a) > in_vacuum(b) ? high : low) = in_vacuum(a) > in_vacuum(b) ? b : a;
-    a = high - golden * (high - low);
-    b = low + golden * (high - low);
+    if (at_a > at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - golden * (high - low);
+      at_a = vacuum_lack(math::exp(a));
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + golden * (high - low);
+      at_b = vacuum_lack(math::exp(b));
+    }
   }
+  return math::exp(a);
+}
+
+AimSolver::Reach AimSolver::falls_short(Guess& guess) const {
+  struct Tangent {
+    double time = 0, need = 0, slope = 0;  // m/s, m/s²
+  } falls, rises;
+  const double speed = shooter_.muzzle_speed, enough = 1.02 * speed;
+  double first = 0, last = options_.longest_time;  // a shot would have to arrive between them
+  guess.time = best_in_vacuum();
+  guess.u = vacuum(guess.time);
+  Inverse inverse;
+  Vec3d last_u{}, last_x{};
+  double last_time = 0;
+  bool anew = true;
+  for (int i = 0; i < 24; ++i) {
+    const double away = math::length(target_(guess.time) - shooter_.muzzle);
+    const Arrival end = propagate(guess.u, guess.time, 1e-3 * away);
+    const Vec3d miss = target_(guess.time) - end.position;
+    const double pace = math::length(guess.u - shooter_.velocity);
+    if (!math::is_finite(math::length(miss)) || !math::is_finite(pace)) return Reach::unknown;
+    if (anew)
+      inverse = estimate(guess, end);
+    else
+      update(inverse, guess.u - last_u, end.position - last_x - (guess.time - last_time) * end.velocity);
+    anew = false;
+    last_u = guess.u;
+    last_x = end.position;
+    last_time = guess.time;
+    if (pace > 8 * speed && rises.time == 0 && falls.time == 0) {  // later than anything gets there: sooner
+      guess.time *= 0.5;
+      guess.u = vacuum(guess.time);
+      anew = true;
+      continue;
+    }
+    Vec3d to_miss = inverse.apply(miss);
+    if (math::length(miss) > 0.01 * away) {
+      const double most = 0.5 * (pace + speed);
+      if (math::length(to_miss) > most) to_miss *= most / math::length(to_miss);
+      guess.u += to_miss;
+      continue;
+    }
+    const Vec3d barrel = guess.u + to_miss - shooter_.velocity;
+    const Vec3d to_drift = inverse.apply(velocity_of_target(guess.time) - end.velocity);
+    const Tangent here{guess.time, math::length(barrel), math::dot(barrel, to_drift) / math::length(barrel)};
+    if (here.need < enough) return Reach::near;
+    if (!(math::abs(here.slope) > 0)) return Reach::unknown;
+    // Slopes are known to about a tenth: as if they were a quarter steeper.
+    const double reached = here.time - (here.need - enough) / (1.25 * here.slope);
+    if (here.slope < 0) {
+      falls = here;
+      first = math::max(first, reached);
+    } else {
+      rises = here;
+      last = math::min(last, reached);
+    }
+    if (falls.time > 0 && rises.time > 0) {
+      // The mean slope between the two lies between theirs, where the curve is convex and they are right.
+      const double mean = (rises.need - falls.need) / (rises.time - falls.time);
+      if (rises.time < 1.02 * falls.time || mean < falls.slope || mean > rises.slope) return Reach::unknown;
+    }
+    if (first >= last) return Reach::never;
+    double next = 0.5 * (first + last);
+    if (rises.time == 0) next = math::min(math::max(first, 1.4 * here.time), 0.5 * (first + last));
+    if (falls.time == 0) next = math::max(last, 0.4 * here.time);
+    guess.u += to_miss + (next - guess.time) * to_drift;
+    guess.time = next;
+  }
+  return Reach::unknown;
+}
+
+bool AimSolver::by_peak(Aims& aims) const {
+  Guess guess;
+  const Reach reach = falls_short(guess);
+  if (reach == Reach::never) return true;
+  if (reach == Reach::near) return climb(aims, guess, true);
+  const double best = best_in_vacuum();
+  return climb(aims, {vacuum(best), best}, false);
+}
+
+bool AimSolver::climb(Aims& aims, Guess top, bool sure) const {
   // With drag the peak lies elsewhere, but the way up to it can be felt, in shrinking strides of ln T.
   const double latest = math::log(options_.longest_time);
-  Guess top{vacuum(math::exp(a)), math::exp(a)};
   Need at_top = need(top);
   if (!at_top.known) return false;
   double stride = 0.4;
@@ -189,7 +279,7 @@ bool AimSolver::climb(Aims& aims) const {
     }
   }
   // Below zero at the peak of a smooth hill whose sides are strides of .002 away: no solution.
-  if (at_top.lack < 0) return true;
+  if (at_top.lack < 0) return sure;
   for (const double step : {1 / 1.3, 1.3}) {
     Guess inside = top, outside = top;
     Need at_outside = at_top;

@@ -11,8 +11,8 @@ using math::Vec3d;
 
 namespace detail {
 
-/// A row of values as a table row wants it: every value with the difference to the next row's.
-template <int Values>
+/// A row of values as a table row wants it: every value with the difference to the next row's, zeros up to `Row`.
+template <int Values, int Row>
 void append_rows(std::vector<float>& table, int rows, const auto& values_of) {
   double here[Values], next[Values];
   values_of(0, here);
@@ -23,6 +23,7 @@ void append_rows(std::vector<float>& table, int rows, const auto& values_of) {
       table.push_back(float(next[k]) - float(here[k]));
       here[k] = next[k];
     }
+    table.resize(std::size_t(i + 1) * Row, 0.0f);
   }
 }
 
@@ -36,12 +37,12 @@ ProjectileBatch::ProjectileBatch(const DragCurve& drag, const Conditions& condit
     : origin_(origin) {
   const double last = math::max(drag.points().back().mach, 0.1);
   nodes_per_mach_ = float(detail::drag_nodes / last);
-  detail::append_rows<1>(drag_, detail::drag_nodes,
-                         [&](int i, double* value) { value[0] = drag(last * i / detail::drag_nodes); });
+  detail::append_rows<1, detail::drag_row>(
+      drag_, detail::drag_nodes, [&](int i, double* value) { value[0] = drag(last * i / detail::drag_nodes); });
   const double spacing = (detail::highest_height - detail::lowest_height) / detail::levels;
   lowest_ = float(detail::lowest_height - origin.y);
   levels_per_metre_ = float(1 / spacing);
-  detail::append_rows<5>(air_, detail::levels, [&](int i, double* value) {
+  detail::append_rows<5, detail::air_row>(air_, detail::levels, [&](int i, double* value) {
     const double height = detail::lowest_height + spacing * i;
     const environment::AirColumn::Air air = conditions.air.at(height);
     const Vec3d wind = conditions.wind.at(height);

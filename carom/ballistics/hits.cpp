@@ -117,7 +117,7 @@ core::Status BatchHits<D>::set_default(std::span<const Layer> layers) {
 template <class D>
 core::Status BatchHits<D>::cast_batch(const ProjectileBatch& batch, const rigid::World<D>& world, double dt,
                                       const HitOptions& options) {
-  constexpr std::size_t piece = 1024;
+  constexpr std::size_t piece = 256;
   const std::size_t count = batch.size();
   std::span<const float> arrays[9];
   for (int k = 0; k < 9; ++k) arrays[k] = batch.array(k);

@@ -126,6 +126,32 @@ bool link(geometry::Hull& hull, const HullMaker& maker) {
   return made == count && vertices + hull.faces.size() == count / 2 + 2;
 }
 
+/// Volume (m³) and centre of a cell, without the second moments that a hull does not ask for.
+struct Bulk {
+  double volume = 0;
+  Vec3d center{};
+};
+Bulk bulk_of(const ConvexCell& cell) {
+  const auto points = cell.vertices();
+  const Vec3d o = points[0];
+  double six = 0;
+  Vec3d sum{};
+  for (const ConvexCell::Face& face : cell.faces()) {
+    const auto loop = cell.loop(face);
+    const Vec3d a = points[loop[0]] - o;
+    Vec3d b = points[loop[1]] - o;
+    for (std::size_t k = 2; k < loop.size(); ++k) {
+      const Vec3d c = points[loop[k]] - o;
+      const double part = triple(a, b, c);
+      six += part;
+      sum += part * (a + b + c);
+      b = c;
+    }
+  }
+  if (!(six > 0)) return {};
+  return {six / 6, o + sum / (4 * six)};
+}
+
 std::shared_ptr<const geometry::Hull> by_search(const ConvexCell& solid, Vec3d origin) {
   std::vector<Vec3f> points;
   for (const Vec3d& v : solid.vertices()) points.push_back(Vec3f(v - origin));
@@ -162,13 +188,13 @@ std::shared_ptr<const geometry::Hull> make_cell_hull(const ConvexCell& cell, Vec
     solid = &shrunk;
   }
   if (solid->empty()) return nullptr;
-  const geometry::MassProperties3 mass = solid->mass_properties(1);
-  if (!(mass.mass > 0)) return nullptr;
+  const Bulk bulk = bulk_of(*solid);
+  if (!(bulk.volume > 0)) return nullptr;
   double inner = 1e300, size = 0;
   for (const ConvexCell::Face& face : solid->faces())
-    inner = math::min(inner, face.offset - dot(face.normal, mass.center));
+    inner = math::min(inner, face.offset - dot(face.normal, bulk.center));
   for (const Vec3d& v : solid->vertices()) {
-    const Vec3d d = abs(v - mass.center);
+    const Vec3d d = abs(v - bulk.center);
     size = math::max(size, math::max(d.x, math::max(d.y, d.z)));
   }
   if (!(inner > thinnest)) return nullptr;
@@ -192,8 +218,8 @@ std::shared_ptr<const geometry::Hull> make_cell_hull(const ConvexCell& cell, Vec
   if (!link(*hull, maker)) return by_search(*solid, origin);
   hull->bounds = {hull->vertices[0], hull->vertices[0]};
   for (const Vec3f& v : hull->vertices) hull->bounds = {min(hull->bounds.low, v), max(hull->bounds.high, v)};
-  hull->volume = float(mass.mass);
-  hull->centroid = Vec3f(mass.center - origin);
+  hull->volume = float(bulk.volume);
+  hull->centroid = Vec3f(bulk.center - origin);
   hull->inner_radius = float(inner);
   set_lanes(hull->vertex_lanes, hull->vertices.size(), [&](std::size_t i) { return hull->vertices[i]; });
   set_lanes(hull->normal_lanes, hull->planes.size(), [&](std::size_t i) { return hull->planes[i].normal; });

@@ -71,14 +71,25 @@ class SiteGrid {
       c[k] = place(sites_[site], k);
       low[k] = math::max(c[k] - ring, 0), high[k] = math::min(c[k] + ring, count_[k] - 1);
     }
-    for (int z = low[2]; z <= high[2]; ++z)
+    // No site of a cube is nearer than the cube; a hair is left for how places are rounded.
+    const auto gap_squared = [&](int cube, int k) {
+      if (cube == c[k]) return 0.0;
+      const double face = low_[k] + (cube + (cube < c[k])) * edge_;
+      return math::square(math::max(math::abs(face - sites_[site][k]) - 1e-9 * edge_, 0.0));
+    };
+    for (int z = low[2]; z <= high[2]; ++z) {
+      const double from_z = gap_squared(z, 2);
+      if (from_z > limit_squared) continue;
       for (int y = low[1]; y <= high[1]; ++y) {
+        const double from_row = from_z + gap_squared(y, 1);
+        if (from_row > limit_squared) continue;
         const bool shell = math::abs(z - c[2]) == ring || math::abs(y - c[1]) == ring;
         for (int x = low[0]; x <= high[0]; ++x) {
           if (!shell && math::abs(x - c[0]) != ring) {
             x = math::max(x, c[0] + ring - 1);  // across the inside
             continue;
           }
+          if (from_row + gap_squared(x, 0) > limit_squared) continue;
           const std::size_t cube =
               (std::size_t(z) * std::size_t(count_[1]) + std::size_t(y)) * std::size_t(count_[0]) + std::size_t(x);
           for (std::uint32_t m = first_[cube]; m < first_[cube + 1]; ++m)
@@ -88,6 +99,7 @@ class SiteGrid {
             }
         }
       }
+    }
     std::sort(found.begin(), found.end(), [](const Near& a, const Near& b) {
       return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.site < b.site;
     });

@@ -134,6 +134,7 @@ Result<int> RopeSet::add(const RopeDef& def) {
   rope.material = def.material;
   rope.filter = def.filter;
   rope.collide = def.collide;
+  rope.touch = def.touch;
   rope.segment = rest / def.segments;
   rope.resize(std::size_t(def.segments) + 1);
   detail::lay(def.points, way, def.segments, rope.position);

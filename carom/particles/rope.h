@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "carom/environment/wind.h"
+#include "carom/math/mat.h"
 #include "carom/rigid/world.h"
 
 namespace carom::particles {
@@ -35,12 +36,20 @@ struct RopeMaterial {
   double break_tension = 0;        ///< N, 0: never
 };
 
+/// Which ropes of its set a rope touches, where `collide` is set.
+enum class RopeTouch : std::uint8_t {
+  none,
+  others,
+  itself,  ///< the others and itself
+};
+
 struct RopeDef {
   RopeMaterial material{};
   std::span<const Vec3d> points{};  ///< m: the rope lies along these, two or more
   int segments = 20;                ///< 1 … 10 000, of equal length along the way
   double length = 0;                ///< m at rest; 0: as long as it lies
-  bool collide = true;              ///< with shapes of the world
+  bool collide = true;              ///< with shapes of the world, and with ropes as `touch` says
+  RopeTouch touch = RopeTouch::others;
   rigid::Filter filter{};
 };
 
@@ -58,6 +67,14 @@ struct RopeBreakEvent {
   double tension = 0;  ///< N
 };
 
+/// Two segments that touched in the last step. Of a rope that touches itself both are the same rope.
+struct RopeCrossing {
+  int rope[2] = {0, 0}, segment[2] = {0, 0};
+  double share[2] = {0, 0};  ///< along the segment, 0 to 1
+  Vec3d normal{};            ///< from the first to the second
+  Vec3d force{};             ///< N on the second, over the step
+};
+
 /// Where the air stands to the ropes.
 struct RopeAir {
   double density = 1.225;  ///< kg/m³, ≥ 0
@@ -66,10 +83,13 @@ struct RopeAir {
 
 namespace detail {
 struct Rope;
+struct RopeAnswer;
 struct RopeBody;
+struct RopeCross;
 struct RopeMemory;
 struct RopeShape;
 struct RopeSolver;
+struct RopeStretch;
 }  // namespace detail
 
 /// Ropes that share a world. A value: a copy is a snapshot. Call `step` before every World3::step with the same dt; it
@@ -116,7 +136,8 @@ class CAROM_API RopeSet {
   const RopeMaterial& material(int rope) const;
   Vec3d attachment_force(int rope, int node) const;  ///< N on the body, over the last step
   int contact_count(int rope) const;
-  std::span<const RopeBreakEvent> breaks() const { return breaks_; }  ///< of the last step
+  std::span<const RopeCrossing> crossings() const { return touching_; }  ///< of the last step
+  std::span<const RopeBreakEvent> breaks() const { return breaks_; }     ///< of the last step
 
   Vec3d momentum() const;                        ///< kg·m/s
   double kinetic_energy() const;                 ///< J
@@ -135,6 +156,13 @@ class CAROM_API RopeSet {
   std::vector<rigid::ShapeId> found_;
   std::vector<rigid::JointId> joints_;
   std::vector<RopeBreakEvent> breaks_;
+  std::vector<detail::RopeCross> crossings_, crossings_before_;
+  std::vector<detail::RopeStretch> stretches_;
+  std::vector<int> crossing_now_;
+  std::vector<detail::RopeAnswer> crossing_answers_;
+  std::vector<math::Mat3d> crossing_matrix_;
+  std::vector<double> crossing_right_;
+  std::vector<RopeCrossing> touching_;
   RopeAir air_{};
   int substeps_ = 8;
 };

@@ -99,6 +99,31 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
   EXPECT_GT(none, cases / 50);
 }
 
+// Targets as fast as the shot, most of them beyond its reach: what is said to have no solution has none.
+TEST(Aim, FastTargetsAgreeWithTheScan) {
+  math::Random random(77);
+  int none = 0, hits = 0;
+  for (int i = 0; i < 80; ++i) {
+    Case c = draw(random);
+    const double V = c.shooter.muzzle_speed;
+    c.target.velocity = random.uniform(0.3, 1.2) * V * random.on_sphere();
+    c.target.velocity.y *= 0.3;
+    const auto aims = aim(c.projectile, c.conditions, c.shooter, c.target, {.longest_time = 60});
+    const auto scan = aim(c.projectile, c.conditions, c.shooter,
+                          [&](double t) { return c.target.position + t * c.target.velocity; }, {.longest_time = 60});
+    ASSERT_TRUE(aims && scan);
+    EXPECT_EQ(aims->low.has_value(), scan->low.has_value()) << i;
+    if (!aims->low) {
+      ++none;
+      continue;
+    }
+    ++hits;
+    EXPECT_LT(miss(c, *aims->low), .01) << i;
+  }
+  EXPECT_GT(none, 15);
+  EXPECT_GT(hits, 15);
+}
+
 // A target that flees faster than the shot can follow, and one beyond its reach: no solution, and it is said.
 TEST(Aim, NoSolutionIsSaid) {
   const Projectile shot = projectile_from_terminal_speed(40);

@@ -66,8 +66,17 @@ class AimSolver {
   /// True: certainly no solution. Shots at five elevations pass the target's distance below it, and so does the best
   /// one between them, by a good margin.
   bool out_of_reach() const;
-  /// From the best time in vacuum up to the peak of the speed to spare, then down both sides of it.
-  bool climb(Aims& aims) const;
+  /// The flight time at which a gun needs least speed in vacuum, s.
+  double best_in_vacuum() const;
+  /// The speed that is needed falls with T and rises again: a convex curve, which lies above its tangents. Where these
+  /// leave no time at which the muzzle speed would do, there is no solution (`never`); `near`: `guess` needs hardly
+  /// more than the muzzle speed, or less.
+  enum class Reach { never, near, unknown };
+  Reach falls_short(Guess& guess) const;
+  /// From `top` up to the peak of the speed to spare, then down both sides of it. `sure`: the top is near the peak, so
+  /// that a peak below zero is the end of the matter.
+  bool climb(Aims& aims, Guess top, bool sure) const;
+  bool by_peak(Aims& aims) const;
   /// The root between a and b, where the lack has different signs: halved until Newton's method finds one there.
   bool bisect(Guess a, const Need& at_a, Guess b, Aims& aims) const;
   /// A peak of the lack between a and b, below zero in the samples: where it reaches zero there are two roots.

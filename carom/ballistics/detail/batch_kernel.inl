@@ -12,16 +12,14 @@ CAROM_SIMD_INLINE Vector add(const Vector& a, F s, const Vector& b) {
   return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 
-/// Value `column` of a table's rows, linear between two nodes.
-template <int Row>
-CAROM_SIMD_INLINE F look_up(const float* table, I node, F part, int column) {
-  F value = F::zero(), step = F::zero();
-  for (int i = 0; i < CAROM_BATCH_WIDTH; ++i) {
-    const float* row = table + Row * node[i] + 2 * column;
-    value.set(i, row[0]);
-    step.set(i, row[1]);
-  }
-  return value + part * step;
+/// The first `Count` values of a table's rows, linear between two nodes.
+template <int Row, int Count>
+CAROM_SIMD_INLINE void look_up(const float* table, I node, F part, F (&values)[Count]) {
+  std::int32_t index[CAROM_BATCH_WIDTH];
+  node.store(index);
+  F columns[Row];
+  math::gather_rows<Row, CAROM_BATCH_WIDTH>(table, index, columns);
+  for (int k = 0; k < Count; ++k) values[k] = columns[2 * k] + part * columns[2 * k + 1];
 }
 
 struct Air {
@@ -34,7 +32,9 @@ CAROM_SIMD_INLINE Vector acceleration(const BatchStep& b, const Air& air, F k, c
   const F speed = sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
   const F place = min(speed * air.slowness * F::splat(b.nodes_per_mach), F::splat(b.last_node));
   const I node = to_int(place);
-  const F drag = look_up<drag_row>(b.drag, node, place - to_float(node), 0) * air.density * k * speed;
+  F coefficient[1];
+  look_up<drag_row>(b.drag, node, place - to_float(node), coefficient);
+  const F drag = coefficient[0] * air.density * k * speed;
   const F tx = F::splat(b.turning[0]), ty = F::splat(b.turning[1]), tz = F::splat(b.turning[2]);
   return {ty * v.z - tz * v.y - drag * w.x, tz * v.x - tx * v.z - drag * w.y - F::splat(b.gravity),
           tx * v.y - ty * v.x - drag * w.z};
@@ -50,11 +50,9 @@ void step(const BatchStep& b, std::size_t from, std::size_t to) {
     const F place =
         clamp((height - F::splat(b.lowest)) * F::splat(b.levels_per_metre), F::zero(), F::splat(b.last_level));
     const I level = to_int(place);
-    const F part = place - to_float(level);
-    const Air air = {look_up<air_row>(b.air, level, part, 0),
-                     look_up<air_row>(b.air, level, part, 1),
-                     {look_up<air_row>(b.air, level, part, 2), look_up<air_row>(b.air, level, part, 3),
-                      look_up<air_row>(b.air, level, part, 4)}};
+    F row[5];
+    look_up<air_row>(b.air, level, place - to_float(level), row);
+    const Air air = {row[0], row[1], {row[2], row[3], row[4]}};
     const Vector a1 = acceleration(b, air, k, v1);
     const Vector v2 = add(v1, half, a1), a2 = acceleration(b, air, k, v2);
     const Vector v3 = add(v1, half, a2), a3 = acceleration(b, air, k, v3);

@@ -5,9 +5,10 @@
 
 namespace carom::ballistics::detail {
 
-/// Uniform tables, every node followed by the differences to the next: drag_row and air_row floats a node.
-inline constexpr int drag_row = 2;  // C_D
-inline constexpr int air_row = 10;  // density, 1/speed of sound, wind x, y, z
+/// Uniform tables, every value followed by the difference to the next node's: drag_row and air_row floats a node,
+/// filled up so that rows are gathered whole.
+inline constexpr int drag_row = 4;  // C_D
+inline constexpr int air_row = 12;  // density, 1/speed of sound, wind x, y, z
 struct BatchStep {
   float* position[3];
   float* velocity[3];

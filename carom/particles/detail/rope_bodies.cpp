@@ -198,17 +198,23 @@ void RopeSolver::hand_over() {
 // particles answer: R = R₀ + R₁ Δu. With Δu = H Σ −(R, r × R): (1 + H Σ(R₁, r × R₁)) Δu = −H Σ(R₀, r × R₀).
 // Bodies are numbered as ropes meet them, so that the matrix keeps close to its diagonal; it is solved by Gauss'
 // elimination within its skyline.
-void RopeSolver::couple() {
+void RopeSolver::couple(bool answers) {
   int blocks = 0;
   for (RopeBody& body : set.bodies_) body.column = -1;
   for (Rope& rope : set.ropes_)
     for (const int b : rope.touched)
       if (set.bodies_[std::size_t(b)].column < 0) set.bodies_[std::size_t(b)].column = blocks++;
-  if (blocks == 0) return;
+  if (answers) answer_crossings();
+  if (blocks == 0) {
+    if (answers) mix_crossings(false);
+    return;
+  }
   const std::size_t size = std::size_t(blocks) * 6;
   set.matrix_.assign(size * size, 0.0);
   set.right_.assign(size, 0.0);
   set.first_block_.resize(std::size_t(blocks));
+  if (answers) load_crossings(size);
+  const std::size_t width = answers ? 3 * set.crossing_now_.size() : 0;  // right-hand sides beside the one
   for (int b = 0; b < blocks; ++b) set.first_block_[std::size_t(b)] = b;
 
   // Sums of the answers first (R, r × R by body), then H times them.
@@ -288,6 +294,8 @@ void RopeSolver::couple() {
     const std::size_t row = std::size_t(body.column) * 6;
     through(body, &set.right_[row], 1);
     for (std::size_t k = 0; k < 6; ++k) set.right_[row + k] = -set.right_[row + k];
+    for (std::size_t c = 0; c < width; ++c) through(body, &set.crossing_right_[row * width + c], width);
+    for (std::size_t k = row * width; k < (row + 6) * width; ++k) set.crossing_right_[k] = -set.crossing_right_[k];
     for (std::size_t c = std::size_t(set.first_block_[std::size_t(body.column)]) * 6; c < size; ++c)
       through(body, &set.matrix_[row * size + c], size);
   }
@@ -310,12 +318,19 @@ void RopeSolver::couple() {
           m[i * size + j] -= factor * m[k * size + j];
       }
       set.right_[i] -= factor * set.right_[k];
+      for (std::size_t c = 0; c < width; ++c)
+        set.crossing_right_[i * width + c] -= factor * set.crossing_right_[k * width + c];
     }
   }
   for (std::size_t k = size; k-- > 0;) {
     double value = set.right_[k];
     for (std::size_t j = k + 1; j < size; ++j) value -= m[k * size + j] * set.right_[j];
     set.right_[k] = value / m[k * size + k];
+    for (std::size_t c = 0; c < width; ++c) {
+      double& sum = set.crossing_right_[k * width + c];
+      for (std::size_t j = k + 1; j < size; ++j) sum -= m[k * size + j] * set.crossing_right_[j * width + c];
+      sum /= m[k * size + k];
+    }
   }
 
   for (Rope& rope : set.ropes_) {
@@ -329,6 +344,7 @@ void RopeSolver::couple() {
       }
     }
   }
+  if (answers) mix_crossings(true);
 }
 
 void RopeSolver::commit_bodies() {

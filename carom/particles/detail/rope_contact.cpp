@@ -203,4 +203,22 @@ void RopeSolver::keep_contact(RopeContact& contact, const RopeNode& node, bool g
   contact.grip = grip;
 }
 
+/// Both segments are held at one place: there they meet without touching.
+bool RopeSolver::tied_together(const RopeCross& cross) const {
+  const Rope &a = set.ropes_[std::size_t(cross.rope[0])], &b = set.ropes_[std::size_t(cross.rope[1])];
+  const double near = 2 * (a.material.radius + b.material.radius);
+  for (const RopeGrip& one : a.grips) {
+    const int i = one.attachment.node;
+    if (i != cross.segment[0] && i != cross.segment[0] + 1) continue;
+    for (const RopeGrip& other : b.grips) {
+      const int j = other.attachment.node;
+      if (j != cross.segment[1] && j != cross.segment[1] + 1) continue;
+      if (one.attachment.body == other.attachment.body &&
+          distance(a.position[std::size_t(i)], b.position[std::size_t(j)]) < near)
+        return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace carom::particles::detail

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/geometry/bounds.h"
 #include "carom/math/mat.h"
 #include "carom/math/quat.h"
 #include "carom/particles/rope.h"
@@ -88,6 +89,17 @@ struct RopeNode {
   Vec3d reaction{};       ///< N·s on the particle
 };
 
+/// The part of a vector across a hold's normal.
+inline Vec3d across(const RopeNode& node, Vec3d v) { return v - dot(node.normal, v) * node.normal; }
+/// The part of a momentum row that a hold leaves.
+inline Vec3d project(const RopeNode& node, Vec3d r) {
+  if (node.hold == RopeHold::none) return r;
+  return node.hold == RopeHold::attached ? Vec3d{} : across(node, r);
+}
+inline Mat3d project(const RopeNode& node, const Mat3d& m) {
+  return {project(node, m.cx), project(node, m.cy), project(node, m.cz)};
+}
+
 /// A segment that lies on something between its particles: a point of it is held as a particle would be, by a stiffness
 /// within the system of the row. Where the ends touch as deep as the middle, they do without.
 struct RopeEdge {
@@ -97,10 +109,45 @@ struct RopeEdge {
   Mat3d stiff = Mat3d::zero();  ///< kg: impulse = stiff (target − velocity) + grip
 };
 
+/// The room that a segment may need in a step.
+struct RopeStretch {
+  geometry::Bounds3d box{};
+  int rope = 0, segment = 0;
+};
+
+/// Two segments that may touch, in the order of their numbers, and the impulse between them.
+struct RopeCross {
+  int rope[2] = {0, 0}, segment[2] = {0, 0};
+  double friction = 0;
+  Vec3d side{};  ///< where the second was when last looked at; zero: not known
+  double share[2] = {0, 0};
+  Vec3d normal{};         ///< from the first to the second
+  double separation = 0;  ///< m, of the surfaces
+  double least = 0;       ///< m/s along the normal, at the end of the substep
+  Vec3d velocity{};       ///< m/s, of the second past the first
+  Vec3d impulse{};        ///< N·s on the second, in the substep
+  Vec3d sum{};            ///< N·s, over the step
+
+  friend bool operator<(const RopeCross& a, const RopeCross& b) {
+    for (int k = 0; k < 2; ++k) {
+      if (a.rope[k] != b.rope[k]) return a.rope[k] < b.rope[k];
+      if (a.segment[k] != b.segment[k]) return a.segment[k] < b.segment[k];
+    }
+    return false;
+  }
+};
+
+/// Velocities of a rope's particles from `low` to `high` for an impulse on it, by its direction.
+struct RopeAnswer {
+  int rope = 0, low = 0, high = -1;
+  std::vector<Mat3d> at;  ///< by particle
+};
+
 struct Rope {
   RopeMaterial material{};
   rigid::Filter filter{};
   bool collide = true;
+  RopeTouch touch = RopeTouch::others;
   double segment = 0;  ///< m, as it was made
   std::vector<Vec3d> position, velocity;
   std::vector<double> lump;           ///< kg beside the rope's own
@@ -124,6 +171,7 @@ struct Rope {
   std::vector<Vec3d> columns;  ///< 6 a body, as many as particles
   std::vector<double> theta, pull;
   std::vector<std::uint8_t> slack;  ///< by segment
+  geometry::Bounds3d around{};      ///< all that it may reach in a step
 
   int count() const { return int(position.size()); }
   void resize(std::size_t n);

@@ -28,7 +28,9 @@ RopeBend bend_at(const Rope& rope, std::size_t i, double ahead) {
   return bend;
 }
 double voronoi(const Rope& rope, std::size_t i) { return 0.5 * (rope.rest[i - 1] + rope.rest[i]); }
-constexpr double sharpest = 0.05;  // 1 + cos φ of a fold beyond which bending grows no stiffer
+/// 1 + cos φ of a fold (here 60°) beyond which bending grows no stiffer: tan φ/2 would outrun any explicit step. The
+/// moment from there on is that of an energy in cos φ.
+constexpr double sharpest = 1.5;
 
 /// Carries a vector across `from` to across `to` without twist.
 Vec3d carry(Vec3d v, Vec3d from, Vec3d to) {
@@ -61,8 +63,8 @@ double bending_energy(const Rope& rope) {
   for (std::size_t i = 1; i + 1 < rope.position.size(); ++i) {
     const RopeBend bend = bend_at(rope, i, 0);
     if (!bend.usable) continue;
-    const double fold = math::max(1 + bend.cosine, sharpest);
-    sum += 0.5 * rope.material.bending_stiffness / voronoi(rope, i) * 4 * (1 - bend.cosine) / fold;
+    const double fold = math::max(1 + bend.cosine, sharpest), over = fold - (1 + bend.cosine);
+    sum += rope.material.bending_stiffness / voronoi(rope, i) * (2 * (2 - fold) / fold + 4 * over / (fold * fold));
   }
   return sum;
 }

@@ -20,7 +20,8 @@ struct RopeSolver {
   void find_mobility();
   void find_joints();
   void find_support();
-  void couple();  ///< the bodies' changes of velocity from all ropes' rows
+  /// The bodies' changes of velocity from all ropes' rows; `answers`: and what crossings answer to each other.
+  void couple(bool answers);
   void commit_bodies();
   Vec3d change_at(const RopeNode& node) const;  ///< of the velocity of what holds a particle, by the solve
   void move_bodies();
@@ -43,6 +44,19 @@ struct RopeSolver {
   void react_edges(Rope& rope, bool coupled) const;
   Vec3d edge_answer(const Rope& rope, std::size_t edge, std::size_t t, int c) const;
   Vec3d edge_push(const Rope& rope, int node, int body, Vec3d velocity, Vec3d spin) const;
+
+  // rope_crossings.cpp
+  void find_crossings();
+  bool tied_together(const RopeCross& cross) const;
+  void place_crossings();  ///< at the start of a substep
+  void add_crossings(Rope& rope, int index) const;
+  void answer_crossing(const RopeCross& cross, int k, RopeAnswer& answer);
+  void answer_crossings();
+  void load_crossings(std::size_t size);  ///< of the bodies' system
+  void mix_crossings(bool bodies);
+  bool push_crossings();
+  void keep_crossings();
+  void tell_crossings();
 
   // rope_step.cpp
   int needed_substeps(const Rope& rope) const;

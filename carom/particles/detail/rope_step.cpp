@@ -8,6 +8,7 @@ namespace carom::particles::detail {
 namespace {
 
 constexpr int most_iterations = 10;
+constexpr int cross_iterations = 6;  // in which what ropes push on each other is still found anew
 constexpr int most_substeps = 256;
 constexpr double gap_rate = 0.4;  // share of a gap between a particle and its anchor that is closed in a step
 
@@ -15,15 +16,6 @@ constexpr double gap_rate = 0.4;  // share of a gap between a particle and its a
 /// stiff one (implicit Euler's); stable for every z.
 double implicit_share(double z) { return z > 1 ? 1 - 1 / z : 0; }
 
-Vec3d across(const RopeNode& node, Vec3d v) { return v - dot(node.normal, v) * node.normal; }
-/// The part of a momentum row that a hold leaves.
-Vec3d project(const RopeNode& node, Vec3d r) {
-  if (node.hold == RopeHold::none) return r;
-  return node.hold == RopeHold::attached ? Vec3d{} : across(node, r);
-}
-Mat3d project(const RopeNode& node, const Mat3d& m) {
-  return {project(node, m.cx), project(node, m.cy), project(node, m.cz)};
-}
 /// What a hold puts in its place, for a velocity of the surface; `mass` makes it a momentum.
 Vec3d held_part(const RopeNode& node, double mass, Vec3d v) {
   if (node.hold == RopeHold::none) return {};
@@ -44,7 +36,9 @@ int RopeSolver::needed_substeps(const Rope& rope) const {
         4 * math::sqrt(rope.material.bending_stiffness / rope.material.mass_per_length) / (shortest * shortest);
     const double rate = math::max(omega, 2 * rope.material.bending_damping * omega * omega);
     const double wanted = math::ceil(dt * rate / 1.2);
-    needed = wanted > most_substeps ? most_substeps + 1 : math::max(needed, int(wanted));
+    // Twice as many where they are to be had: what folds sharply in free flight is stiffer than the straight row.
+    needed = wanted > most_substeps ? most_substeps + 1
+                                    : math::max(needed, int(math::min(2 * wanted, double(most_substeps))));
   }
   return needed;
 }
@@ -152,8 +146,9 @@ void RopeSolver::assemble(Rope& rope) {
     const Vec3d g = normalize_or(reach, Vec3d{0, 1, 0}, 1e-12), way = normalize_or(aim, g, 1e-12);
     const double damping = rope.material.axial_damping / rope.rest[i];
     const double wound = (i == 0 ? rope.winch[0] : 0) + (i + 2 == n ? rope.winch[1] : 0);  // m/s off the rest length
-    const double tension = stiffness * (l - rope.rest[i]) + damping * (dot(g, closing) + wound * l / rope.rest[i]);
-    Mat3d c = (h * (axial * h * stiffness + damping)) * math::outer(way, g);
+    const double tension = stiffness * (l - rope.rest[i]) + damping * (dot(way, closing) + wound * l / rope.rest[i]);
+    // Damping acts along the line on which its rate is taken: across a fast turn anything else could drive.
+    Mat3d c = (axial * h * h * stiffness) * math::outer(way, g) + (h * damping) * math::outer(way, way);
     if (lateral > 0) {
       const double turn = h * h * lateral * rope.pull[i] / math::max(length(aim), 1e-9);
       c = c + turn * (Mat3d::identity() + (-1.0) * math::outer(way, way));
@@ -324,6 +319,7 @@ Status RopeSolver::run() {
     wind_winches(rope);
     find_contacts(rope);
   }
+  find_crossings();
   find_mobility();
   for (Rope& rope : set.ropes_) prepare(rope);
   for (int s = 0; s < substeps; ++s) {
@@ -340,14 +336,18 @@ Status RopeSolver::run() {
       place_contacts(rope);
       place_edges(rope);
     }
+    place_crossings();
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      for (Rope& rope : set.ropes_) {
+      for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
+        Rope& rope = set.ropes_[r];
         assemble(rope);
+        add_crossings(rope, int(r));
         solve(rope);
         react(rope, false);
       }
-      couple();
-      bool again = false;
+      const bool push = !set.crossing_now_.empty() && iteration < cross_iterations;
+      couple(push);
+      bool again = push && push_crossings();
       for (Rope& rope : set.ropes_) {
         react(rope, true);
         if (iteration + 1 == most_iterations) continue;
@@ -362,11 +362,13 @@ Status RopeSolver::run() {
       if (!again) break;
     }
     commit_bodies();
+    keep_crossings();
     for (std::size_t r = 0; r < set.ropes_.size(); ++r) advance(set.ropes_[r], int(r));
     move_bodies();
   }
   for (Rope& rope : set.ropes_)
     for (RopeGrip& grip : rope.grips) grip.force = grip.impulse / dt;
+  tell_crossings();
   hand_over();
   return {};
 }

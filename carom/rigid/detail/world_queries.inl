@@ -183,6 +183,18 @@ typename D::Bounds bounds_of_rays(std::span<const RayQuery<D>> rays, int first, 
   }
   return {low, high};
 }
+/// Around all shapes; upside down where there is none.
+template <class D>
+typename D::Bounds bounds_of_shapes(const WorldImplementation<D>& world) {
+  typename D::Bounds all;
+  for (int k = 0; k < D::dimension; ++k) all.low[k] = 1e300, all.high[k] = -1e300;
+  for (const auto& tree : world.shapes.trees) {
+    if (tree.empty()) continue;
+    const typename D::Bounds box = tree.root_bounds();
+    all = {min(all.low, box.low), max(all.high, box.high)};
+  }
+  return all;
+}
 /// False: no shape's box meets `box`. True where one may.
 template <class D>
 bool anything_near(const WorldImplementation<D>& world, const typename D::Bounds& box) {
@@ -298,11 +310,15 @@ Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D
       if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
         return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
   // Neighbours ask first whether there is anything at all where they go: one walk for a group.
+  const typename D::Bounds all = detail::bounds_of_shapes<D>(*self_);
   self_->scheduler->parallel_for(int(rays.size()), detail::queries_a_chunk, [&](int begin, int end, int) {
     for (int first = begin; first < end; first += detail::rays_a_group) {
       const int last = math::min(first + detail::rays_a_group, end);
       bool near = true;
-      if (last - first > 2) near = detail::anything_near<D>(*self_, detail::bounds_of_rays<D>(rays, first, last));
+      if (last - first > 2) {
+        const typename D::Bounds box = detail::bounds_of_rays<D>(rays, first, last);
+        near = overlaps(box, all) && detail::anything_near<D>(*self_, box);
+      }
       for (int i = first; i < last; ++i)
         hits[std::size_t(i)] = near ? detail::closest_on_ray<D>(*self_, rays[std::size_t(i)]) : RayHit<D>{};
     }

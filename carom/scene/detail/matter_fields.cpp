@@ -5,6 +5,7 @@ namespace {
 using T = FieldType;
 using M = Measure;
 
+constexpr std::string_view rope_touches[] = {"none", "others", "itself"};  // as RopeTouch
 constexpr std::string_view edges[] = {"first_column", "last_column", "first_row", "last_row"};
 constexpr std::string_view particle_drag_laws[] = {"none", "linear", "stokes", "schiller_naumann", "quadratic"};
 constexpr std::string_view answers[] = {"bounce", "stick", "kill"};
@@ -51,7 +52,9 @@ constexpr Field rope_fields[] = {
     {"masses", T::list, M::plain, "lumps on the rope", &rope_lump_kind},
     {"twist", T::quantity, M::angle, "of the clamped last end against the first"},
     {"substeps", T::integer, M::plain, "1 to 256; of all ropes the most"},
-    {"collide", T::flag, M::plain, "with shapes of the world"},
+    {"collide", T::flag, M::plain, "with shapes of the world and other ropes"},
+    {"touch", T::choice, M::plain, "which ropes: others unless given; itself: others and itself", nullptr,
+     rope_touches},
     {"filter", T::object, M::plain, "", &filter_kind},
     {"color", T::color, M::plain, "as #rrggbb"},
 };

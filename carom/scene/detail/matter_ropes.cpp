@@ -120,6 +120,7 @@ void read_rope(Place& place, const Object& o) {
   def.segments = r.integer(o, "segments", def.segments, 1, 10000);
   def.length = r.number(o, "length", 0);
   def.collide = r.flag(o, "collide", true);
+  def.touch = particles::RopeTouch(r.choice(o, "touch", int(def.touch)));
   def.filter = read_matter_filter(r, o);
   Named<int> named{.name = {}, .color = 0xb08d57, .thing = 0};
   if (!name_thing(r, o, "rope", place.out.ropes, named.name, named.color)) return;
