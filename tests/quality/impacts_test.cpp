@@ -115,6 +115,40 @@ TYPED_TEST(QualityImpacts, NewtonsCradle) {
   }
 }
 
+// Gate 13: a smooth ball that strikes another off centre by b diameters sends it along their centres, at asin b to its
+// own way, with (1 + e)/2 of the speed that it had along them; wherever in the step, and however far in it, they meet.
+TYPED_TEST(QualityImpacts, BallsMeetAtAnAngle) {
+  using D = TypeParam;
+  double direction = 0, speed = 0, turned = 0;
+  for (const double radius : {0.5, 0.028575})
+    for (const double fast : {4.0, 10.0, 30.0})
+      for (const double b : {0.2, 0.5, 0.8})
+        for (int phase = 0; phase < 9; ++phase) {
+          const double e = 0.9, along = std::sqrt(1 - b * b);
+          World<D> world(world_with<D>(0));
+          const Surface smooth{0, float(e), 1000, 0};
+          const BodyId struck = add_ball<D>(world, rigid::test::at<D>(0, 0), float(radius), smooth);
+          const BodyId cue =
+              add_ball<D>(world, rigid::test::at<D>(-4 * radius - fast / 60 * (2 + phase / 9.0), 2 * radius * b),
+                          float(radius), smooth, rigid::test::along<D>(float(fast), 0));
+          const Totals<D> before = world.totals();
+          run(world, 60);
+          const Totals<D> after = world.totals();
+          const auto v = world.state(struck).value().linear_velocity;
+          direction = std::max(direction, std::abs(std::atan2(double(v.y), double(v.x)) + std::asin(b)));
+          speed = std::max(speed, std::abs(double(length(v)) / (0.5 * (1 + e) * fast * along) - 1));
+          const double mass = world.state(cue).value().mass;
+          if constexpr (D::dimension == 2)
+            turned = std::max(turned, std::abs(after.angular_momentum - before.angular_momentum) / (mass * fast));
+          else
+            turned = std::max(turned, length(after.angular_momentum - before.angular_momentum) / (mass * fast));
+        }
+  Gate(13, "ball of 1 m or 57 mm strikes another off centre at 4 to 30 m/s: direction off by", D::dimension, "°")
+      .at_most(math::degrees(direction), 0.1);
+  Gate(13, "the same: speed off by", D::dimension, "%").at_most(100 * speed, 0.1);
+  Gate(13, "the same: angular momentum off by (of the ball's, per m)", D::dimension).at_most(turned, 1e-4);
+}
+
 // Issue of the engine, 2: a rack of fifteen balls broken by a sixteenth at 8 m/s keeps its momentum to rounding, and,
 // at e 1 and without friction, its energy.
 TYPED_TEST(QualityImpacts, BilliardBreak) {

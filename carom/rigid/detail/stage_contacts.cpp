@@ -3,6 +3,7 @@
 
 #include "carom/math/cpu.h"
 #include "carom/math/simd.h"
+#include "carom/rigid/detail/contact_foresight.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -57,9 +58,18 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
                          ContactRaw<D, W>& raw, int lane) {
   using V = typename D::Vector;
   const WorldImplementation<D>& world = context.world;
-  const ManifoldRecord<D>& m = world.contacts.manifold(index);
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const std::int32_t a = c.body[0], b = c.body[1];
+  V across{};
+  if (may_foresee(c, m)) {
+    Foreseen<D> foreseen;
+    if (foresee(world, c, m.manifold, context.dt, foreseen)) {
+      m.manifold = foreseen.manifold;
+      across = foreseen.across;
+      for (float& impulse : m.impulses.normal) impulse = 0;
+    }
+  }
   const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
   const bool both = (c.flags & contact_dynamic) != 0;
   const bool dynamic_a = both || world.bodies.is_dynamic(a), dynamic_b = both || world.bodies.is_dynamic(b);
@@ -96,7 +106,7 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   block.bias_rate[lane] = soft.bias_rate;
   block.mass_scale[lane] = soft.mass_scale;
   block.impulse_scale[lane] = soft.impulse_scale;
-  put(block.center_offset, lane, V(ma.center - mb.center));
+  put(block.center_offset, lane, V(ma.center - mb.center) - across);
   float deepest = 0;
   for (int i = 0; i < D::max_points; ++i) {
     auto& point = block.point[i];
