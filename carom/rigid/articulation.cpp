@@ -247,7 +247,7 @@ Status Articulation<D>::inverse_dynamics(std::span<const double> accelerations, 
       return core::Error{"Articulation::inverse_dynamics: an acceleration is not finite, expected numbers"};
   detail::TreeRoot root = root_;
   detail::tree_forces(links_, root, speeds_, accelerations, gravity_, {}, motion_, torques);
-  if (!floating_) return {};
+  if (!floating_ || planted_) return {};
   const detail::TreeForce free{-motion_.root.force, -motion_.root.moment};
   detail::free_root(detail::whole_of(links_), links_[0].center, free, root);
   detail::tree_forces(links_, root, speeds_, accelerations, gravity_, {}, motion_, torques);

@@ -61,8 +61,8 @@ class CAROM_API Articulation {
   Vector center_velocity() const;                                       ///< m/s
 
   /// The torques (N·m, sliders: N) for which the joints accelerate so (m/s², rad/s²), as everything stood at the last
-  /// read and without what the world's contacts and other joints do. A free root accelerates as it must. Errors: other
-  /// sizes than degrees(), a number that is not finite.
+  /// read and without what the world's contacts and other joints do. A free root accelerates as it must, a planted one
+  /// does not. Errors: other sizes than degrees(), a number that is not finite.
   Status inverse_dynamics(std::span<const double> accelerations, std::span<double> torques);
 
   // Muscles.
@@ -74,6 +74,10 @@ class CAROM_API Articulation {
   /// Of a ball joint in space: frame B in frame A.
   Status set_target(int joint, const Quatf& rotation, const Vec3f& speed = {}, const Vec3f& acceleration = {});
   Status hold();  ///< the coordinates of the last read become the targets
+  /// Of a free tree: the body that it was created with stands on something that carries it, a foot on the ground.
+  /// Muscles then push against that, as strongly as everything above needs; what touches this body is the answer, and
+  /// no load. Say no when it lifts off.
+  void plant(bool planted) { planted_ = planted; }
 
   /// Reads, and lets the muscles work for the next step of dt. What touched the tree in the last step counts as a load.
   /// Until the next read, speeds() are those of the step's middle. Errors: those of `read`, dt out of range.
@@ -108,7 +112,7 @@ class CAROM_API Articulation {
   std::vector<Frames> frames_;
   std::vector<Muscle> muscles_;
   std::vector<Target> targets_;
-  bool floating_ = false;
+  bool floating_ = false, planted_ = false;
   int degrees_ = 0;
   Vec3d gravity_{}, origin_{};  ///< `origin_`: of the links' positions
   std::vector<detail::TreeLink> links_;

@@ -331,6 +331,44 @@ TEST(Articulation, MusclesAreOscillatorsOfTheirFrequency) {
   }
 }
 
+// A rod on a foot on the ground, leaning: with the foot planted its ankle settles as the oscillator of its muscle,
+// q (1 + ω t) e^(−ωt); pushing as if the foot were free, it topples.
+TEST(Articulation, MusclesPushAgainstAPlantedFoot) {
+  const auto last = [](bool planted, double& worst) {
+    WorldDef<Dim2> def = world_with<Dim2>();
+    def.joint_solver = JointSolver::direct;
+    World2 world(def);
+    add_ground(world);
+    const double lean = 0.03;
+    const BodyId foot =
+        add_body<Dim2>(world, BodyType::dynamic, box_shape<Dim2>(0.2f, 0.05f, 0.1f), at<Dim2>(0, 0.05), {0.9f});
+    const BodyId rod =
+        add_body<Dim2>(world, BodyType::dynamic, box_shape<Dim2>(0.05f, 0.5f, 0.1f), at<Dim2>(0, 0.6), {0.5f});
+    world.create_joint(hinge_at<Dim2>(world, foot, rod, at<Dim2>(0, 0.1))).value();
+    run(world, 30);  // the ground takes up the load of the foot
+    world.set_pose(rod, at<Dim2>(-0.5 * math::sin(lean), 0.1 + 0.5 * math::cos(lean)), from_angle(float(lean))).value();
+    world.set_velocity(rod, {}, 0).value();
+    auto leg = Articulation2::create(world, foot).value();
+    EXPECT_TRUE(leg.floating());
+    leg.set_muscles({.hertz = 1, .damping_ratio = 1}).value();
+    leg.set_target(0, 0.0).value();
+    leg.plant(planted);
+    const double omega = 2 * math::pi;
+    for (int i = 1; i <= 120; ++i) {
+      leg.drive(world, frame).value();
+      world.step(frame).value();
+      leg.read(world).value();
+      const double t = i * double(frame);
+      worst = max(worst, math::abs(leg.coordinates()[0] - lean * (1 + omega * t) * math::exp(-omega * t)));
+    }
+    return math::abs(leg.coordinates()[0]);
+  };
+  double worst = 0, unused = 0;
+  EXPECT_LT(last(true, worst), 0.001);
+  EXPECT_LT(worst, 0.003) << "of 0.03 rad";
+  EXPECT_GT(last(false, unused), 0.3);
+}
+
 // Computed torque: an arm of three links with a load of twenty times its hand follows a path of 1 Hz within a
 // degree, with soft muscles.
 TEST(Articulation, AnArmFollowsItsPath) {

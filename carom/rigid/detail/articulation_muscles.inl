@@ -88,7 +88,7 @@ Status Articulation<D>::hold() {
 template <class D>
 void Articulation<D>::find_touches(const World<D>& world, float dt) {
   outside_.assign(links_.size(), {});
-  for (std::size_t i = floating_ ? 0 : 1; i < links_.size(); ++i) {
+  for (std::size_t i = floating_ && !planted_ ? 0 : 1; i < links_.size(); ++i) {
     world.contacts(bodies_[i], contacts_);
     for (const ContactView<D>& view : contacts_) {
       const auto a = world.body_of(view.shape_a), b = world.body_of(view.shape_b);
@@ -160,7 +160,7 @@ Status Articulation<D>::drive(World<D>& world, float dt) {
   move_ahead(0.5 * step);
   detail::TreeRoot root = root_;
   detail::tree_forces(links_, root, speeds_, accelerations_, gravity_, outside_, motion_, torques_);
-  if (floating_) {
+  if (floating_ && !planted_) {
     detail::free_root(detail::whole_of(links_), links_[0].center, {-motion_.root.force, -motion_.root.moment}, root);
     detail::tree_forces(links_, root, speeds_, accelerations_, gravity_, outside_, motion_, torques_);
   }

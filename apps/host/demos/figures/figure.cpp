@@ -27,7 +27,6 @@ Figure Figure::create(Stage3& stage, Vec3d place, std::uint32_t shirt, std::uint
     rigid::ShapeDef<Dim3> d;
     d.density = 950;
     d.material.friction = which >= foot ? 0.9f : 0.5f;
-    d.filter.group = -7;
     f.body[which] = stage.add(body, shape, d, color);
   };
   part(pelvis, "pelvis", {0, 1.0, 0}, geometry::Box{{0.06f, 0.05f, 0.1f}, 0.05f}, trousers);

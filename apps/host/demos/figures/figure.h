@@ -20,7 +20,8 @@ struct Figure {
   rigid::JointId waist, neck, shoulder[2], elbow[2], hip[2], knee[2], ankle[2];
   rigid::Articulation3 mechanism;
 
-  /// Upright with its soles at `place`, held at the pelvis by `holder`. Its parts do not collide with one another.
+  /// Upright with its soles at `place`, held at the pelvis by `holder`. Its limbs collide with one
+  /// another and with its trunk; what a joint joins does not.
   static Figure create(Stage3& stage, Vec3d place, std::uint32_t shirt, std::uint32_t trousers, rigid::BodyId holder);
   void set_pose(Stage3& stage, const Pose& pose);
   /// rad: the farthest that a joint is from a pose, at the mechanism's last read.
