@@ -13,6 +13,7 @@ constexpr DemoEntry engine[] = {
     {"wrecking-ball", demo::make_wrecking_ball},
     {"pyramids", demo::make_pyramids},
     {"joints", demo::make_joints},
+    {"joints-2d", demo::make_joints_plane},
     {"paths", demo::make_paths},
     {"machines", demo::make_machines},
     {"free-axes", demo::make_free_axes},

@@ -48,6 +48,7 @@ std::unique_ptr<Demo> make_card_house();
 std::unique_ptr<Demo> make_events();
 std::unique_ptr<Demo> make_hooks();
 std::unique_ptr<Demo> make_joints();
+std::unique_ptr<Demo> make_joints_plane();
 std::unique_ptr<Demo> make_chain();
 std::unique_ptr<Demo> make_paths();
 std::unique_ptr<Demo> make_machines();
