@@ -51,7 +51,7 @@ struct WorldImplementation {
   int hit_event_shapes = 0;  ///< shapes that want hit events
   std::uint64_t step_count = 0, births = 0;
   double time = 0;
-  float last_dt = 1.0f / 60;  ///< s; before the first step, what it is likely to be
+  float last_dt = 1.0f / 60;              ///< s; before the first step, what it is likely to be
   std::size_t peak_bytes = 0;             ///< the most memory held after any step
   bool reserved = false;                  ///< the caller asked for room: it is not given back when all sleeps
   std::vector<PairRuleEntry> pair_rules;  ///< in the order of their keys
