@@ -256,14 +256,24 @@ float Character<D>::advance(const World<D>& world, const Vector& direction, floa
     // A short look first: who follows the ground finds it at once, with a few triangles.
     float step = i == 0 ? min(way, 0.2f * definition_.radius) : way - gone;
     find_planes(world, direction * step, ground_gap);
+    const float most = step;
     for (const Plane& p : planes_) {
       const float toward = -dot(p.normal, direction);
       if (toward > 1e-3f) step = min(step, max(p.gap, 0.0f) / toward);
     }
     position_ += Position(direction * step);
     gone += step;
-    stopped_ = step < 10 * tiny;
-    if (stopped_) break;
+    // After a short way the planes are those of its end but for a hundredth of the skin, which is the sagitta of the
+    // round end over it, and never nearer than the obstacle: distances of convex shapes are convex functions.
+    const float bend = step * step / (2 * definition_.radius);
+    stopped_ = step < 10 * tiny || (step < most && bend < 0.01f * definition_.skin);
+    if (stopped_) {
+      for (Plane& p : planes_) {
+        p.gap += step * dot(p.normal, direction);
+        p.height -= step * dot(direction, definition_.up);
+      }
+      break;
+    }
   }
   return gone;
 }

@@ -276,6 +276,34 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   points_for(pair, found, 5e-4f * small, cache, out);
 }
 
+/// What clip_to_face finds of the line of a ball or capsule over a triangle, for far less. Returns whether anything.
+static bool clip_line(const Convex& t, const Convex& b, Vec3f center, Vec3f end, float margin, float widen,
+                      ContactPoints& out) {
+  const int count = b.kind == CoreKind::point ? 1 : 2;
+  Vec3f p[2] = {center - end, center + end};
+  std::uint32_t name[2] = {0, 1};
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const Vec3f a = t.corner[e], side = cross(t.corner[e == 2 ? 0 : e + 1] - a, t.normal);  // outward
+    const float size = dot(side, side), tolerance = max(1e-5f * size, widen > 0 ? widen * math::sqrt(size) : 0.0f);
+    const float first = dot(side, p[0] - a), second = count == 2 ? dot(side, p[1] - a) : first;
+    const bool out_first = first > tolerance, out_second = second > tolerance;
+    if (!out_first && !out_second) continue;
+    if (out_first && out_second) return false;
+    const float from = out_first ? first : min(first, 0.0f), to = out_second ? second : min(second, 0.0f);
+    const Vec3f cut = p[0] + (p[1] - p[0]) * (from / (from - to));
+    const std::uint32_t low = min(name[0], name[1]), high = max(name[0], name[1]);
+    const int replaced = out_first ? 0 : 1;
+    p[replaced] = cut;
+    name[replaced] = (e + 1) << 8 | ((low * 31 + high * 7) & 0xffff) << 14 | (low & 0xff);
+  }
+  const int before = out.count;
+  for (int i = 0; i < count; ++i) {
+    const float height = dot(t.normal, p[i] - t.corner[0]), s = height - b.radius;
+    if (s <= margin) out.add(p[i] - t.normal * (0.5f * (b.radius + height)), s, name[i]);
+  }
+  return out.count > before;
+}
+
 bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const PlacedCorners& corners,
                       const Transform3f& x, float margin, OffDirections& off, ContactPoints& out, Vec3f& normal) {
   using namespace core_pair;
@@ -291,7 +319,9 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   Vec3f foot{};
   if (corners.known())
     foot = corners.corner(corners.farthest(-t.normal)) + x.p;
-  else if (!line)
+  else if (line)
+    foot = dot(t.normal, end) > 0 ? center - end : center + end;
+  else
     foot = transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, t.normal)))));
   const float along_face = line ? behind - abs(dot(t.normal, end)) : dot(t.normal, foot - t.corner[0]);
   if (along_face - pair.radius() > margin) return false;
@@ -309,6 +339,10 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   }
 
   const auto on_face = [&] {
+    if (line) {
+      normal = t.normal;
+      return clip_line(t, b, center, end, margin, flat_edges != 0 ? 0.0175f * b.radius : 0.0f, out);
+    }
     Feature face, incident;
     face_feature(t, 0, t.normal, face);
     feature(b, -inverse_rotate(x.q, t.normal), incident);
@@ -333,10 +367,11 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   // of the triangle lies on an edge that the foot is beyond: distances from a convex shape are a convex function, and
   // grow on every way away from its foot. Where all of these are flat, the contact is the neighbours'.
   int beyond = 0;
-  if (!line && along_face > 0)
+  if (along_face > 0)
     for (int e = 0; e < 3; ++e)
       if (dot(cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal), foot - t.corner[e]) > 0) beyond |= 1 << e;
-  if (beyond != 0 && (beyond & ~flat_edges) == 0) return on_face();
+  if (line ? along_face > 0 && (beyond & ~flat_edges) == 0 : beyond != 0 && (beyond & ~flat_edges) == 0)
+    return on_face();
   const auto stands_over = [&] {
     if (line || along_face <= 0 || beyond != 0) return false;
     found.distance = double(along_face);

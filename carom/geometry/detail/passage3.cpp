@@ -133,11 +133,21 @@ struct Search {
   void guard(GapOf&& gap_of, Closing&& closing) {
     if (guard_count == 0) guard_count = guards_of(passage.shape, passage.inner, guards);
     for (int i = 0; i < guard_count; ++i) {
-      const Swept<Vec3d> s = swept(guards[i].core, a, guards[i].local);
-      auto gap = gap_of(guards[i]);
-      Vec3d n{};
-      const double first = gap(0, n);
-      if (!(first > 1e-6)) continue;  // too late for this one
+      Guard held = guards[i];
+      const bool shrinks = held.core.kind == CoreKind::box || held.core.kind == CoreKind::segment ||
+                           held.core.kind == CoreKind::cylinder;
+      double first = 0;
+      float less = passage.inner;
+      // Where it is too late for this one (the end of a rod is in a wall already), for what lies farther inside.
+      for (int tries = 0; tries < (shrinks ? 5 : 1); ++tries, less *= 2) {
+        if (tries > 0) held.core.half = max(held.core.half - Vec3f{less, less, less}, Vec3f{});
+        Vec3d n{};
+        first = gap_of(held)(0, n);
+        if (first > 1e-6) break;
+      }
+      if (!(first > 1e-6)) continue;
+      const Swept<Vec3d> s = swept(held.core, a, held.local);
+      auto gap = gap_of(held);
       const double near = min(min(target, 0.25 * inner), 0.5 * first);
       keep(advance<Vec3d>(
           near, limit, gap, [&](double t, Vec3d along) { return closing(t, along, s); },
@@ -217,11 +227,19 @@ float free_fraction(const Passage3& a, const Shape3& b, const Sweep3& b_sweep, f
 }
 
 Bounds3f swept_bounds(const Shape3& shape, const Sweep3& sweep) {
-  const Motion3 m(sweep);
-  const Bounds3f all = merge(bounds(shape, in_float(m.at(0))), bounds(shape, in_float(m.at(1))));
-  if (!m.turns() || !is_convex(shape)) return all;
-  const Swept<Vec3d> s = swept(convex_of(shape), m);
-  return grow(all, float(m.sagitta * (math::length(s.arm) + s.reach)));
+  const auto at = [&](const Vec3f& center, const Quatf& rotation) {
+    const Quatf q = normalize(rotation);
+    return bounds(shape, Transform3f{center - rotate(q, sweep.local_center), q});
+  };
+  const Bounds3f all = merge(at(sweep.c0, sweep.q0), at(sweep.c1, sweep.q1));
+  if (sweep.q0 == sweep.q1 || !is_convex(shape)) return all;
+  // How far the arc of a point strays from its chord: 1 − cos(θ/2) of its arm, with cos(θ/2) the product of the two.
+  const float cosine =
+      math::abs(dot(sweep.q0, sweep.q1)) / math::sqrt(dot(sweep.q0, sweep.q0) * dot(sweep.q1, sweep.q1));
+  const Convex core = convex_of(shape);
+  const Vec3d middle(inner_point(core));
+  const float arm = math::length(Vec3f(middle) - sweep.local_center) + float(reach_about(core, middle));
+  return grow(all, (1 - cosine + 2e-7f) * 1.0001f * arm);
 }
 
 }  // namespace carom::geometry::detail

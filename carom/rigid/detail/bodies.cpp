@@ -1,5 +1,8 @@
 #include "carom/rigid/detail/bodies.h"
 
+#include "carom/geometry/detail/passage.h"
+#include "carom/rigid/detail/rotation_step.h"
+
 namespace carom::rigid::detail {
 namespace {
 
@@ -328,6 +331,30 @@ typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeR
   return typename D::Position(way);
 }
 
+/// A bullet asks the pairs of its fat bounds what it meets, so they must hold how it turns as well.
+template <class D>
+static bool is_quick_bullet(const WorldImplementation<D>& world, std::int32_t body) {
+  if ((world.bodies.record[std::size_t(body)].flags & body_bullet) == 0) return false;
+  const auto way = world.bodies.solver[std::size_t(body)].linear_velocity * world.last_dt;
+  return math::length_squared(way) > square(0.25f * world.bodies.motion[std::size_t(body)].inner_extent);
+}
+/// Of the shape's places while its body turns through a step about its centre of mass.
+template <class D>
+static typename D::Bounds bounds_of_turn(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  using P = typename D::Position;
+  using Sweep = std::conditional_t<D::dimension == 2, geometry::Sweep2, geometry::Sweep3>;
+  const BodyMotion<D>& m = world.bodies.motion[std::size_t(shape.body)];
+  const typename D::Rotation& q = world.bodies.pose[std::size_t(shape.body)].rotation;
+  const Sweep body{m.local_center,
+                   {},
+                   {},
+                   q,
+                   normalize(turn(world.bodies.solver[std::size_t(shape.body)].angular_velocity * world.last_dt) * q)};
+  const auto box = geometry::detail::swept_bounds(
+      shape.geometry, shape.at_origin ? body : geometry::detail::sweep_of_part(body, shape.local));
+  return {m.center + P(box.low), m.center + P(box.high)};
+}
+
 template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   using P = typename D::Position;
@@ -337,7 +364,8 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
     const BodyMotion<D>& m = world.bodies.motion[std::size_t(shape.body)];
     const double reach = double(math::length(shape.local.p - m.local_center) + shape.outer_extent);
     box = merge(box, geometry::grow(typename D::Bounds{m.center, m.center}, reach));
-  }
+  } else if (is_quick_bullet(world, shape.body))
+    box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
   // A body of several shapes would have all of them leave their bounds in every step of a fall.
   const P ahead = among_several(world, shape) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);

@@ -53,6 +53,15 @@ Sweep<D> way_of_shape(const ShapeRecord<D>& shape, const Sweep<D>& body) {
   return shape.at_origin ? body : geometry::detail::sweep_of_part(body, shape.local);
 }
 
+/// A body that is set back in its turn has the spin that it had there in its own axes: kept in the world's, it would
+/// be about another axis of the body, and that of a rod that spins about its length would gain energy a hundredfold.
+inline void set_back_spin(SolverBody<Dim2>&, const Rot2f&, const Rot2f&) {}
+inline void set_back_spin(SolverBody<Dim3>& s, const Quatf& from, const Quatf& to) {
+  const Quatf back = to * conjugate(from);
+  s.angular_velocity = rotate(back, s.angular_velocity);
+  s.spin_rest_x = s.spin_rest_y = s.spin_rest_z = 0;
+}
+
 /// Stops a body at a fraction of the step.
 template <class D>
 void stop_at(WorldImplementation<D>& world, std::int32_t body, float fraction) {
@@ -62,7 +71,9 @@ void stop_at(WorldImplementation<D>& world, std::int32_t body, float fraction) {
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   m.center = start.center + (m.center - start.center) * double(f);
   typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
-  pose.rotation = rotation_after(start, pose.rotation, f);
+  const typename D::Rotation end = pose.rotation;
+  pose.rotation = rotation_after(start, end, f);
+  if (m.gyroscopic) set_back_spin(world.bodies.solver[std::size_t(body)], end, pose.rotation);
   start.turn = start.turn * f;
   pose_from_center(world, body);
   start.fraction = fraction;

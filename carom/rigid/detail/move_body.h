@@ -19,20 +19,7 @@ template <class D>
 void turn_body(SolverBody<D>& s, float h) {
   s.delta_rotation = normalize(turn(h * s.angular_velocity) * s.delta_rotation);
 }
-inline void turn_freely(SolverBody<Dim2>& s, const BodyMotion<Dim2>&, const Rot2f&, float h) { turn_body(s, h); }
-inline void turn_freely(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Quatf& start, float h) {
-  const Quatf q = normalize(s.delta_rotation * start);
-  Vec3d w = Vec3d(s.angular_velocity) + Vec3d(double(s.spin_rest_x), double(s.spin_rest_y), double(s.spin_rest_z));
-  const Quatf r = torque_free_turn(m.inertia, q, h, w);
-  s.angular_velocity = Vec3f(w);
-  const Vec3f rest(w - Vec3d(s.angular_velocity));
-  s.spin_rest_x = rest.x;
-  s.spin_rest_y = rest.y;
-  s.spin_rest_z = rest.z;
-  s.delta_rotation = normalize(q * r * conjugate(start));
-}
-
-/// The same for a body that constraints push about: in float.
+/// A body that constraints push about; what nothing touches turns in double (flight_lanes.h).
 inline void turn_pushed(SolverBody<Dim2>& s, const BodyMotion<Dim2>&, const Rot2f&, float h) { turn_body(s, h); }
 inline void turn_pushed(SolverBody<Dim3>& s, const BodyMotion<Dim3>& m, const Quatf& start, float h) {
   const Quatf q = normalize(s.delta_rotation * start);

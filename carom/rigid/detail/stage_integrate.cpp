@@ -1,3 +1,4 @@
+#include "carom/rigid/detail/flight_lanes.h"
 #include "carom/rigid/detail/move_body.h"
 #include "carom/rigid/detail/stages.h"
 #include "carom/rigid/detail/turn_lanes.h"
@@ -13,6 +14,15 @@ TurnKernel turn_kernel_of(int width) {
   (void)width;
 #endif
   return pin_kernels_baseline::turn_kernel();
+}
+FlightKernel flight_kernel_of(int width) {
+#if defined(__x86_64__)
+  if (width == 16) return pin_kernels_avx512::flight_kernel();
+  if (width == 8) return pin_kernels_avx2::flight_kernel();
+#else
+  (void)width;
+#endif
+  return pin_kernels_baseline::flight_kernel();
 }
 
 /// Gathers bodies of space that constraints push about, and turns as many as there are lanes at once.
@@ -47,6 +57,71 @@ class PushedBodies {
   TurnKernel turn_;
   TurnLanes<W> lanes_;
   int count_ = 0;
+};
+
+/// The same for bodies that nothing touches: in double, because one near its intermediate axis feels every rounding.
+template <int W>
+class FreeBodies {
+ public:
+  FreeBodies(StepContext<Dim3>& context, int substeps)
+      : context_(context), fly_(flight_kernel_of(W)), substeps_(substeps) {
+    clear();
+  }
+  FreeBodies(const FreeBodies&) = delete;
+  ~FreeBodies() {
+    if (count_ > 0) turn();
+  }
+  /// By so many substeps, each of which adds `gain` to the spin and keeps a part of it.
+  void add(std::int32_t body, const Vec3f& gain, float keep) {
+    const Mat3f& inertia = context_.world.bodies.motion[std::size_t(body)].inertia;
+    const Quatd start = normalize(Quatd(context_.world.bodies.pose[std::size_t(body)].rotation));
+    const SolverBody<Dim3>& s = context_.bodies[body];
+    const Vec3f rest{s.spin_rest_x, s.spin_rest_y, s.spin_rest_z};
+    const float tensor[6] = {inertia.cx.x, inertia.cx.y, inertia.cx.z, inertia.cy.y, inertia.cy.z, inertia.cz.z};
+    for (int i = 0; i < 6; ++i) lanes_.inertia[i][count_] = double(tensor[i]);
+    lanes_.start[0][count_] = start.w;
+    lanes_.so_far[0][count_] = double(s.delta_rotation.w);
+    for (int i = 0; i < 3; ++i) {
+      lanes_.start[i + 1][count_] = start.vector()[i];
+      lanes_.so_far[i + 1][count_] = double(s.delta_rotation.vector()[i]);
+      lanes_.spin[i][count_] = double(s.angular_velocity[i]) + double(rest[i]);
+      lanes_.gain[i][count_] = double(gain[i]);
+    }
+    lanes_.keep[count_] = double(keep);
+    lanes_.any_gain = lanes_.any_gain || !(gain == Vec3f{});
+    lanes_.body[count_] = body;
+    if (++count_ == W / 2) turn();
+  }
+
+ private:
+  void turn() {
+    fly_(&lanes_, context_.h, substeps_, max_turn);
+    for (int k = 0; k < count_; ++k) {
+      SolverBody<Dim3>& s = context_.bodies[lanes_.body[k]];
+      s.delta_rotation =
+          Quatf(Quatd{lanes_.so_far[0][k], {lanes_.so_far[1][k], lanes_.so_far[2][k], lanes_.so_far[3][k]}});
+      // Energy and the size of the momentum are those in body axes, however the attitude is rounded: near the
+      // intermediate axis that decides when it flips.
+      const Quatf now = normalize(s.delta_rotation * context_.world.bodies.pose[std::size_t(lanes_.body[k])].rotation);
+      const Vec3d w = rotate(normalize(Quatd(now)), Vec3d{lanes_.spin[0][k], lanes_.spin[1][k], lanes_.spin[2][k]});
+      s.angular_velocity = Vec3f(w);
+      const Vec3f rest(w - Vec3d(s.angular_velocity));
+      s.spin_rest_x = rest.x, s.spin_rest_y = rest.y, s.spin_rest_z = rest.z;
+    }
+    clear();
+  }
+  void clear() {
+    count_ = 0;
+    lanes_ = {};
+    for (int k = 0; k < W / 2; ++k) {
+      lanes_.inertia[0][k] = lanes_.inertia[3][k] = lanes_.inertia[5][k] = 1;
+      lanes_.start[0][k] = lanes_.so_far[0][k] = lanes_.keep[k] = 1;
+    }
+  }
+  StepContext<Dim3>& context_;
+  FlightKernel fly_;
+  int substeps_, count_ = 0;
+  FlightLanes<W / 2> lanes_;
 };
 
 /// Moves the centre of the body at a place of the awake list. Returns whether nothing but forces moved it.
@@ -86,7 +161,10 @@ void prepare_drives(StepContext<D>& context) {
       if (record.locks != 0) drive.kind = 3;
       if (record.type != BodyType::dynamic) continue;
       drive.flags = BodyDrive<D>::dynamic;
-      if (record.constraint_count == 0) drive.flags |= BodyDrive<D>::in_flight;
+      if (record.constraint_count == 0) {
+        drive.flags |= BodyDrive<D>::in_flight;
+        if (D::dimension == 3 && record.locks == 0) drive.flags |= BodyDrive<D>::flies_through;
+      }
       if (record.locks == 0) drive.kind = record.constraint_count == 0 ? 2 : 1;
       if (may_turn_freely(m, record)) drive.flags |= BodyDrive<D>::gyroscopic;
       const float pace = bodies.pace(drive.body), share = h * load_share(m) * (pace * pace);
@@ -109,23 +187,35 @@ void by_lanes(const StepContext<D>& context, int begin, int end, Kernel&& kernel
   if (begin < end) single(begin, end);
 }
 
+/// What forces and damping make of a body's velocity in a substep of h seconds. Returns the velocity before.
+template <class D>
+typename D::Vector accelerate(SolverBody<D>& s, const BodyDrive<D>& drive, float max_speed) {
+  const typename D::Vector before = s.linear_velocity;
+  s.linear_velocity += drive.linear_gain;
+  s.linear_velocity *= drive.linear_keep;
+  if (drive.locks != 0) apply_locks(s, drive.locks);
+  const float speed_squared = math::length_squared(s.linear_velocity);
+  if (speed_squared > max_speed * max_speed) s.linear_velocity *= max_speed / math::sqrt(speed_squared);
+  return before;
+}
+template <class D>
+void spin_up(SolverBody<D>& s, const BodyDrive<D>& drive, float h) {
+  s.angular_velocity += drive.angular_gain;
+  s.angular_velocity *= drive.angular_keep;
+  if (drive.locks != 0) apply_locks(s, drive.locks);
+  const float spin = speed_of(s.angular_velocity);
+  if (spin * h > max_turn) s.angular_velocity *= max_turn / (spin * h);
+}
+
 template <class D>
 void accelerate_bodies(StepContext<D>& context, int begin, int end) {
   const float h = context.h, max_speed = context.world.definition.maximum_linear_speed;
   for (int i = begin; i < end; ++i) {
     const BodyDrive<D>& drive = context.drives[i];
-    if ((drive.flags & BodyDrive<D>::dynamic) == 0) continue;
+    if ((drive.flags & BodyDrive<D>::dynamic) == 0 || (drive.flags & BodyDrive<D>::flies_through) != 0) continue;
     SolverBody<D>& s = context.bodies[drive.body];
-    const typename D::Vector before = s.linear_velocity;
-    s.linear_velocity += drive.linear_gain;
-    s.angular_velocity += drive.angular_gain;
-    s.linear_velocity *= drive.linear_keep;
-    s.angular_velocity *= drive.angular_keep;
-    if (drive.locks != 0) apply_locks(s, drive.locks);
-    const float speed_squared = math::length_squared(s.linear_velocity);
-    if (speed_squared > max_speed * max_speed) s.linear_velocity *= max_speed / math::sqrt(speed_squared);
-    const float spin = speed_of(s.angular_velocity);
-    if (spin * h > max_turn) s.angular_velocity *= max_turn / (spin * h);
+    const typename D::Vector before = accelerate(s, drive, max_speed);
+    spin_up(s, drive, h);
     // Free flight: the mean of the velocities makes ½at² exact. In contact it would fight the contact.
     if ((drive.flags & BodyDrive<D>::in_flight) != 0)
       s.delta_position += (0.5f * h) * (before + s.linear_velocity);
@@ -151,22 +241,55 @@ void move_bodies(StepContext<Dim2>& context, int begin, int end) {
 }
 template <int W>
 void move_bodies(StepContext<Dim3>& context, int begin, int end) {
-  const auto& bodies = context.world.bodies;
   PushedBodies<W> pushed(context);
+  FreeBodies<W> free(context, 1);
   for (int i = begin; i < end; ++i) {
     const BodyDrive<Dim3>& drive = context.drives[i];
+    if ((drive.flags & BodyDrive<Dim3>::flies_through) != 0) continue;
     SolverBody<Dim3>& s = context.bodies[drive.body];
     const bool flies = move_center(context, i);
     if ((drive.flags & BodyDrive<Dim3>::gyroscopic) == 0 || !spins(s.angular_velocity))
       turn_body(s, context.h);
     else if (flies)
-      turn_freely(s, bodies.motion[std::size_t(drive.body)], bodies.pose[std::size_t(drive.body)].rotation, context.h);
+      free.add(drive.body, {}, 1);
     else
       pushed.add(drive.body);
   }
 }
 
+/// All substeps of the bodies that nothing touches.
+template <int W>
+void fly_bodies(StepContext<Dim3>& context, int begin, int end) {
+  const float h = context.h, max_speed = context.world.definition.maximum_linear_speed;
+  FreeBodies<W> free(context, context.substeps);
+  for (int i = begin; i < end; ++i) {
+    const BodyDrive<Dim3>& drive = context.drives[i];
+    if ((drive.flags & BodyDrive<Dim3>::flies_through) == 0) continue;
+    SolverBody<Dim3>& s = context.bodies[drive.body];
+    for (int k = 0; k < context.substeps; ++k) {
+      const Vec3f before = accelerate(s, drive, max_speed);
+      s.delta_position += (0.5f * h) * (before + s.linear_velocity);
+    }
+    const bool spinning = spins(s.angular_velocity) || !(drive.angular_gain == Vec3f{});
+    if ((drive.flags & BodyDrive<Dim3>::gyroscopic) != 0 && spinning) {
+      free.add(drive.body, drive.angular_gain, drive.angular_keep);
+      continue;
+    }
+    for (int k = 0; k < context.substeps; ++k) {
+      spin_up(s, drive, h);
+      turn_body(s, h);
+    }
+  }
+}
+
 }  // namespace
+
+void fly_through(StepContext<Dim3>& context, int begin, int end) {
+  const int width = context.world.kernels.width;
+  if (width == 16) return fly_bodies<16>(context, begin, end);
+  if (width == 8) return fly_bodies<8>(context, begin, end);
+  fly_bodies<4>(context, begin, end);
+}
 
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end) {

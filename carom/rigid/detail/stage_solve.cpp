@@ -75,6 +75,7 @@ void list_stages(StepContext<D>& context) {
   scratch.solver_loops.clear();
   scratch.solver_stages.reserve(most_solver_stages(context.substeps, settling));
   scratch.solver_loops.reserve(most_solver_stages(context.substeps, settling));
+  if (D::dimension == 3) add_body_stage(context, SolverPass::flights);
   for (int substep = 0; substep < context.substeps; ++substep) {
     // Whichever point of a face is solved first takes more than its share: from step to step each has its turn at every
     // place of the sequence, so that a tower's faces do not tilt. Within a step, in which a blow is shared out, there
@@ -126,6 +127,8 @@ void run_settling(StepContext<D>& context, SolverStage stage, int color, int beg
 template <class D>
 void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
+  if constexpr (D::dimension == 3)
+    if (stage.pass == SolverPass::flights) return fly_through(context, begin, end);
   if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end);
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
   if (is_of_trees(stage.pass)) return run_trees(context, stage.pass, begin, end);
@@ -145,8 +148,9 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
 template <class D>
 void run_joints(StepContext<D>& context, SolverStage stage) {
   const int color = color_of_rank(stage.first_rank);
-  if (stage.pass == SolverPass::velocities || stage.pass == SolverPass::positions || stage.pass == SolverPass::settle ||
-      is_of_trees(stage.pass) || !has_joints(context, color))
+  if (stage.pass == SolverPass::flights || stage.pass == SolverPass::velocities ||
+      stage.pass == SolverPass::positions || stage.pass == SolverPass::settle || is_of_trees(stage.pass) ||
+      !has_joints(context, color))
     return;
   if (stage.pass == SolverPass::warm_start)
     warm_start_joints(context, color);

@@ -53,10 +53,12 @@ template <class D>
 void solve_constraints(StepContext<D>& context);
 template <class D>
 void restitute_contacts(StepContext<D>& context);
-/// Of the bodies in places [begin, end) of the list of awake bodies, by one substep.
 /// What integration needs of bodies through all substeps.
 template <class D>
 void prepare_drives(StepContext<D>& context);
+/// All substeps of those bodies in places [begin, end) of the list of awake bodies that nothing touches.
+void fly_through(StepContext<Dim3>& context, int begin, int end);
+/// Of the others there, by one substep.
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end);
 template <class D>

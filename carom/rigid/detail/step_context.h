@@ -31,9 +31,10 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
 /// cold parts of bodies are read once a step.
 template <class D>
 struct BodyDrive {
-  enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4 };
+  enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4, flies_through = 8 };
   std::int32_t body = none;                 ///< slot
-  std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint
+  std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint; flies_through: so, in
+                                            ///< space and without locks, all substeps at once
   float linear_keep = 1, angular_keep = 1;  ///< what damping leaves of velocities
   typename D::Vector linear_gain{};         ///< m/s, of gravity and forces
   typename D::Angular angular_gain{};       ///< rad/s

@@ -42,6 +42,7 @@ struct ColorBlocks {
 
 /// A pass over bodies or over the constraints of some colours: what the solver does between two barriers.
 enum class SolverPass : std::uint8_t {
+  flights,
   velocities,
   begin_trees,
   warm_start,
@@ -64,7 +65,7 @@ struct SolverStage {
 inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
-  return std::size_t(substeps) * std::size_t(6 + (3 + settling) * (color_count + 1));
+  return 1 + std::size_t(substeps) * std::size_t(6 + (3 + settling) * (color_count + 1));
 }
 
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
