@@ -364,11 +364,13 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
     const BodyMotion<D>& m = world.bodies.motion[std::size_t(shape.body)];
     const double reach = double(math::length(shape.local.p - m.local_center) + shape.outer_extent);
     box = merge(box, geometry::grow(typename D::Bounds{m.center, m.center}, reach));
-  } else if (is_quick_bullet(world, shape.body))
-    box = merge(box, bounds_of_turn(world, shape));
+  }
+  const bool bullet = is_quick_bullet(world, shape.body);
+  if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
   // A body of several shapes would have all of them leave their bounds in every step of a fall.
-  const P ahead = among_several(world, shape) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);
+  P ahead = among_several(world, shape) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);
+  if (bullet) ahead = P(s.linear_velocity * world.last_dt);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 
