@@ -321,7 +321,8 @@ TYPED_TEST(WarmStep, WithInputOfEveryKind) {
     (void)world.ray_cast(at<D>(-10, 1), along<D>(20, 0));
     (void)world.overlap(ball_shape<D>(1), {at<D>(0, 1), {}}, found);
   };
-  EXPECT_EQ(calls_in_warm_steps(world, 500, 200, push), 0);
+  // What is thrown about has its most contacts late.
+  EXPECT_EQ(calls_in_warm_steps(world, 1000, 200, push), 0);
 }
 
 }  // namespace
