@@ -6,7 +6,7 @@ target_compile_features(carom_flags INTERFACE cxx_std_20)
 target_compile_options(carom_flags INTERFACE
   -ffp-contract=off -fno-math-errno -fno-trapping-math
   -Wall -Wextra -Wpedantic -Wno-psabi $<$<BOOL:${CAROM_WERROR}>:-Werror>
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-misleading-indentation -Wno-restrict>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-misleading-indentation -Wno-restrict -Wno-free-nonheap-object>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-warning-option -Wno-missing-field-initializers -Wno-gnu-anonymous-struct -Wno-nested-anon-types>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>
   # In unity a source is an included file, where gcc distrusts anonymous namespaces as if it were a header.
