@@ -2,8 +2,6 @@
 
 #include <cassert>
 
-#include "carom/core/large_pages.h"
-
 namespace carom::geometry {
 namespace {
 template <class V>
@@ -23,7 +21,7 @@ int DynamicTree<V>::take_node() {
     return node;
   }
   // By a quarter rather than to the double: a large world at rest should pay for what it holds.
-  if (nodes_.size() == nodes_.capacity()) core::reserve_large(nodes_, nodes_.size() + nodes_.size() / 4 + 16);
+  if (nodes_.size() == nodes_.capacity()) nodes_.reserve(nodes_.size() + nodes_.size() / 4 + 16);
   nodes_.push_back(Node{});
   return int(nodes_.size()) - 1;
 }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "carom/core/large_pages.h"
 #include "carom/core/pool.h"
 #include "carom/rigid/definitions.h"
 #include "carom/rigid/detail/solver_body.h"
@@ -24,7 +23,7 @@ constexpr Inertia no_inertia() {
 /// Makes room for one more. Vectors double by themselves; a world of sleepers should pay for what it holds.
 template <class T>
 void grow_by_a_quarter(std::vector<T>& v) {
-  if (v.size() == v.capacity()) core::reserve_large(v, v.size() + v.size() / 4 + 16);
+  if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
 }
 
 /// Always inlined: to gcc a function that only pre-loads has no effect, and calls of it go.

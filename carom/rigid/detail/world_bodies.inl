@@ -53,11 +53,11 @@ std::vector<std::int32_t> island_of(const WorldImplementation<D>& world, std::in
 /// Grows by a quarter, not to the double: a world of sleepers pays for what it holds.
 template <class D>
 void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
-  core::reserve_large(bodies.solver, count);
-  core::reserve_large(bodies.pose, count);
-  core::reserve_large(bodies.motion, count);
-  core::reserve_large(bodies.record, count);
-  core::reserve_large(bodies.birth, count);
+  bodies.solver.reserve(count);
+  bodies.pose.reserve(count);
+  bodies.motion.reserve(count);
+  bodies.record.reserve(count);
+  bodies.birth.reserve(count);
 }
 template <class D>
 void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
