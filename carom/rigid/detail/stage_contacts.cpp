@@ -58,18 +58,9 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
                          ContactRaw<D, W>& raw, int lane) {
   using V = typename D::Vector;
   const WorldImplementation<D>& world = context.world;
-  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ManifoldRecord<D>& m = world.contacts.manifold(index);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
   const std::int32_t a = c.body[0], b = c.body[1];
-  V across{};
-  if (may_foresee(c, m)) {
-    Foreseen<D> foreseen;
-    if (foresee(world, c, m.manifold, context.dt, foreseen)) {
-      m.manifold = foreseen.manifold;
-      across = foreseen.across;
-      for (float& impulse : m.impulses.normal) impulse = 0;
-    }
-  }
   const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
   const bool both = (c.flags & contact_dynamic) != 0;
   const bool dynamic_a = both || world.bodies.is_dynamic(a), dynamic_b = both || world.bodies.is_dynamic(b);
@@ -106,7 +97,7 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   block.bias_rate[lane] = soft.bias_rate;
   block.mass_scale[lane] = soft.mass_scale;
   block.impulse_scale[lane] = soft.impulse_scale;
-  put(block.center_offset, lane, V(ma.center - mb.center) - across);
+  put(block.center_offset, lane, V(ma.center - mb.center));
   float deepest = 0;
   for (int i = 0; i < D::max_points; ++i) {
     auto& point = block.point[i];
@@ -142,11 +133,28 @@ void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D
   block.write_a[lane] = block.write_b[lane] = none;
 }
 
+/// Puts the manifold of a pair that will meet in this step there where it does. False: as it is. `across`: foresee.
+template <class D>
+bool put_where_it_meets(const StepContext<D>& context, std::int32_t index, typename D::Vector& across) {
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  Foreseen<D> foreseen;
+  if (!may_foresee(c, m) || !foresee(context.world, c, m.manifold, context.dt, foreseen)) return false;
+  m.manifold = foreseen.manifold;
+  across = foreseen.across;
+  for (float& impulse : m.impulses.normal) impulse = 0;
+  return true;
+}
+
 /// The lanes of a block from the records of `list`, and their marks.
 template <class D, int W>
 void gather_block(const StepContext<D>& context, const ContactSources<D>& sources, std::span<const std::int32_t> list,
                   ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, std::uint8_t* marks) {
   const int lanes = int(list.size());
+  typename D::Vector across[W];
+  std::uint32_t meets = 0;  // bits by lane
+  for (int lane = 0; lane < lanes; ++lane)
+    meets |= std::uint32_t(put_where_it_meets(context, list[std::size_t(lane)], across[lane])) << lane;
   if constexpr (D::dimension == 2) {
     const WorldImplementation<D>& world = context.world;
     const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
@@ -159,12 +167,16 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
       put_shape<D, W>(world, c.shape[1], world.bodies.motion[std::size_t(c.body[1])].local_center, false, raw.shape_b,
                       lane);
     }
-    if (extra == nullptr || lanes == W) return;
-    for (int lane = lanes; lane < W; ++lane) zero_lane(*extra, W, lane);
+    if (extra != nullptr)
+      for (int lane = lanes; lane < W; ++lane) zero_lane(*extra, W, lane);
   } else {
     for (int lane = 0; lane < lanes; ++lane)
       marks[lane] = gather_lane(context, list[std::size_t(lane)], block, raw, lane);
     for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+  }
+  for (; meets != 0; meets &= meets - 1) {
+    const int lane = std::countr_zero(meets);
+    put(block.center_offset, lane, get(block.center_offset, lane) - across[lane]);
   }
 }
 
