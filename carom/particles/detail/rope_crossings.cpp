@@ -300,7 +300,8 @@ void RopeSolver::mix_crossings(bool bodies) {
           const RopeAnswer& answer = set.crossing_answers_[2 * d + std::size_t(l)];
           if (answer.rope != cross.rope[k]) continue;
           for (int q = 0; q < 2; ++q)
-            if (e + q >= answer.low && e + q <= answer.high) w = w + share[q] * answer.at[std::size_t(e + q)];
+            if (e + q >= answer.low && e + q <= answer.high)
+              w = w + share[q] * answer.at[std::size_t(e) + std::size_t(q)];
         }
         if (!bodies) continue;
         const Rope& rope = set.ropes_[std::size_t(cross.rope[k])];

@@ -553,13 +553,14 @@ void update_contacts(WorldImplementation<D>& world) {
                                           scratch.sweeps.data(), world.last_dt);
         } else {
           for (int lane = 0; lane < lanes; ++lane)
-            old |= std::uint32_t(nothing_new(scratch.watches[std::size_t(begin + lane)], world.bodies.pose,
+            old |= std::uint32_t(nothing_new(scratch.watches[std::size_t(begin) + std::size_t(lane)], world.bodies.pose,
                                              scratch.sweeps, world.last_dt))
                    << lane;
         }
         for (int lane = 0; lane < lanes; ++lane) {
           if ((old >> lane & 1u) != 0) continue;
-          prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(begin + lane)]), sizeof(ContactRecord<D>));
+          prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(begin) + std::size_t(lane)]),
+                         sizeof(ContactRecord<D>));
           due[number++] = begin + lane;
         }
       }
