@@ -306,8 +306,8 @@ void learn_bounce(WorldImplementation<D>& world) {
 }
 
 template <class D>
-bool among_several(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
-  const std::int32_t first = world.bodies.record[std::size_t(shape.body)].first_shape;
+bool has_several_shapes(const WorldImplementation<D>& world, std::int32_t body) {
+  const std::int32_t first = world.bodies.record[std::size_t(body)].first_shape;
   return first != none && world.shapes.at(first).next != none;
 }
 
@@ -316,7 +316,7 @@ template <class D>
 static typename D::Vector way_of_middle(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   using V = typename D::Vector;
   const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
-  if (!among_several(world, shape)) return s.linear_velocity * world.last_dt;
+  if (!has_several_shapes(world, shape.body)) return s.linear_velocity * world.last_dt;
   const V middle = transform_point(shape.local, ball_about(shape).middle),
           arm = rotate(world.bodies.pose[std::size_t(shape.body)].rotation,
                        middle - world.bodies.motion[std::size_t(shape.body)].local_center);
@@ -369,7 +369,7 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
   // A body of several shapes would have all of them leave their bounds in every step of a fall.
-  P ahead = among_several(world, shape) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);
+  P ahead = has_several_shapes(world, shape.body) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);
   if (bullet) ahead = P(s.linear_velocity * world.last_dt);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
@@ -486,7 +486,7 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
   template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&); \
   template void learn_bounce<D>(WorldImplementation<D>&);                                   \
   template D::Position way_ahead<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);  \
-  template bool among_several<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);     \
+  template bool has_several_shapes<D>(const WorldImplementation<D>&, std::int32_t);         \
   template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);   \
   template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
   template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                 \

@@ -60,9 +60,9 @@ void learn_bounce(WorldImplementation<D>& world);
 /// How far fat bounds reach ahead along the velocity: for a step where anything rebounds; else as far as contacts look.
 template <class D>
 typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
-/// Is it one of several shapes of a body?
+/// Has the body more than one shape?
 template <class D>
-bool among_several(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
+bool has_several_shapes(const WorldImplementation<D>& world, std::int32_t body);
 /// Puts the shape into the tree of its body's type (disabled bodies: none) and lets the broad phase look at it.
 template <class D>
 void insert_into_tree(WorldImplementation<D>& world, std::int32_t shape);

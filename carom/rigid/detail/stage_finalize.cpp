@@ -81,11 +81,10 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   const P way = P(world.bodies.solver[std::size_t(body)].linear_velocity) * double(world.last_dt);
   const double most_slow = quick_share * double(motion.inner_extent);
   const bool quick = math::length_squared(way) > most_slow * most_slow;
-  const std::int32_t first = world.bodies.record[std::size_t(body)].first_shape;
-  const bool several = first != none && world.shapes.at(first).next != none;
   double farthest = 0;
-  for (int k = 0; k < D::dimension && quick && !several; ++k) farthest = max(farthest, math::abs(way[k]));
-  for (std::int32_t s = first; s != none; s = world.shapes.at(s).next) {
+  if (quick && !has_several_shapes(world, body))
+    for (int k = 0; k < D::dimension; ++k) farthest = max(farthest, math::abs(way[k]));
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
     if (farthest > double(shape.margin)) {  // with the way of the next step it has left them, or nearly so

@@ -49,7 +49,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
 
   void build(Stage3& stage) override {
     stage.start({});
-    auto motors = ballistics::read_rasp(motor_file, "motors.eng");
+    auto motors = ballistics::read_rasp(motor_file(), "motors.eng");
     if (!motors.ok()) return stage.fail(motors.error());
     const double fuel = stage.value("fuel");
     rocket_ = {};
@@ -150,7 +150,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
-    auto motors = ballistics::read_rasp(motor_file, "motors.eng");
+    auto motors = ballistics::read_rasp(motor_file(), "motors.eng");
     if (!motors.ok() || !flight_) return stage.fail(core::Error{"no flight"});
     out.push_back({"total impulse of the motor file", "N s", "NAR's certificate of the Estes C6: 8.82 N s",
                    (*motors)[1].curve.total_impulse(), 8.82, 0.02});
@@ -168,18 +168,19 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
   static constexpr double scale_ = 30;
   // The Estes C6 as the National Association of Rocketry certified it (presets/motor/black_powder.eng): a peak of 14 N
   // as the hollow grain lights, then an even burn; 8.82 N s in 1.86 s. Booster and upper stage differ by their delay.
-  static constexpr std::string_view motor_file =
-      "; Estes C6\n"
-      "C6 18 70 0 0.0108 0.0226 Estes\n"
-      " 0.031 0.946\n 0.092 4.826\n 0.139 9.936\n 0.192 14.09\n 0.209 11.446\n 0.231 7.381\n 0.248 6.151\n 0.292 "
-      "5.489\n"
-      " 0.37 4.921\n 0.475 4.448\n 0.671 4.258\n 0.702 4.542\n 0.723 4.164\n 0.85 4.448\n 1.063 4.353\n 1.211 4.353\n"
-      " 1.242 4.069\n 1.303 4.258\n 1.468 4.353\n 1.656 4.448\n 1.821 4.448\n 1.834 2.933\n 1.847 1.325\n 1.86 0.0\n"
-      "C6 18 70 5 0.0108 0.0240 Estes\n"
-      " 0.031 0.946\n 0.092 4.826\n 0.139 9.936\n 0.192 14.09\n 0.209 11.446\n 0.231 7.381\n 0.248 6.151\n 0.292 "
-      "5.489\n"
-      " 0.37 4.921\n 0.475 4.448\n 0.671 4.258\n 0.702 4.542\n 0.723 4.164\n 0.85 4.448\n 1.063 4.353\n 1.211 4.353\n"
-      " 1.242 4.069\n 1.303 4.258\n 1.468 4.353\n 1.656 4.448\n 1.821 4.448\n 1.834 2.933\n 1.847 1.325\n 1.86 0.0\n";
+  static std::string motor_file() {
+    constexpr std::string_view curve =
+        " 0.031 0.946\n 0.092 4.826\n 0.139 9.936\n 0.192 14.09\n 0.209 11.446\n 0.231 7.381\n 0.248 6.151\n"
+        " 0.292 5.489\n 0.37 4.921\n 0.475 4.448\n 0.671 4.258\n 0.702 4.542\n 0.723 4.164\n 0.85 4.448\n"
+        " 1.063 4.353\n 1.211 4.353\n 1.242 4.069\n 1.303 4.258\n 1.468 4.353\n 1.656 4.448\n 1.821 4.448\n"
+        " 1.834 2.933\n 1.847 1.325\n 1.86 0.0\n";
+    std::string file = "; Estes C6\n";
+    for (const char* header : {"C6 18 70 0 0.0108 0.0226 Estes\n", "C6 18 70 5 0.0108 0.0240 Estes\n"}) {
+      file += header;
+      file += curve;
+    }
+    return file;
+  }
 
   /// The grain is shorter: it burns as hard, but not as long.
   static void burn_less(Stage3& stage, ballistics::Motor& motor, double share) {
