@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "carom/math/random.h"
+#include "tests/ballistics/pieces.h"
 
 namespace ballistics_rocket_test {
 using namespace carom;
 using namespace carom::ballistics;
+using ballistics::test::ideal_motor;
 using math::Vec3d;
-
-Motor ideal_motor(double thrust, double time, double propellant, double casing) {
-  return {.propellant_mass = propellant, .mass = propellant + casing, .curve = ThrustCurve::constant(thrust, time)};
-}
 
 // Fins turn a rocket into the wind, a parachute brings it down at its terminal speed.
 TEST(Rocket, WeathercocksAndComesDownByParachute) {

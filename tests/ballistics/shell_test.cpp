@@ -3,14 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/ballistics/pieces.h"
+
 namespace ballistics_shell_test {
 using namespace carom;
 using namespace carom::ballistics;
+using ballistics::test::artillery;
 using math::Vec3d;
 
 constexpr double degree = math::pi / 180;
-
-Conditions artillery() { return {.gravity = 9.80665, .gravity_model = GravityModel::inverse_square}; }
 
 TEST(Shell, StableSpinningTumblesWithoutSpin) {
   const Shell shell = m107();

@@ -2,15 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "carom/ballistics/rocket.h"
+#include "tests/ballistics/pieces.h"
 
 namespace published_chapter_06_rocket_test {
 using namespace carom;
 using namespace carom::ballistics;
+using ballistics::test::ideal_motor;
 using math::Vec3d;
-
-Motor ideal_motor(double thrust, double time, double propellant, double casing) {
-  return {.propellant_mass = propellant, .mass = propellant + casing, .curve = ThrustCurve::constant(thrust, time)};
-}
 
 // m₀ 1000, m_f 400, v_e 2500, ṁ 10, vertical, constant g, no air.
 TEST(Chapter06Rocket, TsiolkovskyInVacuum) {

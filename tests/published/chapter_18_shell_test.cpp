@@ -5,15 +5,15 @@
 #include "carom/ballistics/shell.h"
 #include "carom/ballistics/spin.h"
 #include "carom/math/elementary.h"
+#include "tests/ballistics/pieces.h"
 
 namespace published_chapter_18_shell_test {
 using namespace carom;
 using namespace carom::ballistics;
+using ballistics::test::artillery;
 using math::Vec3d;
 
 constexpr double degree = math::pi / 180;
-
-Conditions artillery() { return {.gravity = 9.80665, .gravity_model = GravityModel::inverse_square}; }
 
 struct Impact {
   double range, time, drift, speed, height;
