@@ -110,7 +110,15 @@ export async function visit(address, {viewport = {width: 1000, height: 700}, pau
 
 export const stepOf = (page) => page.$eval('#clock', (e) => Number(e.textContent.match(/step (\d+)/)[1]));
 /** The bodies of exactly this step are drawn; of one beyond it; the numbers of exactly this step are shown. */
-export const at = (page, step) => page.waitForFunction((n) => window.caromPage.shown === n && document.querySelector('#clock').textContent.endsWith(`step ${n}`), step);
+export async function at(page, step) {
+  try {
+    await page.waitForFunction((n) => window.caromPage.shown === n && document.querySelector('#clock').textContent.endsWith(`step ${n}`), step);
+  } catch (error) {
+    const found = await page.evaluate(() => ({shown: window.caromPage.shown, past: document.querySelector('#past').max,
+      ...Object.fromEntries(['clock', 'run', 'verdict', 'notice'].map((id) => [id, document.getElementById(id).textContent]))}));
+    throw new Error(`step ${step} never came: ${JSON.stringify(found)}, problems: ${page.problems.join('; ') || 'none'}`, {cause: error});
+  }
+}
 export const beyond = (page, step) => page.waitForFunction((n) => window.caromPage.shown > n, step);
 export const hashAt = async (page, step) => {
   await page.waitForFunction((n) => document.querySelector('#numbers').dataset.step === String(n), step);
