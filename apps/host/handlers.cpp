@@ -147,6 +147,7 @@ struct SimulationHost::Handlers {
   core::Status pause() {
     if (host.options_.game) host.options_.game->pause(true);
     host.running_ = false;
+    if (host.restart_wanted_) host.restart();  // the page is told of the step at which it will be paused
     host.send_status();
     return {};
   }
@@ -297,7 +298,11 @@ void SimulationHost::receive(std::string_view text) {
       {"release", &Handlers::deed, true},
       {"spawn", &Handlers::deed, true},
   };
-  if (outbox_bytes_ >= options_.max_outbox) return;  // a page that does not read gets no more answers
+  // A page that does not read gets no more answers. What it has read counts all the same: the next picture waits for
+  // it.
+  const bool full = outbox_bytes_ >= options_.max_outbox;
+  text_lost_ = text_lost_ || full;
+  if (full && text.size() > 128) return;
   if (text.size() > options_.max_message)
     return complain("message of " + std::to_string(text.size()) + " bytes: expected at most " +
                     std::to_string(options_.max_message));
@@ -306,6 +311,7 @@ void SimulationHost::receive(std::string_view text) {
   const Json* type = member(message, "type");
   if (!type || !type->is_string()) return complain("message: field \"type\": expected a string");
   const std::string& name = type->get_ref<const std::string&>();
+  if (full && name != "ack") return;
   for (const Entry& entry : entries) {
     if (name != entry.type) continue;
     if (!greeted_ && name != "hello") return complain("send hello first");

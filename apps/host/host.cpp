@@ -66,6 +66,18 @@ void SimulationHost::send_scene() {
   send_meshes();
 }
 
+/// What the page did not read in time was dropped, and nobody knows what it was: it is told all that it must know.
+void SimulationHost::tell_anew() {
+  text_lost_ = false;
+  send(simulation_->opened_text());
+  send(values_message(simulation_->declaration(), simulation_->values()));
+  send_scene();
+  sent_.clear();
+  surfaces_sent_.clear();
+  send_status();
+  key_wanted_ = true;
+}
+
 DeedOutcome SimulationHost::act(const Deed& deed) {
   if (options_.game) return do_deed(*simulation_, deed);
   forget_after_now();
@@ -170,6 +182,7 @@ bool SimulationHost::at_end() const {
 void SimulationHost::advance(double real_seconds) {
   if (!simulation_ || !(real_seconds >= 0) || !math::is_finite(real_seconds)) return;
   if (restart_wanted_) restart();
+  if (text_lost_ && outbox_bytes_ <= options_.max_outbox / 2) tell_anew();
   if (replay_) go_on_with_replay(real_seconds);
   since_key_ += real_seconds;
   since_stats_ += real_seconds;
@@ -314,7 +327,10 @@ void SimulationHost::frame(bool key) {
 }
 
 void SimulationHost::send(std::string text) {
-  if (outbox_bytes_ + text.size() > options_.max_outbox) return;
+  if (outbox_bytes_ + text.size() > options_.max_outbox) {
+    text_lost_ = true;
+    return;
+  }
   outbox_bytes_ += text.size() + sizeof(Message);
   outbox_.push_back({true, std::move(text)});
 }

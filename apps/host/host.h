@@ -41,11 +41,12 @@ struct Game {
 };
 
 struct HostOptions {
-  int threads = 1;                       ///< of every world
-  double key_interval = 2;               ///< s between key frames
-  double stats_interval = 0.25;          ///< s between stats blocks
-  std::size_t max_message = 4 << 20;     ///< bytes of one message from the page
-  std::size_t max_outbox = 64 << 20;     ///< bytes waiting for the carrier; beyond it answers are dropped
+  int threads = 1;                    ///< of every world
+  double key_interval = 2;            ///< s between key frames
+  double stats_interval = 0.25;       ///< s between stats blocks
+  std::size_t max_message = 4 << 20;  ///< bytes of one message from the page
+  /// Bytes waiting for the carrier; beyond it texts are dropped, and the page is told all anew once half of it is free.
+  std::size_t max_outbox = 64 << 20;
   std::size_t max_recording = 64 << 20;  ///< bytes of one that a page sends or makes
   HistoryOptions history;                ///< what can be gone back to
   std::vector<MenuScene> scenes;
@@ -91,6 +92,7 @@ class SimulationHost {
   DeedOutcome act(const Deed& deed);
   void forget_after_now();
   void send_scene();
+  void tell_anew();
   void send_inspection();
   core::Status start_recording();
   void record();
@@ -129,7 +131,7 @@ class SimulationHost {
   std::vector<Sample> samples_;
   std::vector<Line> lines_;
   bool running_ = false, restart_wanted_ = false, key_wanted_ = false, frame_wanted_ = false;
-  bool greeted_ = false;
+  bool greeted_ = false, text_lost_ = false;
   double speed_ = 1;
   std::uint32_t sequence_ = 0, acknowledged_ = 0;
   std::vector<std::uint32_t> surfaces_sent_;  ///< topology that the page knows

@@ -7,7 +7,11 @@
 namespace carom::host {
 
 void SimulationHost::receive_binary(std::string_view bytes) {
-  if (outbox_bytes_ >= options_.max_outbox) return;
+  if (outbox_bytes_ >= options_.max_outbox) {
+    text_lost_ = true;
+    upload_ = {};  // a file with a part missing is none
+    return;
+  }
   if (!greeted_) return complain("send hello first");
   if (bytes.size() < 4 || bytes[0] != file_message_kind)
     return complain("binary message: expected a part of a recording (docs/protocol.md)");

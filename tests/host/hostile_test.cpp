@@ -1,4 +1,6 @@
 // Whatever a page sends, the host answers with an error or does it; it never falls over and never grows without bound.
+#include <algorithm>
+#include <cstring>
 #include <random>
 
 #include "tests/host/client.h"
@@ -98,6 +100,44 @@ TEST(Hostile, APageThatNeverReadsIsBounded) {
   Message message;
   while (host.take(message)) bytes += message.data.size();
   EXPECT_LT(bytes, std::size_t(3) << 20);
+}
+
+TEST(Hostile, APageThatReadsAgainIsToldAllThatItMissed) {
+  HostOptions options;
+  options.max_outbox = 256 << 10;
+  SimulationHost host(options);
+  host.receive(R"({"type":"hello","protocol":1})");
+  host.receive(R"({"type":"open","demo":"collision-lab-3d"})");
+  // It reads nothing while the outbox fills.
+  for (int i = 0; i < 500; ++i) {
+    host.receive(R"({"type":"source"})");
+    host.advance(1.0 / 60);
+  }
+  Message message;
+  std::vector<std::string> said;
+  int frames = 0;
+  const auto read = [&] {
+    while (host.take(message)) {
+      if (message.text)
+        said.push_back(Json::parse(message.data)["type"].get<std::string>());
+      else if (message.data[0] == 2) {
+        ++frames;
+        std::uint32_t sequence = 0;
+        std::memcpy(&sequence, message.data.data() + 4, 4);
+        host.receive(R"({"type":"ack","sequence":)" + std::to_string(sequence) + "}");
+      }
+    }
+  };
+  read();
+  said.clear();
+  frames = 0;
+  for (int i = 0; i < 60; ++i) {
+    host.advance(1.0 / 60);
+    read();
+  }
+  for (const char* type : {"opened", "values", "scene", "status"})
+    EXPECT_EQ(std::count(said.begin(), said.end(), type), 1) << type;
+  EXPECT_GT(frames, 30) << "what was read late was acknowledged all the same";
 }
 
 TEST(Hostile, TimeThatIsNotTime) {

@@ -197,7 +197,7 @@ class Page implements Listener {
         byId<HTMLButtonElement>('step').disabled = message.running;
         byId('verdict').textContent = message.message ?? '';
         if (message.step === 0) this.plots.restart(); else this.plots.cut(message.time);
-        this.timeline.status(message.step, message.first, message.last);
+        this.timeline.status(message.step, message.first, message.last, message.playing === true);
         this.share.step = message.step;
         this.share.recorded(message.recording);
         this.share.playing(message.playing === true);

@@ -31,8 +31,8 @@ function deliver(data: string | ArrayBuffer, listener: Listener, source: Source)
   else if (message.kind === 'surface') listener.surface(message);
   else if (message.kind === 'file') listener.file(message.bytes);
   else {
-    listener.frame(message);
-    source.send({type: 'ack', sequence: message.sequence});
+    // Acknowledged even where drawing it fails: the host waits for it with the next one.
+    try { listener.frame(message); } finally { source.send({type: 'ack', sequence: message.sequence}); }
   }
 }
 

@@ -9,8 +9,7 @@ export class Timeline {
   private dt = 1 / 60;
   private waiting = false;
   private wanted?: number;
-  /** Played, not simulated: the whole length is known. */
-  fixed = false;
+  private fixed = false;  // played, not simulated: the whole length is known
 
   constructor(private send: (message: object) => void) {
     this.slider.oninput = () => this.seek(Number(this.slider.value));
@@ -21,10 +20,12 @@ export class Timeline {
     this.dt = dt;
     this.first = this.last = this.step = 0;
     this.fixed = false;
+    this.failed();  // what was wished for was of another run
     this.show();
   }
 
-  status(step: number, first: number, last: number): void {
+  status(step: number, first: number, last: number, fixed: boolean): void {
+    this.fixed = fixed;
     this.step = step;
     this.first = first;
     this.last = last;

@@ -48,9 +48,9 @@ async function works(browser, name) {
   await browser.picture(join(pictures, `${name}.png`));
   // The ball is pulled up by the mouse.
   const at = await browser.evaluate(() => window.caromPage.viewer.screenOf(window.caromPage.viewer.bodyIds('dynamic').at(-1)));
-  await browser.evaluate(() => document.querySelector('#run').click());
   await browser.press(at.x, at.y);
   await browser.until(() => [...window.caromPage.hands.holds.values()].some((h) => h.held));
+  await browser.evaluate(() => document.querySelector('#run').click());
   await browser.drag(at.x, at.y - 60);
   await browser.until(() => /Pull of the hand(?!0 N)[1-9]/.test(document.querySelector('#budget').textContent));
   await browser.picture(join(pictures, `${name}_pull.png`));

@@ -1,7 +1,7 @@
 // Two settings side by side: the right view keeps in step, has values of its own, and its curves beside the left one's.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {at, bodies, paused, picture, place, serve, until, visit} from './harness.mjs';
+import {at, bodies, paused, picture, place, serve, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
@@ -34,11 +34,10 @@ test('two settings side by side, in step', async () => {
   // From the beginning: this demo starts anew after four seconds, and so does the count of its steps.
   await page.click('#restart');
   await at(page, 0);
-  await page.evaluate(() => { window.caromPage.compare.twinStep = 0; });
-  await page.click('#run');
-  await until(page, 'Pause');
-  await page.waitForFunction(() => window.caromPage.compare.twinStep > 60);
-  await same();
+  await twin.waitForFunction(() => window.caromPage.shown === 0);
+  await page.evaluate(() => window.caromPage.send({type: 'step', count: 90}));
+  await at(page, 90);
+  await twin.waitForFunction(() => window.caromPage.shown === 90);
   assert.notDeepEqual(await place(twin, id), await place(page, id));
   await picture(page, 'compare');
   // The panel shows the values of the side that is chosen; the left one kept its own.

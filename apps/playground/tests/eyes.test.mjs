@@ -48,8 +48,8 @@ test('every layer of debug drawing, in space and in the plane', async () => {
 });
 
 test('heat colours tell speeds, trails tell ways', async () => {
-  const page = await open('wrecking-ball');
-  await beyond(page, 30);
+  const page = await open('wrecking-ball?step=40');
+  await at(page, 40);
   const colors = () => page.evaluate(() => {
     const seen = new Set();
     for (const batch of window.caromPage.viewer.bodies.batches.values()) for (let i = 0; i < batch.mesh.count; ++i) seen.add([...batch.mesh.instanceColor.array.slice(3 * i, 3 * i + 3)].map((x) => x.toFixed(3)).join());
@@ -59,6 +59,7 @@ test('heat colours tell speeds, trails tell ways', async () => {
   await page.check('#layers >> text=Heat colours');
   await page.check('#layers >> text=Trails');
   await page.waitForSelector('#legend', {state: 'visible'});
+  await page.click('#run');
   await runFor(page, 20);
   assert.match(await page.textContent('#legend-top'), /^(1|2|5|10|20) m\/s$/);
   assert.ok(own < 40 && await colors() > 3, 'fast and slow bodies differ');
@@ -115,7 +116,7 @@ test('numbers: budget, stages, warnings with advice', async () => {
     {name: 'wall', type: 'fixed', position: ['2 km', 0, 0], shape: {type: 'box', size: [0.1, 4, 4]}},
     {name: 'ball', velocity: ['40 m/s', 0, 0], density: 1000, shape: {type: 'sphere', radius: '0.05 m'}}]};
   await page.evaluate((text) => window.caromPage.send({type: 'open_scene', name: 'fast.json', text}), JSON.stringify(scene));
-  await page.waitForFunction(() => document.title.includes('Fast ball') && window.caromPage.shown > 20);
+  await page.waitForFunction(() => document.title.includes('Fast ball') && window.caromPage.shown > 20 && document.querySelector('#numbers').textContent.includes('2 (1 awake)'));
   await page.waitForFunction(() => document.querySelectorAll('#timing-legend li').length > 3);
   const rows = await page.$$eval('#numbers dt, #budget dt', (all) => all.map((e) => `${e.textContent}: ${e.nextElementSibling.textContent}`));
   for (const wanted of [/^Bodies: 2 /, /^Contacts: 0$/, /^Kinetic energy: 418\.\d* J/, /^Momentum: 20\.9\d* kg·m\/s/, /^Angular momentum: /, /^Mass: 0\.523\d* kg/, /^State hash: [0-9a-f]{16}$/, /^Memory: /])

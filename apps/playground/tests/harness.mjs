@@ -124,10 +124,16 @@ export const hashAt = async (page, step) => {
   await page.waitForFunction((n) => document.querySelector('#numbers').dataset.step === String(n), step);
   return page.$$eval('#numbers dd', (all) => all[all.length - 1].textContent);
 };
-/** Runs on for so many steps from where it is. */
-export const runFor = async (page, steps) => beyond(page, steps + await page.evaluate(() => window.caromPage.shown));
+/** Runs on for so many steps, also where it starts anew meanwhile. */
+export const runFor = async (page, steps) => page.waitForFunction(([seen, n]) => {
+  const {shown} = window.caromPage;
+  if (shown > seen.last) seen.sum += shown - seen.last;
+  seen.last = shown;
+  return seen.sum >= n;
+}, [await page.evaluateHandle(() => ({last: window.caromPage.shown, sum: 0})), steps]);
+/** Paused by its button; what has stopped by itself stays so. */
 export const paused = async (page) => {
-  await page.click('#run');
+  await page.$eval('#run', (button) => { if (button.textContent === 'Pause') button.click(); });
   await until(page, 'Run');
   const step = await stepOf(page);
   await at(page, step);

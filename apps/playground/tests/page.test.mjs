@@ -68,7 +68,10 @@ test('pause holds, step advances by one, restart begins anew, run goes on', asyn
   await page.click('#step');
   await at(page, held + 1);
   await page.click('#restart');
-  await page.waitForFunction((n) => window.caromPage.shown < n, held);
+  await at(page, 0);
+  await page.click('#run');
+  await until(page, 'Pause');
+  await beyond(page, 5);
   await page.done();
 });
 
@@ -124,7 +127,9 @@ test('a phone of 360 pixels shows the view, opens the menu and the panel', async
   await page.tap('#menu');
   await page.waitForSelector('#demos', {state: 'visible'});
   await picture(page, 'phone_menu');
+  const second = (await demosOf(page))[1];
   await page.tap('#demo-list a >> nth=1');
+  await page.waitForFunction((demo) => window.caromPage.opened.demo === demo && window.caromPage.shown >= 0, second);
   await page.tap('#panel-toggle');
   await runFor(page, 10);
   await picture(page, 'phone_panel');

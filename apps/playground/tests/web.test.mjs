@@ -56,7 +56,7 @@ test('the page is small enough for a phone', () => {
 test('a demo fetches of the engine what it needs and no more: the first one its first file alone', async () => {
   const page = await visit('about:blank', {}, false), asked = engineFiles(page);
   await page.goto(`${server.url}#wrecking-ball`);
-  await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 200, null, {timeout: 120000});
+  await page.waitForFunction(() => Number(document.querySelector('#clock').textContent.match(/step (\d+)/)?.[1]) > 200);
   assert.deepEqual([...asked], ['carom.wasm']);
   for (const demo of ['powered_ragdoll', 'pool-table']) {
     const own = await visit('about:blank', {}, false), files = engineFiles(own);
@@ -75,7 +75,7 @@ test('an engine that is not there is named, whether it is missed before the page
     await page.route(late, async (route) => { await new Promise((resolve) => setTimeout(resolve, 2000)); await route.continue(); });
     await page.route(pattern, (route) => route.fulfill({status: 404}));
     await page.goto(`${server.url}#wrecking-ball`);
-    await page.waitForFunction(() => /engine (cannot be loaded|of this page stopped)/.test(document.querySelector('#notice').textContent), null, {timeout: 60000});
+    await page.waitForFunction(() => /engine (cannot be loaded|of this page stopped)/.test(document.querySelector('#notice').textContent));
     await page.close();
   }
 });
@@ -94,7 +94,7 @@ test('a part of the engine that is not there is named', async () => {
   const page = await visit('about:blank', {}, false);
   await page.route(/carom-[a-z-]+-[0-9a-f]{8}\.wasm$/, (route) => route.fulfill({status: 404}));
   await page.goto(`${server.url}#pool-table`);
-  await page.waitForFunction(() => document.querySelector('#notice').textContent.includes('Reload the page'), null, {timeout: 60000});
+  await page.waitForFunction(() => document.querySelector('#notice').textContent.includes('Reload the page'));
   assert.match(page.problems.join(), /carom-.*wasm: the server answers 404/);
 });
 
