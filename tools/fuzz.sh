@@ -7,7 +7,7 @@ if [ "${1-}" = --one ]; then
   name=$(basename "$target")
   corpus=$here/tests/fuzz/corpus/${name#fuzz_}
   [ -d "$corpus" ] && [ -n "$(ls "$corpus")" ] || { echo "$name: no corpus in tests/fuzz/corpus/${name#fuzz_}" >&2; exit 1; }
-  "$target" -runs=0 -rss_limit_mb=4096 "$corpus" >"$build/$name.log" 2>&1 || { tail -n 40 "$build/$name.log" >&2; echo "$name: the corpus fails" >&2; exit 1; }
+  "$target" -runs=0 -report_slow_units=100 -rss_limit_mb=4096 "$corpus" >"$build/$name.log" 2>&1 || { tail -n 40 "$build/$name.log" >&2; echo "$name: the corpus fails" >&2; exit 1; }
   scratch=$(mktemp -d)
   trap 'rm -rf "$scratch"' EXIT
   "$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$build/findings/$name-" "$scratch" "$corpus" >"$build/$name.log" 2>&1 \

@@ -8,6 +8,13 @@ using namespace carom;
 using namespace carom::rigid;
 using fuzz::Source;
 
+// Under the thread sanitizer all worlds have threads, and an eighth of them enough bodies to keep those busy.
+#if defined(__has_feature) && __has_feature(thread_sanitizer)
+constexpr bool watches_threads = true;
+#else
+constexpr bool watches_threads = false;
+#endif
+
 template <class D>
 struct Player : fuzz::Maker<D> {
   using Base = fuzz::Maker<D>;
@@ -225,6 +232,32 @@ struct Player : fuzz::Maker<D> {
     }
   }
 
+  /// So many bodies, some tied to the next, that the loops of a step are shared out among threads.
+  void crowd() {
+    constexpr int across = D::dimension == 2 ? 24 : 8;
+    BodyId last;
+    for (int i = 0; i < 576; ++i) {
+      BodyDef<D> d;
+      d.position[0] = 1.02 * (i % across) - 5;
+      d.position[1] = 1.5 + 1.02 * (i / (D::dimension == 2 ? across : across * across));
+      if constexpr (D::dimension == 3) d.position[2] = 1.02 * (i / across % across) - 5;
+      const BodyId next = world.create_body(d).value();
+      if constexpr (D::dimension == 2)
+        (void)world.add_shape(next,
+                              i % 3 != 0 ? geometry::Shape2(geometry::make_box2({0.5f, 0.5f})) : Base::geometry_of());
+      else
+        (void)world.add_shape(next, i % 3 != 0 ? geometry::Shape3(geometry::Box{}) : Base::geometry_of());
+      if (i % 4 == 1) {
+        BallJointDef<D> tie;
+        tie.body_a = last, tie.body_b = next;
+        tie.frame_a.p[0] = 1.02f;
+        (void)world.create_joint(tie);
+      }
+      if (i % 64 == 0) bodies.push_back(next);
+      last = next;
+    }
+  }
+
   void play() {
     world.set_contact_filter([](ShapeId a, ShapeId b) { return (a.index + b.index) % 13 != 5; });
     world.set_contact_modifier([](ContactModification<D>& c) {
@@ -257,13 +290,15 @@ template <class D>
 void play(Source in) {
   WorldDef<D> d;
   const std::uint8_t options = in.byte();
-  d.threads = (options & 15) == 15 ? 2 : 1;
+  d.threads = watches_threads || (options & 15) == 15 ? 2 : 1;
   d.continuous = (options & 16) == 0;
   d.allow_sleep = (options & 32) == 0;
   d.move_events = (options & 64) != 0;
   d.sleep_time = 0.05f;
   d.substeps = (options & 128) != 0 ? 2 : 4;
-  Player<D>(in, d).play();
+  Player<D> player(in, d);
+  if (watches_threads && (options & 7) == 5) player.crowd();
+  player.play();
 }
 
 }  // namespace
