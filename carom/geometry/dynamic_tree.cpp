@@ -248,6 +248,32 @@ void DynamicTree<V>::rotate(int index) {
   nodes[inner].enlarged = nodes[index].enlarged;
 }
 
+/// So many leaves are split in the middle of their centres' longest axis: bins find little more and take longer.
+constexpr std::size_t few = 6;
+template <class V>
+std::size_t split_few(std::span<detail::BuildItem<V>> items) {
+  const std::size_t count = items.size();
+  if (count == 2) return 1;
+  V low = items[0].box.low + items[0].box.high, high = low;
+  for (const detail::BuildItem<V>& item : items) {
+    const V c = item.box.low + item.box.high;
+    low = min(low, c), high = max(high, c);
+  }
+  const V size = high - low;
+  int axis = 0;
+  for (int i = 1; i < detail::Axes<V>::count; ++i)
+    if (size[i] > size[axis]) axis = i;
+  const auto middle = (low[axis] + high[axis]) / 2;
+  std::size_t i = 0, j = count;
+  while (i < j) {
+    if (items[i].box.low[axis] + items[i].box.high[axis] <= middle)
+      ++i;
+    else
+      std::swap(items[i], items[--j]);
+  }
+  return i == 0 || i == count ? count / 2 : i;
+}
+
 template <class V>
 int DynamicTree<V>::build(std::span<detail::BuildItem<V>> items) {
   if (items.size() == 1) return int(items[0].index);
@@ -262,7 +288,8 @@ int DynamicTree<V>::build(std::span<detail::BuildItem<V>> items) {
       made = int(items[job.first].index);
     } else {
       made = take_node();
-      const std::size_t cut = detail::binned_split<V>(items.subspan(job.first, job.count), job.depth);
+      const auto part = items.subspan(job.first, job.count);
+      const std::size_t cut = job.count <= few ? split_few<V>(part) : detail::binned_split<V>(part, job.depth);
       jobs_.push_back({job.first + cut, job.count - cut, made, job.depth + 1, true});
       jobs_.push_back({job.first, cut, made, job.depth + 1, false});
       Box box = items[job.first].box;

@@ -161,7 +161,7 @@ struct Search {
     const auto closing = [&](double t, Vec3d n, const Swept<Vec3d>& s) {
       return a.speed(n, s, t) + b.speed(-n, swept_part, t);
     };
-    CoreGap gap{core, part, a, b};
+    CoreGap gap{core, part, a, b, {}, 4 * target};
     const TimeOfImpact t = advance<Vec3d>(
         target, limit, gap, [&](double time, Vec3d n) { return closing(time, n, swept_core); },
         [&](double time, Vec3d n) {

@@ -44,18 +44,55 @@ inline Swept<Vec3d> swept(const Convex& c, const Motion3& motion, const Transfor
   return {transform_point(local, middle) - motion.local_center, reach_about(c, middle)};
 }
 
+/// The distance of a point from a point, a segment or a box, in closed form. False for other pairs, and where they
+/// touch.
+inline bool point_distance(const Placed& a, const Placed& b, CoreDistance& out) {
+  const bool first = a.core->kind == CoreKind::point;
+  const Placed &point = first ? a : b, &other = first ? b : a;
+  if (point.core->kind != CoreKind::point || other.core->kind > CoreKind::box) return false;
+  const Vec3d p = point.center(), l = (p - other.position) * other.rotation;
+  Vec3d half{};
+  if (other.core->kind != CoreKind::point) half = Vec3d(other.core->half);
+  if (other.core->kind == CoreKind::segment) half.x = half.z = 0;
+  const Vec3d nearest = max(min(l, half), -half), way = l - nearest;
+  const double distance = math::length(way);
+  if (!(distance > 1e-9)) return false;
+  const Vec3d q = other.rotation * nearest + other.position, n = other.rotation * (way * (1 / distance));
+  out.overlap = false;
+  out.distance = distance;
+  out.point_a = first ? p : q;
+  out.point_b = first ? q : p;
+  out.normal = first ? -n : n;
+  return true;
+}
+
 /// The distance of two cores, for `advance`: remembers the last normal and closest points.
 struct CoreGap {
   const Convex &a, &b;
   const Motion3 &motion_a, &motion_b;
   Transform3d local_a{};  ///< of the core in what moves
+  double near = 1e30;     ///< m: beyond it, what the last normal keeps them apart may stand for the distance
   CoreDistance last{};
+  double known = 1e30;  ///< m, the distance that was found last
 
   double operator()(double t, Vec3d& n) {
+    const Placed at_a(a, motion_a.at(t) * local_a), at_b(b, motion_b.at(t));
+    const double radii = double(a.radius) + double(b.radius);
+    if (known < 1e30) {
+      const Vec3d p = at_b.support(-last.normal);
+      const double apart = dot(last.normal, p - at_a.support(last.normal)) - radii;
+      if (apart > near && apart > 0.5 * known) {
+        last.point_b = p;
+        n = last.normal;
+        return apart;
+      }
+    }
     const Vec3d guess = last.normal;
-    core_distance(Placed(a, motion_a.at(t) * local_a), Placed(b, motion_b.at(t)), 1e30, guess, last);
+    if (!point_distance(at_a, at_b, last)) core_distance(at_a, at_b, 1e30, guess, last);
     n = last.normal;
-    return last.overlap ? -1.0 : last.distance - double(a.radius) - double(b.radius);
+    const double distance = last.overlap ? -1.0 : last.distance - radii;
+    if (near < 1e30 && distance > 0) known = distance;
+    return distance;
   }
 };
 

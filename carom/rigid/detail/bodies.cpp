@@ -359,11 +359,14 @@ template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   using P = typename D::Position;
   const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
-  typename D::Bounds box = shape_bounds(world, shape);
-  if (turns_far(s.angular_velocity, world.last_dt) && world.bodies.is_dynamic(shape.body)) {
+  typename D::Bounds box;
+  const bool far = turns_far(s.angular_velocity, world.last_dt) && world.bodies.is_dynamic(shape.body);
+  if (far) {
     const BodyMotion<D>& m = world.bodies.motion[std::size_t(shape.body)];
     const double reach = double(math::length(shape.local.p - m.local_center) + shape.outer_extent);
-    box = merge(box, geometry::grow(typename D::Bounds{m.center, m.center}, reach));
+    box = geometry::grow(typename D::Bounds{m.center, m.center}, reach);
+  } else {
+    box = shape_bounds(world, shape);
   }
   const bool bullet = is_quick_bullet(world, shape.body);
   if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/geometry/detail/passage.h"
+#include "carom/rigid/detail/fly_past.h"
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -107,16 +108,34 @@ float free_fraction(const ShapeRecord<D>& shape, const Sweep<D>& own, const Shap
 inline float size_of_turn(float turn) { return math::abs(turn); }
 inline float size_of_turn(const Vec3f& turn) { return math::length(turn); }
 
-/// Do the balls about two bodies come near each other between two fractions of the step?
+/// Do the balls about two bodies come near each other on their ways?
 template <class D>
-bool come_near(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b, float from, float to) {
+bool come_near(const WorldImplementation<D>& world, std::int32_t a, std::int32_t b, const Sweep<D>& way_a,
+               const Sweep<D>& way_b) {
   using V = typename D::Vector;
   const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
-  const Sweep<D> way_a = way_of_body(world, a, mb.center, from, to), way_b = way_of_body(world, b, mb.center, from, to);
   const V start = way_b.c0 - way_a.c0, way = way_b.c1 - way_a.c1 - start;
   const float length_squared = dot(way, way);
   const float f = length_squared > 0 ? clamp(-dot(start, way) / length_squared, 0.0f, 1.0f) : 0.0f;
   return math::length(start + way * f) <= ma.outer_extent + mb.outer_extent + 0.01f;
+}
+
+/// Do two shapes stay apart on their ways, seen at a glance?
+inline bool goes_past(const ShapeRecord<Dim2>&, const Sweep<Dim2>&, const ShapeRecord<Dim2>&, const Sweep<Dim2>&) {
+  return false;
+}
+inline bool goes_past(const ShapeRecord<Dim3>& shape, const Sweep<Dim3>& own, const ShapeRecord<Dim3>& other,
+                      const Sweep<Dim3>& theirs) {
+  const auto way_of = [](const ShapeRecord<Dim3>& s, const Sweep<Dim3>& way) {
+    const ShapeBall<Dim3> ball = ball_about(s);
+    const Vec3f arm = ball.middle - way.local_center, from = way.c0 + rotate(way.q0, arm);
+    // The arc of a point strays from its chord by 1 − cos(θ/2) of its arm; rounding apart.
+    const float bend = 1 - min(math::abs(dot(way.q0, way.q1)), 1.0f) + 1e-6f;
+    const float turned = way.q0 == way.q1 ? 0 : 2 * min(length(way.q1 - way.q0), length(way.q1 + way.q0)) + 1e-6f;
+    return BallWay{from,        way.c1 + rotate(way.q1, arm) - from, way.q0,
+                   ball.radius, 1.001f * bend * math::length(arm),   1.001f * turned * ball.radius};
+  };
+  return fly_past(shape.geometry, other.geometry, way_of(shape, own), way_of(other, theirs), 0.005f);
 }
 
 /// The first fraction of the step, between two, at which a shape must stop at another, seen from `base`; 2: none. A
@@ -124,7 +143,9 @@ bool come_near(const WorldImplementation<D>& world, std::int32_t a, std::int32_t
 template <class D>
 float meeting_time(const WorldImplementation<D>& world, const ShapeRecord<D>& shape, const ShapeRecord<D>& other,
                    const typename D::Position& base, float from, float to, bool guarded) {
-  if (other.tree != tree_fixed && !come_near(world, shape.body, other.body, from, to)) return 2;
+  const Sweep<D> all_own = way_of_body(world, shape.body, base, from, to),
+                 all_theirs = way_of_body(world, other.body, base, from, to);
+  if (other.tree != tree_fixed && !come_near(world, shape.body, other.body, all_own, all_theirs)) return 2;
   float turn = 0;
   for (const std::int32_t body : {shape.body, other.body})
     if (const std::int32_t place = world.bodies.record[std::size_t(body)].awake_index; place != none)
@@ -133,10 +154,13 @@ float meeting_time(const WorldImplementation<D>& world, const ShapeRecord<D>& sh
   for (int i = 0; i < arcs; ++i) {
     const float begin = from + (to - from) * (float(i) / float(arcs));
     const float end = i + 1 == arcs ? to : from + (to - from) * (float(i + 1) / float(arcs));
+    const Sweep<D> part_own = arcs == 1 ? all_own : way_of_body(world, shape.body, base, begin, end),
+                   part_theirs = arcs == 1 ? all_theirs : way_of_body(world, other.body, base, begin, end);
     // Two that fly past each other are near for one or two arcs of many.
-    if (arcs > 1 && other.tree != tree_fixed && !come_near(world, shape.body, other.body, begin, end)) continue;
-    const Sweep<D> own = way_of_shape(shape, way_of_body(world, shape.body, base, begin, end)),
-                   theirs = way_of_shape(other, way_of_body(world, other.body, base, begin, end));
+    if (arcs > 1 && other.tree != tree_fixed && !come_near(world, shape.body, other.body, part_own, part_theirs))
+      continue;
+    const Sweep<D> own = way_of_shape(shape, part_own), theirs = way_of_shape(other, part_theirs);
+    if (goes_past(shape, own, other, theirs)) continue;
     const float f = free_fraction(shape, own, other, theirs, guarded);
     if (f < 1) return begin + (end - begin) * f;
   }

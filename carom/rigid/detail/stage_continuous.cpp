@@ -208,12 +208,14 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     const float most_slow = bullet ? 0.25f : 0.5f;
     if (!turns_far && is_slow(shape, own, most_slow)) continue;
     if (alone && !turns_far && shape.next != none && is_free(world, loose_way(shape, own, start.center))) continue;
-    typename D::Bounds box = way_bounds(shape, own, start.center);
+    typename D::Bounds box;
     if (turns_far) {
       const double reach = double(math::length(own.local_center) + shape.outer_extent);
       box = geometry::grow(typename D::Bounds{math::min(start.center, start.center + typename D::Position(travel)),
                                               math::max(start.center, start.center + typename D::Position(travel))},
                            reach);
+    } else {
+      box = way_bounds(shape, own, start.center);
     }
     // Bullets look for all that moves where its bounds foresaw its way; what left them looks for bullets, and what of
     // both left them is looked through once more.

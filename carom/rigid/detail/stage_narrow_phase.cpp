@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "carom/rigid/detail/fly_past.h"
 #include "carom/rigid/detail/found_contacts.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -425,12 +426,53 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   return std::uint8_t(change | change_manifolds);
 }
 
+/// Do two that go far past each other in this step stay apart, by the velocities that their bodies have? Those whose
+/// way is shorter than twice the thickness of the thinner have their surfaces asked.
+bool goes_past(const WorldImplementation<Dim2>&, const ContactRecord<Dim2>&, const ShapeRecord<Dim2>&,
+               const ShapeRecord<Dim2>&) {
+  return false;
+}
+bool goes_past(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c, const ShapeRecord<Dim3>& a,
+               const ShapeRecord<Dim3>& b) {
+  const std::vector<BodySweep<Dim3>>& sweeps = world.scratch.sweeps;
+  const Vec3f way = sweeps[std::size_t(c.body[1])].way - sweeps[std::size_t(c.body[0])].way;
+  if (!(math::length_squared(way) > square(4 * c.inner))) return false;
+  const Vec3d base = world.bodies.motion[std::size_t(c.body[0])].center;
+  const auto way_of = [&](const ShapeRecord<Dim3>& shape) {
+    const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(shape.body)];
+    const SolverBody<Dim3>& s = world.bodies.solver[std::size_t(shape.body)];
+    const Dim3::Pose pose = shape_pose(world, shape);
+    const ShapeBall<Dim3> ball = ball_about(shape);
+    const Vec3d middle = world_point(pose, ball.middle);
+    const Vec3f arm = Vec3f(middle - m.center), turn = s.angular_velocity * world.last_dt;
+    const float angle = math::length(turn), reach = math::length(arm);
+    const Vec3f from(middle - base), along = s.linear_velocity * world.last_dt;
+    // What turns far about another point stays in a ball about that.
+    if (angle > 1.4f) return BallWay{from - arm, along, pose.rotation, ball.radius + reach, 0, 1e15f};
+    return BallWay{from,        along + cross(turn, arm),     pose.rotation,
+                   ball.radius, 0.5f * angle * angle * reach, angle * ball.radius};
+  };
+  return fly_past(a.geometry, b.geometry, way_of(a), way_of(b), 2 * c.margin());
+}
+
 /// Recomputes one contact. Writes only to the contact, its manifolds and the worker's list.
 template <class D>
 std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_index,
                             std::vector<FoundManifold<D>>& list) {
   ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(awake_index)]);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  if ((c.flags & contact_sensor) == 0 && goes_past(world, c, a, b)) {
+    world.scratch.watches[std::size_t(awake_index)].body[0] = none;
+    c.flags = std::uint16_t(c.flags & ~(contact_recycled | contact_known));
+    c.gap = 0;
+    c.axis = {};
+    std::uint8_t change = 0;
+    if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
+      change = change_apart;
+    else if (c.first_manifold != none)
+      change = change_empty;
+    return std::uint8_t(change | touch_change(c, 1e30f, false));
+  }
   typename D::Transform b_in_a;
   if (c.flags & contact_at_origin)
     b_in_a = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
