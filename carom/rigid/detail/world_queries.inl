@@ -163,13 +163,25 @@ void query_trees(const WorldImplementation<D>& world, const typename D::Bounds& 
   }
 }
 
-inline constexpr int rays_a_group = 16;
-/// With the slack of cast_in_trees.
+inline constexpr int rays_a_group = 16, rays_a_chunk = 8 * rays_a_group;
+/// False: the ray goes by `box`, on one side of it. Sides are told one after the other, mostly by the height.
 template <class D>
-typename D::Bounds bounds_of_rays(std::span<const RayQuery<D>> rays, int first, int last) {
+bool reaches(const RayQuery<D>& ray, const typename D::Bounds& box) {
+  const auto passes = [](double from, float way, double low, double high) {
+    const double to = from + double(way);
+    return (from > high && to > high) || (from < low && to < low);
+  };
+  if (passes(ray.origin.y, ray.translation.y, box.low.y, box.high.y)) return false;
+  if (passes(ray.origin.x, ray.translation.x, box.low.x, box.high.x)) return false;
+  if constexpr (D::dimension == 3) return !passes(ray.origin.z, ray.translation.z, box.low.z, box.high.z);
+  return true;
+}
+/// Of those whose indices are given, with the slack of cast_in_trees.
+template <class D>
+typename D::Bounds bounds_of_rays(std::span<const RayQuery<D>> rays, std::span<const int> chosen) {
   using Position = typename D::Position;
-  Position low = rays[std::size_t(first)].origin, high = low, longest{};
-  for (int i = first; i < last; ++i) {
+  Position low = rays[std::size_t(chosen.front())].origin, high = low, longest{};
+  for (const int i : chosen) {
     const RayQuery<D>& ray = rays[std::size_t(i)];
     const Position way(ray.translation), end = ray.origin + way;
     low = min(low, min(ray.origin, end));
@@ -302,25 +314,38 @@ template <class D>
 Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const {
   constexpr std::string_view call = "World::cast_rays";
   if (const Status s = detail::check_batch(call, rays.size(), "hits", hits.size()); !s.ok()) return s;
-  double nothing = 0;  // NaN as soon as one number is not finite
-  for (const RayQuery<D>& ray : rays)
-    for (int k = 0; k < D::dimension; ++k) nothing += 0 * ray.origin[k] + 0 * double(ray.translation[k]);
+  double nothing = 0, longest = 0;  // nothing: NaN as soon as one number is not finite
+  for (const RayQuery<D>& ray : rays) {
+    const auto way = Position(ray.translation);
+    if constexpr (D::dimension == 3) {
+      nothing += 0 * ((ray.origin.x + way.x) + (ray.origin.y + way.y) + (ray.origin.z + way.z));
+      longest = math::max(longest, way.x * way.x + way.y * way.y + way.z * way.z);
+    } else {
+      nothing += 0 * ((ray.origin.x + way.x) + (ray.origin.y + way.y));
+      longest = math::max(longest, way.x * way.x + way.y * way.y);
+    }
+  }
   if (nothing != 0)
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
         return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
-  // Neighbours ask first whether there is anything at all where they go: one walk for a group.
-  const typename D::Bounds all = detail::bounds_of_shapes<D>(*self_);
-  self_->scheduler->parallel_for(int(rays.size()), detail::queries_a_chunk, [&](int begin, int end, int) {
-    for (int first = begin; first < end; first += detail::rays_a_group) {
-      const int last = math::min(first + detail::rays_a_group, end);
-      bool near = true;
-      if (last - first > 2) {
-        const typename D::Bounds box = detail::bounds_of_rays<D>(rays, first, last);
-        near = overlaps(box, all) && detail::anything_near<D>(*self_, box);
+  // Each is asked first whether it comes where anything is. What does asks with its neighbours whether there is anything
+  // at all where they go: one walk for a group.
+  typename D::Bounds all = detail::bounds_of_shapes<D>(*self_);
+  const double slack = 2e-5 + 4e-6 * math::sqrt(longest);
+  for (int k = 0; k < D::dimension; ++k) all.low[k] -= slack, all.high[k] += slack;
+  self_->scheduler->parallel_for(int(rays.size()), detail::rays_a_chunk, [&](int begin, int end, int) {
+    int chosen[detail::rays_a_group];
+    for (int next = begin; next < end;) {
+      int count = 0;
+      for (; next < end && count < detail::rays_a_group; ++next) {
+        hits[std::size_t(next)] = {};
+        chosen[count] = next;
+        count += detail::reaches<D>(rays[std::size_t(next)], all);
       }
-      for (int i = first; i < last; ++i)
-        hits[std::size_t(i)] = near ? detail::closest_on_ray<D>(*self_, rays[std::size_t(i)]) : RayHit<D>{};
+      const std::span<const int> group(chosen, std::size_t(count));
+      if (count > 2 && !detail::anything_near<D>(*self_, detail::bounds_of_rays<D>(rays, group))) continue;
+      for (const int i : group) hits[std::size_t(i)] = detail::closest_on_ray<D>(*self_, rays[std::size_t(i)]);
     }
   });
   return {};
