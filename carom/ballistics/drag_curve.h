@@ -49,8 +49,8 @@ class CAROM_API DragCurve {
   /// `mach` ≥ 0.
   double operator()(double mach) const {
     // One cell of a uniform grid tells the first node that can lie beyond: a step or two from there.
-    const std::size_t cell = std::size_t(math::min(math::max(mach, 0.0) * cells_per_mach_, double(cells - 1)));
-    std::size_t i = first_[cell];
+    const int cell = int(math::min(math::max(mach, 0.0) * cells_per_mach_, double(cells - 1)));
+    std::size_t i = first_[std::size_t(cell)];
     while (i + 1 < points_.size() && points_[i].mach < mach) ++i;
     if (i == 0 || points_[i].mach < mach) return points_[i].coefficient;
     const DragPoint& a = points_[i - 1];

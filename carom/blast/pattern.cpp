@@ -53,7 +53,8 @@ class SiteGrid {
     for (std::uint32_t i = 0; i < sites.size(); ++i) order.push_back({index(sites[i]), i});
     std::sort(order.begin(), order.end());
     first_.assign(std::size_t(count_[0]) * std::size_t(count_[1]) * std::size_t(count_[2]) + 1, 0);
-    for (const auto& [cube, site] : order) ++first_[cube + 1], members_.push_back(site);
+    members_.reserve(sites.size());
+    for (const auto& [cube, site] : order) ++first_[cube + 1], members_.push_back({sites[site], site});
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   }
   double edge() const { return edge_; }
@@ -71,11 +72,23 @@ class SiteGrid {
       c[k] = place(sites_[site], k);
       low[k] = math::max(c[k] - ring, 0), high[k] = math::min(c[k] + ring, count_[k] - 1);
     }
-    // No site of a cube is nearer than the cube; a hair is left for how places are rounded.
+    // No site of a row of cubes is nearer than the row; a hair is left for how places are rounded.
     const auto gap_squared = [&](int cube, int k) {
       if (cube == c[k]) return 0.0;
       const double face = low_[k] + (cube + (cube < c[k])) * edge_;
       return math::square(math::max(math::abs(face - sites_[site][k]) - 1e-9 * edge_, 0.0));
+    };
+    const Vec3d here = sites_[site];
+    const auto look = [&](std::size_t row, int from, int to) {  // cubes side by side
+      const std::uint32_t begin = first_[row + std::size_t(from)], end = first_[row + std::size_t(to) + 1];
+      std::size_t count = found.size();
+      found.resize(count + (end - begin));
+      for (std::uint32_t m = begin; m < end; ++m) {
+        const double d = distance_squared(members_[m].place, here);
+        found[count] = {d, members_[m].site};
+        count += (d <= limit_squared) & (members_[m].site != site);
+      }
+      found.resize(count);
     };
     for (int z = low[2]; z <= high[2]; ++z) {
       const double from_z = gap_squared(z, 2);
@@ -83,21 +96,16 @@ class SiteGrid {
       for (int y = low[1]; y <= high[1]; ++y) {
         const double from_row = from_z + gap_squared(y, 1);
         if (from_row > limit_squared) continue;
-        const bool shell = math::abs(z - c[2]) == ring || math::abs(y - c[1]) == ring;
-        for (int x = low[0]; x <= high[0]; ++x) {
-          if (!shell && math::abs(x - c[0]) != ring) {
-            x = math::max(x, c[0] + ring - 1);  // across the inside
-            continue;
-          }
-          if (from_row + gap_squared(x, 0) > limit_squared) continue;
-          const std::size_t cube =
-              (std::size_t(z) * std::size_t(count_[1]) + std::size_t(y)) * std::size_t(count_[0]) + std::size_t(x);
-          for (std::uint32_t m = first_[cube]; m < first_[cube + 1]; ++m)
-            if (members_[m] != site) {
-              const double d = distance_squared(sites_[members_[m]], sites_[site]);
-              if (d <= limit_squared) found.push_back({d, members_[m]});
-            }
+        const std::size_t row = (std::size_t(z) * std::size_t(count_[1]) + std::size_t(y)) * std::size_t(count_[0]);
+        if (math::abs(z - c[2]) == ring || math::abs(y - c[1]) == ring) {
+          int from = low[0], to = high[0];
+          while (from < c[0] && from_row + gap_squared(from, 0) > limit_squared) ++from;
+          while (to > c[0] && from_row + gap_squared(to, 0) > limit_squared) --to;
+          look(row, from, to);
+          continue;
         }
+        if (c[0] - ring >= 0) look(row, c[0] - ring, c[0] - ring);
+        if (c[0] + ring < count_[0]) look(row, c[0] + ring, c[0] + ring);
       }
     }
     std::sort(found.begin(), found.end(), [](const Near& a, const Near& b) {
@@ -114,7 +122,12 @@ class SiteGrid {
   Vec3d low_;
   double edge_ = 1;
   int count_[3] = {1, 1, 1};
-  std::vector<std::uint32_t> first_, members_;
+  struct Member {
+    Vec3d place;
+    std::uint32_t site;
+  };
+  std::vector<std::uint32_t> first_;
+  std::vector<Member> members_;  // by cube
 };
 
 /// How far a cell goes from its site: a sphere and a box.

@@ -1,6 +1,7 @@
 #include "carom/environment/column.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace carom::environment {
 
@@ -34,18 +35,40 @@ WindColumn::WindColumn(const Wind& wind, double top) {
     height = math::min(height * 1.05, top);
     levels_.push_back({height, wind_at(wind, height)});
   }
+  prepare();
 }
 
 WindColumn::WindColumn(std::span<const Level> levels) : levels_(levels.begin(), levels.end()) {
   std::stable_sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.height < b.height; });
+  prepare();
+}
+
+std::size_t WindColumn::cell(double height) const {
+  const std::uint64_t place = std::bit_cast<std::uint64_t>(height - levels_.front().height) >> 48;
+  return std::size_t(math::clamp(place, first_cell_, first_cell_ + first_.size() - 1) - first_cell_);
+}
+
+void WindColumn::prepare() {
+  constexpr double octaves = 30;  // what is nearer to the lowest level than that is searched level by level
+  if (levels_.size() < 2) return;
+  const double whole = levels_.back().height - levels_.front().height;
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x) >> 48; };
+  first_cell_ = bits(math::max(whole, 0.0) * math::exp2(-octaves));
+  first_.assign(std::size_t(bits(whole) - first_cell_) + 1, 0);
+  std::uint32_t level = 0;
+  for (std::size_t i = 1; i < first_.size(); ++i) {
+    const double start = std::bit_cast<double>((first_cell_ + i) << 48);
+    while (level + 2 < levels_.size() && levels_[level + 1].height - levels_.front().height <= start) ++level;
+    first_[i] = level;
+  }
 }
 
 math::Vec3d WindColumn::between(double height) const {
   if (!(height > levels_.front().height)) return levels_.front().velocity;
   if (height >= levels_.back().height) return levels_.back().velocity;
-  const auto above = std::upper_bound(levels_.begin(), levels_.end(), height,
-                                      [](double h, const Level& level) { return h < level.height; });
-  const Level &a = *(above - 1), &b = *above;
+  std::size_t i = first_[cell(height)];
+  while (levels_[i + 1].height <= height) ++i;  // the last level is above it
+  const Level &a = levels_[i], &b = levels_[i + 1];
   return a.velocity + ((height - a.height) / (b.height - a.height)) * (b.velocity - a.velocity);
 }
 

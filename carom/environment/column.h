@@ -1,6 +1,7 @@
 // Air and wind over height as tables: what models that ask a thousand times a flight use instead of the formulas.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -26,11 +27,11 @@ class CAROM_API AirColumn {
   static AirColumn uniform(double density, double speed_of_sound = 340.294);
 
   Air at(double height) const {
-    const double last = double(nodes_.size() - 1);
-    const double place = math::clamp((height - lowest_) * per_metre_, 0.0, last);
-    const std::size_t i = std::size_t(math::min(math::floor(place), last - 1));
+    const int last = int(nodes_.size()) - 1;
+    const double place = math::clamp((height - lowest_) * per_metre_, 0.0, double(last));
+    const int i = math::min(int(place), last - 1);
     const double t = place - double(i);
-    const Air &a = nodes_[i], &b = nodes_[i + 1];
+    const Air &a = nodes_[std::size_t(i)], &b = nodes_[std::size_t(i) + 1];
     return {a.density + t * (b.density - a.density), a.speed_of_sound + t * (b.speed_of_sound - a.speed_of_sound)};
   }
 
@@ -65,7 +66,12 @@ class CAROM_API WindColumn {
 
  private:
   math::Vec3d between(double height) const;
+  /// Sixteen cells an octave of the height above the lowest level, by the first bits of the number.
+  std::size_t cell(double height) const;
+  void prepare();
   std::vector<Level> levels_;
+  std::vector<std::uint32_t> first_;  // the level at or below the beginning of a cell
+  std::uint64_t first_cell_ = 0;
 };
 
 }  // namespace carom::environment

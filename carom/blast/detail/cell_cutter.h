@@ -23,7 +23,7 @@ class CellCutter {
     face_count_ = 0;
     tolerance_ = tolerance;
     fits_ = true;
-    for (std::size_t i = 0; i < vertices.size(); ++i) corners_[i] = vertices[i];
+    for (std::size_t i = 0; i < vertices.size(); ++i) put(i, vertices[i]);
     for (const ConvexCell::Face& face : cell.faces()) {
       if (face.count > longest_loop) return false;
       Face& f = faces_[add_face()];
@@ -37,10 +37,10 @@ class CellCutter {
   Cut clip(const math::Vec3d& normal, double offset, int tag) {
     std::uint64_t outside = 0;
     const int top = 64 - std::countl_zero(alive_);
-    for (int i = 0; i < top; ++i) {
-      distance_[std::size_t(i)] = dot(normal, corners_[std::size_t(i)]) - offset;
-      outside |= std::uint64_t(distance_[std::size_t(i)] > tolerance_) << i;
-    }
+    for (int i = 0; i < top; ++i)
+      distance_[std::size_t(i)] = normal.x * x_[std::size_t(i)] + normal.y * y_[std::size_t(i)] +
+                                  normal.z * z_[std::size_t(i)] - offset;
+    for (int i = 0; i < top; ++i) outside |= std::uint64_t(distance_[std::size_t(i)] > tolerance_) << i;
     outside &= alive_;
     if (outside == 0) return Cut::none;
     if (outside == alive_) return Cut::all;
@@ -81,7 +81,7 @@ class CellCutter {
 
   template <class Function>
   void each_corner(Function&& f) const {
-    for (std::uint64_t left = alive_; left != 0; left &= left - 1) f(corners_[std::size_t(std::countr_zero(left))]);
+    for (std::uint64_t left = alive_; left != 0; left &= left - 1) f(corner(std::size_t(std::countr_zero(left))));
   }
   /// Into a cell, corners and faces close together.
   void store(std::vector<math::Vec3d>& vertices, std::vector<ConvexCell::Face>& faces,
@@ -92,7 +92,7 @@ class CellCutter {
     for (std::uint64_t left = alive_; left != 0; left &= left - 1) {
       const std::size_t i = std::size_t(std::countr_zero(left));
       place[i] = std::uint16_t(vertices.size());
-      vertices.push_back(corners_[i]);
+      vertices.push_back(corner(i));
     }
     faces.reserve(std::size_t(face_count_));
     std::size_t total = 0;
@@ -141,7 +141,7 @@ class CellCutter {
     const int slot = std::countr_zero(free);
     made_ |= std::uint64_t{1} << slot;
     const double a = distance_[inside], b = distance_[outside], t = math::clamp(a / (a - b), 0.0, 1.0);
-    corners_[std::size_t(slot)] = corners_[inside] + t * (corners_[outside] - corners_[inside]);
+    put(std::size_t(slot), corner(inside) + t * (corner(outside) - corner(inside)));
     crossings_[std::size_t(crossing_count_)] = {inside, outside, std::uint8_t(slot), -1};
     return crossing_count_++;
   }
@@ -180,8 +180,11 @@ class CellCutter {
     for (std::size_t k = 0; k < count; ++k) face.push(loop[k]);
   }
 
-  std::array<math::Vec3d, most_corners> corners_;
-  std::array<double, most_corners> distance_;
+  math::Vec3d corner(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+  void put(std::size_t i, math::Vec3d p) { x_[i] = p.x, y_[i] = p.y, z_[i] = p.z; }
+
+  // Of corners that are gone distances are computed as well, and masked.
+  alignas(16) std::array<double, most_corners> x_{}, y_{}, z_{}, distance_{};
   std::array<Face, most_faces> faces_;
   std::array<std::uint8_t, most_faces> order_;
   std::array<Crossing, most_corners> crossings_;
