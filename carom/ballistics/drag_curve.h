@@ -56,7 +56,8 @@ class CAROM_API DragCurve {
     const DragPoint& a = points_[i - 1];
     const Cubic& c = cubics_[i - 1];
     const double x = mach - a.mach;
-    return math::max(a.coefficient + x * (c.slope + x * (c.square + x * c.cube)), 0.0);  // rounding, where it is zero
+    return math::max((a.coefficient + x * c.slope) + (x * x) * (c.square + x * c.cube),
+                     0.0);  // rounding, where it is 0
   }
 
   std::span<const DragPoint> points() const { return points_; }

@@ -13,8 +13,10 @@ inline math::Vec3d point_mass_acceleration(const Projectile& projectile, const C
   if (projectile.area_per_mass > 0) {
     const environment::AirColumn::Air air = conditions.air.at(height);
     const math::Vec3d w = velocity - conditions.wind.at(height);
+    // What hangs on the height alone is known before the velocity is: the processor does not wait for it.
+    const double slowness = 1 / air.speed_of_sound, weight = -0.5 * air.density * projectile.area_per_mass;
     const double speed = math::length(w);
-    a = (-0.5 * air.density * projectile.drag(speed / air.speed_of_sound) * projectile.area_per_mass * speed) * w;
+    a = (projectile.drag(speed * slowness) * (weight * speed)) * w;
   }
   switch (conditions.gravity_model) {
     case GravityModel::uniform:

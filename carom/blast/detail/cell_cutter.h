@@ -38,8 +38,8 @@ class CellCutter {
     std::uint64_t outside = 0;
     const int top = 64 - std::countl_zero(alive_);
     for (int i = 0; i < top; ++i)
-      distance_[std::size_t(i)] = normal.x * x_[std::size_t(i)] + normal.y * y_[std::size_t(i)] +
-                                  normal.z * z_[std::size_t(i)] - offset;
+      distance_[std::size_t(i)] =
+          normal.x * x_[std::size_t(i)] + normal.y * y_[std::size_t(i)] + normal.z * z_[std::size_t(i)] - offset;
     for (int i = 0; i < top; ++i) outside |= std::uint64_t(distance_[std::size_t(i)] > tolerance_) << i;
     outside &= alive_;
     if (outside == 0) return Cut::none;

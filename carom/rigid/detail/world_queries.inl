@@ -329,8 +329,8 @@ Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
         return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
-  // Each is asked first whether it comes where anything is. What does asks with its neighbours whether there is anything
-  // at all where they go: one walk for a group.
+  // Each is asked first whether it comes where anything is. What does asks with its neighbours whether there is
+  // anything at all where they go: one walk for a group.
   typename D::Bounds all = detail::bounds_of_shapes<D>(*self_);
   const double slack = 2e-5 + 4e-6 * math::sqrt(longest);
   for (int k = 0; k < D::dimension; ++k) all.low[k] -= slack, all.high[k] += slack;
