@@ -119,7 +119,12 @@ AimSolver::Pass AimSolver::pass(double elevation, double azimuth) const {
     k = end.k;
     t += h;
     const double above = x.y - target_(t).y;
-    if (v.y < 0 && above < 0.5 * start) return {true, above + gone, 0};
+    if (v.y < 0 && above < 0.5 * start) {
+      // Where the target is nearly as fast as a spent shot, it may have been nearer before.
+      const Vec3d way = x - shooter_.muzzle;
+      const double radial = (v.x * way.x + v.z * way.z) / math::max(math::hypot(way.x, way.z), 1e-9);
+      return {radial > 2 * math::length(velocity_of_target(t)), above + gone, 0};
+    }
   }
   return {};
 }

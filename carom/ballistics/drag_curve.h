@@ -49,15 +49,14 @@ class CAROM_API DragCurve {
   /// `mach` ≥ 0.
   double operator()(double mach) const {
     // One cell of a uniform grid tells the first node that can lie beyond: a step or two from there.
-    const int cell = int(math::min(math::max(mach, 0.0) * cells_per_mach_, double(cells - 1)));
+    const int cell = int(math::min(math::max(0.0, mach) * cells_per_mach_, double(cells - 1)));
     std::size_t i = first_[std::size_t(cell)];
     while (i + 1 < points_.size() && points_[i].mach < mach) ++i;
     if (i == 0 || points_[i].mach < mach) return points_[i].coefficient;
     const DragPoint& a = points_[i - 1];
     const Cubic& c = cubics_[i - 1];
     const double x = mach - a.mach;
-    return math::max((a.coefficient + x * c.slope) + (x * x) * (c.square + x * c.cube),
-                     0.0);  // rounding, where it is 0
+    return math::max(a.coefficient + x * (c.slope + x * (c.square + x * c.cube)), 0.0);  // rounding, where it is zero
   }
 
   std::span<const DragPoint> points() const { return points_; }

@@ -29,7 +29,7 @@ class CAROM_API AirColumn {
   Air at(double height) const {
     const int last = int(nodes_.size()) - 1;
     const double place = math::clamp((height - lowest_) * per_metre_, 0.0, double(last));
-    const int i = math::min(int(place), last - 1);
+    const int i = place > 0 ? math::min(int(place), last - 1) : 0;
     const double t = place - double(i);
     const Air &a = nodes_[std::size_t(i)], &b = nodes_[std::size_t(i) + 1];
     return {a.density + t * (b.density - a.density), a.speed_of_sound + t * (b.speed_of_sound - a.speed_of_sound)};

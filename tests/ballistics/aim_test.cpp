@@ -54,11 +54,11 @@ double miss(const Case& c, const Shot& shot) {
   return math::length(flight->end().position - (c.target.position + shot.time * c.target.velocity));
 }
 
-// Every shot that is told passes within 1 cm; the callback's scan, which walks through the flight times,
-// finds the same earliest and latest hit, and none where none is told.
+// Every shot that is told passes within 1 cm; the callback's scan, which walks through the flight times, finds none
+// where none is told, and none earlier or later. (It may step over two hits close together, which the solver finds.)
 TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
   math::Random random(2026);
-  int hits = 0, none = 0, two = 0;                     // two: with a high arc of its own
+  int hits = 0, none = 0, two = 0, stepped_over = 0;   // two: with a high arc of its own
   const char* asked = std::getenv("CAROM_AIM_CASES");  // 10 000 have been run
   const int cases = asked != nullptr ? std::atoi(asked) : 200;
   double worst = 0;
@@ -69,7 +69,7 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
     const auto scan = aim(c.projectile, c.conditions, c.shooter,
                           [&](double t) { return c.target.position + t * c.target.velocity; }, {.longest_time = 60});
     ASSERT_TRUE(scan);
-    ASSERT_EQ(aims->low.has_value(), scan->low.has_value()) << i;
+    ASSERT_TRUE(aims->low || !scan->low) << i;
     const auto low = aim(c.projectile, c.conditions, c.shooter, c.target, {.longest_time = 60, .high_arc = false});
     ASSERT_EQ(low->low.has_value(), aims->low.has_value()) << i;
     if (!aims->low) {
@@ -78,9 +78,12 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
     }
     ++hits;
     two += aims->high->time > aims->low->time * 1.001;
-    // The scan may step over two hits close together: of 10 000 cases it came later twice.
-    EXPECT_LT(aims->low->time, scan->low->time * 1.001 + 1e-4) << i;
-    EXPECT_NEAR(aims->high->time, scan->high->time, 1e-3 * aims->high->time + 1e-4) << i;
+    if (scan->low) {
+      EXPECT_LT(aims->low->time, scan->low->time * 1.001 + 1e-4) << i;
+      EXPECT_GT(aims->high->time, scan->high->time * 0.999 - 1e-4) << i;
+    }
+    stepped_over += !scan->low || aims->low->time < scan->low->time * 0.999 - 1e-4 ||
+                    aims->high->time > scan->high->time * 1.001 + 1e-4;
     for (const Shot& shot : {*aims->low, *aims->high}) {
       const double off = miss(c, shot);
       worst = math::max(worst, off);
@@ -94,6 +97,7 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
   }
 
   RecordProperty("worst_miss_micrometres", int(worst * 1e6));
+  EXPECT_LE(stepped_over, cases / 1000);
   EXPECT_GT(hits, cases / 3);
   EXPECT_GT(two, cases / 3);
   EXPECT_GT(none, cases / 50);
@@ -132,6 +136,27 @@ TEST(Aim, NoSolutionIsSaid) {
   EXPECT_FALSE(aim(shot, {}, shooter, Target{{100, 0, 0}, {150, 0, 0}}).value());
   EXPECT_FALSE(aim(shot, {}, shooter, [](double t) { return Vec3d{100 + 150 * t, 0, 0}; }).value());
   EXPECT_TRUE(aim(shot, {}, shooter, Target{{100, 0, 0}}).value());
+}
+
+// The target flees nearly as fast as the spent shot: the two meet, though every shot falls far behind in the end.
+TEST(Aim, SpentShotsMeetATargetThatFlees) {
+  const Projectile shot = projectile_from_coefficient(DragFunction::g7, .58);
+  const Shooter shooter{.muzzle_speed = 790, .muzzle = {0, 200, 0}, .velocity = {14.6, -23.5, 10.6}};
+  int met = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Target target{{-918, 42, -1914}, Vec3d{-75.8, -9.8, -55} * (1.0 + 0.2 * i)};
+    const auto aims = aim(shot, {}, shooter, target, {.longest_time = 60});
+    const auto scan =
+        aim(shot, {}, shooter, [&](double t) { return target.position + t * target.velocity; }, {.longest_time = 60});
+    ASSERT_TRUE(aims && scan);
+    EXPECT_TRUE(aims->low || !scan->low) << i;
+    if (!aims->low) continue;
+    ++met;
+    const auto flight = fly(shot, {}, {shooter.muzzle, shooter.velocity + 790.0 * aims->low->direction},
+                            {.time = aims->low->time, .tolerance = 1e-11});
+    EXPECT_LT(math::length(flight->end().position - (target.position + aims->low->time * target.velocity)), .01) << i;
+  }
+  EXPECT_GT(met, 0);
 }
 
 // A target on a circle is met where it will be.
