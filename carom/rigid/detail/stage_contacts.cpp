@@ -180,6 +180,16 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   }
 }
 
+/// How fast something parts shows only where it is slow: what flies faster than that in an overlap was pressed into it
+/// by a blow, and takes it along.
+template <class D>
+bool parts_in_flight(const StepContext<D>& context, std::int32_t a, std::int32_t b) {
+  const float fast = 2 * context.push_speed;
+  const float speed_squared = max(math::length_squared(context.bodies[a].linear_velocity),
+                                  math::length_squared(context.bodies[b].linear_velocity));
+  return speed_squared > fast * fast;
+}
+
 /// m: by so much a contact that settles may slip.
 template <class D>
 float settling_slip(const StepContext<D>& context) {
@@ -504,6 +514,9 @@ void prepare_blocks(StepContext<D>& context) {
                      for (int lane = 0; lane < lanes; ++lane)
                        prefetch_manifold(world, manifolds, first + std::size_t(lane), approaches);
                      gather_block(context, sources, list, block, raw, extra, marks);
+                     for (int lane = 0; lane < lanes; ++lane)
+                       if (marks[lane] != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane]))
+                         marks[lane] = 0;
                      world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
                      for (int lane = 0; lane < lanes; ++lane)
                        if (raw.anchor_state[lane] > 0) set_anchor(context, list[std::size_t(lane)], block, lane);
