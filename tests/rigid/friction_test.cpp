@@ -105,6 +105,29 @@ TEST(Friction, SphereRollsDownAnIncline) {
   EXPECT_NEAR((speed(world, ball) - v1) / 2, expected, 0.005 * expected);
 }
 
+/// What a blow that takes off all of the speed `down` takes off the speed along the ground, over μ times `down`: for a
+/// box that does not turn and slides all the while. `phase`: part of a step's way by which it starts higher.
+float rubbed_off(float down, float phase) {
+  constexpr float friction = 0.5f;
+  World3 world(world_with<Dim3>(0));
+  add_ground(world, {friction, 0, 1000, 0});
+  const BodyId box = add_box<Dim3>(world, {0, 2 + down / 60 * phase, 0}, 0.5f, {friction, 0, 1000, 0});
+  MotionLocks locks;
+  locks.rotation_x = locks.rotation_y = locks.rotation_z = true;
+  world.set_locks(box, locks).value();
+  const float along_ground = down + 5;
+  world.set_velocity(box, {along_ground, -down, 0}, {}).value();
+  run(world, 60);
+  EXPECT_NEAR(world.state(box).value().linear_velocity.y, 0, 0.02f * down);
+  return (along_ground - world.state(box).value().linear_velocity.x) / (friction * down);
+}
+
+// Coulomb's law in impulses (mechanics.md 5.2): whenever in a step the blow falls, the ground rubs with μ times it.
+TEST(Friction, BlowsRub) {
+  for (float down : {3.0f, 10.0f, 30.0f, 60.0f})
+    for (int k = 0; k < 24; ++k) EXPECT_NEAR(rubbed_off(down, k / 24.0f), 1, 0.1f) << down << " m/s, phase " << k;
+}
+
 // A disc spinning on its face under uniform pressure stops after 3 R ω₀/(4 μ g).
 TEST(Friction, SpinningDiscStops) {
   World3 world(world_with<Dim3>());

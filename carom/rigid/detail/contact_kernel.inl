@@ -77,6 +77,9 @@ CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
+/// m/s that the relaxing pass takes off where bodies meet: with more it is a blow, whose friction is due at once.
+inline constexpr float least_blow = 0.25f;
+
 /// flag/k, or 0 where nothing responds.
 template <int W>
 CAROM_SIMD_INLINE WideFloat<W> inverse_or_zero(WideFloat<W> flag, WideFloat<W> k) {

@@ -150,51 +150,73 @@ CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a,
 }
 
 template <int W>
+CAROM_SIMD_INLINE WideFloat<W> load_of(const ContactBlock<Dim3, W>& c) {
+  using F = WideFloat<W>;
+  return F::load(c.point[0].impulse) + F::load(c.point[1].impulse) + F::load(c.point[2].impulse) +
+         F::load(c.point[3].impulse);
+}
+
+template <int W>
+CAROM_SIMD_INLINE void solve_friction3(ContactBlock<Dim3, W>& c, Velocity3<W>& a, Velocity3<W>& b, WideFloat<W> load,
+                                       WideMask<W> takes_part, const WideVec3<W>& n, const WideSymmetric<W>& ia,
+                                       const WideSymmetric<W>& ib) {
+  using F = WideFloat<W>;
+  const F cone = F::load(c.friction) * load;
+  {
+    const F old = F::load(c.twist_impulse), limit = cone * F::load(c.twist_radius);
+    const F wanted = old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n);
+    const F lambda = select(takes_part, clamp(wanted, F::splat(0) - limit, limit), old);
+    lambda.store(c.twist_impulse);
+    const WideVec3<W> turn = multiply(n, lambda - old);
+    a.w = subtract(a.w, multiply(ia, turn));
+    b.w = add(b.w, multiply(ib, turn));
+  }
+  const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t);
+  const WideVec3<W> ra = load3<W>(c.patch_r_a), rb = add(ra, load3<W>(c.center_offset));
+  const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
+  const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
+  const F m11 = F::load(c.tangent_mass[0]), m22 = F::load(c.tangent_mass[1]), m12 = F::load(c.tangent_mass[2]);
+  const F old1 = F::load(c.tangent_impulse[0]), old2 = F::load(c.tangent_impulse[1]);
+  F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
+  const F size = sqrt(l1 * l1 + l2 * l2);
+  const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
+  l1 = select(takes_part, l1 * scale, old1);
+  l2 = select(takes_part, l2 * scale, old2);
+  l1.store(c.tangent_impulse[0]);
+  l2.store(c.tangent_impulse[1]);
+  const WideVec3<W> p = add(multiply(t, l1 - old1), multiply(u, l2 - old2));
+  push_back(a, F::load(c.inverse_mass_a), ia, p, cross(ra, p));
+  push(b, F::load(c.inverse_mass_b), ib, p, cross(rb, p));
+}
+
+template <int W>
 void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h, float counted) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
     const WideVec3<W> n = load3<W>(c.normal);
-    const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse) + F::load(c.point[2].impulse) +
-                   F::load(c.point[3].impulse);
     const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
     const auto takes_part = share > F::splat(0);
-    if (extra != nullptr)
-      solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, takes_part, ia, ib);
-    const F cone = F::load(c.friction) * load;
-    {
-      const F old = F::load(c.twist_impulse), limit = cone * F::load(c.twist_radius);
-      const F wanted = old - F::load(c.twist_mass) * dot(subtract(b.w, a.w), n);
-      const F lambda = select(takes_part, clamp(wanted, F::splat(0) - limit, limit), old);
-      lambda.store(c.twist_impulse);
-      const WideVec3<W> turn = multiply(n, lambda - old);
-      a.w = subtract(a.w, multiply(ia, turn));
-      b.w = add(b.w, multiply(ib, turn));
+    auto rubs = takes_part;
+    F load = load_of<W>(c);
+    // What keeps bodies apart has the last word. But a blow that falls only here would otherwise pass without friction:
+    // what strikes the ground would go on along it.
+    for (bool struck = false;; struck = true) {
+      if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, rubs, ia, ib);
+      solve_friction3<W>(c, a, b, load, rubs, n, ia, ib);
+      if (struck) break;
+      solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), F::splat(counted), share,
+                               0);
+      const F before = load;
+      load = load_of<W>(c);
+      const F blow = (load - before) * (F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b));
+      rubs = takes_part & (blow > F::splat(least_blow));
+      if (!any(rubs)) break;
     }
-    {
-      const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t);
-      const WideVec3<W> ra = load3<W>(c.patch_r_a), rb = add(ra, load3<W>(c.center_offset));
-      const WideVec3<W> slip = subtract(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)));
-      const F e1 = dot(slip, t) - F::load(c.tangent_target[0]), e2 = dot(slip, u) - F::load(c.tangent_target[1]);
-      const F m11 = F::load(c.tangent_mass[0]), m22 = F::load(c.tangent_mass[1]), m12 = F::load(c.tangent_mass[2]);
-      const F old1 = F::load(c.tangent_impulse[0]), old2 = F::load(c.tangent_impulse[1]);
-      F l1 = old1 - (m11 * e1 + m12 * e2), l2 = old2 - (m12 * e1 + m22 * e2);
-      const F size = sqrt(l1 * l1 + l2 * l2);
-      const F scale = select(size > cone, cone / max(size, F::splat(1e-30f)), F::splat(1));
-      l1 = select(takes_part, l1 * scale, old1);
-      l2 = select(takes_part, l2 * scale, old2);
-      l1.store(c.tangent_impulse[0]);
-      l2.store(c.tangent_impulse[1]);
-      (F::load(c.tangent_total[0]) + l1 * F::splat(counted)).store(c.tangent_total[0]);
-      (F::load(c.tangent_total[1]) + l2 * F::splat(counted)).store(c.tangent_total[1]);
-      const WideVec3<W> p = add(multiply(t, l1 - old1), multiply(u, l2 - old2));
-      push_back(a, ma, ia, p, cross(ra, p));
-      push(b, mb, ib, p, cross(rb, p));
-    }
-    solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+    (F::load(c.tangent_total[0]) + F::load(c.tangent_impulse[0]) * F::splat(counted)).store(c.tangent_total[0]);
+    (F::load(c.tangent_total[1]) + F::load(c.tangent_impulse[1]) * F::splat(counted)).store(c.tangent_total[1]);
     if (counted > 0) {
       write_velocity<W>(bodies, c.write_a, a);
       write_velocity<W>(bodies, c.write_b, b);
