@@ -13,15 +13,6 @@ core::Error told_of(std::string_view file, const core::Error& error) {
   return core::Error{core::text(file, ": ", error.message)};
 }
 
-/// A name of a preset, never a path.
-bool plain_name(std::string_view name) {
-  if (name.empty() || name.size() > 80) return false;
-  for (const char c : name)
-    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
-      return false;
-  return true;
-}
-
 /// The number of that name into `into`, where the file has it.
 void take(const PresetValues& values, std::string_view name, double& into) { into = values.number(name, into); }
 
@@ -122,7 +113,7 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
   };
   const auto preset = [&](std::string_view kind) -> core::Result<std::string> {
     const std::string_view name = values->text(kind);
-    if (!plain_name(name))
+    if (!detail::is_preset_name(name))
       return error(kind, core::text("found ", core::quoted(name), ", expected the name of a preset"));
     if (!resolver) return error(kind, "there is nobody to ask for presets");
     auto found = resolver(core::text("presets/", kind, "/", name, ".json"));

@@ -1,9 +1,9 @@
-// Presets of guns, ammunition, sights and walls from anybody: numbers that can be, or a clear error that names the
-// file.
+// Presets of guns, ammunition, sights, walls and rockets from anybody: numbers that can be, or a clear error that names
+// the file.
 #include <cstdint>
 #include <string_view>
 
-#include "carom/scene/weapon_presets.h"
+#include "carom/scene/rocket_presets.h"
 #include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -47,6 +47,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       require(p.speed_out >= 0 && p.speed_out <= speed * (1 + 1e-12), "a wall that gives speed");
       speed = p.speed_out;
     }
+  }
+  const auto motor = [](std::string_view path) -> core::Result<std::string> {
+    require(path.starts_with("presets/motor/") && path.find("..") == std::string_view::npos,
+            "a path out of the presets");
+    return std::string("A1 18 70 5 0.003 0.016 X\n 0.1 5\n 0.5 0\n");
+  };
+  const auto rocket = scene::parse_rocket(text, "f", motor);
+  if (named(rocket)) {
+    const auto flight = ballistics::fly_rocket(*rocket, {}, {}, ballistics::RocketModel::point_mass,
+                                               {.time = 0.05, .ground = -1e300, .tolerance = 1e-6});
+    require(!flight.ok() || math::is_finite(math::length(flight->path.end().velocity)), "a flight that is not finite");
   }
   return 0;
 }

@@ -37,4 +37,13 @@ core::Result<double> read_preset_quantity(const Node& node, std::string_view uni
 /// The tree of a preset with its values, whose kind is checked: "values" an object, or an array where `array` says so.
 core::Result<Node> read_preset_tree(std::string_view text, std::string_view file, bool array);
 
+/// A name of a preset, never a path.
+inline bool is_preset_name(std::string_view name) {
+  if (name.empty() || name.size() > 80) return false;
+  for (const char c : name)
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
+      return false;
+  return true;
+}
+
 }  // namespace carom::scene::detail

@@ -1,0 +1,93 @@
+// Rockets as files: they fly, and errors name the place.
+#include "carom/scene/rocket_presets.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace rocket_presets_test {
+using namespace carom;
+using namespace carom::ballistics;
+
+core::Result<std::string> read(std::string_view path) {
+  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
+  if (!in) return core::Error{"no file " + std::string(path)};
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// Every rocket of presets/ is stable by a calibre at the least, goes up, and comes down by its parachute.
+TEST(RocketPresets, EveryFileFlies) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(CAROM_SOURCE_DIR) + "/presets/rocket")) {
+    const std::string path = "presets/rocket/" + entry.path().filename().string();
+    const auto rocket = scene::parse_rocket(read(path).value(), path, read);
+    ASSERT_TRUE(rocket) << rocket.error().message;
+    const Conditions air{.air = environment::AirColumn::uniform(1.225)};
+    const auto flight =
+        fly_rocket(*rocket, air, {.rail_length = 1.2}, RocketModel::six_degrees, {.time = 600, .ground = 0});
+    ASSERT_TRUE(flight) << path << ": " << flight.error().message;
+    const RocketMoment* apex = flight->first(RocketEvent::apex);
+    ASSERT_TRUE(apex != nullptr && flight->first(RocketEvent::parachute) != nullptr) << path;
+    EXPECT_GT(apex->position.y, 50) << path;
+    double mass = 0, moment = 0;
+    for (const Stage& stage : rocket->stages) {
+      mass += stage.dry_mass + stage.motor.mass;
+      moment += stage.dry_mass * stage.dry_centre + stage.motor.mass * stage.motor_centre;
+    }
+    EXPECT_GT(barrowman(*rocket).centre_of_pressure, moment / mass + rocket->diameter) << path << ": a calibre";
+    const double sinks = math::sqrt(2 * flight->masses.back() * 9.80665 / (1.225 * rocket->parachute.drag_area));
+    EXPECT_NEAR(-flight->path.end().velocity.y, sinks, .02 * sinks) << path;
+    ++count;
+  }
+  EXPECT_GE(count, 2);
+}
+
+// The impulses are those that the NAR certified for a C6 (8.82 N s), the masses those of the file: the mean exhaust
+// speed and the change of mass are in the flight.
+TEST(RocketPresets, HoldsWhatTheFileSays) {
+  const std::string path = "presets/rocket/two_stage_c6.json";
+  const auto rocket = scene::parse_rocket(read(path).value(), path, read);
+  ASSERT_TRUE(rocket) << rocket.error().message;
+  ASSERT_EQ(rocket->stages.size(), 2u);
+  for (const Stage& stage : rocket->stages) EXPECT_NEAR(stage.motor.curve.total_impulse(), 8.82, .002 * 8.82);
+  EXPECT_DOUBLE_EQ(rocket->stages[0].dry_mass, .025);
+  EXPECT_DOUBLE_EQ(rocket->stages[1].ignition_delay, .1);
+  EXPECT_EQ(rocket->fins.count, 4);
+  EXPECT_DOUBLE_EQ(rocket->fins.position, .7);
+  EXPECT_DOUBLE_EQ(rocket->coasting_drag(0), .55);
+  const auto flight =
+      fly_rocket(*rocket, {}, {.rail_length = 1.2}, RocketModel::point_mass, {.time = 600, .ground = 0});
+  ASSERT_TRUE(flight) << flight.error().message;
+  const RocketMoment* separation = flight->first(RocketEvent::separation);
+  ASSERT_NE(separation, nullptr);
+  EXPECT_GT(flight->first(RocketEvent::apex)->position.y, 2 * separation->position.y);
+}
+
+TEST(RocketPresets, ErrorsNameThePlace) {
+  const auto error = [](const std::string& values) {
+    const auto rocket = scene::parse_rocket("{\"values\": {" + values + "}}", "r.json", read);
+    return rocket.ok() ? std::string("none") : rocket.error().message;
+  };
+  const std::string size = R"("diameter": "25 mm", "length": "1 m", )";
+  const auto says = [](const std::string& message, const std::string& part) {
+    EXPECT_TRUE(message.starts_with("r.json:1: ")) << message;
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  says(error(R"("length": "1 m", "stages": [])"), "values.diameter");
+  says(error(size + R"("stages": [])"), "1 to 10 stages");
+  says(error(size + R"("wings": 2, "stages": [])"), "values.wings");
+  says(error(size + R"("fin_count": 2.5, "stages": [])"), "a whole number");
+  says(error(R"("diameter": "-1 m", "length": "1 m", "stages": [])"), "values.diameter");
+  says(error(R"("diameter": "3 kg", "length": "1 m", "stages": [])"), "values.diameter");
+  says(error(size + R"("stages": [{"dry_mass": "1 kg"}])"), "values.stages[0].motor: is missing");
+  says(error(size + R"("stages": [{"motor": "black_powder"}])"), "values.stages[0].dry_mass");
+  says(error(size + R"("stages": [{"dry_mass": "1 kg", "motor": "../x"}])"), "the name of a preset");
+  says(error(size + R"("stages": [{"dry_mass": "1 kg", "motor": "nothing"}])"), "no file presets/motor/nothing.eng");
+  says(error(size + R"("stages": [{"dry_mass": "1 kg", "motor": "black_powder", "designation": "Z9"}])"), "A8, B6, C6");
+}
+
+}  // namespace rocket_presets_test
