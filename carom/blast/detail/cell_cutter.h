@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "carom/blast/convex_cell.h"
+#include "carom/math/simd_double.h"
 
 namespace carom::blast::detail {
 
@@ -37,10 +38,17 @@ class CellCutter {
   Cut clip(const math::Vec3d& normal, double offset, int tag) {
     std::uint64_t outside = 0;
     const int top = 64 - std::countl_zero(alive_);
-    for (int i = 0; i < top; ++i)
-      distance_[std::size_t(i)] =
-          normal.x * x_[std::size_t(i)] + normal.y * y_[std::size_t(i)] + normal.z * z_[std::size_t(i)] - offset;
-    for (int i = 0; i < top; ++i) outside |= std::uint64_t(distance_[std::size_t(i)] > tolerance_) << i;
+    using Pair = math::WideDouble<2>;
+    const Pair nx = Pair::splat(normal.x), ny = Pair::splat(normal.y), nz = Pair::splat(normal.z);
+    const Pair far = Pair::splat(offset), most = Pair::splat(tolerance_);
+    Pair::Mask bits = {1, 2}, found = {0, 0};
+    for (std::size_t i = 0; i < std::size_t(top); i += 2, bits <<= 2) {
+      const Pair d =
+          nx * Pair::load_aligned(&x_[i]) + ny * Pair::load_aligned(&y_[i]) + nz * Pair::load_aligned(&z_[i]) - far;
+      d.store_aligned(&distance_[i]);
+      found |= (d > most) & bits;
+    }
+    outside = std::uint64_t(found[0] | found[1]);
     outside &= alive_;
     if (outside == 0) return Cut::none;
     if (outside == alive_) return Cut::all;
@@ -131,8 +139,10 @@ class CellCutter {
     return place;
   }
   int crossing(std::uint8_t inside, std::uint8_t outside) {
-    for (int k = crossing_count_; k-- > 0;)
-      if (crossings_[std::size_t(k)].inside == inside && crossings_[std::size_t(k)].outside == outside) return k;
+    // What the table says of an edge counts where the crossing agrees: it need not be cleared.
+    std::uint8_t& number = number_[inside][outside];
+    if (number < crossing_count_ && crossings_[number].inside == inside && crossings_[number].outside == outside)
+      return number;
     const std::uint64_t free = ~(alive_ | made_);
     if (free == 0 || crossing_count_ == most_corners) {
       fits_ = false;
@@ -142,6 +152,7 @@ class CellCutter {
     made_ |= std::uint64_t{1} << slot;
     const double a = distance_[inside], b = distance_[outside], t = math::clamp(a / (a - b), 0.0, 1.0);
     put(std::size_t(slot), corner(inside) + t * (corner(outside) - corner(inside)));
+    number = std::uint8_t(crossing_count_);
     crossings_[std::size_t(crossing_count_)] = {inside, outside, std::uint8_t(slot), -1};
     return crossing_count_++;
   }
@@ -188,6 +199,7 @@ class CellCutter {
   std::array<Face, most_faces> faces_;
   std::array<std::uint8_t, most_faces> order_;
   std::array<Crossing, most_corners> crossings_;
+  std::uint8_t number_[most_corners][most_corners] = {};  // of the crossing of an edge, by its corners
   std::uint64_t alive_ = 0, used_ = 0, made_ = 0;
   int face_count_ = 0, crossing_count_ = 0;
   double tolerance_ = 0;
