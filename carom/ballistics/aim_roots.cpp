@@ -64,7 +64,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool near) 
     // A correction that the last ones say will land: it is not flown.
     const double both = missed + math::abs(lack) * guess.time;
     if (!turned && i > 0) contraction = math::clamp(both / last_both, 0.02, 1.0);
-    const bool lands = i > 0 && corrected && both < 30 * allowed && contraction * both < 0.25 * allowed;
+    const bool lands = i > 0 && corrected && !turned && both < 30 * allowed && contraction * both < 0.25 * allowed;
     last_both = both;
     // The next miss is some tenth of this one: then integration may err a tenth of that.
     accuracy = math::min(accuracy, math::max(0.02 * math::min(missed, last_missed), rough));

@@ -9,66 +9,70 @@ namespace {
 using detail::Node;
 
 /// A number of the file: at least `least`, or more than that where it must not be zero.
-struct Field {
+struct RocketNumber {
   std::string_view name, unit;
   double* value;
   bool positive = false;
 };
 
-core::Error told(std::string_view file, const Node& node, const std::string& where, const std::string& message) {
+core::Error rocket_error(std::string_view file, const Node& node, const std::string& where,
+                         const std::string& message) {
   return detail::preset_error(file, node, where, message);
 }
 
 /// The numbers of an object; `others` are looked at by the caller.
-core::Result<void> read_fields(const Node& node, std::span<const Field> fields,
-                               std::span<const std::string_view> others, std::string_view file, const std::string& at) {
+core::Result<void> read_rocket_numbers(const Node& node, std::span<const RocketNumber> fields,
+                                       std::span<const std::string_view> others, std::string_view file,
+                                       const std::string& at) {
   for (std::size_t k = 0; k < node.keys.size(); ++k) {
     const std::string_view key = node.keys[k];
     const std::string where = core::text(at, ".", key);
     bool known = false;
     for (const std::string_view other : others) known |= other == key;
-    for (const Field& field : fields) {
+    for (const RocketNumber& field : fields) {
       if (field.name != key) continue;
       const auto quantity = detail::read_preset_quantity(node.children[k], field.unit, file, where);
       if (!quantity) return quantity.error();
       if (!math::is_finite(*quantity) || *quantity < 0 || (field.positive && *quantity == 0))
-        return told(file, node.children[k], where,
-                    core::refused("it", *quantity, field.positive ? "a finite number > 0" : "a finite number >= 0"));
+        return rocket_error(
+            file, node.children[k], where,
+            core::refused("it", *quantity, field.positive ? "a finite number > 0" : "a finite number >= 0"));
       *field.value = *quantity;
       known = true;
     }
-    if (!known) return told(file, node.children[k], where, "found a name that is not known here");
+    if (!known) return rocket_error(file, node.children[k], where, "found a name that is not known here");
   }
-  for (const Field& field : fields)
+  for (const RocketNumber& field : fields)
     if (field.positive && node.find(field.name) == nullptr)
-      return told(file, node, core::text(at, ".", field.name), "is missing");
+      return rocket_error(file, node, core::text(at, ".", field.name), "is missing");
   return {};
 }
 
 core::Result<ballistics::Motor> read_motor(const Node& stage, std::string_view file, const std::string& at,
                                            const PresetResolver& resolver) {
   const Node* const name = stage.find("motor");
-  if (name == nullptr) return told(file, stage, at + ".motor", "is missing");
+  if (name == nullptr) return rocket_error(file, stage, at + ".motor", "is missing");
   if (!name->is_text() || !detail::is_preset_name(name->text))
-    return told(file, *name, at + ".motor", "found " + detail::show(*name) + ", expected the name of a preset");
-  if (!resolver) return told(file, *name, at + ".motor", "there is nobody to ask for presets");
+    return rocket_error(file, *name, at + ".motor", "found " + detail::show(*name) + ", expected the name of a preset");
+  if (!resolver) return rocket_error(file, *name, at + ".motor", "there is nobody to ask for presets");
   const std::string path = core::text("presets/motor/", name->text, ".eng");
   const auto text = resolver(path);
-  if (!text) return told(file, *name, at + ".motor", text.error().message);
+  if (!text) return rocket_error(file, *name, at + ".motor", text.error().message);
   const auto motors = ballistics::read_rasp(*text, path);
-  if (!motors) return told(file, *name, at + ".motor", motors.error().message);
-  if (motors->empty()) return told(file, *name, at + ".motor", path + " has no motor");
+  if (!motors) return rocket_error(file, *name, at + ".motor", motors.error().message);
+  if (motors->empty()) return rocket_error(file, *name, at + ".motor", path + " has no motor");
   const Node* const wanted = stage.find("designation");
   if (wanted == nullptr) return motors->front();
   if (!wanted->is_text())
-    return told(file, *wanted, at + ".designation", "found " + detail::show(*wanted) + ", expected a motor's name");
+    return rocket_error(file, *wanted, at + ".designation",
+                        "found " + detail::show(*wanted) + ", expected a motor's name");
   std::string found;
   for (const ballistics::Motor& motor : *motors) {
     if (motor.name == wanted->text) return motor;
     found += (found.empty() ? "" : ", ") + motor.name;
   }
-  return told(file, *wanted, at + ".designation",
-              core::text("found ", core::quoted(wanted->text), ", expected one of ", path, ": ", found));
+  return rocket_error(file, *wanted, at + ".designation",
+                      core::text("found ", core::quoted(wanted->text), ", expected one of ", path, ": ", found));
 }
 
 }  // namespace
@@ -81,44 +85,45 @@ core::Result<ballistics::Rocket> parse_rocket(std::string_view text, std::string
   ballistics::Rocket rocket;
   rocket.fins = {.count = 0};
   double drag = 0.5, coasting = -1, fins = 0;
-  const Field fields[] = {{"diameter", "m", &rocket.diameter, true},
-                          {"length", "m", &rocket.length, true},
-                          {"nose_length", "m", &rocket.nose_length},
-                          {"drag_coefficient", "", &drag},
-                          {"coasting_drag_coefficient", "", &coasting},
-                          {"fin_count", "", &fins},
-                          {"fin_root_chord", "m", &rocket.fins.root_chord},
-                          {"fin_tip_chord", "m", &rocket.fins.tip_chord},
-                          {"fin_span", "m", &rocket.fins.span},
-                          {"fin_sweep", "m", &rocket.fins.sweep},
-                          {"fin_position", "m", &rocket.fins.position},
-                          {"parachute_drag_area", "m^2", &rocket.parachute.drag_area},
-                          {"parachute_height", "m", &rocket.parachute.deploy_height},
-                          {"parachute_delay", "s", &rocket.parachute.deploy_delay}};
+  const RocketNumber fields[] = {{"diameter", "m", &rocket.diameter, true},
+                                 {"length", "m", &rocket.length, true},
+                                 {"nose_length", "m", &rocket.nose_length},
+                                 {"drag_coefficient", "", &drag},
+                                 {"coasting_drag_coefficient", "", &coasting},
+                                 {"fin_count", "", &fins},
+                                 {"fin_root_chord", "m", &rocket.fins.root_chord},
+                                 {"fin_tip_chord", "m", &rocket.fins.tip_chord},
+                                 {"fin_span", "m", &rocket.fins.span},
+                                 {"fin_sweep", "m", &rocket.fins.sweep},
+                                 {"fin_position", "m", &rocket.fins.position},
+                                 {"parachute_drag_area", "m^2", &rocket.parachute.drag_area},
+                                 {"parachute_height", "m", &rocket.parachute.deploy_height},
+                                 {"parachute_delay", "s", &rocket.parachute.deploy_delay}};
   static constexpr std::string_view lists[] = {"stages"};
-  if (auto s = read_fields(values, fields, lists, file, "values"); !s) return s.error();
+  if (auto s = read_rocket_numbers(values, fields, lists, file, "values"); !s) return s.error();
   rocket.drag = ballistics::DragCurve(drag);
   rocket.coasting_drag = ballistics::DragCurve(coasting < 0 ? drag : coasting);
   rocket.fins.count = int(math::min(fins, 100.0));
   if (double(rocket.fins.count) != fins || fins > 16)
-    return told(file, *values.find("fin_count"), "values.fin_count",
-                core::refused("it", fins, "a whole number, at most 16"));
+    return rocket_error(file, *values.find("fin_count"), "values.fin_count",
+                        core::refused("it", fins, "a whole number, at most 16"));
 
   const Node* const stages = values.find("stages");
   if (stages == nullptr || !stages->is_array() || stages->children.empty() || stages->children.size() > 10)
-    return told(file, stages != nullptr ? *stages : values, "values.stages", "expected a list of 1 to 10 stages");
+    return rocket_error(file, stages != nullptr ? *stages : values, "values.stages",
+                        "expected a list of 1 to 10 stages");
   for (std::size_t i = 0; i < stages->children.size(); ++i) {
     const Node& node = stages->children[i];
     const std::string at = core::text("values.stages[", i, "]");
-    if (!node.is_object()) return told(file, node, at, "found " + detail::show(node) + ", expected an object");
+    if (!node.is_object()) return rocket_error(file, node, at, "found " + detail::show(node) + ", expected an object");
     ballistics::Stage stage;
-    const Field numbers[] = {{"dry_mass", "kg", &stage.dry_mass, true},
-                             {"dry_centre", "m", &stage.dry_centre},
-                             {"motor_centre", "m", &stage.motor_centre},
-                             {"ignition_delay", "s", &stage.ignition_delay},
-                             {"separation_delay", "s", &stage.separation_delay}};
+    const RocketNumber numbers[] = {{"dry_mass", "kg", &stage.dry_mass, true},
+                                    {"dry_centre", "m", &stage.dry_centre},
+                                    {"motor_centre", "m", &stage.motor_centre},
+                                    {"ignition_delay", "s", &stage.ignition_delay},
+                                    {"separation_delay", "s", &stage.separation_delay}};
     static constexpr std::string_view texts[] = {"motor", "designation", "name"};
-    if (auto s = read_fields(node, numbers, texts, file, at); !s) return s.error();
+    if (auto s = read_rocket_numbers(node, numbers, texts, file, at); !s) return s.error();
     auto motor = read_motor(node, file, at, resolver);
     if (!motor) return motor.error();
     stage.motor = std::move(*motor);
