@@ -25,7 +25,7 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
         "Arm and weight keep a part of it. The sling, a rope, makes the way of the stone longer than the arm, and lets "
         "go where its velocity points up at the angle that is set.";
     d.duration = 9;
-    d.camera = {{-12, 5.5, 11}, {12, 7, -3}, 0.85};  // from behind: the whole flight is seen
+    d.camera = {.position = {9, 6, 22}, .target = {9, 4, 0}, .field_of_view = 0.8, .width = 33};
     d.ground = 0;
     d.parameters = {
         {"weight", "Counterweight", "kg", "kg", "", 100, 1500, 0, 500, false},
@@ -43,17 +43,6 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
     stage.start({});
     stage.floor(0);
     rigid::BodyDef<Dim3> def;
-    rigid::ShapeDef<Dim3> frame;
-    frame.filter.mask = 0;
-    def.type = rigid::BodyType::fixed;
-    def.name = "frame";
-    for (const double side : {-0.65, 0.65})
-      for (const double lean : {-0.35, 0.35}) {
-        def.position = {1.52 * math::sin(lean), 3 - 1.52 * math::cos(lean), side};
-        def.rotation = {float(math::cos(lean / 2)), 0, 0, float(math::sin(lean / 2))};
-        stage.add(def, geometry::Box{{0.08f, 1.6f, 0.08f}}, frame, dark);
-      }
-    def = {};
     const double alpha = 0.72;
     def.position = {0, 3, 0};
     def.rotation = {float(math::cos(alpha / 2)), 0, 0, float(math::sin(alpha / 2))};
