@@ -52,6 +52,7 @@ ArrowScale arrow_scale(const rigid::World<D>& world, float dt, double size);
 
 /// Adds the lines of these layers, as many as fit below `max_lines`. dt: s of the last step, for forces from impulses.
 template <class D>
-void debug_lines(const rigid::World<D>& world, std::uint32_t layers, float dt, double size, std::vector<Line>& out);
+[[gnu::noinline]] void debug_lines(const rigid::World<D>& world, std::uint32_t layers, float dt, double size,
+                                   std::vector<Line>& out);
 
 }  // namespace carom::host

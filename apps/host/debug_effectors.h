@@ -15,7 +15,7 @@ namespace carom::host {
 template <class D>
 class EffectorForces {
  public:
-  void lines(const rigid::World<D>& world, float dt, double size, std::vector<Line>& out);
+  [[gnu::noinline]] void lines(const rigid::World<D>& world, float dt, double size, std::vector<Line>& out);
   /// Of the kinds that the last call found.
   const std::vector<LegendEntry>& legend() const { return legend_; }
 

@@ -68,7 +68,7 @@ class SimulationHost {
   /// A text message of the page. Whatever it holds, the host answers or says what was wrong.
   void receive(std::string_view text);
   /// A part of a recording that the page wants to see.
-  void receive_binary(std::string_view bytes);
+  [[gnu::noinline]] void receive_binary(std::string_view bytes);
   /// `real_seconds` have passed since the last call: steps, and puts a frame into the outbox where one is due.
   void advance(double real_seconds);
   /// The oldest waiting message; false where there is none.

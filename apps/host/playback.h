@@ -12,6 +12,6 @@ namespace carom::host {
 
 /// A recording as a run whose steps are its frames: nothing can be pulled at or set, any frame can be shown.
 /// Errors name what is wrong with the file; one that ends early plays as far as it is whole, and says so.
-core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_t> bytes);
+[[gnu::noinline]] core::Result<std::unique_ptr<Simulation>> open_recording(std::vector<std::uint8_t> bytes);
 
 }  // namespace carom::host

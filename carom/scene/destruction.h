@@ -87,13 +87,13 @@ class CAROM_API Destruction {
   /// Before a step of `dt` s: shots, and what blasts give to bodies and particles (those of `matter`, which may be
   /// null).
   template <class D>
-  Status before(rigid::World<D>& world, double dt, Matter* matter);
+  [[gnu::noinline]] Status before(rigid::World<D>& world, double dt, Matter* matter);
   /// In place of World::step: with breaking in it.
   template <class D>
-  Status step(rigid::World<D>& world, double dt);
+  [[gnu::noinline]] Status step(rigid::World<D>& world, double dt);
   /// After it: projectiles fly and hit.
   template <class D>
-  Status after(rigid::World<D>& world, double dt);
+  [[gnu::noinline]] Status after(rigid::World<D>& world, double dt);
   void add_to(core::StateHash& hash) const;
 
   /// What a quantity such as "gun.turret.hits" names; false where it names nothing here.

@@ -173,40 +173,34 @@ environment::Wind wind_near(const environment::Environment& around, Vec3d place,
   return {.velocity = around.wind(place, time)};
 }
 
-}  // namespace
+// By kind, each apart: in the page a scene without ropes does not fetch what moves them.
+[[gnu::noinline]] Status step_ropes_and_cloth(Matter& matter, rigid::World3& world, double dt,
+                                              const environment::Environment* around) {
+  const double time = world.time();
+  if (!matter.ropes.empty()) {
+    if (around != nullptr) {
+      Extent all;
+      for (int r = 0; r < matter.rope_set.size(); ++r)
+        for (const Vec3d& p : matter.rope_set.positions(r)) all.add(p);
+      matter.rope_set.set_air(
+          {.density = around->air(all.middle()).density, .wind = wind_near(*around, all.middle(), time)});
+    }
+    if (Status s = matter.rope_set.step(world, dt); !s) return s;
+  }
+  for (auto& cloth : matter.cloths) {
+    if (around != nullptr) {
+      const Vec3d middle = extent_of(cloth.thing.positions()).middle();
+      if (Status s = cloth.thing.set_air(around->air(middle).density, wind_near(*around, middle, time)); !s) return s;
+    }
+    if (Status s = cloth.thing.step(world, dt); !s) return s;
+  }
+  for (auto& body : matter.soft_bodies)
+    if (Status s = body.thing.step(world, dt); !s) return s;
+  return {};
+}
 
 template <class D>
-Status Matter::step(rigid::World<D>& world, double dt, const environment::Environment* around,
-                    core::FunctionRef<Status()> advance) {
-  const double time = world.time();
-  if constexpr (D::dimension == 3) {
-    if (!ropes.empty()) {
-      if (around != nullptr) {
-        Extent all;
-        for (int r = 0; r < rope_set.size(); ++r)
-          for (const Vec3d& p : rope_set.positions(r)) all.add(p);
-        rope_set.set_air(
-            {.density = around->air(all.middle()).density, .wind = wind_near(*around, all.middle(), time)});
-      }
-      if (Status s = rope_set.step(world, dt); !s) return s;
-    }
-    for (auto& cloth : cloths) {
-      if (around != nullptr) {
-        const Vec3d middle = extent_of(cloth.thing.positions()).middle();
-        if (Status s = cloth.thing.set_air(around->air(middle).density, wind_near(*around, middle, time)); !s) return s;
-      }
-      if (Status s = cloth.thing.step(world, dt); !s) return s;
-    }
-    for (auto& body : soft_bodies)
-      if (Status s = body.thing.step(world, dt); !s) return s;
-  }
-  MatterOf<D>& many = of<D>();
-  for (auto& liquid : many.liquids)
-    if (Status s = liquid.thing.step(world, float(dt)); !s) return s;
-  for (auto& grains : many.grains)
-    if (Status s = grains.thing.step(world, float(dt)); !s) return s;
-  if (Status s = advance(); !s) return s;
-
+[[gnu::noinline]] Status step_particles(MatterOf<D>& many, rigid::World<D>& world, double dt) {
   for (auto& entry : many.particles) {
     SceneParticles<D>& p = entry.thing;
     if (Status s = p.coupling.step(world, p.system, dt); !s) return s;
@@ -220,6 +214,22 @@ Status Matter::step(rigid::World<D>& world, double dt, const environment::Enviro
       if (!born) return born.error();
     }
   return {};
+}
+
+}  // namespace
+
+template <class D>
+Status Matter::step(rigid::World<D>& world, double dt, const environment::Environment* around,
+                    core::FunctionRef<Status()> advance) {
+  if constexpr (D::dimension == 3)
+    if (Status s = step_ropes_and_cloth(*this, world, dt, around); !s) return s;
+  MatterOf<D>& many = of<D>();
+  for (auto& liquid : many.liquids)
+    if (Status s = liquid.thing.step(world, float(dt)); !s) return s;
+  for (auto& grains : many.grains)
+    if (Status s = grains.thing.step(world, float(dt)); !s) return s;
+  if (Status s = advance(); !s) return s;
+  return step_particles(many, world, dt);
 }
 
 Status Matter::set_wind(const environment::Environment* around) {

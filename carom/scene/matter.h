@@ -69,8 +69,8 @@ class CAROM_API Matter {
 
   /// The world's step with all of this before and after it. `advance` does the world's own part.
   template <class D>
-  Status step(rigid::World<D>& world, double dt, const environment::Environment* around,
-              core::FunctionRef<Status()> advance);
+  [[gnu::noinline]] Status step(rigid::World<D>& world, double dt, const environment::Environment* around,
+                                core::FunctionRef<Status()> advance);
   /// Lets the particles feel the steady wind of the environment, beside their own turbulence.
   Status set_wind(const environment::Environment* around);
   void add_to(core::StateHash& hash) const;

@@ -229,6 +229,16 @@ Status step_world(SceneWorld& scene, World<D>& world) {
                           : advance();
   return done.ok() && destruction != nullptr ? destruction->after(world, scene.dt) : done;
 }
+
+template <class T>
+[[gnu::noinline]] Status move_character(SceneWorld& scene, T& walker, math::Vec3f v) {
+  if constexpr (std::is_same_v<T, rigid::Character2> || std::is_same_v<T, rigid::DynamicCharacter2>)
+    return walker.move(*scene.world2, {v.x, v.y}, float(scene.dt));
+  else if constexpr (!std::is_same_v<T, std::monostate>)
+    return walker.move(*scene.world3, v, float(scene.dt));
+  else
+    return {};
+}
 }  // namespace
 
 SceneWorld::SceneWorld() = default;
@@ -239,15 +249,7 @@ SceneWorld& SceneWorld::operator=(SceneWorld&&) noexcept = default;
 Status SceneWorld::step() {
   for (SceneCharacter& c : characters) {
     const math::Vec3f v(c.velocity);
-    const auto walk = [&](auto& walker) -> Status {
-      using T = std::decay_t<decltype(walker)>;
-      if constexpr (std::is_same_v<T, rigid::Character2> || std::is_same_v<T, rigid::DynamicCharacter2>)
-        return walker.move(*world2, {v.x, v.y}, float(dt));
-      else if constexpr (!std::is_same_v<T, std::monostate>)
-        return walker.move(*world3, v, float(dt));
-      else
-        return {};
-    };
+    const auto walk = [&](auto& walker) { return move_character(*this, walker, v); };
     if (const Status s = std::visit(walk, c.walker); !s.ok()) return s;
   }
   if (world2) return step_world(*this, *world2);

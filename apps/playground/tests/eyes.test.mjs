@@ -25,17 +25,15 @@ test('every layer of debug drawing, in space and in the plane', async () => {
     await paused(page);
     const layers = page.locator('#layers input[data-layer]'), bare = await lines();
     const without = [];  // which need what this scene lacks
-    for (let i = 0; i < await layers.count(); ++i) {
-      const name = await layers.nth(i).getAttribute('data-layer');
-      await layers.nth(i).check();
-      const now = await stepOf(page);
-      await page.click('#step');
-      await at(page, now + 1);
+    names = await layers.evaluateAll((boxes) => boxes.map((box) => box.dataset.layer));
+    let now = await stepOf(page);
+    for (const [i, name] of names.entries()) {
+      // One alone, and a step with it.
+      await layers.evaluateAll((boxes, place) => { boxes.forEach((box, k) => { if (box.checked !== (k === place)) box.click(); }); document.querySelector('#step').click(); }, i);
+      await at(page, ++now);
       if (await lines() <= bare) without.push(name);
-      await layers.nth(i).uncheck();
     }
     for (const needed of shown) { assert.ok(!without.includes(needed), `${demo}: no lines of ${without}`); all.add(needed); }
-    names = await layers.evaluateAll((boxes) => boxes.map((box) => box.dataset.layer));
     for (const box of await layers.all()) await box.check();
     await page.click('#run');
     await runFor(page, 20);

@@ -182,7 +182,7 @@ class Builder final : public BodyNames {
         if (const Node* node = part.find(list)) visit(*node, list, list);
   }
   /// Ropes and so on, after the bodies that hold them; what runs already stays as it is.
-  bool make_matter() {
+  [[gnu::noinline]] bool make_matter() {
     std::shared_ptr<const environment::Environment> around = environment_of(world(), out_.environment);
     if (!update_) {
       auto made = std::make_unique<Matter>();
@@ -202,7 +202,7 @@ class Builder final : public BodyNames {
   }
 
   /// Structures first, so that guns may aim at them. What runs already stays as it is.
-  bool make_destruction() {
+  [[gnu::noinline]] bool make_destruction() {
     if (update_) return true;
     const std::shared_ptr<const environment::Environment> around = environment_of(world(), out_.environment);
     auto made = std::make_unique<Destruction>();
@@ -275,6 +275,8 @@ class Builder final : public BodyNames {
     reader_.variables.pop_back();
   }
 
+  // What reads the parts of a scene is not drawn into one function, here and below: in the page a part of the engine
+  // comes when it is first called, and a scene without guns should not wait for what reads them.
   void make(const Node& node, const std::string& path) {
     if (++made_ > document_.maximum_objects)
       return reader_.fail(
@@ -351,7 +353,7 @@ class Builder final : public BodyNames {
     return !reader_.failed();
   }
 
-  void body(const Node& node, const std::string& path) {
+  [[gnu::noinline]] void body(const Node& node, const std::string& path) {
     Object o;
     if (!reader_.open(node, path, *tables().body, o) || !reader_.wanted(o)) return;
     std::vector<ReadShape<D>> shapes;
@@ -412,7 +414,7 @@ class Builder final : public BodyNames {
     out_.bodies.push_back({std::move(name), *id, color.value_or(0), color.has_value(), trail});
   }
 
-  void update_body(const Object& o, const BodyDef<D>& def, const std::vector<ReadShape<D>>& shapes) {
+  [[gnu::noinline]] void update_body(const Object& o, const BodyDef<D>& def, const std::vector<ReadShape<D>>& shapes) {
     if (next_ >= out_.bodies.size()) return count_changed("bodies");
     const BodyId id = out_.bodies[next_++].id;
     std::vector<ShapeId> ids;
@@ -436,7 +438,7 @@ class Builder final : public BodyNames {
     }
   }
 
-  void joint(const Node& node, const std::string& path) {
+  [[gnu::noinline]] void joint(const Node& node, const std::string& path) {
     Object o;
     if (!reader_.open(node, path, *tables().joint, o) || !reader_.wanted(o)) return;
     ReadJoint<D> joint;
@@ -456,7 +458,7 @@ class Builder final : public BodyNames {
     out_.joints.push_back({std::move(name), *id});
   }
 
-  void effector(const Node& node, const std::string& path) {
+  [[gnu::noinline]] void effector(const Node& node, const std::string& path) {
     Object o;
     if (!reader_.open(node, path, *tables().effector, o) || !reader_.wanted(o)) return;
     EffectorDef<D> def;
@@ -473,7 +475,7 @@ class Builder final : public BodyNames {
     out_.effectors.push_back({std::move(name), *id});
   }
 
-  void character(const Node& node, const std::string& path) {
+  [[gnu::noinline]] void character(const Node& node, const std::string& path) {
     Object o;
     if (!reader_.open(node, path, *tables().character, o) || !reader_.wanted(o)) return;
     const math::Vec3d velocity = reader_.vector(o, "velocity");

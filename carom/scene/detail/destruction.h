@@ -24,14 +24,15 @@ struct DestructionPlace {
 
 /// Makes one thing of the list. Fails the reader where it is wrong.
 template <class D>
-void read_destruction(DestructionPlace<D>& place, std::string_view list, const Node& node, const std::string& path);
+[[gnu::noinline]] void read_destruction(DestructionPlace<D>& place, std::string_view list, const Node& node,
+                                        const std::string& path);
 /// The key "penetration": what projectiles go through.
 template <class D>
-bool read_penetration(Reader& reader, const Node& part, ballistics::BatchHits<D>& hits);
+[[gnu::noinline]] bool read_penetration(Reader& reader, const Node& part, ballistics::BatchHits<D>& hits);
 
 template <class D>
-void read_gun(DestructionPlace<D>& place, const Object& o);
+[[gnu::noinline]] void read_gun(DestructionPlace<D>& place, const Object& o);
 template <class D>
-void read_structure(DestructionPlace<D>& place, const Object& o);
+[[gnu::noinline]] void read_structure(DestructionPlace<D>& place, const Object& o);
 
 }  // namespace carom::scene::detail

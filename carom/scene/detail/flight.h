@@ -16,7 +16,7 @@ class Flight {
 };
 
 /// Reads the key "flight" and flies it. The reader has the variables and holds the error.
-bool build_flight(Reader& reader, const Scene& scene, SceneWorld& out);
+[[gnu::noinline]] bool build_flight(Reader& reader, const Scene& scene, SceneWorld& out);
 
 struct FlightField {
   const char* name;

@@ -31,21 +31,22 @@ struct MatterPlace {
 };
 /// Makes one thing of the list. Fails the reader where it is wrong.
 template <class D>
-void read_matter(MatterPlace<D>& place, std::string_view list, const Node& node, const std::string& path);
+[[gnu::noinline]] void read_matter(MatterPlace<D>& place, std::string_view list, const Node& node,
+                                   const std::string& path);
 /// The systems that particles are born into, once all systems are there.
 template <class D>
 void resolve_sub_emissions(MatterPlace<D>& place);
 
 // By kind (matter_ropes.cpp, matter_liquids.cpp, matter_particles.cpp).
-void read_rope(MatterPlace<rigid::Dim3>& place, const Object& o);
-void read_cloth(MatterPlace<rigid::Dim3>& place, const Object& o);
-void read_soft_body(MatterPlace<rigid::Dim3>& place, const Object& o);
+[[gnu::noinline]] void read_rope(MatterPlace<rigid::Dim3>& place, const Object& o);
+[[gnu::noinline]] void read_cloth(MatterPlace<rigid::Dim3>& place, const Object& o);
+[[gnu::noinline]] void read_soft_body(MatterPlace<rigid::Dim3>& place, const Object& o);
 template <class D>
-void read_liquid(MatterPlace<D>& place, const Object& o);
+[[gnu::noinline]] void read_liquid(MatterPlace<D>& place, const Object& o);
 template <class D>
-void read_grains(MatterPlace<D>& place, const Object& o);
+[[gnu::noinline]] void read_grains(MatterPlace<D>& place, const Object& o);
 template <class D>
-void read_particles(MatterPlace<D>& place, const Object& o);
+[[gnu::noinline]] void read_particles(MatterPlace<D>& place, const Object& o);
 
 /// The name and colour of a thing; fails where another of the list has the name.
 template <class List>
