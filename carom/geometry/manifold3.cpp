@@ -30,6 +30,46 @@ void capsule_sphere(const Shape3& a, const Shape3& b, const Transform3f& x, floa
   point_point({0, y, 0}, a.capsule.radius, x.p, b.sphere.radius, margin, 0, out);
 }
 
+// Capsules with a small angle between them meet along a stretch: crossed by φ, their cores part from the distance l by
+// (φy)²/2l only, at y from the crossing. Where that is within a thousandth of l, they touch; the point that is nearest
+// leaps from end to end when they turn by a hair, and is nothing that a load could stand on. A has its axis along y
+// from −ha to ha, B's goes from p by d; `gap` is the least between them, at y of A.
+bool along_each_other(float ha, Vec3f p, Vec3f d, float y, Vec3f gap, float ra, float rb, float margin,
+                      Manifold3& out) {
+  if (!(d.y * d.y > 0.75f * dot(d, d)) || ha == 0) return false;
+  const Vec3f slope = d * (1 / d.y);  // of B, by y
+  float low = max(-ha, min(p.y, p.y + d.y)), high = min(ha, max(p.y, p.y + d.y));
+  const float least = 0.1f * min(ha, 0.5f * abs(d.y)), l2 = dot(gap, gap);
+  if (!(high - low > least) || !(l2 > 1e-12f * (ra + rb) * (ra + rb))) return false;
+  const float l = sqrt(l2);
+  const Vec3f side = normalize_or(Vec3f{gap.z, 0, -gap.x}, Vec3f{1, 0, 0}, 1e-12f);
+  if (abs(gap.y) > 0.1f * l) return false;  // beside each other's ends
+  const float crossing = dot(slope, side), reach = 0.0447f * l;
+  if (abs(crossing) * (high - low) > reach) {
+    const float middle = y - dot(p + slope * (y - p.y), side) / crossing, width = reach / abs(crossing);
+    low = max(low, middle - width), high = min(high, middle + width);
+    if (!(high - low > least)) return false;
+  }
+  const auto core_b = [&](float at) { return p + slope * (at - p.y); };
+  const float middle = 0.5f * (low + high);
+  const Vec3f between = core_b(middle) - Vec3f{0, middle, 0}, mean = Vec3f{0, 1, 0} + normalize(slope);
+  const Vec3f across = between - mean * (dot(between, mean) / dot(mean, mean));
+  const float distance = length(across);
+  if (!(distance > 1e-6f * (ra + rb))) return false;
+  const Vec3f normal = across / distance;
+  // Toward or away from each other: the distance is that of an end.
+  const float tilt = abs(dot(normal, slope));
+  if (tilt > 0.06f || tilt * (high - low) > 0.05f * l) return false;
+  out.normal = normal;
+  for (int k = 0; k < 2; ++k) {
+    const Vec3f a{0, k == 0 ? low : high, 0}, b = core_b(a.y);
+    const float separation = dot(out.normal, b - a) - ra - rb;
+    if (separation > margin) continue;
+    out.points[out.count++] = {(a + b + out.normal * (ra - rb)) * 0.5f, separation, std::uint32_t(1 + k)};
+  }
+  return out.count > 0;
+}
+
 void capsule_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache&, Manifold3& out) {
   const float ha = a.capsule.half_length, hb = b.capsule.half_length, ra = a.capsule.radius, rb = b.capsule.radius;
   const Vec3f axis = rotate(x.q, Vec3f{0, 1, 0});
@@ -39,29 +79,7 @@ void capsule_capsule(const Shape3& a, const Shape3& b, const Transform3f& x, flo
   const Vec3f ca = p1 + d1 * s, cb = p2 + d2 * t, gap = cb - ca;
   const float l2 = dot(gap, gap), reach = ra + rb + margin;
   if (l2 > reach * reach) return apart(l2, ra + rb, out);
-  // Nearly parallel: the two ends of the common stretch.
-  const float across = axis.x * axis.x + axis.z * axis.z;
-  if (across < 1e-3f && ha > 0 && hb > 0) {
-    const float y0 = p2.y, y1 = p2.y + d2.y;
-    const float low = max(-ha, min(y0, y1)), high = min(ha, max(y0, y1));
-    if (high - low > 1e-3f * min(ha, hb)) {
-      const float l = sqrt(l2);
-      const Vec3f n =
-          l > 1e-6f * (ra + rb) ? gap * (1 / l) : normalize_or(Vec3f{axis.y, -axis.x, 0}, Vec3f{1, 0, 0}, 1e-6f);
-      if (abs(n.y) < 0.1f) {
-        out.normal = n;
-        for (int k = 0; k < 2; ++k) {
-          const float y = k == 0 ? low : high;
-          const Vec3f pa{0, y, 0}, pb = p2 + d2 * ((y - y0) / (y1 - y0));
-          const float separation = dot(n, pb - pa) - ra - rb;
-          if (separation > margin) continue;
-          const Vec3f u = pa + n * ra, v = pb - n * rb;
-          out.points[out.count++] = {(u + v) * 0.5f, separation, std::uint32_t(1 + k)};
-        }
-        if (out.count > 0) return;
-      }
-    }
-  }
+  if (along_each_other(ha, p2, d2, ca.y, gap, ra, rb, margin, out)) return;
   if (l2 > 1e-12f * (ra + rb) * (ra + rb)) return point_point(ca, ra, cb, rb, margin, 0, out);
   // The axes cross: push along their common normal.
   const Vec3f n = normalize_or(cross(d1, d2), normalize_or(cross(axis, Vec3f{1, 0, 0}), Vec3f{0, 0, 1}, 1e-3f), 1e-12f);

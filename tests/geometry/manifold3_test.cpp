@@ -77,6 +77,43 @@ TEST(Manifold3, DepthAgreesWithTheReferenceAndMirrors) {
   EXPECT_GT(apart, 100);
 }
 
+// Crossed by a hair either way, they lie along each other, and what carries the load stays where it is.
+TEST(Manifold3, CapsulesThatTurnPastParallelTouchInTheSamePlace) {
+  const Capsule3 capsule{0.3f, 0.3f};
+  Vec3f before{};
+  for (int i = -400; i <= 400; ++i) {
+    const float turn = 1e-3f * float(i), tilt = 2e-3f * math::sin(0.05f * float(i));
+    const Transform3f x{{0.599f, 0.1f, 0.002f},
+                        math::from_axis_angle(Vec3f{1, 0, 0}, turn) * math::from_axis_angle(Vec3f{0, 0, 1}, tilt)};
+    const Manifold3 m = contact(capsule, capsule, x, 0.02f);
+    ASSERT_GT(m.count, 0) << turn;
+    EXPECT_NEAR(double(least(m)), reference(capsule, capsule, x), 7e-4) << turn;
+    Vec3f middle{};
+    for (int k = 0; k < m.count; ++k) middle += m.points[k].point / float(m.count);
+    if (i > -400) EXPECT_LT(length(middle - before), 0.02f) << turn;
+    before = middle;
+  }
+}
+
+// The face that held the contact before does not hide how near the edge has come.
+TEST(Manifold3, ACapsuleThatLeansOverAnEdgeIsAsDeepAsItIs) {
+  const Capsule3 capsule{0.3f, 0.3f};
+  const Box box{{0.4f, 0.4f, 0.4f}};
+  for (const float beyond : {0.05f, 0.15f, 0.25f}) {
+    PairCache cache;
+    for (int i = 0; i <= 300; ++i) {
+      const float tilt = 1e-3f * float(i), along = 0.3f - beyond;  // from its middle to the edge
+      const Vec3f axis{math::cos(tilt), -math::sin(tilt), 0}, over{math::sin(tilt), math::cos(tilt), 0};
+      const Vec3f middle = Vec3f{0.4f, 0.4f, 0} + over * 0.2999f - axis * along;
+      const Transform3f x{middle, math::from_axis_angle(Vec3f{0, 0, 1}, -0.5f * float(math::pi) - tilt)};
+      Manifold3 m;
+      collide(box, capsule, x, 0.02f, cache, m);
+      ASSERT_GT(m.count, 0) << tilt;
+      EXPECT_NEAR(double(least(m)), reference(box, capsule, x), 3e-4) << beyond << " " << tilt;
+    }
+  }
+}
+
 // The axis of the capsule lies in the box; the way out across it and an edge is 10 % shorter than out by a face.
 TEST(Manifold3, ACapsuleDeepInARoundedBoxLeavesByTheShorterWay) {
   const Capsule3 capsule{0.580056489f, 0.970398307f};

@@ -42,15 +42,12 @@ struct Pair {
   float margin;
 
   float radius() const { return a.radius + b.radius; }
-  // Separation of the cores along a face of A (n in A's frame) or of B (n in B's frame).
-  float along_a(FacePlane p) const {
-    const Vec3f s = Vec3f(support(b, Vec3d(-inverse_rotate(x.q, p.normal))));
-    return dot(p.normal, transform_point(x, s)) - p.offset;
-  }
-  float along_b(FacePlane p) const {
-    const Vec3f s = Vec3f(support(a, Vec3d(-rotate(x.q, p.normal))));
-    return dot(p.normal, inverse_transform_point(x, s)) - p.offset;
-  }
+  // The corner of B that is deepest below a face of A (n in A's frame), or of A below one of B (n in B's frame), and
+  // the separation of the cores along the face.
+  Vec3f below_a(Vec3f n) const { return transform_point(x, Vec3f(support(b, Vec3d(-inverse_rotate(x.q, n))))); }
+  Vec3f below_b(Vec3f n) const { return inverse_transform_point(x, Vec3f(support(a, Vec3d(-rotate(x.q, n))))); }
+  float along_a(FacePlane p) const { return dot(p.normal, below_a(p.normal)) - p.offset; }
+  float along_b(FacePlane p) const { return dot(p.normal, below_b(p.normal)) - p.offset; }
   // Separation of the cores along n, from A to B in A's frame.
   float along(Vec3f n) const {
     const Vec3f on_a = Vec3f(support(a, Vec3d(n))), on_b = Vec3f(support(b, Vec3d(-inverse_rotate(x.q, n))));
@@ -76,13 +73,29 @@ float least_separation(const ContactPoints& c) {
   return s;
 }
 
+// What is round and leans over the border of a face by an angle θ, meets its edge r (1 − cos θ) sooner than the face
+// tells. More than that, by the shape's size, is not to be overlooked: what rocks there would be lifted by it whenever
+// the edge takes over.
+constexpr float overlooked = 1e-3f;  // half of it, as cos θ is 1 − θ²/2
+bool leans(const Pair& pair, const ContactPoints& points, Vec3f corner, float deeper, Vec3f n, float small) {
+  if (pair.radius() == 0) return false;
+  float beside = 1e30f;
+  for (int i = 0; i < points.count; ++i) {
+    const Vec3f d = points.point[i].point - corner;
+    beside = min(beside, math::length_squared(d - n * dot(n, d)));
+  }
+  return deeper * deeper * pair.radius() > overlooked * small * beside;
+}
+
 // The face that held the contact last time holds it still, if it is shallow and the features still overlap on it.
-bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold3& out, bool& apart) {
+bool keep_face(const Pair& pair, const PairCache& cache, float small, Manifold3& out, bool& apart) {
+  const float shallow = 0.04f * small + 0.5f * pair.radius();
   const bool of_a = cache.kind == face_of_a;
   const Convex& c = of_a ? pair.a : pair.b;
   if (int(cache.d) >= face_count(c)) return false;
   const FacePlane plane = face_plane(c, int(cache.d));
-  const float s = of_a ? pair.along_a(plane) : pair.along_b(plane);
+  Vec3f corner = of_a ? pair.below_a(plane.normal) : pair.below_b(plane.normal);
+  const float s = dot(plane.normal, corner) - plane.offset;
   if (s - pair.radius() > pair.margin) {
     apart = true;
     out.points[0].separation = s - pair.radius();
@@ -98,9 +111,11 @@ bool keep_face(const Pair& pair, const PairCache& cache, float shallow, Manifold
   else
     pair.clip_b(face, points);
   // It tells the true separation only where the nearest corner is over it.
-  if (points.count == 0 || least_separation(points) > s - pair.radius() + 0.05f * abs(s) + 0.01f * shallow)
-    return false;
+  const float deeper = points.count > 0 ? least_separation(points) - (s - pair.radius()) : 1e30f;
+  if (deeper > 0.05f * abs(s) + 0.01f * shallow) return false;
   const Vec3f n = of_a ? face.normal : -rotate(pair.x.q, face.normal);
+  if (!of_a) corner = transform_point(pair.x, corner);
+  if (leans(pair, points, corner, deeper, n, small)) return false;
   write_points(points, n, out);
   return true;
 }
@@ -151,7 +166,9 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
     }
   }
   const float tolerance = d > 0 ? 0.01f * d + 0.02f * slack : 0.05f * -d + slack;
-  const bool use_a = sa >= d - tolerance, use_b = sb >= d - tolerance;
+  const auto level = [&](Vec3f face) { return d <= 0 || pair.radius() * (1 - dot(face, n)) < 0.5f * slack; };
+  const bool use_a = sa >= d - tolerance && level(face_plane(pair.a, fa).normal);
+  const bool use_b = sb >= d - tolerance && level(-rotate(pair.x.q, face_plane(pair.b, fb).normal));
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool of_a = (attempt == 0) == (use_a && (!use_b || sb <= sa + slack));
     if (!(of_a ? use_a : use_b)) continue;
@@ -208,11 +225,17 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
     for (Vec3f& p : lb) p = transform_point(pair.x, p);
     const Vec3f da = la[1] - la[0], db = lb[1] - lb[0];
     const float length_a = length(da), length_b = length(db);
-    if (length(cross(da, db)) < 0.03f * length_a * length_b) {
+    const float sine = length(cross(da, db)) / (length_a * length_b);
+    if (sine < (pair.radius() > 0 ? 0.5f : 0.03f)) {
       const Vec3f t = da * (1 / length_a);
       float t0 = dot(lb[0] - la[0], t), t1 = dot(lb[1] - la[0], t);
-      const float low = max(0.0f, min(t0, t1)), high = min(length_a, max(t0, t1));
-      if (high - low > 1e-3f * length_a) {
+      float low = max(0.0f, min(t0, t1)), high = min(length_a, max(t0, t1)), least = 1e-3f * length_a;
+      // Round ones that cross touch along a stretch, as capsules do (along_each_other).
+      if (sine >= 0.03f) {
+        const float middle = dot(Vec3f(found.point_a) - la[0], t), width = 0.0447f * max(d, 0.0f) / sine;
+        low = max(low, middle - width), high = min(high, middle + width), least = 0.1f * length_a;
+      }
+      if (high - low > least) {
         out.normal = pushed;
         out.count = 0;
         for (int k = 0; k < 2; ++k) {
@@ -246,7 +269,7 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
     if (const float s = inner_size(*c); s > 0) small = min(small, s);
   if (cache.kind == face_of_a || cache.kind == face_of_b) {
     bool apart = false;
-    if (keep_face(pair, cache, 0.04f * small + 0.5f * pair.radius(), out, apart)) return;
+    if (keep_face(pair, cache, small, out, apart)) return;
   }
   Vec3f guess{};
   if (cache.kind == direction) {

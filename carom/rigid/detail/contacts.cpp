@@ -94,6 +94,27 @@ int surface_count(const WorldImplementation<D>& world, std::int32_t shape) {
   const ShapeExtra<D>* extra = world.shapes.extra(shape);
   return extra != nullptr ? extra->surface_count : 0;
 }
+/// Is it round where it touches? Rounded edges of what lies on its faces do not count.
+bool rolls(const ShapeRecord<Dim2>& s) {
+  using geometry::ShapeType2;
+  return s.geometry.type == ShapeType2::capsule ||
+         (s.geometry.type == ShapeType2::polygon && 4 * s.geometry.polygon.radius > s.outer_extent);
+}
+bool rolls(const ShapeRecord<Dim3>& s) {
+  using geometry::ShapeType3;
+  switch (s.geometry.type) {
+    case ShapeType3::capsule:
+    case ShapeType3::cylinder:
+    case ShapeType3::cone:
+      return true;
+    case ShapeType3::box:
+      return 4 * s.geometry.box.radius > s.outer_extent;
+    case ShapeType3::hull:
+      return 4 * s.geometry.hull->radius > s.outer_extent;
+    default:
+      return false;
+  }
+}
 bool has_round_base(const geometry::Shape2&) { return false; }
 bool has_round_base(const geometry::Shape3& s) {
   return s.type == geometry::ShapeType3::cylinder || s.type == geometry::ShapeType3::cone;
@@ -152,6 +173,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   if (flags & shape_contact_events) c.flags |= contact_events;
   if (flags & shape_hit_events) c.flags |= contact_hit_events;
   if (flags & shape_round) c.flags |= contact_round;
+  c.rolls = (flags & shape_round) != 0 || rolls(*a) || rolls(*b);
   if (has_round_base(a->geometry) || has_round_base(b->geometry)) c.flags |= contact_on_disc;
   if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
   if (world.bodies.is_dynamic(a->body) && world.bodies.is_dynamic(b->body)) c.flags |= contact_dynamic;

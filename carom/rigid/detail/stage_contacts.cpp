@@ -5,6 +5,7 @@
 #include "carom/math/simd.h"
 #include "carom/rigid/detail/contact_foresight.h"
 #include "carom/rigid/detail/contact_lanes.h"
+#include "carom/rigid/detail/contact_middle.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -146,6 +147,22 @@ bool put_where_it_meets(const StepContext<D>& context, std::int32_t index, typen
   return true;
 }
 
+/// A round contact that turns in this step is solved as it is in its middle, with the gap of now.
+template <class D, int W>
+void put_middle(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block, ContactRaw<D, W>& raw,
+                int lane) {
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  MiddleOfStep<D> middle;
+  if (!may_turn(c, m) || !middle_of_step(context.world, c, m.manifold, context.dt, middle)) return;
+  put(block.normal, lane, middle.normal);
+  for (int i = 0; i < m.manifold.count; ++i) put(block.point[i].r_a, lane, middle.point[i]);
+  put(block.center_offset, lane, get(block.center_offset, lane) - middle.across);
+  raw.recycled[lane] = 0;
+  raw.anchor_state[lane] = 0;  // what rolls does not stick to one place
+  m.anchor = Anchor::none;
+}
+
 /// The lanes of a block from the records of `list`, and their marks.
 template <class D, int W>
 void gather_block(const StepContext<D>& context, const ContactSources<D>& sources, std::span<const std::int32_t> list,
@@ -174,10 +191,13 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
       marks[lane] = gather_lane(context, list[std::size_t(lane)], block, raw, lane);
     for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
   }
+  const std::uint32_t apart = meets;
   for (; meets != 0; meets &= meets - 1) {
     const int lane = std::countr_zero(meets);
     put(block.center_offset, lane, get(block.center_offset, lane) - across[lane]);
   }
+  for (int lane = 0; lane < lanes; ++lane)
+    if ((apart >> lane & 1u) == 0) put_middle(context, list[std::size_t(lane)], block, raw, lane);
 }
 
 /// How fast something parts shows only where it is slow: what flies faster than that in an overlap was pressed into it
