@@ -33,13 +33,15 @@ bool may_turn(const ContactRecord<D>& c, const ManifoldRecord<D>& m) {
   return false;
 }
 
-/// By the velocities that the bodies have now. False where they hardly move past each other, or other features will
-/// meet then.
+/// By the velocities that the bodies have now. False where they hardly move past each other, or so far that a blow is
+/// more likely than rolling, or other features will meet then.
 template <class D>
 bool middle_of_step(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m,
                     float dt, MiddleOfStep<D>& out) {
   using V = typename D::Vector;
-  const float half = 0.5f * dt, least = max(1e-3f * c.inner, 0.5f * still_way(world, dt));
+  const float still = still_way(world, dt);
+  if (!(still > 0)) return false;  // without gravity nothing rocks, and arms of the start are those of most blows
+  const float half = 0.5f * dt, least = max(1e-3f * c.inner, 0.5f * still);
   const SolverBody<D>& sa = world.bodies.solver[std::size_t(c.body[0])];
   const SolverBody<D>& sb = world.bodies.solver[std::size_t(c.body[1])];
   const V way_a = half * sa.linear_velocity, way_b = half * sb.linear_velocity;
@@ -48,7 +50,8 @@ bool middle_of_step(const WorldImplementation<D>& world, const ContactRecord<D>&
       V(world.bodies.motion[std::size_t(c.body[1])].center - world.bodies.motion[std::size_t(c.body[0])].center);
   const V seen = way_b - way_a - cross(turn_a, between);
   const float turned = size_of(turn_b - turn_a) * c.extent;
-  if (!(math::length_squared(seen) + turned * turned > least * least)) return false;
+  const float moved = math::length_squared(seen) + turned * turned, most = 0.03f * c.extent;
+  if (!(moved > least * least && moved < most * most)) return false;
 
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   const typename D::Pose now_a = shape_pose(world, a);
@@ -75,8 +78,8 @@ bool middle_of_step(const WorldImplementation<D>& world, const ContactRecord<D>&
     return inverse_rotate(now_a.rotation, rotate(rotation, rotate(now_a.rotation, v)));
   };
   out.normal = to_now(found.normal);
-  const V moved = inverse_rotate(now_a.rotation, rotate(rotation, arm_a) - arm_a);
-  for (int i = 0; i < m.count; ++i) out.point[i] = to_now(found.points[i].point) + moved;
+  const V carried = inverse_rotate(now_a.rotation, rotate(rotation, arm_a) - arm_a);
+  for (int i = 0; i < m.count; ++i) out.point[i] = to_now(found.points[i].point) + carried;
   out.across = way_b - way_a;
   return true;
 }
