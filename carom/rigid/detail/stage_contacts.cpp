@@ -159,8 +159,13 @@ void put_middle(const StepContext<D>& context, std::int32_t index, ContactBlock<
   for (int i = 0; i < m.manifold.count; ++i) put(block.point[i].r_a, lane, middle.point[i]);
   put(block.center_offset, lane, get(block.center_offset, lane) - middle.across);
   raw.recycled[lane] = 0;
-  raw.anchor_state[lane] = 0;  // what rolls does not stick to one place
-  m.anchor = Anchor::none;
+  if (m.anchor == Anchor::holds) {
+    const auto& turn = context.world.bodies.pose[std::size_t(c.body[0])].rotation;
+    put(raw.anchor_a, lane, get(raw.anchor_a, lane) + inverse_rotate(turn, middle.across));
+  } else {
+    raw.anchor_state[lane] = 0;
+    m.anchor = Anchor::none;
+  }
 }
 
 /// The lanes of a block from the records of `list`, and their marks.
