@@ -138,7 +138,8 @@ TEST(QualityStacks3, HeapOfTwoThousandIsStill) {
   World3 world(world_with<Dim3>());
   add_heap_b(world);
   run(world, 600);
-  // Of heaps with other seeds most sleep after 7 to 10 s, some later: where one body still jitters in a wedge of others.
+  // Of heaps with other seeds most sleep after 7 to 10 s, some later: where one body still jitters in a wedge of
+  // others.
   Gate(17, "heap of 2 000 after 10 s: fastest body", 3, "m/s").not_yet(1).at_most(fastest(world), 1e-4);
   Gate(17, "heap of 2 000 after 10 s: still awake", 3).not_yet(2000).at_most(world.counters().awake_bodies, 0);
 }
