@@ -122,7 +122,7 @@ void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cac
   // Apart, the nearest features may be two corners: then the line between them is the normal.
   const bool lines = a.count == 2 && b.count == 2;
   if (axis.separation > 1e-4f * slack || (lines && axis.separation > -1e-5f)) {
-    const detail::CoreDistance2 d = detail::core_distance(a, b);
+    const detail::CoreDistance2 d = detail::core_distance(a, b, ea, eb);
     if (apart(d.distance)) return;
     if (dot(d.normal, of_b ? -r.n[axis.edge] : r.n[axis.edge]) < 0.9999f && d.distance > 1e-6f) {
       single(d.point_a, a.radius, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);

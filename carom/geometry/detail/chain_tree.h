@@ -7,10 +7,20 @@ namespace carom::geometry::detail {
 
 inline constexpr int chain_run = 4;  ///< segments under a leaf of Chain::tree
 
+inline Vec2f segment_end(const Chain& chain, int i) {
+  return chain.points[std::size_t(i) + 1 < chain.points.size() ? std::size_t(i) + 1 : 0];
+}
 inline Bounds2f segment_bounds(const Chain& chain, int i) {
-  const Vec2f p = chain.points[std::size_t(i)];
-  const Vec2f q = chain.points[std::size_t(i) + 1 < chain.points.size() ? std::size_t(i) + 1 : 0];
+  const Vec2f p = chain.points[std::size_t(i)], q = segment_end(chain, i);
   return {min(p, q), max(p, q)};
+}
+/// Is every point of a segment farther than `reach` (m) from c?
+inline bool segment_far(const Chain& chain, int i, Vec2f c, float reach) {
+  const Vec2f p = chain.points[std::size_t(i)], q = segment_end(chain, i), d = q - p, to = c - p;
+  const float u = dot(to, d), whole = dot(d, d), far = reach * reach;
+  if (u <= 0) return dot(to, to) > far;
+  if (u >= whole) return math::distance_squared(c, q) > far;
+  return math::square(cross(d, to)) > far * whole;
 }
 
 /// Neighbours along a chain are neighbours in space, so the tree is a heap: node k stands over 2k and 2k + 1, the
@@ -61,26 +71,33 @@ void visit_segments(const Chain& chain, const Bounds2f& box, Use&& use) {
 
 /// No point of the chain is nearer to the box than this (m); at most `limit`.
 inline float clearance(const Chain& chain, const Bounds2f& box, float limit) {
-  const auto gap = [&](const Bounds2f& b) {
-    const Vec2f d = max(max(b.low - box.high, box.low - b.high), Vec2f{});
-    return math::length(d);
-  };
   const std::uint32_t leaves = std::uint32_t(chain.tree.size() / 2);
-  std::uint32_t stack[64];
+  if (leaves == 0) return 0;
+  struct Place {
+    std::uint32_t node;
+    float gap_squared;
+  } stack[64];
+  const auto place = [&](std::uint32_t node) {
+    const Bounds2f& b = chain.tree[node];
+    const Vec2f d = max(max(b.low - box.high, box.low - b.high), Vec2f{});
+    return Place{node, dot(d, d)};
+  };
+  float least = limit * limit;
   int top = 0;
-  if (leaves > 0) stack[top++] = 1;
+  stack[top++] = place(1);
   while (top > 0) {
-    const std::uint32_t node = stack[--top];
-    const float here = gap(chain.tree[node]);
-    if (here >= limit) continue;
-    if (node >= leaves) {
-      limit = here;
+    const Place here = stack[--top];
+    if (here.gap_squared >= least) continue;
+    if (here.node >= leaves) {
+      least = here.gap_squared;
       continue;
     }
-    stack[top++] = 2 * node + 1;
-    stack[top++] = 2 * node;
+    const Place a = place(2 * here.node), b = place(2 * here.node + 1);
+    const bool first = a.gap_squared <= b.gap_squared;  // the nearer child ends the search sooner
+    stack[top++] = first ? b : a;
+    stack[top++] = first ? a : b;
   }
-  return leaves > 0 ? limit : 0;
+  return math::sqrt(least);
 }
 
 }  // namespace carom::geometry::detail

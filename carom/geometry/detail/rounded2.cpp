@@ -14,8 +14,14 @@ static Rounded2 line(Vec2f a, Vec2f b, float radius) {
 
 Rounded2 rounded_of(const Shape2& s) {
   switch (s.type) {
-    case ShapeType2::capsule:
-      return line({0, -s.capsule.half_length}, {0, s.capsule.half_length}, s.capsule.radius);
+    case ShapeType2::capsule: {
+      Rounded2 r;
+      r.radius = s.capsule.radius;
+      r.v[0] = {0, -s.capsule.half_length}, r.v[1] = {0, s.capsule.half_length};
+      r.n[0] = {1, 0}, r.n[1] = {-1, 0};
+      r.count = s.capsule.half_length > 0 ? 2 : 1;
+      return r;
+    }
     case ShapeType2::polygon: {
       Rounded2 r;
       r.count = s.polygon.count;
@@ -95,10 +101,12 @@ Vec2f closest_on_line(Vec2f a, Vec2f b, Vec2f p) {
 }
 
 void closest_of_lines(Vec2f a0, Vec2f a1, Vec2f b0, Vec2f b1, Vec2f& p, Vec2f& q) {
-  const Vec2f on[4][2] = {{a0, closest_on_line(b0, b1, a0)},
-                          {a1, closest_on_line(b0, b1, a1)},
-                          {closest_on_line(a0, a1, b0), b0},
-                          {closest_on_line(a0, a1, b1), b1}};
+  const Vec2f da = a1 - a0, db = b1 - b0;
+  const float a2 = dot(da, da), b2 = dot(db, db);
+  const float ia = a2 > 0 ? 1 / a2 : 0, ib = b2 > 0 ? 1 / b2 : 0;
+  const auto on_a = [&](Vec2f c) { return a0 + da * clamp(dot(c - a0, da) * ia, 0.0f, 1.0f); };
+  const auto on_b = [&](Vec2f c) { return b0 + db * clamp(dot(c - b0, db) * ib, 0.0f, 1.0f); };
+  const Vec2f on[4][2] = {{a0, on_b(a0)}, {a1, on_b(a1)}, {on_a(b0), b0}, {on_a(b1), b1}};
   float least = 3.4e38f;
   for (const auto& pair : on) {
     const float d = distance_squared(pair[0], pair[1]);
@@ -109,8 +117,11 @@ void closest_of_lines(Vec2f a0, Vec2f a1, Vec2f b0, Vec2f b1, Vec2f& p, Vec2f& q
 // Apart, the separation along the edge normals is greatest at a border of the cone of normals in which the closest
 // direction lies, so the edge found and the corner it sees belong to the closest features.
 CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b) {
+  return core_distance(a, b, best_edge(a, b), best_edge(b, a));
+}
+
+CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b, const EdgeAxis& ea, const EdgeAxis& eb) {
   CoreDistance2 out;
-  const EdgeAxis ea = best_edge(a, b), eb = best_edge(b, a);
   const float best = max(ea.separation, eb.separation);
   const bool points = a.count == 1 && b.count == 1;
   const bool flat = a.count <= 2 && b.count <= 2;  // lines in line part along no normal of theirs
@@ -132,11 +143,17 @@ CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b) {
       closest_of_lines(r.v[e], r.v[r.next(e)], s.v[s.before(corner)], s.v[corner], p, q);
       closest_of_lines(r.v[e], r.v[r.next(e)], s.v[corner], s.v[s.next(corner)], p2, q2);
       if (distance_squared(p2, q2) < distance_squared(p, q)) p = p2, q = q2;
-      // The closest corner may lie round the end of the edge.
-      closest_of_lines(r.v[r.before(e)], r.v[e], s.v[corner], s.v[s.next(corner)], p2, q2);
-      if (distance_squared(p2, q2) < distance_squared(p, q)) p = p2, q = q2;
-      closest_of_lines(r.v[r.next(e)], r.v[r.next(r.next(e))], s.v[s.before(corner)], s.v[corner], p2, q2);
-      if (distance_squared(p2, q2) < distance_squared(p, q)) p = p2, q = q2;
+      // The closest corner may lie round the end of the edge. Between its ends what is nearest there is nearest of all.
+      const Vec2f edge = r.v[r.next(e)] - r.v[e];
+      const float along = dot(p - r.v[e], edge), whole = dot(edge, edge);
+      if (along < 1e-3f * whole) {
+        closest_of_lines(r.v[r.before(e)], r.v[e], s.v[corner], s.v[s.next(corner)], p2, q2);
+        if (distance_squared(p2, q2) < distance_squared(p, q)) p = p2, q = q2;
+      }
+      if (along > 0.999f * whole) {
+        closest_of_lines(r.v[r.next(e)], r.v[r.next(r.next(e))], s.v[s.before(corner)], s.v[corner], p2, q2);
+        if (distance_squared(p2, q2) < distance_squared(p, q)) p = p2, q = q2;
+      }
       out.point_a = of_a ? p : q, out.point_b = of_a ? q : p;
     }
     const Vec2f d = out.point_b - out.point_a;

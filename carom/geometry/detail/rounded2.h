@@ -40,6 +40,8 @@ struct CoreDistance2 {
   Vec2f point_a{}, point_b{}, normal{};
 };
 CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b);
+/// The same, where best_edge(a, b) and best_edge(b, a) are known.
+CoreDistance2 core_distance(const Rounded2& a, const Rounded2& b, const EdgeAxis& of_a, const EdgeAxis& of_b);
 
 /// An edge with its normal; it runs from `start` against the clock, `length` m.
 struct ReferenceEdge {

@@ -21,7 +21,10 @@ struct Found {
 /// Segments of a chain are children, like the triangles of a mesh.
 inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, const Transform2f& b_in_a, float margin,
                         Found<Dim2>& found) {
-  const geometry::Bounds2f box = geometry::grow(geometry::bounds(b, b_in_a), margin);
+  const geometry::Bounds2f tight = geometry::bounds(b, b_in_a), box = geometry::grow(tight, margin);
+  const bool round = b.type == geometry::ShapeType2::circle;
+  const Vec2f middle = tight.center();
+  const float reach = 1.0001f * ((round ? b.circle.radius : math::length(tight.extents())) + margin);
   struct Candidate {
     float depth;
     int segment;
@@ -30,6 +33,7 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
   int count = 0;
   const geometry::Chain& chain = *a.chain;
   geometry::detail::visit_segments(chain, box, [&](int i) {
+    if (geometry::detail::segment_far(chain, i, middle, reach)) return true;
     geometry::PairCache cache;
     geometry::Manifold2 m;
     geometry::collide(geometry::Shape2(chain.segment(i)), b, b_in_a, margin, cache, m);

@@ -9,6 +9,7 @@ namespace {
 constexpr int pair_grain = 64;
 constexpr int group_grain = 8;
 constexpr int most_in_group = 16;
+constexpr int bounds_grain = 128;
 
 /// Remembers two shapes whose bounds overlap, if they are a pair without a contact.
 template <class D>
@@ -231,32 +232,62 @@ bool most_outgrew(const WorldImplementation<D>& world) {
   return outgrown > quarter;
 }
 
+/// The shapes that left their fat bounds, in the order of their bodies.
+template <class D>
+void list_outgrown(WorldImplementation<D>& world) {
+  StepScratch<D>& scratch = world.scratch;
+  const std::vector<std::int32_t>& awake = world.bodies.awake;
+  const auto changes = [&](std::size_t i) { return i < awake.size() && scratch.body_changes[i] != 0; };
+  scratch.outgrown.clear();
+  scratch.outgrown.reserve(scratch.moved.capacity());
+  for (std::size_t i = 0; i < awake.size(); ++i) {
+    if (changes(i + 16)) __builtin_prefetch(&world.bodies.record[std::size_t(awake[i + 16])]);
+    if (changes(i + 8))
+      if (const std::int32_t s = world.bodies.record[std::size_t(awake[i + 8])].first_shape; s != none)
+        prefetch_lines(&world.shapes.at(s), sizeof(ShapeTraits<D>));
+    if (!changes(i)) continue;
+    for (std::int32_t s = world.bodies.record[std::size_t(awake[i])].first_shape; s != none;
+         s = world.shapes.at(s).next)
+      if ((world.shapes.at(s).flags & shape_outgrown) != 0) scratch.outgrown.push_back(s);
+  }
+}
+
 template <class D>
 void update_trees(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   // Where most of a tree moves, its boxes are made anew from below in one go.
   const bool refit = most_outgrew(world);
   scratch.old_bounds.resize(scratch.moved.size(), nowhere<D>());
-  bool enlarged[3] = {};
-  for (std::size_t i = 0; i < world.bodies.awake.size(); ++i) {
-    if (scratch.body_changes[i] == 0) continue;
-    const std::int32_t body = world.bodies.awake[i];
-    for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
-      ShapeRecord<D>& shape = world.shapes.at(s);
-      if ((shape.flags & shape_outgrown) == 0) continue;
-      shape.flags &= std::uint8_t(~shape_outgrown);
-      auto& tree = world.shapes.trees[shape.tree];
-      if ((shape.flags & shape_moved) == 0) {
-        shape.flags |= shape_moved;
-        scratch.moved.push_back(s);
-        scratch.old_bounds.push_back(tree.bounds(shape.leaf));
+  list_outgrown(world);
+  scratch.new_bounds.reserve(scratch.outgrown.capacity());
+  scratch.new_bounds.resize(scratch.outgrown.size());
+  world.scheduler->parallel_for(int(scratch.outgrown.size()), bounds_grain, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) {
+      if (k + 6 < end) {
+        const ShapeRecord<D>& soon = world.shapes.at(scratch.outgrown[std::size_t(k) + 6]);
+        prefetch_lines(&soon, 192);
+        __builtin_prefetch(&world.bodies.pose[std::size_t(soon.body)]);
+        prefetch_lines(&world.bodies.motion[std::size_t(soon.body)], sizeof(BodyMotion<D>));
       }
-      if (refit && shape.tree == tree_dynamic)
-        tree.set_bounds(shape.leaf, fat_bounds(world, shape));
-      else
-        tree.enlarge(shape.leaf, fat_bounds(world, shape));
-      enlarged[shape.tree] = true;
+      scratch.new_bounds[std::size_t(k)] = fat_bounds(world, world.shapes.at(scratch.outgrown[std::size_t(k)]));
     }
+  });
+  bool enlarged[3] = {};
+  for (std::size_t k = 0; k < scratch.outgrown.size(); ++k) {
+    const std::int32_t s = scratch.outgrown[k];
+    ShapeRecord<D>& shape = world.shapes.at(s);
+    shape.flags &= std::uint8_t(~shape_outgrown);
+    auto& tree = world.shapes.trees[shape.tree];
+    if ((shape.flags & shape_moved) == 0) {
+      shape.flags |= shape_moved;
+      scratch.moved.push_back(s);
+      scratch.old_bounds.push_back(tree.bounds(shape.leaf));
+    }
+    if (refit && shape.tree == tree_dynamic)
+      tree.set_bounds(shape.leaf, scratch.new_bounds[k]);
+    else
+      tree.enlarge(shape.leaf, scratch.new_bounds[k]);
+    enlarged[shape.tree] = true;
   }
   for (int tree = 0; tree < 3; ++tree)
     if (enlarged[tree]) {

@@ -76,7 +76,17 @@ void unite_tired(const WorldImplementation<D>& world, std::vector<std::int32_t>&
     if (record.type == BodyType::kinematic && record.awake_index != none && record.sleep_timer == 0)
       restless[std::size_t(place)] = 1;
   };
+  // Lists of contacts lie anywhere in memory: the next bodies' first links are called for while one list is walked.
+  const auto first_contact = [&](std::size_t i) {
+    return i < parent.size() && restless[i] == 0 ? world.bodies.record[std::size_t(world.bodies.awake[i])].first_contact
+                                                 : none;
+  };
   for (std::size_t i = 0; i < parent.size(); ++i) {
+    if (const std::int32_t key = first_contact(i + 12); key != none)
+      prefetch_lines(&world.contacts.at(key >> 1), sizeof(ContactRecord<D>));
+    std::int32_t link = first_contact(i + 8);
+    if (link != none) link = world.contacts.at(link >> 1).next[link & 1];
+    if (link != none) prefetch_lines(&world.contacts.at(link >> 1), sizeof(ContactRecord<D>));
     const std::int32_t body = world.bodies.awake[i];
     if (restless[i] != 0 || !world.bodies.is_dynamic(body)) continue;
     for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none && restless[i] == 0;) {

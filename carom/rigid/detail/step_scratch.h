@@ -127,6 +127,8 @@ struct StepScratch {
   std::vector<std::int32_t> moved_place;       ///< by slot of the shape: place in old_bounds, or −1
   std::vector<std::int32_t> moved;             ///< shapes whose fat bounds changed
   std::vector<std::int32_t> group_places, group_ends;   ///< places in `moved` by groups of neighbours
+  std::vector<std::int32_t> outgrown;                   ///< shapes that left their fat bounds,
+  std::vector<typename D::Bounds> new_bounds;           ///< and what these become
   std::vector<std::vector<FoundPair>> found_pairs;      ///< by worker
   std::vector<std::vector<SensorMeeting>> met_sensors;  ///< by worker
   std::vector<FoundPair> pairs;

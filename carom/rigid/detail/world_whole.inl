@@ -100,6 +100,8 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.moved.reserve(shapes);
   s.group_places.reserve(shapes);
   s.group_ends.reserve(shapes);
+  s.outgrown.reserve(shapes);
+  s.new_bounds.reserve(shapes);
   for (auto& list : s.found_pairs) list.reserve(contacts);
   s.pairs.reserve(contacts);
   s.swept.reserve(bodies);
