@@ -43,8 +43,8 @@ struct alignas(record_alignment<D>) ContactRecord {
   std::int32_t body[2] = {none, none};
   std::int32_t shape[2] = {none, none};
   std::uint16_t flags = 0;
-  std::uint8_t manifold_count = 0;
-  bool rolls = false;  ///< one of the shapes is round where it touches
+  std::uint16_t manifold_count : 15 = 0;
+  std::uint16_t rolls : 1 = 0;  ///< one of the shapes is round where it touches
   std::int32_t first_manifold = none;
   std::int32_t awake_index = none;  ///< place in ContactStore::awake
   typename D::Transform base{};     ///< B in A when the manifolds were last computed in full

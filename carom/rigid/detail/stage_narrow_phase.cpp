@@ -50,6 +50,15 @@ float way_of_turn(const ShapeRecord<Dim3>& shape, const Vec3f& turn, float ball)
                    math::sqrt(e.x * e.x + e.y * e.y)};
   return min(most, dot(abs(turn), arms) + rounding);
 }
+/// m per radian: what a further turn adds to that at most, after one of `before` rad that took `way` of m. Where that
+/// was less than all of the ball, other axes are not all alike, and turns about two of them are more than either.
+float way_of_more(const ShapeRecord<Dim2>&, float, float, float ball) { return ball; }
+float way_of_more(const ShapeRecord<Dim3>& shape, const Vec3f& before, float way, float ball) {
+  const float angle = math::length(before);
+  if (!(way < angle * ball)) return ball;
+  const geometry::Hull& hull = *shape.geometry.hull;
+  return max(ball, 1.4143f * math::length(hull.bounds.extents()) * (1 + angle) + hull.radius);
+}
 /// Chords are twice this.
 float half_chord(const Rot2f& a, const Rot2f& b) { return 0.5f * chord(a, b); }
 Vec3f half_chord(const Quatf& a, const Quatf& b) { return (conjugate(a) * b).vector(); }
@@ -67,11 +76,15 @@ template <class D>
 struct Moved {
   typename D::Vector way;
   float turn;
+  float extent;  ///< m per radian of what it turns from here
 
   Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b, const typename D::Transform& now) {
     const typename D::Vector middle = ball_about(b).middle;
     way = transform_point(now, middle) - transform_point(c.base, middle);
-    turn = 2 * way_of_turn(b, half_chord(c.base.q, now.q), c.extent);
+    const auto half = half_chord(c.base.q, now.q);
+    const float half_way = way_of_turn(b, half, c.extent);
+    turn = 2 * half_way;
+    extent = way_of_more(b, half, half_way, c.extent);
   }
   /// An upper bound for any point of B.
   float most() const { return math::length(way) + turn; }
@@ -223,7 +236,7 @@ std::uint8_t update_sensor(WorldImplementation<D>& world, ContactRecord<D>& c, c
 /// The watch on a pair that has just been looked at; the caller says what it watches for.
 template <class D>
 ContactWatch<D>& watch_contact(WorldImplementation<D>& world, const ContactRecord<D>& c,
-                               const typename D::Vector& normal) {
+                               const typename D::Vector& normal, float extent) {
   const std::int32_t a = c.body[0], b = c.body[1];
   ContactWatch<D>& w = world.scratch.watches[std::size_t(c.awake_index)];
   w.body[0] = a, w.body[1] = b;
@@ -233,7 +246,7 @@ ContactWatch<D>& watch_contact(WorldImplementation<D>& world, const ContactRecor
   const ShapeRecord<D>& shape = world.shapes.at(c.shape[1]);
   w.middle = ball_about(shape).middle;
   if (!at_origin) w.middle = transform_point(shape.local, w.middle);
-  w.extent = c.extent;
+  w.extent = extent;
   return w;
 }
 /// Rounding must not let a watch hold a moment longer than the exact test.
@@ -243,7 +256,7 @@ float rounding_of(const ContactWatch<D>& w) {
 }
 template <class D>
 void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const Moved<D>& moved) {
-  ContactWatch<D>& w = watch_contact(world, c, c.axis);
+  ContactWatch<D>& w = watch_contact(world, c, c.axis, moved.extent);
   w.gap = slack_of(c, moved) - rounding_of(w);
   w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
   w.most_way = 0;
@@ -253,8 +266,8 @@ void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const
 }
 template <class D>
 void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, float slack, float separation,
-                    const typename D::Vector& normal) {
-  ContactWatch<D>& w = watch_contact(world, c, normal);
+                    const typename D::Vector& normal, float extent) {
+  ContactWatch<D>& w = watch_contact(world, c, normal, extent);
   w.most_way = slack - rounding_of(w);
   w.gap = separation - min(c.margin(), 2 * touch_distance) + rounding_of(w);
   w.cap = -1;
@@ -304,7 +317,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   if (!(separation < c.margin() && far < most)) return false;
   c.flags |= contact_recycled;
   change = touch_change(c, separation, pressed_any(world.contacts, c));
-  if (c.flags & contact_touching) watch_recycled(world, c, most - far, separation, normal);
+  if (c.flags & contact_touching) watch_recycled(world, c, most - far, separation, normal, moved.extent);
   return true;
 }
 
@@ -376,7 +389,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
   if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
     c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
-    watch_recycled(world, c, longest_way(world, c, m), c.gap, m.normal);
+    watch_recycled(world, c, longest_way(world, c, m), c.gap, m.normal, c.extent);
   }
   if (c.first_manifold == none) {
     list.push_back({c.awake_index, 0, 0, m});
@@ -469,36 +482,44 @@ bool goes_past(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>
   return fly_past(a.geometry, b.geometry, way_of(a), way_of(b), 2 * c.margin());
 }
 
+/// What flies past meets nothing in this step.
+template <class D>
+std::uint8_t pass_by(const WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
+                     const ShapeRecord<D>& b) {
+  c.flags = std::uint16_t(c.flags & ~(contact_recycled | contact_known));
+  c.gap = 0;
+  c.axis = {};
+  std::uint8_t change = 0;
+  if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
+    change = change_apart;
+  else if (c.first_manifold != none)
+    change = change_empty;
+  return std::uint8_t(change | touch_change(c, 1e30f, false));
+}
+
 /// Recomputes one contact. Writes only to the contact, its manifolds and the worker's list.
 template <class D>
 std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_index,
                             std::vector<FoundManifold<D>>& list) {
   ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(awake_index)]);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  if ((c.flags & contact_sensor) == 0 && goes_past(world, c, a, b)) {
-    world.scratch.watches[std::size_t(awake_index)].body[0] = none;
-    c.flags = std::uint16_t(c.flags & ~(contact_recycled | contact_known));
-    c.gap = 0;
-    c.axis = {};
-    std::uint8_t change = 0;
-    if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
-      change = change_apart;
-    else if (c.first_manifold != none)
-      change = change_empty;
-    return std::uint8_t(change | touch_change(c, 1e30f, false));
-  }
+  world.scratch.watches[std::size_t(awake_index)].body[0] = none;  // an old one knows nothing of what changes now
+  // What is known and stays comes first, as watches ask for nothing else; of what is not known, this saves all the
+  // rest.
+  const bool known = (c.flags & contact_known) != 0, sensor = (c.flags & contact_sensor) != 0;
+  if (!known && !sensor && goes_past(world, c, a, b)) return pass_by(world, c, a, b);
   typename D::Transform b_in_a;
   if (c.flags & contact_at_origin)
     b_in_a = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
   else
     b_in_a = relative(shape_pose(world, a), shape_pose(world, b));
-  if (c.flags & contact_sensor) return update_sensor(world, c, a, b, b_in_a);
+  if (sensor) return update_sensor(world, c, a, b, b_in_a);
 
   ShapeSweep<D> sweep;
   const float ahead = look_ahead(world, c, sweep), reach = 2 * c.margin() + ahead;
   std::uint8_t change = 0;
-  world.scratch.watches[std::size_t(awake_index)].body[0] = none;  // an old one knows nothing of what changes now
   if (stays(world, c, b_in_a, ahead, sweep, change)) return change;
+  if (known && goes_past(world, c, a, b)) return pass_by(world, c, a, b);
   c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
   c.base = b_in_a;
   return (c.flags & contact_many) != 0 ? update_many(world, c, a, b, reach, sweep, list)
