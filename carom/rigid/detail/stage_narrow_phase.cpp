@@ -10,7 +10,7 @@ namespace {
 constexpr int contact_grain = 128;
 constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
 constexpr float recycle_share = 0.1f;     ///< of the smaller half thickness: manifolds stay while the pair slid less,
-constexpr float point_share = 0.01f;      ///< where they meet in a point,
+constexpr float point_share = 0.03f;      ///< where they meet in a point,
 constexpr float rolling_share = 0.01f;    ///< and where something rolls
 
 enum ContactChange : std::uint8_t {
