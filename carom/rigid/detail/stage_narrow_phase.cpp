@@ -10,7 +10,6 @@ namespace {
 constexpr int contact_grain = 128;
 constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
 constexpr float recycle_share = 0.1f;     ///< of the smaller half thickness: manifolds stay while the pair slid less,
-constexpr float point_share = 0.03f;      ///< where they meet in a point,
 constexpr float rolling_share = 0.01f;    ///< and where something rolls
 
 enum ContactChange : std::uint8_t {
@@ -30,12 +29,11 @@ float smallest_separation(const typename D::Manifold& m) {
 
 /// m: how far a pair may slide and turn until its manifolds are made anew. Where something is round, the point in which
 /// it meets another moves over both, and the normal turns with it: a manifold kept over a way s is wrong by s²/2r, and
-/// what rocks on it is lifted by as much at every new one. So it is, less, where edges cross: one point in space.
+/// what rocks on it is lifted by as much at every new one.
 template <class D>
-float longest_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m) {
+float longest_way(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
   const float most = recycle_share * c.inner;
-  if (c.rolls) return min(most, max(rolling_share * c.inner, still_way(world, world.last_dt)));
-  return D::dimension == 3 && m.count == 1 ? point_share * c.inner : most;
+  return c.rolls ? min(most, max(rolling_share * c.inner, still_way(world, world.last_dt))) : most;
 }
 
 /// How far a turn (rad, times a scale) in its own frame moves the surface of a shape about its middle, at most: about
@@ -313,7 +311,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   const typename D::Manifold& m = world.contacts.manifold(c.first_manifold).manifold;
   const typename D::Vector normal = m.normal;
   const float separation = c.gap + dot(normal, moved.way), far = moved.across(normal);
-  const float most = longest_way(world, c, m);
+  const float most = longest_way(world, c);
   if (!(separation < c.margin() && far < most)) return false;
   c.flags |= contact_recycled;
   change = touch_change(c, separation, pressed_any(world.contacts, c));
@@ -389,7 +387,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
   if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
     c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
-    watch_recycled(world, c, longest_way(world, c, m), c.gap, m.normal, c.extent);
+    watch_recycled(world, c, longest_way(world, c), c.gap, m.normal, c.extent);
   }
   if (c.first_manifold == none) {
     list.push_back({c.awake_index, 0, 0, m});
