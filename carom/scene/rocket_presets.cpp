@@ -7,18 +7,14 @@ namespace carom::scene {
 namespace {
 
 using detail::Node;
+using detail::preset_error;
 
-/// A number of the file: at least `least`, or more than that where it must not be zero.
+/// A number of the file, ≥ 0; `positive`: it must be there, and > 0.
 struct RocketNumber {
   std::string_view name, unit;
   double* value;
   bool positive = false;
 };
-
-core::Error rocket_error(std::string_view file, const Node& node, const std::string& where,
-                         const std::string& message) {
-  return detail::preset_error(file, node, where, message);
-}
 
 /// The numbers of an object; `others` are looked at by the caller.
 core::Result<void> read_rocket_numbers(const Node& node, std::span<const RocketNumber> fields,
@@ -34,44 +30,44 @@ core::Result<void> read_rocket_numbers(const Node& node, std::span<const RocketN
       const auto quantity = detail::read_preset_quantity(node.children[k], field.unit, file, where);
       if (!quantity) return quantity.error();
       if (!math::is_finite(*quantity) || *quantity < 0 || (field.positive && *quantity == 0))
-        return rocket_error(
+        return preset_error(
             file, node.children[k], where,
             core::refused("it", *quantity, field.positive ? "a finite number > 0" : "a finite number >= 0"));
       *field.value = *quantity;
       known = true;
     }
-    if (!known) return rocket_error(file, node.children[k], where, "found a name that is not known here");
+    if (!known) return preset_error(file, node.children[k], where, "found a name that is not known here");
   }
   for (const RocketNumber& field : fields)
     if (field.positive && node.find(field.name) == nullptr)
-      return rocket_error(file, node, core::text(at, ".", field.name), "is missing");
+      return preset_error(file, node, core::text(at, ".", field.name), "is missing");
   return {};
 }
 
 core::Result<ballistics::Motor> read_motor(const Node& stage, std::string_view file, const std::string& at,
                                            const PresetResolver& resolver) {
   const Node* const name = stage.find("motor");
-  if (name == nullptr) return rocket_error(file, stage, at + ".motor", "is missing");
+  if (name == nullptr) return preset_error(file, stage, at + ".motor", "is missing");
   if (!name->is_text() || !detail::is_preset_name(name->text))
-    return rocket_error(file, *name, at + ".motor", "found " + detail::show(*name) + ", expected the name of a preset");
-  if (!resolver) return rocket_error(file, *name, at + ".motor", "there is nobody to ask for presets");
+    return preset_error(file, *name, at + ".motor", "found " + detail::show(*name) + ", expected the name of a preset");
+  if (!resolver) return preset_error(file, *name, at + ".motor", "there is nobody to ask for presets");
   const std::string path = core::text("presets/motor/", name->text, ".eng");
   const auto text = resolver(path);
-  if (!text) return rocket_error(file, *name, at + ".motor", text.error().message);
+  if (!text) return preset_error(file, *name, at + ".motor", text.error().message);
   const auto motors = ballistics::read_rasp(*text, path);
-  if (!motors) return rocket_error(file, *name, at + ".motor", motors.error().message);
-  if (motors->empty()) return rocket_error(file, *name, at + ".motor", path + " has no motor");
+  if (!motors) return preset_error(file, *name, at + ".motor", motors.error().message);
+  if (motors->empty()) return preset_error(file, *name, at + ".motor", path + " has no motor");
   const Node* const wanted = stage.find("designation");
   if (wanted == nullptr) return motors->front();
   if (!wanted->is_text())
-    return rocket_error(file, *wanted, at + ".designation",
+    return preset_error(file, *wanted, at + ".designation",
                         "found " + detail::show(*wanted) + ", expected a motor's name");
   std::string found;
   for (const ballistics::Motor& motor : *motors) {
     if (motor.name == wanted->text) return motor;
     found += (found.empty() ? "" : ", ") + motor.name;
   }
-  return rocket_error(file, *wanted, at + ".designation",
+  return preset_error(file, *wanted, at + ".designation",
                       core::text("found ", core::quoted(wanted->text), ", expected one of ", path, ": ", found));
 }
 
@@ -105,17 +101,17 @@ core::Result<ballistics::Rocket> parse_rocket(std::string_view text, std::string
   rocket.coasting_drag = ballistics::DragCurve(coasting < 0 ? drag : coasting);
   rocket.fins.count = int(math::min(fins, 100.0));
   if (double(rocket.fins.count) != fins || fins > 16)
-    return rocket_error(file, *values.find("fin_count"), "values.fin_count",
+    return preset_error(file, *values.find("fin_count"), "values.fin_count",
                         core::refused("it", fins, "a whole number, at most 16"));
 
   const Node* const stages = values.find("stages");
   if (stages == nullptr || !stages->is_array() || stages->children.empty() || stages->children.size() > 10)
-    return rocket_error(file, stages != nullptr ? *stages : values, "values.stages",
+    return preset_error(file, stages != nullptr ? *stages : values, "values.stages",
                         "expected a list of 1 to 10 stages");
   for (std::size_t i = 0; i < stages->children.size(); ++i) {
     const Node& node = stages->children[i];
     const std::string at = core::text("values.stages[", i, "]");
-    if (!node.is_object()) return rocket_error(file, node, at, "found " + detail::show(node) + ", expected an object");
+    if (!node.is_object()) return preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
     ballistics::Stage stage;
     const RocketNumber numbers[] = {{"dry_mass", "kg", &stage.dry_mass, true},
                                     {"dry_centre", "m", &stage.dry_centre},

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "carom/scene/scene.h"
 #include "carom/sports/flight.h"
 #include "carom/sports/presets.h"
+#include "tests/scene/source_file.h"
 
 namespace scene_ball_flight_test {
 using namespace carom;
@@ -17,13 +17,7 @@ using math::Vec3d;
 scene::Result<scene::Scene> parse(const std::string& body, const std::string& effector) {
   const std::string text = R"({"step": "1/240 s", "bodies": [{"name": "ball", )" + body +
                            R"(}], "effectors": [{"type": "ball_flight", "body": "ball", )" + effector + "}]}";
-  return scene::parse_scene(text, "ball.json", [](std::string_view path) -> scene::Result<std::string> {
-    std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
-    if (!file) return core::Error{"no such preset"};
-    std::stringstream read;
-    read << file.rdbuf();
-    return read.str();
-  });
+  return scene::parse_scene(text, "ball.json", scene::test::read_source);
 }
 
 TEST(SceneBallFlight, EveryPresetFliesLikeTheModel) {

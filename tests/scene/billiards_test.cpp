@@ -4,18 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include "tests/scene/source_file.h"
 
 namespace scene_billiards_test {
 using namespace carom;
 
-std::string preset(const std::string& name) {
-  std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/presets/" + name);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string preset(const std::string& name) { return scene::test::read_source("presets/" + name).value(); }
 
 void same(const scene::BilliardSetting& read, const sports::RectangularTable& table,
           const sports::BilliardPhysics& physics, const char* name) {

@@ -1,12 +1,11 @@
 // The effector "projectile" of a scene file: flies like the model, and says what is wrong with it.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 #include <tuple>
 
 #include "carom/ballistics/flight.h"
 #include "carom/scene/scene.h"
+#include "tests/scene/source_file.h"
 
 namespace scene_projectile_test {
 using namespace carom;
@@ -51,12 +50,7 @@ TEST(SceneProjectile, PresetsGiveTheDrag) {
 
 // A measured curve, as a preset and as a text file, is one projectile.
 TEST(SceneProjectile, FliesByAMeasuredTable) {
-  const auto read = [](const std::string& name) {
-    std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/presets/" + name);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-  };
+  const auto read = [](const std::string& name) { return scene::test::read_source("presets/" + name).value(); };
   for (const auto& [name, mass, diameter] :
        {std::tuple{"308_168_smk", .01089, .00782}, std::tuple{"120mm_mortar", 13.585, .11956}}) {
     const std::string file = std::string(name) + (mass < 1 ? "_measured" : "");

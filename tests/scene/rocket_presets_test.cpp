@@ -4,27 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "tests/scene/source_file.h"
 
 namespace rocket_presets_test {
 using namespace carom;
 using namespace carom::ballistics;
-
-core::Result<std::string> read(std::string_view path) {
-  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
-  if (!in) return core::Error{"no file " + std::string(path)};
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using scene::test::read_source;
 
 // Every rocket of presets/ is stable by a calibre at the least, goes up, and comes down by its parachute.
 TEST(RocketPresets, EveryFileFlies) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(CAROM_SOURCE_DIR) + "/presets/rocket")) {
     const std::string path = "presets/rocket/" + entry.path().filename().string();
-    const auto rocket = scene::parse_rocket(read(path).value(), path, read);
+    const auto rocket = scene::parse_rocket(read_source(path).value(), path, read_source);
     ASSERT_TRUE(rocket) << rocket.error().message;
     const Conditions air{.air = environment::AirColumn::uniform(1.225)};
     const auto flight =
@@ -50,7 +43,7 @@ TEST(RocketPresets, EveryFileFlies) {
 // speed and the change of mass are in the flight.
 TEST(RocketPresets, HoldsWhatTheFileSays) {
   const std::string path = "presets/rocket/two_stage_c6.json";
-  const auto rocket = scene::parse_rocket(read(path).value(), path, read);
+  const auto rocket = scene::parse_rocket(read_source(path).value(), path, read_source);
   ASSERT_TRUE(rocket) << rocket.error().message;
   ASSERT_EQ(rocket->stages.size(), 2u);
   for (const Stage& stage : rocket->stages) EXPECT_NEAR(stage.motor.curve.total_impulse(), 8.82, .002 * 8.82);
@@ -69,7 +62,7 @@ TEST(RocketPresets, HoldsWhatTheFileSays) {
 
 TEST(RocketPresets, ErrorsNameThePlace) {
   const auto error = [](const std::string& values) {
-    const auto rocket = scene::parse_rocket("{\"values\": {" + values + "}}", "r.json", read);
+    const auto rocket = scene::parse_rocket("{\"values\": {" + values + "}}", "r.json", read_source);
     return rocket.ok() ? std::string("none") : rocket.error().message;
   };
   const std::string size = R"("diameter": "25 mm", "length": "1 m", )";

@@ -12,6 +12,7 @@
 #include "carom/scene/recording.h"
 #include "carom/scene/scene.h"
 #include "carom/scene/write_scene.h"
+#include "tests/scene/source_file.h"
 
 namespace carom::scene {
 namespace {
@@ -418,14 +419,8 @@ TEST(Schema, InTheRepositoryIsTheOneOfTheLoader) {
 TEST(Presets, AllStateTheirSourceAndLoad) {
   for (const char* name : {"ball/golf", "ball/tennis", "ball/basketball", "ball/soccer", "ball/baseball",
                            "ball/bowling", "ball/billiard", "ball/cricket"}) {
-    const Result<Scene> scene =
-        parse_scene(std::string("{\"bodies\": [{\"name\": \"b\", \"preset\": \"") + name + "\"}]}", "t",
-                    [](std::string_view path) -> Result<std::string> {
-                      std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
-                      std::stringstream text;
-                      text << file.rdbuf();
-                      return text.str();
-                    });
+    const Result<Scene> scene = parse_scene(
+        std::string("{\"bodies\": [{\"name\": \"b\", \"preset\": \"") + name + "\"}]}", "t", test::read_source);
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     EXPECT_GT(read(start(*scene), "b.mass"), 0.04);
   }
@@ -435,14 +430,7 @@ TEST(Presets, AllStateTheirSourceAndLoad) {
         std::string("{\"materials\": {\"m\": {\"preset\": \"material/") + name +
             "\"}}, \"bodies\": [{\"name\": \"b\", \"shape\": {\"type\": \"box\", \"size\": [1, 1, 1], \"material\": "
             "\"m\"}}]}",
-        "t",
-        [](std::string_view path) -> Result<std::string> {
-          std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
-          std::stringstream text;
-          text << file.rdbuf();
-          return text.str();
-        },
-        options);
+        "t", test::read_source, options);
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     EXPECT_GT(read(start(*scene), "b.mass"), 200);
   }

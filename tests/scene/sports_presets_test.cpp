@@ -3,20 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "carom/sports/presets.h"
+#include "tests/scene/source_file.h"
 
 namespace sports_presets_test {
 using namespace carom;
 
-std::string file(const std::string& path) {
-  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/presets/" + path);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+std::string file(const std::string& path) { return scene::test::read_source("presets/" + path).value(); }
 
 template <class Numbers>
 void expect_same(const Numbers& found, const Numbers& expected, std::string_view name) {

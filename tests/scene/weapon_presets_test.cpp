@@ -4,25 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "tests/scene/source_file.h"
 
 namespace weapon_presets_test {
 using namespace carom;
 using namespace carom::ballistics;
+using scene::test::read_source;
 
 constexpr double yard = 0.9144, foot = 0.3048, inch = 0.0254, degree = math::pi / 180;
 
-core::Result<std::string> read(std::string_view path) {
-  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
-  if (!in) return core::Error{"no file " + std::string(path)};
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 Weapon gun(const std::string& name) {
   const std::string path = "presets/gun/" + name + ".json";
-  auto w = scene::parse_gun(read(path).value(), path, read);
+  auto w = scene::parse_gun(read_source(path).value(), path, read_source);
   EXPECT_TRUE(w) << w.error().message;
   return w.ok() ? *w : Weapon{};
 }
@@ -32,10 +26,10 @@ TEST(WeaponPresets, EveryFileIsRead) {
   for (const char* kind : {"gun", "ammunition", "sight", "wall"})
     for (const auto& entry : std::filesystem::directory_iterator(std::string(CAROM_SOURCE_DIR) + "/presets/" + kind)) {
       const std::string path = "presets/" + std::string(kind) + "/" + entry.path().filename().string();
-      const std::string text = read(path).value();
+      const std::string text = read_source(path).value();
       const std::string_view k = kind;
       const auto told = [&](const auto& result) { EXPECT_TRUE(result.ok()) << result.error().message; };
-      if (k == "gun") told(scene::parse_gun(text, path, read));
+      if (k == "gun") told(scene::parse_gun(text, path, read_source));
       if (k == "ammunition") told(scene::parse_ammunition(text, path));
       if (k == "sight") told(scene::parse_sight(text, path));
       if (k == "wall") told(scene::parse_wall(text, path));
@@ -88,7 +82,7 @@ TEST(WeaponPresets, CarbineAndCannon) {
 TEST(WeaponPresets, WallsStopWhatTheyShould) {
   const auto wall = [](const char* name) {
     const std::string path = "presets/wall/" + std::string(name) + ".json";
-    return scene::parse_wall(read(path).value(), path).value();
+    return scene::parse_wall(read_source(path).value(), path).value();
   };
   const Penetrator rifle = penetrator_of(gun("rifle_308"), 780), pistol = penetrator_of(gun("pistol_9mm"), 350);
   const auto behind = [](const Penetrator& p, const std::vector<Layer>& layers) {
@@ -127,11 +121,12 @@ TEST(WeaponPresets, ErrorsNameTheirPlace) {
   EXPECT_NE(
       message(scene::parse_sight(R"({"values": {"click": "0 rad"}})", "s.json")).find("s.json: a sight: click is 0"),
       std::string::npos);
-  EXPECT_NE(message(scene::parse_gun(R"({"values": {"ammunition": "../secret"}})", "g.json", read))
+  EXPECT_NE(message(scene::parse_gun(R"({"values": {"ammunition": "../secret"}})", "g.json", read_source))
                 .find("expected the name of a preset"),
             std::string::npos);
-  EXPECT_NE(message(scene::parse_gun(R"({"values": {"ammunition": "none_such"}})", "g.json", read)).find("no file"),
-            std::string::npos);
+  EXPECT_NE(
+      message(scene::parse_gun(R"({"values": {"ammunition": "none_such"}})", "g.json", read_source)).find("no file"),
+      std::string::npos);
   EXPECT_NE(message(scene::parse_wall(R"({"values": []})", "w.json")).find("expected 1 to 100 layers"),
             std::string::npos);
   EXPECT_NE(message(scene::parse_wall(R"({"values": [{"thickness": "-1 mm"}]})", "w.json")).find("thickness is -0.001"),
