@@ -13,7 +13,9 @@ export class Editing {
   constructor(private send: (message: object) => void, private keep: (name: string, text: string) => void) {
     byId('edit-close').onclick = () => this.close();
     byId('edit-save').onclick = () => download(this.name, new Blob([this.editor?.text ?? '']));
-    byId('edit-status').onclick = () => { if (this.wrongLine > 0) this.editor?.goTo(this.wrongLine); };
+    const status = byId('edit-status'), goToMistake = () => { if (this.wrongLine > 0) this.editor?.goTo(this.wrongLine); };
+    status.onclick = goToMistake;
+    status.onkeydown = (event) => { if (event.key === 'Enter') { event.preventDefault(); goToMistake(); } };
     byId('edit-new').onclick = () => { void this.fill('', undefined); };
   }
 

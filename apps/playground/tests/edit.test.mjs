@@ -34,7 +34,11 @@ test('a scene file is edited beside the view', async () => {
   await write(page, wrong);
   await status(page, `line ${line}:`);
   assert.equal((await bodies(page, 'dynamic')).length, count + 1);
-  await page.click('#edit-status');  // goes to the line
+  for (const go of [() => page.click('#edit-status'), () => page.press('#edit-status', 'Enter')]) {  // both go to the line
+    await page.evaluate(() => window.caromPage.editing.editor.view.dispatch({selection: {anchor: 0}}));
+    await go();
+    await page.waitForFunction((n) => { const {state, hasFocus} = window.caromPage.editing.editor.view; return hasFocus && state.doc.lineAt(state.selection.main.head).number === n; }, line);
+  }
   await page.waitForSelector('.cm-lint-marker-error');
   await picture(page, 'editor');
   await write(page, '{ "bodies": [ ');
@@ -76,6 +80,9 @@ test('a demo becomes a scene, and the schema completes keys and values of a new 
   assert.ok(values.includes('"sphere"') && values.includes('"ellipsoid"'), values.join(' '));
   const top = await complete('{', '}');
   assert.ok(top.includes('"bodies"') && top.includes('"gravity"'), top.join(' '));
+  // Open to all with a message that is longer than its place, too.
+  await write(page, `{"bodies": [{"shape": {"type": "${'sphere or box or '.repeat(30)}"}}]}`);
+  await page.waitForFunction(() => { const {scrollHeight, clientHeight} = document.querySelector('#edit-status.wrong') ?? {}; return scrollHeight > clientHeight; });
   assert.deepEqual(await barriers(page, '#editor'), []);
   await page.keyboard.press('Escape');
   await page.click('#edit-close');
