@@ -26,8 +26,8 @@ test('every demo opens, moves or stands, shows its numbers, and is accessible', 
     await page.evaluate((d) => { location.hash = d; }, demo);
     await page.waitForFunction((d) => document.querySelector('#demo-list a[aria-current]')?.dataset.demo === d, demo);
     await beyond(page, 5);
+    await page.evaluate(() => window.caromPage.send({type: 'pause'}));  // what is drawn on and on would share the processor
     await picture(page, demo);
-    await page.evaluate(() => window.caromPage.send({type: 'pause'}));  // what follows needs no picture
     assert.notEqual(await page.textContent('#numbers'), '', demo);
     assert.ok((await page.textContent('#about .summary')).length > 25, `${demo} says what it shows`);
     // All of the page once; then what differs from demo to demo, where there is anything of a kind that was not there before.
