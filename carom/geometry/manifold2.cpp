@@ -8,38 +8,10 @@ namespace pairs2 {
 
 using detail::Rounded2;
 
-void single(Vec2f a, float ra, Vec2f b, float rb, Vec2f n, float d, std::uint32_t id, Manifold2& out) {
-  const float s = d - ra - rb;
-  out.normal = n;
-  out.count = 1;
-  out.points[0] = {(a + n * ra + b - n * rb) * 0.5f, s, id};
-}
-
-void point_point(Vec2f a, float ra, Vec2f b, float rb, float margin, std::uint32_t id, Manifold2& out) {
-  const Vec2f d = b - a;
-  const float l2 = dot(d, d), reach = ra + rb + margin;
-  if (l2 > reach * reach) {
-    out.points[0].separation = sqrt(l2) - ra - rb;
-    return;
-  }
-  const float l = sqrt(l2);
-  single(a, ra, b, rb, l > 1e-12f ? d * (1 / l) : Vec2f{0, 1}, l, id, out);
-}
-
-/// A round shape that passes over the end of an edge without dipping below it is pushed along the edge's normal, so
-/// that it does not catch on the joint of two level edges (the same rule as in space, detail/contact_points.h).
-/// Well beside the edge there is nothing to meet yet.
-void over_border(Manifold2& m, Vec2f edge_normal, float above, float radius) {
-  if (m.count == 0 || above - radius <= -min(0.005f * radius, 0.001f)) return;
-  if (dot(m.normal, edge_normal) > 0.85f)
-    m.normal = edge_normal;
-  else if (m.points[0].separation > 0)
-    m.count = 0;
-}
-
 /// One corner of b against the polygon or line a.
 void against_point(const Rounded2& a, Vec2f p, float radius, float margin, Manifold2& out) {
-  if (a.count == 2) return point_point(detail::closest_on_line(a.v[0], a.v[1], p), a.radius, p, radius, margin, 0, out);
+  if (a.count == 2)
+    return detail::between_points(detail::closest_on_line(a.v[0], a.v[1], p), a.radius, p, radius, margin, 0, out);
   int edge = 0;
   float best = -3.4e38f;
   for (int i = 0; i < a.count; ++i) {
@@ -51,12 +23,12 @@ void against_point(const Rounded2& a, Vec2f p, float radius, float margin, Manif
     const Vec2f q = detail::closest_on_line(a.v[edge], a.v[a.next(edge)], p);
     const Vec2f d = p - q;
     if (dot(d, d) > 1e-12f * best && distance_squared(q, p) > best * best * 1.000001f) {  // round a corner
-      point_point(q, a.radius, p, radius, margin, 0, out);
-      if (a.radius == 0) over_border(out, a.n[edge], best, a.radius + radius);
+      detail::between_points(q, a.radius, p, radius, margin, 0, out);
+      if (a.radius == 0) detail::over_border(out, a.n[edge], best, a.radius + radius);
       return;
     }
   }
-  single(p - a.n[edge] * best, a.radius, p, radius, a.n[edge], best, 0, out);
+  detail::single_contact(p - a.n[edge] * best, a.radius, p, radius, a.n[edge], best, 0, out);
 }
 
 /// The edge `e` of r against the edge of s that faces it. Points along r's normal; `of_b` says that r is B.
@@ -88,22 +60,24 @@ bool grazes(const Rounded2& a, const Rounded2& b, Vec2f n, float best, float tol
 void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cache, Manifold2& out) {
   const float radius = a.radius + b.radius;
   // The edge that parted them last is asked first.
-  const auto apart = [&](float separation) {
+  const auto apart = [&](float separation, Vec2f normal) {
     out.points[0].separation = separation - radius;
-    return out.points[0].separation > margin;
+    if (!(out.points[0].separation > margin)) return false;
+    out.normal = normal;
+    return true;
   };
   if (cache.kind == 1 && cache.a < a.count) {
-    if (apart(detail::separation_along(a, cache.a, b))) return;
+    if (apart(detail::separation_along(a, cache.a, b), a.n[cache.a])) return;
   } else if (cache.kind == 2 && cache.a < b.count) {
-    if (apart(detail::separation_along(b, cache.a, a))) return;
+    if (apart(detail::separation_along(b, cache.a, a), -b.n[cache.a])) return;
   }
   const detail::EdgeAxis ea = detail::best_edge(a, b);
-  if (apart(ea.separation)) {
+  if (apart(ea.separation, a.n[ea.edge])) {
     cache.kind = 1, cache.a = std::uint8_t(ea.edge);
     return;
   }
   const detail::EdgeAxis eb = detail::best_edge(b, a);
-  if (apart(eb.separation)) {
+  if (apart(eb.separation, -b.n[eb.edge])) {
     cache.kind = 2, cache.a = std::uint8_t(eb.edge);
     return;
   }
@@ -123,11 +97,11 @@ void polygons(const Rounded2& a, const Rounded2& b, float margin, PairCache& cac
   const bool lines = a.count == 2 && b.count == 2;
   if (axis.separation > 1e-4f * slack || (lines && axis.separation > -1e-5f)) {
     const detail::CoreDistance2 d = detail::core_distance(a, b, ea, eb);
-    if (apart(d.distance)) return;
+    if (apart(d.distance, d.normal)) return;
     if (dot(d.normal, of_b ? -r.n[axis.edge] : r.n[axis.edge]) < 0.9999f && d.distance > 1e-6f) {
-      single(d.point_a, a.radius, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
+      detail::single_contact(d.point_a, a.radius, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
       const Vec2f n = of_b ? -r.n[axis.edge] : r.n[axis.edge];
-      if (radius > 0 && r.radius == 0) over_border(out, n, axis.separation, radius);
+      if (radius > 0 && r.radius == 0) detail::over_border(out, n, axis.separation, radius);
       return;
     }
   }
@@ -181,7 +155,7 @@ void chain_any(const ChainSegment& c, const Rounded2& b, float margin, Manifold2
       // Between two segments that meet in a flat corner a circle's centre may be over neither.
       const float u = dot(b.v[0] - c.a, t), slip = 0.018f * b.radius;
       if (u < -slip || u > length(c.b - c.a) + slip) return;
-      single(b.v[0] - sector.normal * along, 0, b.v[0], b.radius, sector.normal, along, 1, out);
+      detail::single_contact(b.v[0] - sector.normal * along, 0, b.v[0], b.radius, sector.normal, along, 1, out);
     } else {
       clip_edges(line, 0, b, false, margin, out);
     }
@@ -197,7 +171,7 @@ void chain_any(const ChainSegment& c, const Rounded2& b, float margin, Manifold2
           if (out.count > 0) return;
         }
     }
-    return single(d.point_a, 0, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
+    return detail::single_contact(d.point_a, 0, d.point_b, b.radius, d.normal, d.distance, 1u << 25, out);
   }
   // Overlap: the segment's own normal, or a normal of b that the chain allows and that is clearly shallower.
   int edge = -1;
@@ -250,8 +224,6 @@ void collide(const Shape2& a, const Shape2& b, const Transform2f& x, float margi
   out.normal = {};
   out.points[0].separation = margin;
   if (a.type == ShapeType2::chain || b.type == ShapeType2::chain) return;  // segment by segment: Chain::segment
-  if (a.type == ShapeType2::circle && b.type == ShapeType2::circle)
-    return point_point({}, a.circle.radius, x.p, b.circle.radius, margin, 0, out);
   if (a.type == ShapeType2::chain_segment) {
     if (!convex_shape(b)) return;
     return chain_any(a.chain_segment, detail::placed(b, x), margin, out);
@@ -262,12 +234,13 @@ void collide(const Shape2& a, const Shape2& b, const Transform2f& x, float margi
     for (int i = 0; i < out.count; ++i) out.points[i].point = transform_point(x, out.points[i].point);
     return;
   }
+  if (detail::collide_round(a, b, x, margin, cache, out)) return;
   if (a.type == ShapeType2::polygon && b.type == ShapeType2::polygon &&
       detail::collide_polygons(a.polygon, b.polygon, x, margin, cache, out))
     return;
   const Rounded2 ra = detail::rounded_of(a), rb = detail::placed(b, x);
   if (rb.count == 1) {
-    if (ra.count == 1) return point_point(ra.v[0], ra.radius, rb.v[0], rb.radius, margin, 0, out);
+    if (ra.count == 1) return detail::between_points(ra.v[0], ra.radius, rb.v[0], rb.radius, margin, 0, out);
     return against_point(ra, rb.v[0], rb.radius, margin, out);
   }
   if (ra.count == 1) {

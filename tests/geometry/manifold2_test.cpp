@@ -45,7 +45,7 @@ Shape2 random_shape2(Draw& draw, int kind) {
 
 TEST(Manifold2, SeparationAgreesWithTheDistanceAndMirrors) {
   Draw draw;
-  int touching = 0;
+  int touching = 0, told = 0;
   for (int ka = 0; ka < 6; ++ka)
     for (int kb = 0; kb < 6; ++kb)
       for (int k = 0; k < 400; ++k) {
@@ -57,6 +57,17 @@ TEST(Manifold2, SeparationAgreesWithTheDistanceAndMirrors) {
         ASSERT_TRUE(is_finite(m.normal));
         if (truth.distance > 0.1001f) {
           EXPECT_EQ(m.count, 0) << ka << " " << kb;
+          // What it says of the way between them holds: along its normal they are as far apart as it says.
+          if (m.points[0].separation > 0.1f) {
+            EXPECT_LE(m.points[0].separation, truth.distance + 1e-4f) << ka << " " << kb << " " << k;
+            if (m.normal != Vec2f{}) {
+              const Vec2f nearest = transform_point(x, support(b, inverse_rotate(x.q, -m.normal)));
+              EXPECT_NEAR(length(m.normal), 1, 1e-5f);
+              EXPECT_GE(dot(m.normal, nearest - support(a, m.normal)), m.points[0].separation - 1e-4f)
+                  << ka << " " << kb << " " << k;
+              ++told;
+            }
+          }
           continue;
         }
         if (truth.distance > 0.0999f) continue;  // rounding decides
@@ -85,6 +96,7 @@ TEST(Manifold2, SeparationAgreesWithTheDistanceAndMirrors) {
         EXPECT_NEAR(least2(m), least2(r), 3e-3f) << ka << " " << kb << " " << k;
       }
   EXPECT_GT(touching, 3000);
+  EXPECT_GT(told, 4000);
 }
 
 TEST(Manifold2, BoxOnBoxHasTwoSteadyPoints) {

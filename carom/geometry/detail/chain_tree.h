@@ -69,6 +69,17 @@ void visit_segments(const Chain& chain, const Bounds2f& box, Use&& use) {
   }
 }
 
+/// m²: a lower bound of how far a segment is from the box: by the axes of the box, or along its own normal.
+inline float segment_gap_squared(const Chain& chain, int i, const Bounds2f& box) {
+  const Vec2f p = chain.points[std::size_t(i)], q = segment_end(chain, i), d = q - p,
+              half = 0.5f * (box.high - box.low);
+  const Vec2f beside = max(max(min(p, q) - box.high, box.low - max(p, q)), Vec2f{});
+  const float whole = dot(d, d);
+  const float over = abs(cross(d, box.center() - p)) - (abs(d.y) * half.x + abs(d.x) * half.y);
+  const float along = over > 0 && whole > 0 ? over * over / whole : 0;
+  return math::max(dot(beside, beside), along);
+}
+
 /// No point of the chain is nearer to the box than this (m); at most `limit`.
 inline float clearance(const Chain& chain, const Bounds2f& box, float limit) {
   const std::uint32_t leaves = std::uint32_t(chain.tree.size() / 2);
@@ -89,7 +100,9 @@ inline float clearance(const Chain& chain, const Bounds2f& box, float limit) {
     const Place here = stack[--top];
     if (here.gap_squared >= least) continue;
     if (here.node >= leaves) {
-      least = here.gap_squared;
+      const int begin = int(here.node - leaves) * chain_run;
+      for (int i = begin; i < math::min(begin + chain_run, chain.segment_count()); ++i)
+        least = math::min(least, segment_gap_squared(chain, i, box));
       continue;
     }
     const Place a = place(2 * here.node), b = place(2 * here.node + 1);

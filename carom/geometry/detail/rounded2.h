@@ -59,6 +59,19 @@ struct IncidentEdge {
 /// The part of the incident edge beside the reference edge, as contacts. `of_b`: the reference edge is of B.
 void clip_edge(const ReferenceEdge& r, const IncidentEdge& s, bool of_b, float margin, Manifold2& out);
 
+/// A contact of two corners a and b, d (m) apart along n.
+void single_contact(Vec2f a, float ra, Vec2f b, float rb, Vec2f n, float d, std::uint32_t id, Manifold2& out);
+/// The same, if their surfaces are no farther than the margin from each other.
+void between_points(Vec2f a, float ra, Vec2f b, float rb, float margin, std::uint32_t id, Manifold2& out);
+/// A round shape that passes over the end of an edge without dipping below it is pushed along the edge's normal, so
+/// that it does not catch on the joint of two level edges (the same rule as in space, detail/contact_points.h).
+/// Well beside the edge there is nothing to meet yet.
+void over_border(Manifold2& m, Vec2f edge_normal, float above, float radius);
+
+/// manifold2_round.cpp. Circles, capsules and polygons of which one is not a polygon. False, and nothing done, where
+/// that takes more than a closed form.
+bool collide_round(const Shape2& a, const Shape2& b, const Transform2f& b_in_a, float margin, PairCache& cache,
+                   Manifold2& out);
 /// manifold2_polygon.cpp. False, and nothing done, where the nearest features may be two corners.
 bool collide_polygons(const Polygon& a, const Polygon& b, const Transform2f& b_in_a, float margin, PairCache& cache,
                       Manifold2& out);

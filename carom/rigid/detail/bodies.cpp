@@ -226,7 +226,13 @@ static void reach(Vec3f& arms, const ShapeRecord<Dim3>& shape, const Vec3f& cent
   const geometry::Bounds3f box = geometry::bounds(shape.geometry, shape.local);
   reach_point(max(abs(box.low - center), abs(box.high - center)));
 }
-static std::uint8_t slenderness(const WorldImplementation<Dim2>&, std::int32_t) { return 0; }
+static std::uint8_t slenderness(const WorldImplementation<Dim2>& world, std::int32_t body) {
+  const Vec2f center = world.bodies.motion[std::size_t(body)].local_center;
+  for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
+    if (world.shapes.at(s).geometry.type != geometry::ShapeType2::circle || world.shapes.at(s).local.p != center)
+      return 0;
+  return 1;
+}
 static std::uint8_t slenderness(const WorldImplementation<Dim3>& world, std::int32_t body) {
   const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(body)];
   Vec3f arms{};

@@ -55,8 +55,10 @@ struct BodyMotion {
   typename D::Angular torque{};           ///< N·m, about the centre of mass
   float mass = 0;                         ///< kg, 0: it has none
   bool gyroscopic = false;                ///< 3D: inertia is not isotropic
-  std::uint8_t slender = 0;      ///< 3D: 0, or 1 + its long axis + 4·(63 √(greatest distance from that / outer_extent))
-  std::uint16_t load_level = 0;  ///< the contact solver sees more mass (load.h)
+  /// Plane: 1 for a wheel, whose shapes are circles about the centre of mass. 3D: 0, or 1 + its long axis + 4·(63
+  /// √(greatest distance from that / outer_extent)).
+  std::uint8_t slender = 0;
+  std::uint16_t load_level = 0;                                     ///< the contact solver sees more mass (load.h)
   typename D::Inertia inertia = no_inertia<typename D::Inertia>();  ///< about the centre of mass, body axes
   float linear_damping = 0, angular_damping = 0;
   float gravity_scale = 1;
@@ -78,6 +80,14 @@ inline float way_of_turn(const BodyMotion<Dim3>& m, const Quatf& rotation, const
   const float rolls = math::abs(along) * m.outer_extent * (share * share);
   along = 0;
   return min(ball, math::length(across) * m.outer_extent + rolls);
+}
+
+/// How far a turn brings the surface of a body to where it was not before, at most: a wheel turns in place.
+inline float reach_of_turn(const BodyMotion<Dim2>& m, const Rot2f& rotation, float turn) {
+  return m.slender != 0 ? 0 : way_of_turn(m, rotation, turn);
+}
+inline float reach_of_turn(const BodyMotion<Dim3>& m, const Quatf& rotation, const Vec3f& turn) {
+  return way_of_turn(m, rotation, turn);
 }
 
 enum BodyFlag : std::uint16_t {

@@ -141,9 +141,11 @@ bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, c
 template <class D>
 void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b) {
   const ShapeRecord<D>*a = &world.shapes.at(shape_a), *b = &world.shapes.at(shape_b);
-  // A is the one in whose frame little changes: the surface of many parts, then the fixed body, then the larger shape.
+  // A is the one in whose frame little changes: the surface of many parts, then the fixed body, then what does not turn
+  // in place, then the larger shape.
   const auto rank = [&](const ShapeRecord<D>& s) {
-    return ((s.flags & shape_many) != 0 ? 2 : 0) + (world.bodies.is_fixed(s.body) ? 1 : 0);
+    const bool wheel = D::dimension == 2 && (s.flags & shape_round) != 0;
+    return ((s.flags & shape_many) != 0 ? 4 : 0) + (world.bodies.is_fixed(s.body) ? 2 : 0) + (wheel ? 0 : 1);
   };
   if (rank(*b) > rank(*a) || (rank(*b) == rank(*a) && b->outer_extent > a->outer_extent)) {
     std::swap(a, b);

@@ -135,7 +135,7 @@ void finalize_bodies(StepContext<D>& context) {
       const float travel = math::length(s.delta_position), spin = spin_of(s.angular_velocity);
       float turned = turn_of(s.delta_rotation);
       float surface_way =
-          turned < 0.2f ? way_of_turn(m, pose.rotation, small_turn(s.delta_rotation)) : turned * m.outer_extent;
+          turned < 0.2f ? reach_of_turn(m, pose.rotation, small_turn(s.delta_rotation)) : turned * m.outer_extent;
       typename D::Angular whole{};
       if (spin * context.dt > 2) {
         const float slowed = min(1.0f, max_turn / (context.h * spin));
@@ -168,8 +168,8 @@ void finalize_bodies(StepContext<D>& context) {
       if (may_sleep && world.definition.allow_sleep && load.size > 0 && spin > 0 && record.joint_count == 0 &&
           speed < slow && rolls(world.shapes.at(record.first_shape).geometry.type)) {
         const float left = settle(context, m, s, load.size, spin, 1 - speed / slow);
-        speed = max(linear, m.slender != 0 ? way_of_turn(m, pose.rotation, s.angular_velocity)
-                                           : left * max(m.outer_extent, 0.01f));
+        speed = max(linear, D::dimension == 3 && m.slender != 0 ? way_of_turn(m, pose.rotation, s.angular_velocity)
+                                                                : left * max(m.outer_extent, 0.01f));
       }
       if (may_sleep && speed < sleep_speed && pushed < 0.2f * sleep_speed)
         record.sleep_timer += context.dt * pace;

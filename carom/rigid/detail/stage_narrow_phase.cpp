@@ -38,7 +38,9 @@ float longest_way(const WorldImplementation<D>& world, const ContactRecord<D>& c
 
 /// How far a turn (rad, times a scale) in its own frame moves the surface of a shape about its middle, at most: about
 /// its long axis little. `ball`: m, about all of it.
-float way_of_turn(const ShapeRecord<Dim2>&, float turn, float ball) { return math::abs(turn) * ball; }
+float way_of_turn(const ShapeRecord<Dim2>& shape, float turn, float ball) {
+  return shape.geometry.type == geometry::ShapeType2::circle ? 0 : math::abs(turn) * ball;
+}
 float way_of_turn(const ShapeRecord<Dim3>& shape, const Vec3f& turn, float ball) {
   const float most = math::length(turn) * ball;
   if (shape.geometry.type != geometry::ShapeType3::hull || ball < 2 * shape.inner_extent) return most;
@@ -50,7 +52,9 @@ float way_of_turn(const ShapeRecord<Dim3>& shape, const Vec3f& turn, float ball)
 }
 /// m per radian: what a further turn adds to that at most, after one of `before` rad that took `way` of m. Where that
 /// was less than all of the ball, other axes are not all alike, and turns about two of them are more than either.
-float way_of_more(const ShapeRecord<Dim2>&, float, float, float ball) { return ball; }
+float way_of_more(const ShapeRecord<Dim2>& shape, float, float, float ball) {
+  return shape.geometry.type == geometry::ShapeType2::circle ? 0 : ball;
+}
 float way_of_more(const ShapeRecord<Dim3>& shape, const Vec3f& before, float way, float ball) {
   const float angle = math::length(before);
   if (!(way < angle * ball)) return ball;
@@ -125,6 +129,14 @@ struct ShapeSweep {
     return sweep;
   }
 };
+/// How far the surfaces of the bodies may come nearer in this step; where nothing bounces, half their thickness is
+/// enough.
+template <class D>
+float way_of_bodies(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
+  const float least = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt);
+  return (c.flags & contact_bouncy) != 0 ? least : min(least, 0.5f * c.inner);
+}
 /// Calls way(sweep) for the sweep of the bodies and, where they turn, for that of the shape: both are bounds.
 template <class D, class Way>
 float least_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& shape, Way&& way) {
@@ -287,7 +299,8 @@ void measure_sweeps(WorldImplementation<D>& world) {
       const SolverBody<D>& s = world.bodies.solver[body];
       scratch.sweeps[body] = {
           s.linear_velocity * world.last_dt,
-          way_of_turn(world.bodies.motion[body], world.bodies.pose[body].rotation, s.angular_velocity) * world.last_dt};
+          reach_of_turn(world.bodies.motion[body], world.bodies.pose[body].rotation, s.angular_velocity) *
+              world.last_dt};
     }
   });
 }
@@ -296,7 +309,7 @@ void measure_sweeps(WorldImplementation<D>& world) {
 template <class D>
 bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
            ShapeSweep<D>& sweep, std::uint8_t& change) {
-  if ((c.flags & contact_known) == 0) return false;
+  if ((c.flags & contact_known) == 0 || (c.first_manifold != none && (c.flags & contact_round) != 0)) return false;
   const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
   if (c.first_manifold == none) {
     const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, sweep, c.axis);
@@ -307,7 +320,6 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
   // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and
   // far below the size of features, so that nothing sticks to a stale edge.
-  if ((c.flags & contact_round) != 0) return false;
   const typename D::Manifold& m = world.contacts.manifold(c.first_manifold).manifold;
   const typename D::Vector normal = m.normal;
   const float separation = c.gap + dot(normal, moved.way), far = moved.across(normal);
@@ -366,6 +378,17 @@ bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c,
   return separation <= c.margin() + look_ahead(world, c, m);
 }
 
+/// The normal of a manifold as the axis along which the shapes are apart. That of a manifold may be bent (over_border).
+void part_along(ContactRecord<Dim2>& c, const ShapeRecord<Dim2>& a, const ShapeRecord<Dim2>& b,
+                const Dim2::Manifold& m) {
+  const Vec2f back = inverse_rotate(c.base.q, -m.normal);
+  const float apart = dot(m.normal, transform_point(c.base, support(b.geometry, back)) - support(a.geometry, m.normal));
+  if (!(apart > c.margin())) return;
+  c.axis = m.normal;
+  c.gap = min(c.gap, apart);
+}
+void part_along(ContactRecord<Dim3>&, const ShapeRecord<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Manifold&) {}
+
 /// Two convex shapes, or a plane: one manifold at most.
 template <class D>
 std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
@@ -383,7 +406,10 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   }
   const float separation = smallest_separation<D>(m);
   c.gap = min(reach, separation);
-  if (!of_interest(world, c, sweep, m, separation)) return part(world, c, a, b);
+  if (!of_interest(world, c, sweep, m, separation)) {
+    part_along(c, a, b, m);
+    return part(world, c, a, b);
+  }
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
   if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
     c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
@@ -514,7 +540,10 @@ std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_in
   if (sensor) return update_sensor(world, c, a, b, b_in_a);
 
   ShapeSweep<D> sweep;
-  const float ahead = look_ahead(world, c, sweep), reach = 2 * c.margin() + ahead;
+  // What has a manifold in the plane is told that more may be near than the sweep of its shape would say: it is asked
+  // how near its points are anyway.
+  const bool touched = D::dimension == 2 && c.first_manifold != none && (c.flags & contact_many) == 0;
+  const float ahead = touched ? way_of_bodies(world, c) : look_ahead(world, c, sweep), reach = 2 * c.margin() + ahead;
   std::uint8_t change = 0;
   if (stays(world, c, b_in_a, ahead, sweep, change)) return change;
   if (known && goes_past(world, c, a, b)) return pass_by(world, c, a, b);
