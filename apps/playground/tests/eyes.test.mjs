@@ -142,13 +142,18 @@ const WARNINGS = {
 test('every kind of warning is told of the body that it is about, with what mends it', async () => {
   const page = await open('chain');
   for (const [name, [scene, body, what, cure]] of Object.entries(WARNINGS)) {
-    await page.evaluate((text) => window.caromPage.send({type: 'open_scene', name: 'warned.json', text}), JSON.stringify({name, dimension: 3, ...scene}));
-    await page.waitForFunction((title) => document.title.includes(title) && window.caromPage.shown > 3, name);
-    await page.evaluate((wanted) => { const {viewer} = window.caromPage; window.caromPage.choose(viewer.bodyIds('dynamic').find((id) => viewer.nameOf(id) === wanted)); }, body);
-    await page.waitForSelector('#why .warning');
-    const said = (await page.$$eval('#why .warning', (all) => all.map((e) => e.textContent))).join(' ');
-    assert.match(said, what, name);
-    assert.match(said, cure, name);
+    // A few steps and no more: what is warned of may be over soon.
+    await page.evaluate((text) => [{type: 'open_scene', name: 'warned.json', text}, {type: 'pause'}, {type: 'step', count: 5}].forEach((message) => window.caromPage.send(message)), JSON.stringify({name, dimension: 3, ...scene}));
+    await page.waitForFunction(([title, wanted]) => {
+      const {viewer} = window.caromPage, id = viewer.bodyIds('dynamic').find((one) => viewer.nameOf(one) === wanted);
+      if (!document.title.includes(title) || id === undefined) return false;
+      window.caromPage.choose(id);
+      return true;
+    }, [name, body]);
+    await page.waitForFunction((words) => {
+      const said = [...document.querySelectorAll('#why .warning')].map((e) => e.textContent).join(' ');
+      return words.every((word) => RegExp(word).test(said));
+    }, [what.source, cure.source]).catch(async (error) => assert.fail(`${name}: ${await page.textContent('#why')} (${error.message})`));
   }
   await picture(page, 'warnings');
   await page.done();
