@@ -12,6 +12,15 @@ constexpr float settling_resistance =
     0.014f;                           ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
 constexpr float quick_share = 0.25f;  ///< of a body's half thickness in a step
 
+/// m/s, rad/s or of a unit quaternion: less than that is the rounding of bodies that turn about one axis. Products of it
+/// are too small for floats to be fast with.
+constexpr float trace = 1e-15f;
+float without_trace(float x) { return math::abs(x) < trace ? 0.0f : x; }
+Vec2f without_trace(const Vec2f& v) { return {without_trace(v.x), without_trace(v.y)}; }
+Vec3f without_trace(const Vec3f& v) { return {without_trace(v.x), without_trace(v.y), without_trace(v.z)}; }
+Rot2f without_trace(const Rot2f& q) { return q; }
+Quatf without_trace(const Quatf& q) { return {q.w, without_trace(q.vector())}; }
+
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
 float turn_of(const Rot2f& q) { return math::abs(q.s) + max(0.0f, -2 * q.c); }
@@ -150,7 +159,9 @@ void finalize_bodies(StepContext<D>& context) {
       }
       const float pace = world.bodies.pace(body);
       scratch.swept[std::size_t(i)] = {pose.rotation, m.center, whole, 1};
-      pose.rotation = normalize(s.delta_rotation * pose.rotation);
+      pose.rotation = without_trace(normalize(s.delta_rotation * pose.rotation));
+      s.linear_velocity = without_trace(s.linear_velocity);
+      s.angular_velocity = without_trace(s.angular_velocity);
       m.center = m.center + typename D::Position(s.delta_position);
       m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
                          ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace)))
