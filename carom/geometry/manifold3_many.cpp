@@ -163,10 +163,10 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
   return least > worth ? least : 0;
 }
 
-/// Returns −1 for what meets nothing.
+/// Returns −1 for what meets nothing. `near`: as far as planes tell, something was within reach.
 int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
                    const detail::PlacedCorners& corners, const Transform3f& x, float margin,
-                   const detail::ShapeWay& approach, Bounds3f box, detail::OffDirections& off,
+                   const detail::ShapeWay& approach, Bounds3f box, detail::OffDirections& off, bool& near,
                    std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const bool solid = surface.type == ShapeType3::height_field;
@@ -178,6 +178,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
     if (!reach.meets(t.corner, off)) return true;
+    near = true;
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
@@ -244,9 +245,11 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
   }
   const bool solid = surface.type == ShapeType3::height_field;
   detail::OffDirections off(corners, approach, b.radius, margin, solid);
-  const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, off, out);
+  bool near = false;
+  const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, off, near, out);
   if (count >= 0) return count;
   out[0] = {};
+  if (near && approach.worth >= margin) return 0;  // the distance is hardly worth knowing
   // A little less than what was measured, for rounding.
   // More than the double of what is worth knowing is no better.
   const float half = 0.5f * detail::inner_size(b);
@@ -337,7 +340,8 @@ int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transf
   const Convex core = convex_of(b);
   const PlacedCorners corners(core, b_in_a);
   OffDirections off(corners, {}, core.radius, margin, false);
-  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, off, out), 0);
+  bool near = false;
+  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, off, near, out), 0);
 }
 int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
                                 const ShapeWay& approach, std::span<Manifold3> out) {

@@ -4,6 +4,7 @@
 // ways come near each other is asked when it meets, and the meetings happen in the order of their times; whose way was
 // cut by one is asked again about its others. So two bullets meet at one moment, wherever a third has sent one of them.
 #include <algorithm>
+#include <optional>
 
 #include "carom/geometry/compound.h"
 #include "carom/geometry/detail/chain_tree.h"
@@ -76,16 +77,32 @@ typename D::Bounds way_bounds(const ShapeRecord<D>& shape, const Sweep<D>& own, 
   return {base + P(box.low), base + P(box.high)};
 }
 
-/// Did no point of the shape come as far as a part of its thickness? Then it passed nothing.
 float turn_of(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a.c) + square(b.s - a.s)); }
 float turn_of(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
+/// The way of a shape's middle, and how far the shape turns about it.
 template <class D>
-bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, float part) {
-  const ShapeBall<D> ball = ball_about(shape);
-  const auto arm = ball.middle - own.local_center,
-             middle = own.c1 - own.c0 + (rotate(own.q1, arm) - rotate(own.q0, arm));
-  return math::length(middle) + turn_of(own.q0, own.q1) * ball.radius <= part * shape.inner_extent;
-}
+struct MiddleWay {
+  typename D::Vector begin, end;
+  float arm, radius, turn;
+
+  MiddleWay(const ShapeRecord<D>& shape, const Sweep<D>& own) : turn(turn_of(own.q0, own.q1)) {
+    const ShapeBall<D> ball = ball_about(shape);
+    const typename D::Vector from = ball.middle - own.local_center;
+    begin = own.c0 + rotate(own.q0, from), end = own.c1 + rotate(own.q1, from);
+    arm = math::length(from), radius = ball.radius;
+  }
+  /// Did no point of the shape come as far as a part of its thickness? Then it passed nothing.
+  bool is_slow(const ShapeRecord<D>& shape, float part) const {
+    return math::length(end - begin) + turn * radius <= part * shape.inner_extent;
+  }
+  /// A box that all of the shape stays in on its way, found sooner than way_bounds and larger.
+  typename D::Bounds box(const typename D::Position& base) const {
+    using P = typename D::Position;
+    // The arc of a point strays from its chord by less than its turn times the arm.
+    const double reach = double(radius) + double(turn) * double(arm) + 1e-5 * double(arm + radius);
+    return geometry::grow(typename D::Bounds{base + P(math::min(begin, end)), base + P(math::max(begin, end))}, reach);
+  }
+};
 
 /// The same as seen from what turns or slides along with it.
 template <class D>
@@ -98,19 +115,6 @@ bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, const Sweep<D>& o
   return math::length(end - begin) +
              turn_of(conjugate(other.q0) * own.q0, conjugate(other.q1) * own.q1) * ball.radius <=
          part * shape.inner_extent;
-}
-
-/// A box that all of a shape stays in on its way, found sooner than way_bounds and larger.
-template <class D>
-typename D::Bounds loose_way(const ShapeRecord<D>& shape, const Sweep<D>& own, const typename D::Position& base) {
-  using P = typename D::Position;
-  const ShapeBall<D> ball = ball_about(shape);
-  const auto arm = ball.middle - own.local_center, begin = own.c0 + rotate(own.q0, arm),
-             end = own.c1 + rotate(own.q1, arm);
-  // The arc of a point strays from its chord by less than its turn times the arm.
-  const double reach = double(ball.radius) + double(turn_of(own.q0, own.q1)) * double(math::length(arm)) +
-                       1e-5 * double(math::length(arm) + ball.radius);
-  return geometry::grow(typename D::Bounds{base + P(math::min(begin, end)), base + P(math::max(begin, end))}, reach);
 }
 
 template <class D>
@@ -166,25 +170,32 @@ bool comes_near(const WorldImplementation<Dim2>& world, const ShapeRecord<Dim2>&
   return any;
 }
 
-/// Is nothing that forces do not move in a box?
+/// What forces do not move and a body may meet on its way.
 template <class D>
-bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) {
-  bool any = false;
-  for (const int tree : {tree_fixed, tree_kinematic})
-    if (!any && world.shapes.trees[tree].size() > 0)
-      world.shapes.trees[tree].query(box, [&](std::uint32_t item) {
-        any = tree != tree_fixed || comes_near(world, world.shapes.at(std::int32_t(item)), box);
-        return !any;
-      });
-  return !any;
-}
-/// The same for the way of a body.
-template <class D>
-bool goes_freely(const WorldImplementation<D>& world, const BodyMotion<D>& motion, const typename D::Position& start) {
-  return is_free(world,
-                 geometry::grow(typename D::Bounds{math::min(start, motion.center), math::max(start, motion.center)},
-                                double(motion.outer_extent)));
-}
+struct StillNear {
+  static constexpr int capacity = 8;
+  int count = 0;  ///< above the capacity: more than are listed
+  std::int32_t shape[capacity];
+  typename D::Bounds bounds[capacity];
+
+  StillNear(const WorldImplementation<D>& world, const typename D::Bounds& box) {
+    for (const int tree : {tree_fixed, tree_kinematic})
+      if (world.shapes.trees[tree].size() > 0)
+        world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const typename D::Bounds& other) {
+          if (tree == tree_fixed && !comes_near(world, world.shapes.at(std::int32_t(item)), box)) return true;
+          if (count < capacity) shape[count] = std::int32_t(item), bounds[count] = other;
+          return ++count <= capacity;
+        });
+  }
+  bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) const {
+    if (count > capacity) return StillNear(world, box).count == 0;
+    for (int i = 0; i < count; ++i)
+      if (overlaps(bounds[i], box) &&
+          (world.shapes.at(shape[i]).tree != tree_fixed || comes_near(world, world.shapes.at(shape[i]), box)))
+        return false;
+    return true;
+  }
+};
 
 /// Stops a body at what is not moved by forces; lists what it may meet of the rest.
 template <class D>
@@ -195,7 +206,10 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   const bool bullet = (record.flags & body_bullet) != 0;
   const SweepStart<D>& start = world.scratch.swept[place];
   const bool alone = !any_bullets && world.shapes.moving_surfaces == 0;  // what forces move does not stop it
-  if (alone && goes_freely(world, world.bodies.motion[std::size_t(body)], start.center)) return;
+  const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
+  const typename D::Bounds whole{math::min(start.center, motion.center), math::max(start.center, motion.center)};
+  std::optional<StillNear<D>> still;
+  if (alone && still.emplace(world, geometry::grow(whole, double(motion.outer_extent))).count == 0) return;
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
   float fraction = 1;
@@ -206,8 +220,11 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     const Sweep<D> own = way_of_shape(shape, sweep);
     const bool turns_far = start.turn != typename D::Angular{};
     const float most_slow = bullet ? 0.25f : 0.5f;
-    if (!turns_far && is_slow(shape, own, most_slow)) continue;
-    if (alone && !turns_far && shape.next != none && is_free(world, loose_way(shape, own, start.center))) continue;
+    if (!turns_far) {
+      const MiddleWay<D> middle(shape, own);
+      if (middle.is_slow(shape, most_slow)) continue;
+      if (alone && shape.next != none && still->is_free(world, middle.box(start.center))) continue;
+    }
     typename D::Bounds box;
     if (turns_far) {
       const double reach = double(math::length(own.local_center) + shape.outer_extent);

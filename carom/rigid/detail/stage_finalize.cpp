@@ -12,8 +12,8 @@ constexpr float settling_resistance =
     0.014f;                           ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
 constexpr float quick_share = 0.25f;  ///< of a body's half thickness in a step
 
-/// m/s, rad/s or of a unit quaternion: less than that is the rounding of bodies that turn about one axis. Products of it
-/// are too small for floats to be fast with.
+/// m/s, rad/s or of a unit quaternion: less than that is the rounding of bodies that turn about one axis. Products of
+/// it are too small for floats to be fast with.
 constexpr float trace = 1e-15f;
 float without_trace(float x) { return math::abs(x) < trace ? 0.0f : x; }
 Vec2f without_trace(const Vec2f& v) { return {without_trace(v.x), without_trace(v.y)}; }
