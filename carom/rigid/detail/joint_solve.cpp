@@ -52,73 +52,89 @@ void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
   save_pair(pair, record, bodies);
 }
 
-/// Runs f on the blocks that lie at `begin` of each colour.
-template <class D, class F>
-void for_blocks(StepContext<D>& context, const std::vector<std::int32_t>& begins, int color, F&& f) {
-  const int first = begins[std::size_t(color)], count = begins[std::size_t(color) + 1] - first;
-  if (count == 0) return;
-  const int threads = context.scheduler.thread_count();
-  if (threads == 1 || count <= 16) return f(first, first + count);
-  const int grain = max(8, (count + 3 * threads - 1) / (3 * threads));
-  context.scheduler.parallel_for(count, grain, [&](int begin, int end, int) { f(first + begin, first + end); });
+/// The joints of a colour as units of a loop: records that are solved one by one, then blocks of limbs, then of pins.
+constexpr int records_a_unit = 8;
+struct JointUnits {
+  int first_record, records, first_limb, limbs, first_pin, pins;
+
+  template <class D>
+  JointUnits(const JointStore<D>& joints, int color)
+      : first_record(joints.color_begin[std::size_t(color)]),
+        records(joints.color_begin[std::size_t(color) + 1] - first_record),
+        first_limb(joints.limb_begin[std::size_t(color)]),
+        limbs(joints.limb_begin[std::size_t(color) + 1] - first_limb),
+        first_pin(joints.pin_begin[std::size_t(color)]),
+        pins(joints.pin_begin[std::size_t(color) + 1] - first_pin) {}
+  int record_units() const { return (records + records_a_unit - 1) / records_a_unit; }
+  int count() const { return record_units() + limbs + pins; }
+};
+
+/// Runs `act` on the records of units [begin, end).
+template <bool first_of_substep, class D, class Act>
+void for_each_record(StepContext<D>& context, const JointUnits& units, int begin, int end, const Act& act) {
+  JointStore<D>& joints = context.world.joints;
+  const int last = units.first_record + min(end * records_a_unit, units.records);
+  for (int i = units.first_record + begin * records_a_unit; i < last; ++i) {
+    auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
+    if constexpr (D::dimension == 3) {
+      if (!record.isotropic) {
+        if constexpr (first_of_substep) turn_inertias(record, context);
+        act_on<Mat3f>(record, context.bodies, act);
+        continue;
+      }
+    }
+    act_on<float>(record, context.bodies, act);
+  }
 }
 
-/// Runs `act` on the records of a colour: side by side, but for the overflow one after the other.
-template <bool first_of_substep, class D, class Act>
-void for_each_record(StepContext<D>& context, int color, const Act& act) {
-  JointStore<D>& joints = context.world.joints;
-  const int first = joints.color_begin[std::size_t(color)], last = joints.color_begin[std::size_t(color) + 1];
-  if (first == last) return;
-  const auto run = [&](int begin, int end, int) {
-    for (int i = first + begin; i < first + end; ++i) {
-      auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
-      if constexpr (D::dimension == 3) {
-        if (!record.isotropic) {
-          if constexpr (first_of_substep) turn_inertias(record, context);
-          act_on<Mat3f>(record, context.bodies, act);
-          continue;
-        }
-      }
-      act_on<float>(record, context.bodies, act);
-    }
-  };
-  if (color == overflow_color || last - first < 64)
-    run(0, last - first, 0);
-  else
-    context.scheduler.parallel_for(last - first, 128, run);
+/// Runs f(first block, last block) on those of units [begin, end) that are among `count` blocks from unit `from` on.
+template <class F>
+void for_blocks(int begin, int end, int from, int count, int first_block, F&& f) {
+  const int first = max(begin - from, 0), last = min(end - from, count);
+  if (first < last) f(first_block + first, first_block + last);
 }
 
 }  // namespace
 
 template <class D>
-void warm_start_joints(StepContext<D>& context, int color) {
-  for_each_record<true>(context, color, [](auto& pair, auto& block) { block.warm_start(pair); });
-  const JointStore<D>& joints = context.world.joints;
-  for_blocks(context, joints.limb_begin, color, [&](int begin, int end) {
-    joints.limb_kernels.warm_start(context.bodies, joints.limb_blocks, begin, end);
-  });
-  for_blocks(context, joints.pin_begin, color,
-             [&](int begin, int end) { joints.pin_kernels.warm_start(context.bodies, joints.pin_blocks, begin, end); });
+int joint_units(const WorldImplementation<D>& world, int color) {
+  return JointUnits(world.joints, color).count();
 }
 
 template <class D>
-void solve_joints(StepContext<D>& context, int color, bool use_bias) {
+void warm_start_joints(StepContext<D>& context, int color, int begin, int end) {
+  const JointStore<D>& joints = context.world.joints;
+  const JointUnits units(joints, color);
+  for_each_record<true>(context, units, begin, end, [](auto& pair, auto& block) { block.warm_start(pair); });
+  const int from = units.record_units();
+  for_blocks(begin, end, from, units.limbs, units.first_limb, [&](int first, int last) {
+    joints.limb_kernels.warm_start(context.bodies, joints.limb_blocks, first, last);
+  });
+  for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin, [&](int first, int last) {
+    joints.pin_kernels.warm_start(context.bodies, joints.pin_blocks, first, last);
+  });
+}
+
+template <class D>
+void solve_joints(StepContext<D>& context, int color, bool use_bias, int begin, int end) {
   const Softness& soft = context.joint_softness;
   const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
   const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
-  for_each_record<false>(context, color, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
   const JointStore<D>& joints = context.world.joints;
+  const JointUnits units(joints, color);
+  for_each_record<false>(context, units, begin, end, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
+  const int from = units.record_units();
   const LimbPass limb_pass{biased.velocity, biased.position, biased.memory, context.inverse_h};
-  for_blocks(context, joints.limb_begin, color, [&](int begin, int end) {
-    (use_bias ? joints.limb_kernels.solve : joints.limb_kernels.relax)(context.bodies, joints.limb_blocks, begin, end,
+  for_blocks(begin, end, from, units.limbs, units.first_limb, [&](int first, int last) {
+    (use_bias ? joints.limb_kernels.solve : joints.limb_kernels.relax)(context.bodies, joints.limb_blocks, first, last,
                                                                        limb_pass);
   });
-  for_blocks(context, joints.pin_begin, color, [&](int begin, int end) {
+  for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin, [&](int first, int last) {
     if (use_bias)
-      joints.pin_kernels.solve(context.bodies, joints.pin_blocks, begin, end,
+      joints.pin_kernels.solve(context.bodies, joints.pin_blocks, first, last,
                                {biased.velocity, biased.position, biased.memory});
     else
-      joints.pin_kernels.relax(context.bodies, joints.pin_blocks, begin, end);
+      joints.pin_kernels.relax(context.bodies, joints.pin_blocks, first, last);
   });
 }
 
@@ -142,10 +158,12 @@ void release_joint(WorldImplementation<D>& world, std::int32_t joint) {
   joints.slots.release(joints.slots.handle_at(joint));
 }
 
-template void warm_start_joints(StepContext<Dim2>&, int);
-template void warm_start_joints(StepContext<Dim3>&, int);
-template void solve_joints(StepContext<Dim2>&, int, bool);
-template void solve_joints(StepContext<Dim3>&, int, bool);
+template int joint_units(const WorldImplementation<Dim2>&, int);
+template int joint_units(const WorldImplementation<Dim3>&, int);
+template void warm_start_joints(StepContext<Dim2>&, int, int, int);
+template void warm_start_joints(StepContext<Dim3>&, int, int, int);
+template void solve_joints(StepContext<Dim2>&, int, bool, int, int);
+template void solve_joints(StepContext<Dim3>&, int, bool, int, int);
 template void destroy_joints_of(WorldImplementation<Dim2>&, std::int32_t);
 template void destroy_joints_of(WorldImplementation<Dim3>&, std::int32_t);
 template void release_joint(WorldImplementation<Dim2>&, std::int32_t);

@@ -13,9 +13,10 @@ constexpr int few_blocks = D::dimension == 2 ? 24 : 8;
 /// Colours in the order of a sweep: the overflow first, because what is solved last holds best.
 int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
 
+/// Pieces of the joints of a colour; what settles leaves them alone.
 template <class D>
-bool has_joints(const StepContext<D>& context, int color) {
-  return !context.world.graph.colors[color].joints.empty();
+int joint_units_of(const StepContext<D>& context, SolverPass pass, int color) {
+  return pass == SolverPass::settle ? 0 : joint_units(context.world, color);
 }
 
 template <class D>
@@ -32,8 +33,15 @@ void add_tree_stage(StepContext<D>& context, SolverPass pass) {
   context.world.scratch.solver_loops.push_back({count, tree_grain(context.world.joints.trees)});
 }
 
-/// One stage for every colour, but one for neighbours that are small or serial: no result depends on how the colours
-/// are cut, because one chunk runs them in their order.
+template <class D>
+void add_impact_stage(StepContext<D>& context, ImpactMoment moment) {
+  if (context.world.scratch.impacts.empty()) return;
+  context.world.scratch.solver_stages.push_back({SolverPass::impacts, 0, 0, std::uint8_t(moment)});
+  context.world.scratch.solver_loops.push_back({1, 1});
+}
+
+/// One stage for every colour, its joints first, but one for neighbours that are small or serial: no result depends on
+/// how the colours are cut, because one chunk runs them in their order, and within one no two share a body.
 template <class D>
 void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t order = 0) {
   std::vector<SolverStage>& stages = context.world.scratch.solver_stages;
@@ -41,11 +49,11 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
   const int threads = context.scheduler.thread_count();
   bool joining = false;
   for (int rank = 0; rank <= color_count; ++rank) {
-    const int color = color_of_rank(rank), count = context.world.scratch.blocks[color].count;
-    const bool joints = has_joints(context, color);
-    if (count == 0 && !joints) continue;
+    const int color = color_of_rank(rank);
+    const int count = context.world.scratch.blocks[color].count + joint_units_of(context, pass, color);
+    if (count == 0) continue;
     const bool serial = color == overflow_color || threads == 1 || count <= few_blocks<D>;
-    if (serial && joining && !joints) {
+    if (serial && joining) {
       stages.back().last_rank = std::uint8_t(rank);
       continue;
     }
@@ -54,7 +62,7 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
       loops.push_back({1, 1});
     else
       loops.push_back({count, max(few_blocks<D> / 4, (count + 3 * threads - 1) / (3 * threads))});
-    joining = serial && !joints;
+    joining = serial;
   }
 }
 
@@ -82,11 +90,14 @@ void list_stages(StepContext<D>& context) {
     // is one order, and so it is in the relaxing pass, which says what each one carries.
     const auto order = std::uint8_t(context.world.step_count % 4);
     add_body_stage(context, SolverPass::velocities);
+    add_impact_stage(context, ImpactMoment::after_forces);
     add_tree_stage(context, SolverPass::begin_trees);
     add_color_stages(context, SolverPass::warm_start);
     add_color_stages(context, SolverPass::solve, order);
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
+    const bool last = substep + 1 == context.substeps;
+    add_impact_stage(context, last ? ImpactMoment::end_of_step : ImpactMoment::end_of_substep);
     add_tree_stage(context, SolverPass::factorise_trees);
     for (int i = 0; i < settling; ++i) add_color_stages(context, SolverPass::settle);
     add_color_stages(context, SolverPass::relax);
@@ -125,37 +136,36 @@ void run_settling(StepContext<D>& context, SolverStage stage, int color, int beg
 }
 
 template <class D>
+void run_joints(StepContext<D>& context, SolverPass pass, int color, int begin, int end) {
+  if (begin >= end) return;
+  if (pass == SolverPass::warm_start)
+    warm_start_joints(context, color, begin, end);
+  else
+    solve_joints(context, color, pass == SolverPass::solve, begin, end);
+}
+
+template <class D>
 void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
   if constexpr (D::dimension == 3)
     if (stage.pass == SolverPass::flights) return fly_through(context, begin, end);
   if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end);
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
+  if (stage.pass == SolverPass::impacts) return solve_impacts(context, ImpactMoment(stage.order));
   if (is_of_trees(stage.pass)) return run_trees(context, stage.pass, begin, end);
   const bool whole = context.world.scratch.solver_loops[std::size_t(index)].count == 1;
   for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank) {
     const int color = color_of_rank(rank);
     const ColorBlocks& blocks = context.world.scratch.blocks[color];
-    if (blocks.count == 0) continue;
-    const int first = whole ? 0 : begin, last = whole ? blocks.count : end;
+    const int units = joint_units_of(context, stage.pass, color);
+    run_joints(context, stage.pass, color, whole ? 0 : begin, whole ? units : min(end, units));
+    const int first = whole ? 0 : max(begin - units, 0), last = whole ? blocks.count : end - units;
+    if (first >= last) continue;
     if (stage.pass == SolverPass::settle)
       run_settling(context, stage, color, first, last);
     else
       run_blocks(context, stage, blocks, first, last);
   }
-}
-
-template <class D>
-void run_joints(StepContext<D>& context, SolverStage stage) {
-  const int color = color_of_rank(stage.first_rank);
-  if (stage.pass == SolverPass::flights || stage.pass == SolverPass::velocities ||
-      stage.pass == SolverPass::positions || stage.pass == SolverPass::settle || is_of_trees(stage.pass) ||
-      !has_joints(context, color))
-    return;
-  if (stage.pass == SolverPass::warm_start)
-    warm_start_joints(context, color);
-  else
-    solve_joints(context, color, stage.pass == SolverPass::solve);
 }
 
 }  // namespace
@@ -164,21 +174,8 @@ template <class D>
 void solve_constraints(StepContext<D>& context) {
   list_stages(context);
   prepare_drives(context);
-  const StepScratch<D>& scratch = context.world.scratch;
-  const JointStore<D>& joints = context.world.joints;
-  if (joints.order.empty() && joints.pins.empty() && joints.limbs.empty() && scratch.impacts.empty())
-    return context.scheduler.run_stages(
-        scratch.solver_loops, [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
-  int left = context.substeps;
-  for (std::size_t i = 0; i < scratch.solver_stages.size(); ++i) {
-    run_joints(context, scratch.solver_stages[i]);
-    context.scheduler.parallel_for(scratch.solver_loops[i].count, scratch.solver_loops[i].grain,
-                                   [&](int begin, int end, int) { run_stage(context, int(i), begin, end); });
-    if (scratch.solver_stages[i].pass == SolverPass::velocities)
-      solve_impacts(context, ImpactMoment::after_forces);
-    else if (scratch.solver_stages[i].pass == SolverPass::positions)
-      solve_impacts(context, --left > 0 ? ImpactMoment::end_of_substep : ImpactMoment::end_of_step);
-  }
+  context.scheduler.run_stages(context.world.scratch.solver_loops,
+                               [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
 }
 
 template <class D>

@@ -44,6 +44,7 @@ struct ColorBlocks {
 enum class SolverPass : std::uint8_t {
   flights,
   velocities,
+  impacts,
   begin_trees,
   warm_start,
   solve,
@@ -57,7 +58,7 @@ enum class SolverPass : std::uint8_t {
 struct SolverStage {
   SolverPass pass = SolverPass::velocities;
   std::uint8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
-  std::uint8_t order = 0;                      ///< in which the points of manifolds are solved
+  std::uint8_t order = 0;                      ///< in which the points of manifolds are solved; impacts: the moment
 };
 
 /// Where something is pushed out with the push speed, so many more relaxing passes take that speed from it again: what
@@ -65,7 +66,7 @@ struct SolverStage {
 inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
-  return 1 + std::size_t(substeps) * std::size_t(6 + (3 + settling) * (color_count + 1));
+  return 1 + std::size_t(substeps) * std::size_t(8 + (3 + settling) * (color_count + 1));
 }
 
 enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };

@@ -93,10 +93,13 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
 // joint_solve.cpp, effect.cpp (the joints' and effectors' part) ----------------------------------------------------
 template <class D>
 void prepare_joints(StepContext<D>& context);
+/// Into so many pieces of about the work of a block of contacts the joints of a colour can be cut.
 template <class D>
-void warm_start_joints(StepContext<D>& context, int color);
+int joint_units(const WorldImplementation<D>& world, int color);
 template <class D>
-void solve_joints(StepContext<D>& context, int color, bool use_bias);
+void warm_start_joints(StepContext<D>& context, int color, int begin, int end);
+template <class D>
+void solve_joints(StepContext<D>& context, int color, bool use_bias, int begin, int end);
 template <class D>
 void store_joints(StepContext<D>& context);
 /// Destroys joints that were loaded above what they bear, and tells of it.
