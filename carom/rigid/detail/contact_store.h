@@ -82,7 +82,8 @@ struct alignas(record_alignment<D>) ManifoldRecord {
   std::int32_t contact = none;
   Anchor anchor = Anchor::none;
   bool disabled = false;  ///< pushes nothing in this step
-  std::uint16_t unused_too = 0;
+  bool waits = false;     ///< its contact does not touch, and is watched until it bears a load
+  std::uint8_t unused_too = 0;
   float friction = 0, restitution = 0, rolling_lever = 0, tangent_speed = 0;
   typename D::Manifold manifold{};            ///< in A's shape frame, at the contact's `base`
   typename D::Vector anchor_a{}, anchor_b{};  ///< where friction sticks: body frames, from the centres of mass

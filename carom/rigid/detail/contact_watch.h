@@ -44,7 +44,7 @@ struct ContactWatch {
   float extent = 0;             ///< m: how far a turn of B by one radian moves its surface about that
   float gap = 0;       ///< m, apart: what is left until the shapes are of interest; recycled: less than 0 is close
   float most_way = 0;  ///< m, with the turn, where there is a normal; recycled: across it
-  float cap = 0;       ///< m, apart: more than that is not looked ahead; recycled: −1
+  float cap = 0;  ///< m, apart: more than that is not looked ahead; recycled: below zero, as far as the gap may close
 };
 
 template <class D>
@@ -55,7 +55,8 @@ inline bool nothing_new(const ContactWatch<D>& w, const std::vector<typename D::
   const typename D::Transform now = relative(pose, poses[std::size_t(w.body[1])]);
   const typename D::Vector way = transform_point(now, w.middle) - transform_point(w.base, w.middle);
   const float turn = chord(w.base.q, now.q) * w.extent, along = dot(w.normal, way);
-  if (w.cap < 0) return w.gap + along < 0 && math::length(way - along * w.normal) + turn < w.most_way;
+  if (w.cap < 0)
+    return w.gap + along < 0 && w.gap + along > w.cap && math::length(way - along * w.normal) + turn < w.most_way;
   const BodySweep<D>&a = sweeps[std::size_t(w.body[0])], &b = sweeps[std::size_t(w.body[1])];
   if (w.most_way == 0) return math::length(way) + turn + min(way_between(a, b, dt), w.cap) < w.gap;
   const float ahead = min(way_between(a, b, dt, rotate(pose.rotation, w.normal)), w.cap);

@@ -50,7 +50,7 @@ std::uint32_t nothing_new2(const ContactWatch<Dim2>* watches, int count, const D
   const F turn = length2<W>({now.c - base.c, now.s - base.s}) * w[8], along = dot(normal, way);
   const auto looked_at = WideInt<W>::load(body) > WideInt<W>::splat(-1), recycled = cap < zero;
   const F across = length2<W>({way.x - along * normal.x, way.y - along * normal.y});
-  const auto stays = recycled & (gap + along < zero) & (across + turn < most_way);
+  const auto stays = recycled & (gap + along < zero) & (gap + along > cap) & (across + turn < most_way);
   if (!any(looked_at & !recycled)) return bitmask(looked_at & stays);
 
   F sa[4], sb[4];

@@ -429,6 +429,13 @@ void store_lane(StepContext<Dim3>& context, std::int32_t index, const ContactBlo
   let_go(context, m, block, lane, load, math::length_squared(m.impulses.friction) >= limit * limit);
 }
 
+/// A contact that bears a load for the first time is looked at again.
+void stop_watching(WorldImplementation<Dim2>& world, std::int32_t contact) {
+  std::vector<ContactWatch<Dim2>>& watches = world.scratch.watches;
+  const auto place = std::size_t(world.contacts.at(contact).awake_index);
+  if (place < watches.size()) watches[place].body[0] = none;
+}
+
 template <int W>
 void store_block(StepContext<Dim3>& context, const ContactSources<Dim3>&, std::span<const std::int32_t> list,
                  const ContactBlock<Dim3, W>& block, const ContactExtra<Dim3, W>* extra) {
@@ -442,9 +449,9 @@ void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources
   for (int lane = 0; lane < lanes; ++lane) {
     ManifoldRecord<Dim2>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
     if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
-    if (m.anchor != Anchor::none)
-      let_go(context, m, block, lane, block.point[0].impulse[lane] + block.point[1].impulse[lane],
-             (at_limit >> lane & 1u) != 0);
+    const float load = block.point[0].impulse[lane] + block.point[1].impulse[lane];
+    if (m.anchor != Anchor::none) let_go(context, m, block, lane, load, (at_limit >> lane & 1u) != 0);
+    if (m.waits && load > 0) stop_watching(context.world, m.contact);
   }
 }
 

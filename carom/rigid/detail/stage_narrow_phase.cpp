@@ -190,6 +190,11 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
   approach.worth = margin + 3 * ahead;  // two steps
   return approach;
 }
+/// m: how far a pair that is apart along an axis may move until it is looked at whether its bounds still meet.
+template <class D>
+float longest_slide(const ContactRecord<D>& c) {
+  return (D::dimension == 2 ? 1.0f : 0.5f) * c.inner;
+}
 /// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
 /// counted. Apart from each other along an axis, they may slide past each other, but are looked at now and then, so
 /// that pairs end whose bounds have parted.
@@ -197,7 +202,7 @@ template <class D>
 float slack_of(const ContactRecord<D>& c, const Moved<D>& moved) {
   const float slack = c.gap - c.margin();
   if (c.axis == typename D::Vector{}) return slack - moved.most();
-  if (moved.most() >= 0.5f * c.inner) return -1e30f;
+  if (moved.most() >= longest_slide(c)) return -1e30f;
   return slack + dot(c.axis, moved.way) - moved.turn;
 }
 
@@ -271,17 +276,23 @@ void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const
   w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
   w.most_way = 0;
   if (c.axis == typename D::Vector{}) return;
-  w.most_way = 0.5f * c.inner - moved.most() - rounding_of(w);
+  w.most_way = longest_slide(c) - moved.most() - rounding_of(w);
   if (!(w.most_way > 0)) w.body[0] = none;
 }
+/// What touches is watched until it parts; in the plane, what does not until it comes near or bears a load
+/// (store_contacts).
 template <class D>
 void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, float slack, float separation,
                     const typename D::Vector& normal, float extent) {
+  const bool touching = (c.flags & contact_touching) != 0;
+  if (c.first_manifold != none) world.contacts.manifold(c.first_manifold).waits = !touching;
+  if (!touching && (D::dimension == 3 || c.manifold_count != 1)) return;
   ContactWatch<D>& w = watch_contact(world, c, normal, extent);
-  w.most_way = slack - rounding_of(w);
-  w.gap = separation - min(c.margin(), 2 * touch_distance) + rounding_of(w);
-  w.cap = -1;
-  if (!(w.most_way > 0)) w.body[0] = none;
+  const float most = touching ? min(c.margin(), 2 * touch_distance) : c.margin(), rounding = rounding_of(w);
+  w.most_way = slack - rounding;
+  w.gap = separation - most + rounding;
+  w.cap = touching ? -3.4e38f : touch_distance - most + 2 * rounding;
+  if (!(w.most_way > 0 && w.cap < 0)) w.body[0] = none;
 }
 
 /// Finds how far bodies may come in the step.
@@ -305,6 +316,22 @@ void measure_sweeps(WorldImplementation<D>& world) {
   });
 }
 
+/// Do two that slid past each other, apart along an axis, have their bounds still meet and that axis still between
+/// them? Then they go on from here, without being asked how far they are.
+template <class D>
+bool slides_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>& moved,
+               const typename D::Transform& now, ShapeSweep<D>& sweep) {
+  if (D::dimension == 3 || c.axis == typename D::Vector{} || moved.most() < longest_slide(c)) return false;
+  const float gap = c.gap + dot(c.axis, moved.way) - moved.turn;
+  if (!(look_ahead(world, c, sweep, c.axis) < gap - c.margin())) return false;
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf))) return false;
+  c.gap = gap;
+  c.base = now;
+  watch_apart(world, c, Moved<D>(c, b, now));
+  return true;
+}
+
 /// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow.
 template <class D>
 bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
@@ -312,6 +339,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   if ((c.flags & contact_known) == 0 || (c.first_manifold != none && (c.flags & contact_round) != 0)) return false;
   const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
   if (c.first_manifold == none) {
+    if (slides_on(world, c, moved, now, sweep)) return true;
     const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, sweep, c.axis);
     if (!(near < slack_of(c, moved))) return false;
     watch_apart(world, c, moved);
@@ -327,7 +355,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   if (!(separation < c.margin() && far < most)) return false;
   c.flags |= contact_recycled;
   change = touch_change(c, separation, pressed_any(world.contacts, c));
-  if (c.flags & contact_touching) watch_recycled(world, c, most - far, separation, normal, moved.extent);
+  watch_recycled(world, c, most - far, separation, normal, moved.extent);
   return true;
 }
 
@@ -411,7 +439,8 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
     return part(world, c, a, b);
   }
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
-  if ((c.flags & contact_round) == 0 && (c.flags & contact_touching) != 0 && c.gap < c.margin()) {
+  const bool waits = D::dimension == 2 && c.manifold_count == 1;
+  if ((c.flags & contact_round) == 0 && ((c.flags & contact_touching) != 0 || waits) && c.gap < c.margin()) {
     c.flags |= contact_recycled;  // in the steps to come, which may not look at it, and why not in this one
     watch_recycled(world, c, longest_way(world, c), c.gap, m.normal, c.extent);
   }
