@@ -2,12 +2,10 @@
 // crosses none of them is a small quadratic programme (after the plane movers of Box2D 3.1; the solver is Hildreth's).
 #include "carom/rigid/character.h"
 
-#include "carom/geometry/manifold.h"
-#include "carom/geometry/query.h"
 #include "carom/math/elementary.h"
 #include "carom/rigid/detail/character_shape.h"
 #include "carom/rigid/detail/check.h"
-#include "carom/rigid/detail/shape_manifolds.h"
+#include "carom/rigid/detail/vicinity.h"
 
 namespace carom::rigid {
 namespace {
@@ -32,6 +30,15 @@ float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
 
 }  // namespace
+
+template <class D>
+Character<D>::Character() : around_(std::make_unique<detail::Vicinity<D>>()) {}
+template <class D>
+Character<D>::Character(Character&&) noexcept = default;
+template <class D>
+Character<D>& Character<D>::operator=(Character&&) noexcept = default;
+template <class D>
+Character<D>::~Character() = default;
 
 template <class D>
 Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>& d, Position feet) {
@@ -59,7 +66,8 @@ Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>
   if (const Status s = detail::make_character(world, body, c.capsule_, shape, c.body_, c.shape_); !s.ok())
     return s.error();
   c.planes_.reserve(64);
-  c.nearby_.reserve(64);
+  c.around_->found.reserve(64);
+  c.around_->near.reserve(32);
   return c;
 }
 
@@ -92,83 +100,69 @@ void Character<D>::restore(const CharacterState<D>& state) {
   ground_ = state.ground;
 }
 
-/// Whether the top of an edge that the capsule's round end rests on is ground: the surface a little inward of the
-/// point.
 template <class D>
-bool Character<D>::can_stand_on(const typename D::Shape& geometry, const typename D::Pose& pose, const Vector& normal,
-                                const Position& point) const {
+const detail::Neighbour<D>& Character<D>::of(const Plane& plane) const {
+  return around_->near[plane.neighbour];
+}
+
+/// What is not too steep carries, and so does the top of an edge that the capsule's round end rests on: the surface a
+/// little inward of the point.
+template <class D>
+bool Character<D>::carries(const Plane& plane) const {
+  if (plane.walkable) return true;
   const Vector up = definition_.up;
-  if (dot(normal, up) >= least_up_) return true;
-  if (dot(normal, up) < 0.05f) return false;
-  const Vector level = normal - up * dot(normal, up);
+  if (!plane.low || dot(plane.normal, up) < 0.05f) return false;
+  if (plane.ground >= 0) return plane.ground != 0;
+  const Vector level = plane.normal - up * dot(plane.normal, up);
   const Vector inward = level * (-0.1f * definition_.radius / math::length(level));
   const float down = 0.2f * definition_.radius;
-  const Vector from = local_point(pose, point + Position(inward + up * (0.5f * down)));
-  const auto hit = detail::ray_into(geometry, from, inverse_rotate(pose.rotation, up * -down));
-  return hit.hit && hit.fraction > 0 && dot(rotate(pose.rotation, hit.normal), up) >= least_up_;
+  const detail::Neighbour<D>& n = of(plane);
+  const Vector from = local_point(n.pose, plane.point + Position(inward + up * (0.5f * down)));
+  const auto hit = detail::ray_into(n.geometry, from, inverse_rotate(n.pose.rotation, up * -down));
+  plane.ground = hit.hit && hit.fraction > 0 && dot(rotate(n.pose.rotation, hit.normal), up) >= least_up_ ? 1 : 0;
+  return plane.ground != 0;
 }
 
 template <class D>
-void Character<D>::add_plane(const World<D>& world, ShapeId shape, const typename D::Shape& geometry,
-                             const typename D::Pose& pose, const Vector& normal, float separation, const Vector& point,
-                             BodyId body) {
+void Character<D>::add_plane(std::size_t neighbour, const Vector& normal, float separation, const Vector& point) {
+  const detail::Neighbour<D>& n = around_->near[neighbour];
   Plane p;
-  p.normal = rotate(pose.rotation, normal);
+  p.neighbour = neighbour;
+  p.normal = rotate(n.pose.rotation, normal);
   p.gap = separation - definition_.skin;
-  // The manifold's point lies midway; the obstacle's own is half the separation back.
-  p.point = world_point(pose, point) - Position(p.normal * (0.5f * separation));
+  p.point = world_point(n.pose, point);
   p.height = float(dot(p.point - feet(), Position(definition_.up)));
   p.walkable = dot(p.normal, definition_.up) >= least_up_;
-  p.ground = p.walkable || (p.height < definition_.radius && can_stand_on(geometry, pose, p.normal, p.point));
-  p.body = body;
-  p.shape = shape;
-  const Result<BodyState<D>> state = world.state(body);
-  if (state.ok()) {
-    const BodyState<D>& s = state.value();
-    p.dynamic = s.type == BodyType::dynamic && s.mass > 0;
-    if (s.type != BodyType::fixed && s.awake) {
-      const Vector arm(p.point - s.center_of_mass);
-      const float closing = dot(way_of_point(s.linear_velocity, s.angular_velocity, arm, dt_), p.normal);
-      // A dynamic body that comes nearer is stopped by the character's body, not the other way round.
-      if (!p.dynamic || closing < 0 || body == ground_.body) p.closing = closing;
-      p.gap -= p.closing;
-    }
+  p.low = p.height < definition_.radius;
+  p.dynamic = n.body.type == BodyType::dynamic && n.body.mass > 0;
+  if (n.body.type != BodyType::fixed && n.body.awake) {
+    const Vector arm(p.point - n.body.center_of_mass);
+    const float closing = dot(way_of_point(n.body.linear_velocity, n.body.angular_velocity, arm, dt_), p.normal);
+    // A dynamic body that comes nearer is stopped by the character's body, not the other way round.
+    if (!p.dynamic || closing < 0 || n.body_id == ground_.body) p.closing = closing;
+    p.gap -= p.closing;
   }
   planes_.push_back(p);
 }
 
-/// Looks how far anything near comes in this move by itself: the planes must be found that much earlier.
+/// Notes what is near where this move may lead, how far anything comes in it by itself, and what `needed` (seen from
+/// here) meets.
 template <class D>
-void Character<D>::look_around(const World<D>& world, float way) {
-  approach_ = 0;
-  const auto box = geometry::grow(geometry::bounds(capsule_, typename D::Transform{{}, rotation_}), way + 1);
-  const typename D::Bounds bounds{position_ + Position(box.low), position_ + Position(box.high)};
-  if (!world.overlap_bounds(bounds, nearby_, {definition_.filter.category, definition_.filter.mask}).ok()) return;
-  for (const ShapeId shape : nearby_) {
+void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vector>& needed) {
+  detail::Vicinity<D>& all = *around_;
+  all.base = position_;
+  all.near.clear();
+  const Vector steps = definition_.up * definition_.step_height;
+  const auto box = geometry::grow(geometry::bounds(capsule_, typename D::Transform{{}, rotation_}), reach_);
+  all.whole = merge(merge(needed, box), merge(geometry::Bounds<Vector>{box.low + steps, box.high + steps},
+                                              geometry::Bounds<Vector>{box.low - steps, box.high - steps}));
+  constexpr float most = 1;  // m that anything comes nearer
+  const auto asked = geometry::grow(all.whole, most);
+  const typename D::Bounds bounds{position_ + Position(asked.low), position_ + Position(asked.high)};
+  if (!world.overlap_bounds(bounds, all.found, {definition_.filter.category, definition_.filter.mask}).ok()) return;
+  for (const ShapeId shape : all.found) {
     if (shape == shape_) continue;
-    const auto body = world.body_of(shape);
-    const auto state = body.ok() ? world.state(body.value()) : Result<BodyState<D>>(body.error());
-    if (!state.ok() || state.value().type == BodyType::fixed || !state.value().awake) continue;
-    const BodyState<D>& s = state.value();
-    const float arm = float(math::length(position_ - s.center_of_mass)) + definition_.half_length + definition_.radius;
-    const float speed = math::length(s.linear_velocity) + spin_of(s.angular_velocity) * arm;
-    approach_ = max(approach_, min(speed * dt_, 1.0f));
-  }
-}
-
-/// The planes of all that a straight `way` may meet, and of what is no farther than `around` from it. What lies beside
-/// a long way is not looked at: on a mesh that is most of the triangles within its length.
-template <class D>
-void Character<D>::find_planes(const World<D>& world, const Vector& way, float around) {
-  planes_.clear();
-  const float near = around + approach_ + definition_.skin, reach = math::length(way) + near;
-  const auto box = geometry::bounds(capsule_, typename D::Transform{{}, rotation_});
-  const auto grown = geometry::grow(merge(box, {box.low + way, box.high + way}), near);
-  const typename D::Bounds bounds{position_ + Position(grown.low), position_ + Position(grown.high)};
-  if (!world.overlap_bounds(bounds, nearby_, {definition_.filter.category, definition_.filter.mask}).ok()) return;
-  for (const ShapeId shape : nearby_) {
-    if (shape == shape_) continue;
-    const auto geometry = world.shape_geometry(shape);
+    auto geometry = world.shape_geometry(shape);
     const auto definition = world.shape_definition(shape);
     const auto body = world.body_of(shape);
     if (!geometry.ok() || !definition.ok() || !body.ok()) continue;
@@ -176,15 +170,45 @@ void Character<D>::find_planes(const World<D>& world, const Vector& way, float a
     if (other.group != 0 && other.group == definition_.filter.group && other.group < 0) continue;
     const auto state = world.state(body.value());
     if (!state.ok()) continue;
-    const typename D::Pose placed = state.value().pose * definition.value().local;
-    detail::for_manifolds(geometry.value(), capsule_, relative(placed, pose()), reach,
-                          {inverse_rotate(placed.rotation, way), near}, [&](const typename D::Manifold& m) {
-                            int deepest = 0;
-                            for (int i = 1; i < m.count; ++i)
-                              if (m.points[i].separation < m.points[deepest].separation) deepest = i;
-                            add_plane(world, shape, geometry.value(), placed, m.normal, m.points[deepest].separation,
-                                      m.points[deepest].point, body.value());
-                          });
+    detail::Neighbour<D> n;
+    n.id = shape, n.body_id = body.value(), n.body = state.value();
+    n.pose = n.body.pose * definition.value().local;
+    if (n.body.type != BodyType::fixed && n.body.awake) {
+      const float arm =
+          float(math::length(position_ - n.body.center_of_mass)) + definition_.half_length + definition_.radius;
+      const float speed = math::length(n.body.linear_velocity) + spin_of(n.body.angular_velocity) * arm;
+      n.approach = min(speed * dt_, most);
+    }
+    n.box = geometry::bounds(geometry.value(), relative(typename D::Pose{position_, {}}, n.pose));
+    if (!geometry::overlaps(geometry::grow(n.box, n.approach), all.whole)) continue;
+    n.geometry = std::move(geometry).value();
+    all.near.push_back(std::move(n));
+  }
+  if (all.triangles.size() < all.near.size()) all.triangles.resize(all.near.size());
+  for (detail::GatheredTriangles& t : all.triangles) t.known = false;
+}
+
+/// The planes of all that a straight `way` may meet, and of what is no farther than `around` from it. What lies beside
+/// a long way is not looked at: on a mesh that is most of the triangles within its length.
+template <class D>
+void Character<D>::find_planes(const World<D>& world, const Vector& way, float around) {
+  planes_.clear();
+  detail::Vicinity<D>& all = *around_;
+  const float near = around + definition_.skin, reach = math::length(way) + near;
+  const auto box = geometry::bounds(capsule_, typename D::Transform{Vector(position_ - all.base), rotation_});
+  auto grown = geometry::grow(merge(box, {box.low + way, box.high + way}), near);
+  if (!contains(all.whole, grown)) {
+    const Vector moved(position_ - all.base);
+    grown = {grown.low - moved, grown.high - moved};
+    look_around(world, grown);
+  }
+  for (std::size_t i = 0; i < all.near.size(); ++i) {
+    const detail::Neighbour<D>& n = all.near[i];
+    if (!geometry::overlaps(geometry::grow(n.box, n.approach), grown)) continue;
+    detail::for_planes(
+        all, i, capsule_, relative(n.pose, pose()), reach + n.approach,
+        {inverse_rotate(n.pose.rotation, way), near + n.approach},
+        [&](const Vector& normal, float separation, const Vector& point) { add_plane(i, normal, separation, point); });
   }
 }
 
@@ -204,7 +228,7 @@ typename Character<D>::Vector Character<D>::fit(Vector wanted, bool keep_height)
     const float least = -p.gap;
     const float rise = dot(p.normal, up);
     const bool wall = keep_height ? !p.walkable && rise > 0 && p.height > 2 * definition_.skin
-                                  : !p.ground && rise > 0 && rise < least_up_;
+                                  : rise > 0 && rise < least_up_ && !carries(p);
     if (wall && rise < 0.9999f) {
       // A vertical wall through the nearest point: reached by the level way g/cos.
       const Vector level = p.normal - up * rise;
@@ -298,7 +322,7 @@ bool Character<D>::climb(const World<D>& world, const Vector& way, float wanted,
     // What carries it must not lie higher above where it began than a step: it has not been lifted over an edge.
     const float lifted = float(dot(position_ - start, Position(up)));
     for (const Plane& p : planes_)
-      if (p.ground && p.gap < ground_gap && lifted + p.height < definition_.step_height + 2 * definition_.skin)
+      if (p.gap < ground_gap && lifted + p.height < definition_.step_height + 2 * definition_.skin && carries(p))
         return true;
   }
   position_ = stopped;
@@ -317,17 +341,18 @@ void Character<D>::push_bodies(World<D>& world, const Vector& walk) {
     to *= -1 / size;
     const float wanted = dot(walk, to);
     if (wanted <= 0 || p.gap > wanted * dt_ + 0.5f * definition_.skin) continue;
-    const Result<BodyState<D>> state = world.state(p.body);
-    if (!state.ok()) continue;
-    const BodyState<D>& s = state.value();
+    const BodyId body = of(p).body_id;
+    const BodyState<D>& s = of(p).body;
     const Vector arm(p.point - s.center_of_mass);
     const float moves = dot(s.linear_velocity + cross(s.angular_velocity, arm), to);
     if (moves >= wanted) continue;
     const float impulse = min(definition_.push_force * dt_, (wanted - moves) * s.mass);
     if (!(impulse > 0)) continue;
-    (void)world.add_impulse_at(p.body, to * impulse, p.point);
-    const Result<BodyState<D>> now = world.state(p.body);
+    (void)world.add_impulse_at(body, to * impulse, p.point);
+    const Result<BodyState<D>> now = world.state(body);
     if (now.ok()) {
+      for (detail::Neighbour<D>& n : around_->near)
+        if (n.body_id == body) n.body = now.value();
       const float closing =
           dot(way_of_point(now.value().linear_velocity, now.value().angular_velocity, arm, dt_), p.normal);
       p.gap += p.closing - min(closing, 0.0f);
@@ -358,23 +383,20 @@ void Character<D>::follow_ground(const World<D>& world, bool jumped, bool stood)
   const Plane* best = nullptr;
   for (const Plane& p : planes_) {
     if (p.gap > ground_gap || dot(p.normal, up) < 0.05f || (jumped && rise_ > 0)) continue;
-    if (best == nullptr || (p.ground && !best->ground) ||
-        (p.ground == best->ground && dot(p.normal, up) > dot(best->normal, up)))
+    if (best == nullptr || (carries(p) && !carries(*best)) ||
+        (carries(p) == carries(*best) && dot(p.normal, up) > dot(best->normal, up)))
       best = &p;
   }
-  if (best == nullptr || !best->ground) position_ = here;
+  if (best == nullptr || !carries(*best)) position_ = here;
   if (best == nullptr) return;
-  ground_.state = best->ground ? GroundState::on_ground : GroundState::on_steep;
-  ground_.body = best->body;
-  ground_.shape = best->shape;
+  ground_.state = carries(*best) ? GroundState::on_ground : GroundState::on_steep;
+  ground_.body = of(*best).body_id;
+  ground_.shape = of(*best).id;
   ground_.point = best->point;
   ground_.normal = best->normal;
   ground_.slope = math::acos(clamp(dot(best->normal, up), -1.0f, 1.0f));
-  const Result<BodyState<D>> state = world.state(best->body);
-  if (state.ok() && state.value().type != BodyType::fixed) {
-    const BodyState<D>& s = state.value();
+  if (const BodyState<D>& s = of(*best).body; s.type != BodyType::fixed)
     ground_.velocity = s.linear_velocity + cross(s.angular_velocity, Vector(best->point - s.center_of_mass));
-  }
 }
 
 template <class D>
@@ -415,7 +437,8 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
     way += up * (rise_ * dt + 0.5f * pull * dt * dt);
     rise_ += pull * dt;
   }
-  look_around(world, math::length(way));
+  reach_ = 2 * (math::length(way) + math::length(ride) + ground_gap + definition_.skin);
+  look_around(world, {});
   find_planes(world, {}, math::length(way) + math::length(ride) + ground_gap);
   if (speed > 0) push_bodies(world, walk);
   const Vector allowed = fit(way + ride, false);

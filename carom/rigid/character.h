@@ -6,11 +6,18 @@
 //   each step:  player.move(world, {3, jump ? 5.0f : 0.0f, 0}, dt);  world.step(dt);
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "carom/rigid/world.h"
 
 namespace carom::rigid {
+namespace detail {
+template <class D>
+struct Vicinity;
+template <class D>
+struct Neighbour;
+}  // namespace detail
 
 template <class D>
 constexpr typename D::Vector default_up() {
@@ -71,8 +78,9 @@ class CAROM_API Character {
 
   /// Puts a character on its feet at `feet`. Errors: a field out of range.
   static Result<Character> create(World<D>& world, const CharacterDef<D>& definition, Position feet);
-  Character(Character&&) noexcept = default;
-  Character& operator=(Character&&) noexcept = default;
+  Character(Character&&) noexcept;
+  Character& operator=(Character&&) noexcept;
+  ~Character();
   Character(const Character&) = delete;
   Character& operator=(const Character&) = delete;
 
@@ -104,18 +112,17 @@ class CAROM_API Character {
     float gap = 0;      ///< m to the skin, less closing
     float closing = 0;  ///< m by which the obstacle comes nearer in this move
     float height = 0;   ///< m of the nearest point above the feet
-    bool walkable = false, ground = false, dynamic = false;
-    BodyId body{};
-    ShapeId shape{};
+    bool walkable = false, low = false, dynamic = false;
+    std::size_t neighbour = 0;
     Position point{};
+    mutable signed char ground = -1;  ///< whether it carries; negative: not asked yet
   };
-  Character() = default;
-  void look_around(const World<D>& world, float way);
+  Character();
+  void look_around(const World<D>& world, const geometry::Bounds<Vector>& needed);
   void find_planes(const World<D>& world, const Vector& way, float around);
-  void add_plane(const World<D>& world, ShapeId shape, const typename D::Shape& geometry, const typename D::Pose& pose,
-                 const Vector& normal, float separation, const Vector& point, BodyId body);
-  bool can_stand_on(const typename D::Shape& geometry, const typename D::Pose& pose, const Vector& normal,
-                    const Position& point) const;
+  void add_plane(std::size_t neighbour, const Vector& normal, float separation, const Vector& point);
+  bool carries(const Plane& plane) const;
+  const detail::Neighbour<D>& of(const Plane& plane) const;
   Vector fit(Vector wanted, bool keep_height) const;
   void slide(const World<D>& world, Vector way, bool keep_height);
   float advance(const World<D>& world, const Vector& direction, float way);
@@ -136,10 +143,10 @@ class CAROM_API Character {
   float least_up_ = 0;  ///< cosine of max_slope
   float dt_ = 0;
   bool stopped_ = false;  ///< the last advance ended at something
-  float approach_ = 0;    ///< m that anything near may come nearer in this move
+  float reach_ = 0;       ///< m that this move may lead, steps up and down aside
   CharacterGround<D> ground_{};
   std::vector<Plane> planes_;
-  std::vector<ShapeId> nearby_;
+  std::unique_ptr<detail::Vicinity<D>> around_;
 };
 
 extern template class CAROM_API Character<Dim2>;

@@ -1,0 +1,86 @@
+// What is near a character in one move, asked of the world once and looked at from every place that it tries.
+#pragma once
+
+#include "carom/geometry/detail/triangle_blocks.h"
+#include "carom/math/mat.h"
+#include "carom/rigid/detail/shape_manifolds.h"
+#include "carom/rigid/world.h"
+
+namespace carom::rigid::detail {
+
+template <class D>
+struct Neighbour {
+  ShapeId id{};
+  BodyId body_id{};
+  typename D::Shape geometry{};
+  typename D::Pose pose{};
+  BodyState<D> body{};
+  float approach = 0;                          ///< m that it may come nearer in this move by itself
+  geometry::Bounds<typename D::Vector> box{};  ///< seen from `Vicinity::base`
+};
+
+/// The triangles that were gathered of one neighbour.
+struct GatheredTriangles {
+  geometry::detail::TriangleBlocks blocks;
+  geometry::Bounds3f box{};  ///< in the surface's frame, of all that was gathered
+  bool known = false;
+};
+
+template <class D>
+struct Vicinity {
+  typename D::Position base{};
+  geometry::Bounds<typename D::Vector> whole{};  ///< seen from there: what lies outside was not asked about
+  std::vector<Neighbour<D>> near;
+  std::vector<GatheredTriangles> triangles;  ///< of the neighbour of the same number; more are room for later
+  std::vector<ShapeId> found;
+};
+
+/// The deepest point of every manifold, as for_planes tells it.
+template <class Shape, class Place, class Vector, class F>
+void for_deepest(const Shape& shape, const Shape& capsule, const Place& place, float reach, const Around<Vector>& near,
+                 F&& f) {
+  for_manifolds(shape, capsule, place, reach, near, [&](const auto& m) {
+    int deepest = 0;
+    for (int k = 1; k < m.count; ++k)
+      if (m.points[k].separation < m.points[deepest].separation) deepest = k;
+    // The manifold's point lies midway; the obstacle's own is half the separation back.
+    const float s = m.points[deepest].separation;
+    f(m.normal, s, m.points[deepest].point - m.normal * (0.5f * s));
+  });
+}
+
+/// Calls f(normal, separation, point of the neighbour, all in its frame) for what a capsule at `place` (in that frame)
+/// may meet within `reach`, and that comes near its way.
+template <class F>
+void for_planes(Vicinity<Dim2>& all, std::size_t i, const geometry::Shape2& capsule, const Transform2f& place,
+                float reach, const Around<Vec2f>& near, F&& f) {
+  for_deepest(all.near[i].geometry, capsule, place, reach, near, f);
+}
+template <class F>
+void for_planes(Vicinity<Dim3>& all, std::size_t i, const geometry::Shape3& capsule, const Transform3f& place,
+                float reach, const Around<Vec3f>& near, F&& f) {
+  const Neighbour<Dim3>& n = all.near[i];
+  const bool solid = n.geometry.type == geometry::ShapeType3::height_field;
+  if (n.geometry.type != geometry::ShapeType3::mesh && !solid)
+    return for_deepest(n.geometry, capsule, place, reach, near, f);
+  geometry::Bounds3f box = near.along(geometry::bounds(capsule, place));
+  const geometry::Capsule3& c = capsule.capsule;
+  if (solid) box.high.y += 2 * (c.half_length + 2 * c.radius);
+  GatheredTriangles& g = all.triangles[i];
+  if (!g.known || !contains(g.box, box)) {
+    const Vec3f middle = local_point(n.pose, all.base + Vec3d(all.whole.center())), half = all.whole.extents();
+    const Mat3f turn = to_matrix(conjugate(n.pose.rotation));
+    const Vec3f size = abs(turn.cx) * half.x + abs(turn.cy) * half.y + abs(turn.cz) * half.z;
+    g.box = merge(g.known ? merge(g.box, box) : box, {middle - size, middle + size});
+    g.known = true;
+    g.blocks.gather(n.geometry, g.box);
+  }
+  geometry::detail::SurfacePlane planes[16];
+  const int count =
+      g.blocks.planes({place.p, rotate(place.q, Vec3f{0, c.half_length, 0}), c.radius, reach, box}, planes);
+  for (int k = 0; k < count; ++k) f(planes[k].normal, planes[k].separation, planes[k].point);
+  // Sunk below all triangles of a height field.
+  if (solid && count == 0) for_deepest(n.geometry, capsule, place, reach, near, f);
+}
+
+}  // namespace carom::rigid::detail
