@@ -54,6 +54,7 @@ Result<Character<D>> Character<D>::create(World<D>& world, const CharacterDef<D>
   c.definition_.up = d.up / size;
   c.rotation_ = detail::upright(c.definition_.up);
   c.capsule_ = detail::make_capsule(D{}, d.half_length, d.radius);
+  c.box_ = geometry::bounds(c.capsule_, typename D::Transform{{}, c.rotation_});
   c.least_up_ = math::cos(d.max_slope);
   c.position_ = feet + Position(c.definition_.up * (d.half_length + d.radius));
   BodyDef<D> body;
@@ -153,7 +154,7 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
   all.base = position_;
   all.near.clear();
   const Vector steps = definition_.up * definition_.step_height;
-  const auto box = geometry::grow(geometry::bounds(capsule_, typename D::Transform{{}, rotation_}), reach_);
+  const auto box = geometry::grow(box_, reach_);
   all.whole = merge(merge(needed, box), merge(geometry::Bounds<Vector>{box.low + steps, box.high + steps},
                                               geometry::Bounds<Vector>{box.low - steps, box.high - steps}));
   constexpr float most = 1;  // m that anything comes nearer
@@ -195,20 +196,22 @@ void Character<D>::find_planes(const World<D>& world, const Vector& way, float a
   planes_.clear();
   detail::Vicinity<D>& all = *around_;
   const float near = around + definition_.skin, reach = math::length(way) + near;
-  const auto box = geometry::bounds(capsule_, typename D::Transform{Vector(position_ - all.base), rotation_});
-  auto grown = geometry::grow(merge(box, {box.low + way, box.high + way}), near);
-  if (!contains(all.whole, grown)) {
-    const Vector moved(position_ - all.base);
-    grown = {grown.low - moved, grown.high - moved};
+  const Vector moved(position_ - all.base);
+  auto grown = geometry::grow(merge(box_, {box_.low + way, box_.high + way}), near);
+  const geometry::Bounds<Vector> seen{grown.low + moved, grown.high + moved};
+  if (contains(all.whole, seen))
+    grown = seen;
+  else
     look_around(world, grown);
-  }
   for (std::size_t i = 0; i < all.near.size(); ++i) {
-    const detail::Neighbour<D>& n = all.near[i];
+    detail::Neighbour<D>& n = all.near[i];
     if (!geometry::overlaps(geometry::grow(n.box, n.approach), grown)) continue;
-    detail::for_planes(
+    if (n.clear > 0 && n.clear - 1.001f * float(math::length(position_ - n.clear_at)) > reach + n.approach) continue;
+    n.clear = detail::for_planes(
         all, i, capsule_, relative(n.pose, pose()), reach + n.approach,
         {inverse_rotate(n.pose.rotation, way), near + n.approach},
         [&](const Vector& normal, float separation, const Vector& point) { add_plane(i, normal, separation, point); });
+    n.clear_at = position_;
   }
 }
 
@@ -437,7 +440,7 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
     way += up * (rise_ * dt + 0.5f * pull * dt * dt);
     rise_ += pull * dt;
   }
-  reach_ = 2 * (math::length(way) + math::length(ride) + ground_gap + definition_.skin);
+  reach_ = 1.3f * (math::length(way) + math::length(ride)) + 2 * (ground_gap + definition_.skin);
   look_around(world, {});
   find_planes(world, {}, math::length(way) + math::length(ride) + ground_gap);
   if (speed > 0) push_bodies(world, walk);

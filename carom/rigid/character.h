@@ -135,6 +135,7 @@ class CAROM_API Character {
   CharacterDef<D> definition_{};
   typename D::Rotation rotation_{};
   typename D::Shape capsule_{};
+  geometry::Bounds<Vector> box_{};  ///< of the capsule, from its centre
   BodyId body_{};
   ShapeId shape_{};
   Position position_{};

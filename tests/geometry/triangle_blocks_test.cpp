@@ -7,12 +7,10 @@
 #include "carom/math/elementary.h"
 #include "manifold_test_support.h"
 
-namespace {
-using namespace carom;
-using namespace carom::geometry;
-using namespace carom::geometry::testing;
-using geometry::detail::SurfacePlane;
-using geometry::detail::TriangleBlocks;
+namespace carom::geometry::triangle_blocks_test {
+using detail::SurfacePlane;
+using detail::TriangleBlocks;
+using geometry::testing::Draw;
 
 float wave(int i, int j) { return 0.8f * math::sin(0.5f * float(i)) * math::cos(0.4f * float(j)); }
 Shape3 wavy_mesh(int cells, float size, float height) {
@@ -77,7 +75,7 @@ TEST(TriangleBlocks, TellWhatContactsTell) {
                             normalize(Quatf{1, draw.in(-0.3, 0.3), 0, draw.in(-0.3, 0.3)})};
         Manifold3 contacts[16];
         const Bounds3f box = grow(bounds(capsule, x), margin);
-        const int count = geometry::detail::collide_surface(ground, capsule, x, margin, box, contacts);
+        const int count = detail::collide_surface(ground, capsule, x, margin, box, contacts);
         if (count == 0) continue;
         float least = 1e9f;
         int deepest = 0;
@@ -121,4 +119,4 @@ TEST(TriangleBlocks, SeamsDoNotPush) {
   EXPECT_NEAR(planes[0].normal.x, -0.4f / distance, 1e-5f);
 }
 
-}  // namespace
+}  // namespace carom::geometry::triangle_blocks_test

@@ -18,15 +18,17 @@ struct Around {
   }
 };
 
-/// Calls f for every manifold of the convex shape b with a; normals point from a to b, in a's frame.
+/// Calls f for every manifold of the convex shape b with a; normals point from a to b, in a's frame. Returns how far
+/// (m) they are known to be from each other: 0 where they meet, or it was not told.
 template <class F>
-void for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const math::Transform2f& b_in_a, float margin,
-                   const Around<math::Vec2f>& near, F&& f) {
+float for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const math::Transform2f& b_in_a, float margin,
+                    const Around<math::Vec2f>& near, F&& f) {
   const auto one = [&](const geometry::Shape2& part) {
     geometry::PairCache cache;
     geometry::Manifold2 m;
     geometry::collide(part, b, b_in_a, margin, cache, m);
     if (m.count > 0) f(m);
+    return m.count == 0 && m.points[0].separation > margin ? m.points[0].separation : 0.0f;
   };
   if (a.type != geometry::ShapeType2::chain) return one(a);
   const geometry::Bounds2f box = near.along(geometry::bounds(b, b_in_a));
@@ -34,22 +36,24 @@ void for_manifolds(const geometry::Shape2& a, const geometry::Shape2& b, const m
     const geometry::ChainSegment s = a.chain->segment(i);
     if (geometry::overlaps(geometry::Bounds2f{min(s.a, s.b), max(s.a, s.b)}, box)) one(geometry::Shape2(s));
   }
+  return 0;
 }
 template <class F>
-void for_manifolds(const geometry::Shape3& a, const geometry::Shape3& b, const math::Transform3f& b_in_a, float margin,
-                   const Around<math::Vec3f>& near, F&& f) {
+float for_manifolds(const geometry::Shape3& a, const geometry::Shape3& b, const math::Transform3f& b_in_a, float margin,
+                    const Around<math::Vec3f>& near, F&& f) {
   if (geometry::is_convex(a) || a.type == geometry::ShapeType3::plane) {
     geometry::PairCache cache;
     geometry::Manifold3 m;
     geometry::collide(a, b, b_in_a, margin, cache, m);
     if (m.count > 0) f(m);
-    return;
+    return m.count == 0 && m.points[0].separation > margin ? m.points[0].separation : 0.0f;
   }
   geometry::Manifold3 many[16];
   const geometry::Bounds3f box = near.along(geometry::bounds(b, b_in_a));
   const int count = geometry::is_surface(a) ? geometry::detail::collide_surface(a, b, b_in_a, margin, box, many)
                                             : geometry::collide_many(a, b, b_in_a, margin, many);
   for (int i = 0; i < count; ++i) f(many[i]);
+  return 0;
 }
 
 inline geometry::CastHit2 ray_into(const geometry::Shape2& shape, math::Vec2f origin, math::Vec2f way) {

@@ -17,6 +17,8 @@ struct Neighbour {
   BodyState<D> body{};
   float approach = 0;                          ///< m that it may come nearer in this move by itself
   geometry::Bounds<typename D::Vector> box{};  ///< seen from `Vicinity::base`
+  float clear = 0;                             ///< m: so far it was from the capsule when that stood
+  typename D::Position clear_at{};             ///< here
 };
 
 /// The triangles that were gathered of one neighbour.
@@ -37,9 +39,9 @@ struct Vicinity {
 
 /// The deepest point of every manifold, as for_planes tells it.
 template <class Shape, class Place, class Vector, class F>
-void for_deepest(const Shape& shape, const Shape& capsule, const Place& place, float reach, const Around<Vector>& near,
-                 F&& f) {
-  for_manifolds(shape, capsule, place, reach, near, [&](const auto& m) {
+float for_deepest(const Shape& shape, const Shape& capsule, const Place& place, float reach, const Around<Vector>& near,
+                  F&& f) {
+  return for_manifolds(shape, capsule, place, reach, near, [&](const auto& m) {
     int deepest = 0;
     for (int k = 1; k < m.count; ++k)
       if (m.points[k].separation < m.points[deepest].separation) deepest = k;
@@ -50,37 +52,38 @@ void for_deepest(const Shape& shape, const Shape& capsule, const Place& place, f
 }
 
 /// Calls f(normal, separation, point of the neighbour, all in its frame) for what a capsule at `place` (in that frame)
-/// may meet within `reach`, and that comes near its way.
+/// may meet within `reach`, and that comes near its way. Returns how far they are known to be from each other, or 0.
 template <class F>
-void for_planes(Vicinity<Dim2>& all, std::size_t i, const geometry::Shape2& capsule, const Transform2f& place,
-                float reach, const Around<Vec2f>& near, F&& f) {
-  for_deepest(all.near[i].geometry, capsule, place, reach, near, f);
+float for_planes(Vicinity<Dim2>& all, std::size_t i, const geometry::Shape2& capsule, const Transform2f& place,
+                 float reach, const Around<Vec2f>& near, F&& f) {
+  return for_deepest(all.near[i].geometry, capsule, place, reach, near, f);
 }
 template <class F>
-void for_planes(Vicinity<Dim3>& all, std::size_t i, const geometry::Shape3& capsule, const Transform3f& place,
-                float reach, const Around<Vec3f>& near, F&& f) {
+float for_planes(Vicinity<Dim3>& all, std::size_t i, const geometry::Shape3& capsule, const Transform3f& place,
+                 float reach, const Around<Vec3f>& near, F&& f) {
   const Neighbour<Dim3>& n = all.near[i];
   const bool solid = n.geometry.type == geometry::ShapeType3::height_field;
   if (n.geometry.type != geometry::ShapeType3::mesh && !solid)
     return for_deepest(n.geometry, capsule, place, reach, near, f);
-  geometry::Bounds3f box = near.along(geometry::bounds(capsule, place));
   const geometry::Capsule3& c = capsule.capsule;
+  const Vec3f end = rotate(place.q, Vec3f{0, c.half_length, 0}), size = abs(end) + c.radius * Vec3f{1, 1, 1};
+  geometry::Bounds3f box = near.along(geometry::Bounds3f{place.p - size, place.p + size});
   if (solid) box.high.y += 2 * (c.half_length + 2 * c.radius);
   GatheredTriangles& g = all.triangles[i];
   if (!g.known || !contains(g.box, box)) {
     const Vec3f middle = local_point(n.pose, all.base + Vec3d(all.whole.center())), half = all.whole.extents();
     const Mat3f turn = to_matrix(conjugate(n.pose.rotation));
-    const Vec3f size = abs(turn.cx) * half.x + abs(turn.cy) * half.y + abs(turn.cz) * half.z;
-    g.box = merge(g.known ? merge(g.box, box) : box, {middle - size, middle + size});
+    const Vec3f local = abs(turn.cx) * half.x + abs(turn.cy) * half.y + abs(turn.cz) * half.z;
+    g.box = merge(g.known ? merge(g.box, box) : box, {middle - local, middle + local});
     g.known = true;
     g.blocks.gather(n.geometry, g.box);
   }
   geometry::detail::SurfacePlane planes[16];
-  const int count =
-      g.blocks.planes({place.p, rotate(place.q, Vec3f{0, c.half_length, 0}), c.radius, reach, box}, planes);
+  const int count = g.blocks.planes({place.p, end, c.radius, reach, box}, planes);
   for (int k = 0; k < count; ++k) f(planes[k].normal, planes[k].separation, planes[k].point);
   // Sunk below all triangles of a height field.
   if (solid && count == 0) for_deepest(n.geometry, capsule, place, reach, near, f);
+  return 0;
 }
 
 }  // namespace carom::rigid::detail
