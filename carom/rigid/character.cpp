@@ -26,6 +26,15 @@ Vec3f way_of_point(const Vec3f& velocity, const Vec3f& spin, const Vec3f& arm, f
   return dt * velocity + (rotate(Quatf{c, s * axis}, arm) - arm);
 }
 
+/// Was the way x ended by a plane that was far away where it began? Only then another try is worth it: the rest stands
+/// in the way for good.
+template <class Planes, class Vector>
+bool kept_from_afar(const Planes& planes, const Vector& x, float skin) {
+  for (const auto& p : planes)
+    if (p.gap > skin && p.gap + dot(p.normal, x) < tiny) return true;
+  return false;
+}
+
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
 
@@ -101,120 +110,6 @@ void Character<D>::restore(const CharacterState<D>& state) {
   ground_ = state.ground;
 }
 
-template <class D>
-const detail::Neighbour<D>& Character<D>::of(const Plane& plane) const {
-  return around_->near[plane.neighbour];
-}
-
-/// What is not too steep carries, and so does the top of an edge that the capsule's round end rests on: the surface a
-/// little inward of the point.
-template <class D>
-bool Character<D>::carries(const Plane& plane) const {
-  if (plane.walkable) return true;
-  const Vector up = definition_.up;
-  if (!plane.low || dot(plane.normal, up) < 0.05f) return false;
-  if (plane.ground >= 0) return plane.ground != 0;
-  const Vector level = plane.normal - up * dot(plane.normal, up);
-  const Vector inward = level * (-0.1f * definition_.radius / math::length(level));
-  const float down = 0.2f * definition_.radius;
-  const detail::Neighbour<D>& n = of(plane);
-  const Vector from = local_point(n.pose, plane.point + Position(inward + up * (0.5f * down)));
-  const auto hit = detail::ray_into(n.geometry, from, inverse_rotate(n.pose.rotation, up * -down));
-  plane.ground = hit.hit && hit.fraction > 0 && dot(rotate(n.pose.rotation, hit.normal), up) >= least_up_ ? 1 : 0;
-  return plane.ground != 0;
-}
-
-template <class D>
-void Character<D>::add_plane(std::size_t neighbour, const Vector& normal, float separation, const Vector& point) {
-  const detail::Neighbour<D>& n = around_->near[neighbour];
-  Plane p;
-  p.neighbour = neighbour;
-  p.normal = rotate(n.pose.rotation, normal);
-  p.gap = separation - definition_.skin;
-  p.point = world_point(n.pose, point);
-  p.height = float(dot(p.point - feet(), Position(definition_.up)));
-  p.walkable = dot(p.normal, definition_.up) >= least_up_;
-  p.low = p.height < definition_.radius;
-  p.dynamic = n.body.type == BodyType::dynamic && n.body.mass > 0;
-  if (n.body.type != BodyType::fixed && n.body.awake) {
-    const Vector arm(p.point - n.body.center_of_mass);
-    const float closing = dot(way_of_point(n.body.linear_velocity, n.body.angular_velocity, arm, dt_), p.normal);
-    // A dynamic body that comes nearer is stopped by the character's body, not the other way round.
-    if (!p.dynamic || closing < 0 || n.body_id == ground_.body) p.closing = closing;
-    p.gap -= p.closing;
-  }
-  planes_.push_back(p);
-}
-
-/// Notes what is near where this move may lead, how far anything comes in it by itself, and what `needed` (seen from
-/// here) meets.
-template <class D>
-void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vector>& needed) {
-  detail::Vicinity<D>& all = *around_;
-  all.base = position_;
-  all.near.clear();
-  const Vector steps = definition_.up * definition_.step_height;
-  const auto box = geometry::grow(box_, reach_);
-  all.whole = merge(merge(needed, box), merge(geometry::Bounds<Vector>{box.low + steps, box.high + steps},
-                                              geometry::Bounds<Vector>{box.low - steps, box.high - steps}));
-  constexpr float most = 1;  // m that anything comes nearer
-  const auto asked = geometry::grow(all.whole, most);
-  const typename D::Bounds bounds{position_ + Position(asked.low), position_ + Position(asked.high)};
-  if (!world.overlap_bounds(bounds, all.found, {definition_.filter.category, definition_.filter.mask}).ok()) return;
-  for (const ShapeId shape : all.found) {
-    if (shape == shape_) continue;
-    auto geometry = world.shape_geometry(shape);
-    const auto definition = world.shape_definition(shape);
-    const auto body = world.body_of(shape);
-    if (!geometry.ok() || !definition.ok() || !body.ok()) continue;
-    const Filter& other = definition.value().filter;
-    if (other.group != 0 && other.group == definition_.filter.group && other.group < 0) continue;
-    const auto state = world.state(body.value());
-    if (!state.ok()) continue;
-    detail::Neighbour<D> n;
-    n.id = shape, n.body_id = body.value(), n.body = state.value();
-    n.pose = n.body.pose * definition.value().local;
-    if (n.body.type != BodyType::fixed && n.body.awake) {
-      const float arm =
-          float(math::length(position_ - n.body.center_of_mass)) + definition_.half_length + definition_.radius;
-      const float speed = math::length(n.body.linear_velocity) + spin_of(n.body.angular_velocity) * arm;
-      n.approach = min(speed * dt_, most);
-    }
-    n.box = geometry::bounds(geometry.value(), relative(typename D::Pose{position_, {}}, n.pose));
-    if (!geometry::overlaps(geometry::grow(n.box, n.approach), all.whole)) continue;
-    n.geometry = std::move(geometry).value();
-    all.near.push_back(std::move(n));
-  }
-  if (all.triangles.size() < all.near.size()) all.triangles.resize(all.near.size());
-  for (detail::GatheredTriangles& t : all.triangles) t.known = false;
-}
-
-/// The planes of all that a straight `way` may meet, and of what is no farther than `around` from it. What lies beside
-/// a long way is not looked at: on a mesh that is most of the triangles within its length.
-template <class D>
-void Character<D>::find_planes(const World<D>& world, const Vector& way, float around) {
-  planes_.clear();
-  detail::Vicinity<D>& all = *around_;
-  const float near = around + definition_.skin, reach = math::length(way) + near;
-  const Vector moved(position_ - all.base);
-  auto grown = geometry::grow(merge(box_, {box_.low + way, box_.high + way}), near);
-  const geometry::Bounds<Vector> seen{grown.low + moved, grown.high + moved};
-  if (contains(all.whole, seen))
-    grown = seen;
-  else
-    look_around(world, grown);
-  for (std::size_t i = 0; i < all.near.size(); ++i) {
-    detail::Neighbour<D>& n = all.near[i];
-    if (!geometry::overlaps(geometry::grow(n.box, n.approach), grown)) continue;
-    if (n.clear > 0 && n.clear - 1.001f * float(math::length(position_ - n.clear_at)) > reach + n.approach) continue;
-    n.clear = detail::for_planes(
-        all, i, capsule_, relative(n.pose, pose()), reach + n.approach,
-        {inverse_rotate(n.pose.rotation, way), near + n.approach},
-        [&](const Vector& normal, float separation, const Vector& point) { add_plane(i, normal, separation, point); });
-    n.clear_at = position_;
-  }
-}
-
 /// The way nearest to `wanted` that crosses no plane: Hildreth's method on the dual, x = wanted + Σ λ n with λ ≥ 0.
 /// What is too steep to walk on is a vertical wall for whatever does not fall. With keep_height, all but the ground is.
 template <class D>
@@ -266,10 +161,7 @@ void Character<D>::slide(const World<D>& world, Vector way, bool keep_height) {
     position_ += Position(x);
     way -= x;
     if (math::length(x) < 0.01f * definition_.skin || math::length(way) < 0.01f * definition_.skin) break;
-    // Only what a plane far away kept from it is worth another try: the rest stands in the way for good.
-    bool far = false;
-    for (const Plane& p : planes_) far = far || (p.gap > definition_.skin && p.gap + dot(p.normal, x) < tiny);
-    if (!far) break;
+    if (!kept_from_afar(planes_, x, definition_.skin)) break;
   }
 }
 
@@ -447,7 +339,8 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
   const Vector allowed = fit(way + ride, false);
   position_ += Position(allowed);
   Vector rest = way + ride - allowed;
-  if (math::length(rest) > definition_.skin && math::length(allowed) > 0.01f * definition_.skin)
+  if (math::length(rest) > definition_.skin && math::length(allowed) > 0.01f * definition_.skin &&
+      kept_from_afar(planes_, allowed, definition_.skin))
     slide(world, rest, false);
   if (stood && !jumped && speed > 0) climb(world, walk * dt, dot(way, walk) / speed, begin + Position(ride));
   if (!stood || jumped) {
@@ -460,6 +353,12 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
   velocity_ = Vector(position_ - begin) / dt;
   return world.set_pose(body_, position_, rotation_);
 }
+
+}  // namespace carom::rigid
+
+#include "carom/rigid/detail/character_planes.inl"
+
+namespace carom::rigid {
 
 template class Character<Dim2>;
 template class Character<Dim3>;

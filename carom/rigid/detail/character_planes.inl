@@ -1,0 +1,120 @@
+// What a character finds around it: neighbours, once a move, and the planes that they leave (part of character.cpp).
+#pragma once
+
+namespace carom::rigid {
+
+template <class D>
+const detail::Neighbour<D>& Character<D>::of(const Plane& plane) const {
+  return around_->near[plane.neighbour];
+}
+
+/// What is not too steep carries, and so does the top of an edge that the capsule's round end rests on: the surface a
+/// little inward of the point.
+template <class D>
+bool Character<D>::carries(const Plane& plane) const {
+  if (plane.walkable) return true;
+  const Vector up = definition_.up;
+  if (!plane.low || dot(plane.normal, up) < 0.05f) return false;
+  if (plane.ground >= 0) return plane.ground != 0;
+  const Vector level = plane.normal - up * dot(plane.normal, up);
+  const Vector inward = level * (-0.1f * definition_.radius / math::length(level));
+  const float down = 0.2f * definition_.radius;
+  const detail::Neighbour<D>& n = of(plane);
+  const Vector from = local_point(n.pose, plane.point + Position(inward + up * (0.5f * down)));
+  const auto hit = detail::ray_into(n.geometry, from, inverse_rotate(n.pose.rotation, up * -down));
+  plane.ground = hit.hit && hit.fraction > 0 && dot(rotate(n.pose.rotation, hit.normal), up) >= least_up_ ? 1 : 0;
+  return plane.ground != 0;
+}
+
+template <class D>
+void Character<D>::add_plane(std::size_t neighbour, const Vector& normal, float separation, const Vector& point) {
+  const detail::Neighbour<D>& n = around_->near[neighbour];
+  Plane p;
+  p.neighbour = neighbour;
+  p.normal = rotate(n.pose.rotation, normal);
+  p.gap = separation - definition_.skin;
+  p.point = world_point(n.pose, point);
+  p.height = float(dot(p.point - feet(), Position(definition_.up)));
+  p.walkable = dot(p.normal, definition_.up) >= least_up_;
+  p.low = p.height < definition_.radius;
+  p.dynamic = n.body.type == BodyType::dynamic && n.body.mass > 0;
+  if (n.body.type != BodyType::fixed && n.body.awake) {
+    const Vector arm(p.point - n.body.center_of_mass);
+    const float closing = dot(way_of_point(n.body.linear_velocity, n.body.angular_velocity, arm, dt_), p.normal);
+    // A dynamic body that comes nearer is stopped by the character's body, not the other way round.
+    if (!p.dynamic || closing < 0 || n.body_id == ground_.body) p.closing = closing;
+    p.gap -= p.closing;
+  }
+  planes_.push_back(p);
+}
+
+/// Notes what is near where this move may lead, how far anything comes in it by itself, and what `needed` (seen from
+/// here) meets.
+template <class D>
+void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vector>& needed) {
+  detail::Vicinity<D>& all = *around_;
+  all.base = position_;
+  all.near.clear();
+  const Vector steps = definition_.up * definition_.step_height;
+  const auto box = geometry::grow(box_, reach_);
+  all.whole = merge(merge(needed, box), merge(geometry::Bounds<Vector>{box.low + steps, box.high + steps},
+                                              geometry::Bounds<Vector>{box.low - steps, box.high - steps}));
+  constexpr float most = 1;  // m that anything comes nearer
+  const auto asked = geometry::grow(all.whole, most);
+  const typename D::Bounds bounds{position_ + Position(asked.low), position_ + Position(asked.high)};
+  if (!world.overlap_bounds(bounds, all.found, {definition_.filter.category, definition_.filter.mask}).ok()) return;
+  for (const ShapeId shape : all.found) {
+    if (shape == shape_) continue;
+    auto geometry = world.shape_geometry(shape);
+    const auto definition = world.shape_definition(shape);
+    const auto body = world.body_of(shape);
+    if (!geometry.ok() || !definition.ok() || !body.ok()) continue;
+    const Filter& other = definition.value().filter;
+    if (other.group != 0 && other.group == definition_.filter.group && other.group < 0) continue;
+    const auto state = world.state(body.value());
+    if (!state.ok()) continue;
+    detail::Neighbour<D> n;
+    n.id = shape, n.body_id = body.value(), n.body = state.value();
+    n.pose = n.body.pose * definition.value().local;
+    if (n.body.type != BodyType::fixed && n.body.awake) {
+      const float arm =
+          float(math::length(position_ - n.body.center_of_mass)) + definition_.half_length + definition_.radius;
+      const float speed = math::length(n.body.linear_velocity) + spin_of(n.body.angular_velocity) * arm;
+      n.approach = min(speed * dt_, most);
+    }
+    n.box = geometry::bounds(geometry.value(), relative(typename D::Pose{position_, {}}, n.pose));
+    if (!geometry::overlaps(geometry::grow(n.box, n.approach), all.whole)) continue;
+    n.geometry = std::move(geometry).value();
+    all.near.push_back(std::move(n));
+  }
+  if (all.triangles.size() < all.near.size()) all.triangles.resize(all.near.size());
+  for (detail::GatheredTriangles& t : all.triangles) t.known = false;
+}
+
+/// The planes of all that a straight `way` may meet, and of what is no farther than `around` from it. What lies beside
+/// a long way is not looked at: on a mesh that is most of the triangles within its length.
+template <class D>
+void Character<D>::find_planes(const World<D>& world, const Vector& way, float around) {
+  planes_.clear();
+  detail::Vicinity<D>& all = *around_;
+  const float near = around + definition_.skin, reach = math::length(way) + near;
+  const Vector moved(position_ - all.base);
+  auto grown = geometry::grow(merge(box_, {box_.low + way, box_.high + way}), near);
+  const geometry::Bounds<Vector> seen{grown.low + moved, grown.high + moved};
+  if (contains(all.whole, seen))
+    grown = seen;
+  else
+    look_around(world, grown);
+  for (std::size_t i = 0; i < all.near.size(); ++i) {
+    detail::Neighbour<D>& n = all.near[i];
+    if (!geometry::overlaps(geometry::grow(n.box, n.approach), grown)) continue;
+    if (n.clear > 0 && n.clear - 1.001f * float(math::length(position_ - n.clear_at)) > reach + n.approach) continue;
+    n.clear = detail::for_planes(
+        all, i, capsule_, relative(n.pose, pose()), reach + n.approach,
+        {inverse_rotate(n.pose.rotation, way), near + n.approach},
+        [&](const Vector& normal, float separation, const Vector& point) { add_plane(i, normal, separation, point); });
+    n.clear_at = position_;
+  }
+}
+
+}  // namespace carom::rigid
