@@ -105,6 +105,10 @@ float free_fraction(const ShapeRecord<D>& shape, const Sweep<D>& own, const Shap
   return limit;
 }
 
+/// Is it worth while to ask when the balls about such shapes touch?
+inline bool is_solid(const geometry::Shape2&) { return false; }
+inline bool is_solid(const geometry::Shape3& s) { return has_inside(s); }
+
 inline float size_of_turn(float turn) { return math::abs(turn); }
 inline float size_of_turn(const Vec3f& turn) { return math::length(turn); }
 
@@ -138,28 +142,74 @@ inline bool goes_past(const ShapeRecord<Dim3>& shape, const Sweep<Dim3>& own, co
   return fly_past(shape.geometry, other.geometry, way_of(shape, own), way_of(other, theirs), 0.005f);
 }
 
+/// From when to when (0…1 of their ways) may the balls about two shapes touch, each drawn about the centre that its
+/// body turns about? False: never.
+inline bool time_near(const ShapeRecord<Dim2>&, const Sweep<Dim2>&, const ShapeRecord<Dim2>&, const Sweep<Dim2>&,
+                      float&, float&) {
+  return true;
+}
+inline bool time_near(const ShapeRecord<Dim3>& shape, const Sweep<Dim3>& own, const ShapeRecord<Dim3>& other,
+                      const Sweep<Dim3>& theirs, float& begin, float& end) {
+  const auto reach_of = [](const ShapeRecord<Dim3>& s, const Sweep<Dim3>& way) {
+    const ShapeBall<Dim3> ball = ball_about(s);
+    const Vec3f middle = s.at_origin ? ball.middle : transform_point(s.local, ball.middle);
+    return ball.radius + math::length(middle - way.local_center);
+  };
+  const float reach = 1.001f * (reach_of(shape, own) + reach_of(other, theirs)) + 0.01f;
+  const Vec3f start = theirs.c0 - own.c0, way = theirs.c1 - own.c1 - start;
+  const float a = dot(way, way), b = dot(start, way), c = dot(start, start) - reach * reach;
+  if (c <= 0 && dot(start + way, start + way) <= reach * reach) return true;
+  if (!(a > 0)) return c <= 0;
+  // In double: of a long way c is a small difference.
+  const double discriminant = double(b) * double(b) - double(a) * double(c);
+  if (discriminant < 0) return false;
+  const double root = math::sqrt(discriminant);
+  const float first = float((-double(b) - root) / double(a)), last = float((-double(b) + root) / double(a));
+  if (first > 1 || last < 0) return false;
+  begin = max(first, 0.0f), end = min(last, 1.0f);
+  return true;
+}
+
 /// The first fraction of the step, between two, at which a shape must stop at another, seen from `base`; 2: none. A
 /// body that turns far goes in arcs of one radian and a half at most.
 template <class D>
 float meeting_time(const WorldImplementation<D>& world, const ShapeRecord<D>& shape, const ShapeRecord<D>& other,
                    const typename D::Position& base, float from, float to, bool guarded) {
-  const Sweep<D> all_own = way_of_body(world, shape.body, base, from, to),
-                 all_theirs = way_of_body(world, other.body, base, from, to);
-  if (other.tree != tree_fixed && !come_near(world, shape.body, other.body, all_own, all_theirs)) return 2;
-  float turn = 0;
+  Sweep<D> body_own = way_of_body(world, shape.body, base, from, to),
+           body_theirs = way_of_body(world, other.body, base, from, to);
+  if (other.tree != tree_fixed) {
+    if (!come_near(world, shape.body, other.body, body_own, body_theirs)) return 2;
+    // Only while they are near each other.
+    if (is_solid(shape.geometry) && is_solid(other.geometry)) {
+      float begin = 0, end = 1;
+      if (!time_near(shape, body_own, other, body_theirs, begin, end)) return 2;
+      if (begin > 0 || end < 1) {
+        const float length = to - from;
+        to = end < 1 ? from + length * end : to;
+        from += length * begin;
+        body_own = way_of_body(world, shape.body, base, from, to);
+        body_theirs = way_of_body(world, other.body, base, from, to);
+      }
+    }
+  }
+  float turn = 0;  // rad from one to the other
   for (const std::int32_t body : {shape.body, other.body})
-    if (const std::int32_t place = world.bodies.record[std::size_t(body)].awake_index; place != none)
-      turn = max(turn, size_of_turn(world.scratch.swept[std::size_t(place)].turn));
+    if (const std::int32_t place = world.bodies.record[std::size_t(body)].awake_index; place != none) {
+      const SweepStart<D>& start = world.scratch.swept[std::size_t(place)];
+      if (start.turn == typename D::Angular{} || !(start.fraction > from)) continue;
+      turn = max(turn, size_of_turn(start.turn) * ((min(to, start.fraction) - from) / start.fraction));
+    }
   const int arcs = turn == 0 ? 1 : int(turn / 1.5f) + 1;
   for (int i = 0; i < arcs; ++i) {
     const float begin = from + (to - from) * (float(i) / float(arcs));
     const float end = i + 1 == arcs ? to : from + (to - from) * (float(i + 1) / float(arcs));
-    const Sweep<D> part_own = arcs == 1 ? all_own : way_of_body(world, shape.body, base, begin, end),
-                   part_theirs = arcs == 1 ? all_theirs : way_of_body(world, other.body, base, begin, end);
-    // Two that fly past each other are near for one or two arcs of many.
-    if (arcs > 1 && other.tree != tree_fixed && !come_near(world, shape.body, other.body, part_own, part_theirs))
-      continue;
-    const Sweep<D> own = way_of_shape(shape, part_own), theirs = way_of_shape(other, part_theirs);
+    if (arcs > 1) {
+      body_own = way_of_body(world, shape.body, base, begin, end);
+      body_theirs = way_of_body(world, other.body, base, begin, end);
+      // Two that fly past each other are near for one or two arcs of many.
+      if (other.tree != tree_fixed && !come_near(world, shape.body, other.body, body_own, body_theirs)) continue;
+    }
+    const Sweep<D> own = way_of_shape(shape, body_own), theirs = way_of_shape(other, body_theirs);
     if (goes_past(shape, own, other, theirs)) continue;
     const float f = free_fraction(shape, own, other, theirs, guarded);
     if (f < 1) return begin + (end - begin) * f;
