@@ -163,7 +163,7 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
   return least > worth ? least : 0;
 }
 
-/// Returns −1 for what meets nothing. `near`: as far as planes tell, something was within reach.
+/// Returns −1 for what meets nothing. `near`: of a shape with corners, some of it was in the box.
 int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
                    const detail::PlacedCorners& corners, const Transform3f& x, float margin,
                    const detail::ShapeWay& approach, Bounds3f box, detail::OffDirections& off, bool& near,
@@ -177,8 +177,8 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
   Patch patches[max_patches];
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
+    near = corners.known();
     if (!reach.meets(t.corner, off)) return true;
-    near = true;
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;

@@ -121,11 +121,13 @@ int farthest(const float* p, int blocks, Vec3f d) {
     most = select(more, along, most);
     where = select(more, math::WideInt<4>::splat(i), where);
   }
-  int best = 4 * where[0];
-  float value = most[0];
-  for (int lane = 1; lane < 4; ++lane) {
-    const int index = 4 * where[lane] + lane;
-    if (most[lane] > value || (most[lane] == value && index < best)) value = most[lane], best = index;
+  const float value = max(max(most[0], most[1]), max(most[2], most[3]));
+  std::uint32_t lanes = math::bitmask(most >= Four::splat(value));
+  if (lanes == 0) return 4 * where[0];  // not a number
+  int lane = __builtin_ctz(lanes), best = 4 * where[lane] + lane;
+  for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1) {
+    lane = __builtin_ctz(lanes);
+    best = min(best, 4 * where[lane] + lane);
   }
   return best;
 }

@@ -52,7 +52,7 @@ Reduced of_tetrahedron(const SimplexVertex* s) {
     const Vec3d n = cross(s[f[1]].w - a, s[f[2]].w - a);
     const double inside = dot(n, s[f[3]].w - a), origin = -dot(n, a);
     // A flat tetrahedron has no inside: every face is asked.
-    const bool flat = math::abs(inside) <= 1e-14 * math::sqrt(dot(n, n)) * math::sqrt(length_squared(s[f[3]].w - a));
+    const bool flat = inside * inside <= 1e-28 * dot(n, n) * length_squared(s[f[3]].w - a);
     if (!flat && origin * inside >= 0) continue;
     const Reduced r = of_triangle(s, f[0], f[1], f[2]);
     const double d = length_squared(r.closest);

@@ -23,6 +23,7 @@ struct TriangleReach {
   const ShapeWay& approach;
   float radius = 0;
   bool line = false, solid = false;
+  int along = -1;  ///< the axis of the shape's own frame along which it is longer by half than along others; −1: none
 
   TriangleReach(const Shape3& shape, const Convex& core, const PlacedCorners& placed, const Transform3f& x,
                 float margin, const ShapeWay& goes, bool below)
@@ -41,6 +42,8 @@ struct TriangleReach {
     line = core.kind == CoreKind::point || core.kind == CoreKind::segment;
     if (line) end = core.half.y * axis[1];
     if (corners.known()) {
+      for (int k = 0; k < 3; ++k)
+        if (extents[k] > 1.5f * max(extents[(k + 1) % 3], extents[(k + 2) % 3])) along = k;
       middle -= origin;
       around = 1.0001f * (core.radius + margin) + 1e-6f * (length(origin) + length(max(abs(own.low), abs(own.high))));
       return;
@@ -54,7 +57,10 @@ struct TriangleReach {
            abs(dot(normal, half[2]));
   }
   bool meets(const Vec3f (&corner)[3], OffDirections& off) const {
-    if (corners.known()) return near_corners(corner[0] - origin, corner[1] - origin, corner[2] - origin, off);
+    if (corners.known()) {
+      const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
+      return near_corners(p, q, r, off) && !crosses_over(p, q, r, off);
+    }
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const float above = max(line_height(normal, corner[0]), 0.0f), size = length_squared(normal),
                 most = around * around;
@@ -119,6 +125,16 @@ struct TriangleReach {
     if (!(face.distance > most_before)) return true;
     const float nearest = min(dot(face.normal, p), min(dot(face.normal, q), dot(face.normal, r)));
     return nearest + corners.least_then(-face.normal) <= most_before;
+  }
+  /// Is what is long off an edge that it lies across?
+  bool crosses_over(Vec3f p, Vec3f q, Vec3f r, OffDirections& off) const {
+    if (along < 0) return false;
+    const Vec3f start[3] = {p, q, r}, edge[3] = {q - p, r - q, p - r};
+    for (int e = 0; e < 3; ++e) {
+      const Vec3f across = cross(edge[e], axis[along]);
+      if (off.learn(dot(across, middle - start[e]) < 0 ? -across : across, p, q, r)) return true;
+    }
+    return false;
   }
 };
 

@@ -174,21 +174,22 @@ bool comes_near(const WorldImplementation<Dim2>& world, const ShapeRecord<Dim2>&
 template <class D>
 struct StillNear {
   static constexpr int capacity = 8;
-  int count = 0;  ///< above the capacity: more than are listed
+  int most = 0;   ///< that are listed
+  int count = 0;  ///< above that: there are more
   std::int32_t shape[capacity];
   typename D::Bounds bounds[capacity];
 
-  StillNear(const WorldImplementation<D>& world, const typename D::Bounds& box) {
+  StillNear(const WorldImplementation<D>& world, const typename D::Bounds& box, int list = 0) : most(list) {
     for (const int tree : {tree_fixed, tree_kinematic})
       if (world.shapes.trees[tree].size() > 0)
         world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const typename D::Bounds& other) {
           if (tree == tree_fixed && !comes_near(world, world.shapes.at(std::int32_t(item)), box)) return true;
-          if (count < capacity) shape[count] = std::int32_t(item), bounds[count] = other;
-          return ++count <= capacity;
+          if (count < most) shape[count] = std::int32_t(item), bounds[count] = other;
+          return ++count <= most;
         });
   }
   bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) const {
-    if (count > capacity) return StillNear(world, box).count == 0;
+    if (count > most) return StillNear(world, box).count == 0;
     for (int i = 0; i < count; ++i)
       if (overlaps(bounds[i], box) &&
           (world.shapes.at(shape[i]).tree != tree_fixed || comes_near(world, world.shapes.at(shape[i]), box)))
@@ -209,7 +210,8 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
   const typename D::Bounds whole{math::min(start.center, motion.center), math::max(start.center, motion.center)};
   std::optional<StillNear<D>> still;
-  if (alone && still.emplace(world, geometry::grow(whole, double(motion.outer_extent))).count == 0) return;
+  const int list = has_several_shapes(world, body) ? StillNear<D>::capacity : 0;
+  if (alone && still.emplace(world, geometry::grow(whole, double(motion.outer_extent)), list).count == 0) return;
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
   float fraction = 1;
@@ -223,7 +225,7 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     if (!turns_far) {
       const MiddleWay<D> middle(shape, own);
       if (middle.is_slow(shape, most_slow)) continue;
-      if (alone && shape.next != none && still->is_free(world, middle.box(start.center))) continue;
+      if (list > 0 && alone && still->is_free(world, middle.box(start.center))) continue;
     }
     typename D::Bounds box;
     if (turns_far) {
