@@ -377,8 +377,10 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   const bool bullet = is_quick_bullet(world, shape.body);
   if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
-  // A body of several shapes would have all of them leave their bounds in every step of a fall.
-  P ahead = has_several_shapes(world, shape.body) ? P(way_of_middle(world, shape)) * 3.0 : way_ahead(world, shape);
+  // A body of several shapes would have all of them leave their bounds in every step of a fall. What is long has few
+  // others beside it.
+  const double steps = world.bodies.motion[std::size_t(shape.body)].slender != 0 ? 5 : 3;
+  P ahead = has_several_shapes(world, shape.body) ? P(way_of_middle(world, shape)) * steps : way_ahead(world, shape);
   if (bullet) ahead = P(s.linear_velocity * world.last_dt);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
