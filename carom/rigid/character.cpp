@@ -207,6 +207,10 @@ bool Character<D>::climb(const World<D>& world, const Vector& way, float wanted,
   const Vector ahead = way / length;
   const float before = float(dot(stopped - start, Position(ahead)));
   if (before > 0.99f * wanted) return false;
+  // What can be walked on is no step.
+  bool steep = false;
+  for (const Plane& p : planes_) steep = steep || (!p.walkable && dot(p.normal, ahead) < 0);
+  if (!steep) return false;
   position_ = start;
   const float raised = advance(world, up, definition_.step_height);
   slide(world, way, true);

@@ -122,6 +122,7 @@ int TriangleBlocks::planes(const NearbyLine& line, std::span<SurfacePlane> out) 
       const Four from = dot(outward[e], first - corner[e]), to = from + dot(outward[e], whole);
       const Mask out_from = from > tolerance, out_to = to > tolerance;
       beside = beside | (out_from & out_to);
+      live = live & (min(from, to) <= Four::splat(cutoff) * size[e]);
       const Four in_to = min(to, zero), in_from = min(from, zero);
       enter = select(out_from & (!out_to), max(enter, from / (from - in_to)), enter);
       leave = select(out_to & (!out_from), min(leave, in_from / (in_from - to)), leave);
@@ -129,6 +130,7 @@ int TriangleBlocks::planes(const NearbyLine& line, std::span<SurfacePlane> out) 
       beyond = beyond | past;
       beyond_sharp = beyond_sharp | (past & (!flat[e]));
     }
+    if (none(live)) continue;
     const Mask over = (!beside) & (enter <= leave);
     const Four height_enter = above - lean + (lean + lean) * enter, height_leave = above - lean + (lean + lean) * leave;
     const Mask by_leave = height_leave < height_enter;
