@@ -3,42 +3,22 @@
 
 namespace carom::ballistics::detail {
 
-[[gnu::always_inline]] inline AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
-  // The newest slope comes last in every sum, so that all before it is done when it is known.
-  const Vec3d v2 = v + (h / 5) * k1, k2 = at(x + (h / 5) * v, v2);
-  const Vec3d v3 = v + (h * (3.0 / 40)) * k1 + (h * (9.0 / 40)) * k2;
-  const Vec3d k3 = at(x + (h * (3.0 / 40)) * v + (h * (9.0 / 40)) * v2, v3);
-  const Vec3d v4 = v + (h * (44.0 / 45)) * k1 - (h * (56.0 / 15)) * k2 + (h * (32.0 / 9)) * k3;
-  const Vec3d k4 = at(x + (h * (44.0 / 45)) * v - (h * (56.0 / 15)) * v2 + (h * (32.0 / 9)) * v3, v4);
-  const Vec3d v5 = v + (h * (19372.0 / 6561)) * k1 - (h * (25360.0 / 2187)) * k2 + (h * (64448.0 / 6561)) * k3 -
-                   (h * (212.0 / 729)) * k4;
-  const Vec3d k5 = at(x + (h * (19372.0 / 6561)) * v - (h * (25360.0 / 2187)) * v2 + (h * (64448.0 / 6561)) * v3 -
-                          (h * (212.0 / 729)) * v4,
-                      v5);
-  const Vec3d v6 = v + (h * (9017.0 / 3168)) * k1 - (h * (355.0 / 33)) * k2 + (h * (46732.0 / 5247)) * k3 +
-                   (h * (49.0 / 176)) * k4 - (h * (5103.0 / 18656)) * k5;
-  const Vec3d k6 = at(x + (h * (9017.0 / 3168)) * v - (h * (355.0 / 33)) * v2 + (h * (46732.0 / 5247)) * v3 +
-                          (h * (49.0 / 176)) * v4 - (h * (5103.0 / 18656)) * v5,
-                      v6);
-  Step end;
-  end.v = v + (h * (35.0 / 384)) * k1 + (h * (500.0 / 1113)) * k3 + (h * (125.0 / 192)) * k4 -
-          (h * (2187.0 / 6784)) * k5 + (h * (11.0 / 84)) * k6;
-  end.x = x + (h * (35.0 / 384)) * v + (h * (500.0 / 1113)) * v3 + (h * (125.0 / 192)) * v4 -
-          (h * (2187.0 / 6784)) * v5 + (h * (11.0 / 84)) * v6;
-  end.k = at(end.x, end.v);
-  end.error = h * math::length(71.0 / 57600 * k1 - 71.0 / 16695 * k3 + 71.0 / 1920 * k4 - 17253.0 / 339200 * k5 +
-                               22.0 / 525 * k6 - 1.0 / 40 * end.k);
-  return end;
+template <bool Plain>
+AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
+  return flight_step([&](int, Vec3d position, Vec3d velocity)
+                         __attribute__((always_inline)) { return pull_.at<Plain>(position, velocity); },
+                     x, v, k1, h);
 }
 
-AimSolver::Arrival AimSolver::propagate(Vec3d u, double time, double allowed, Schedule* schedule) const {
+template <bool Plain>
+AimSolver::Arrival AimSolver::propagate_in(Vec3d u, double time, double allowed) const {
   // Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
   // error: no long steps there, the shorter the better the path must be known.
   const double share = allowed / math::max(math::length(u) * time, 1e-9);
   const double bend_speed = sound_ * math::clamp(0.6 * math::sqrt(math::sqrt(share)), 0.03, 0.2);
   constexpr double far_bend = 3;
   const double least = 0.5 * fall_speed_, tolerance = allowed / time;
-  Vec3d x = shooter_.muzzle, v = u, k = at(x, v);
+  Vec3d x = shooter_.muzzle, v = u, k = pull_.at<Plain>(x, v);
   double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
   for (int i = 0; i < 4000; ++i) {
     const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
@@ -46,9 +26,10 @@ AimSolver::Arrival AimSolver::propagate(Vec3d u, double time, double allowed, Sc
       if (h > far_bend * bend) h = far_bend * bend;
       if (h > bend && speed - h * pull < 1.15 * sound_) h = bend;
     }
+    if (share < 5e-4) h = math::min(h, time / 12);
     const bool last = t + h >= time * (1 - 1e-12);
     if (last) h = time - t;
-    const Step end = step(x, v, k, h);
+    const Step end = step<Plain>(x, v, k, h);
     const double room = tolerance / math::max(end.error, 1e-30);
     // The fifth root, near enough: the root of the root, held closer to one.
     const double factor = math::clamp(0.8 * math::sqrt(math::sqrt(room)), 0.2, 1.7);
@@ -57,7 +38,6 @@ AimSolver::Arrival AimSolver::propagate(Vec3d u, double time, double allowed, Sc
       v = end.v;
       k = end.k;
       t += h;
-      if (schedule != nullptr) schedule->add(last ? 1 : t / time);
       if (last) break;
     }
     h *= factor;
@@ -66,12 +46,14 @@ AimSolver::Arrival AimSolver::propagate(Vec3d u, double time, double allowed, Sc
   return {x, v};
 }
 
-AimSolver::Arrival AimSolver::follow(Vec3d u, double time, const Schedule& schedule) const {
-  Vec3d x = shooter_.muzzle, v = u, k = at(x, v);
+template <bool Plain>
+AimSolver::Arrival AimSolver::follow_in(Vec3d u, double time, const Path& path) const {
+  Vec3d x = shooter_.muzzle, v = u, k = pull_.at<Plain>(x, v);
+  const double scale = time / path.node[path.count].t;
   double t = 0;
-  for (int i = 0; i < schedule.count; ++i) {
-    const double next = time * double(schedule.ends[i]);
-    const Step end = step(x, v, k, next - t);
+  for (int i = 1; i <= path.count; ++i) {
+    const double next = path.node[i].t * scale;
+    const Step end = step<Plain>(x, v, k, next - t);
     x = end.x;
     v = end.v;
     k = end.k;
@@ -80,9 +62,10 @@ AimSolver::Arrival AimSolver::follow(Vec3d u, double time, const Schedule& sched
   return {x, v};
 }
 
-AimSolver::Pass AimSolver::pass(double elevation, double azimuth) const {
+template <bool Plain>
+AimSolver::Pass AimSolver::pass_in(double elevation, double azimuth) const {
   Vec3d x = shooter_.muzzle, v = shooter_.velocity + shooter_.muzzle_speed * direction(elevation, azimuth),
-        k = at(x, v);
+        k = pull_.at<Plain>(x, v);
   const auto beyond = [&](Vec3d place, double t) {  // m past the target's distance
     const Vec3d to = target_(t) - shooter_.muzzle, way = place - shooter_.muzzle;
     return math::sqrt(way.x * way.x + way.z * way.z) - math::sqrt(to.x * to.x + to.z * to.z);
@@ -93,7 +76,7 @@ AimSolver::Pass AimSolver::pass(double elevation, double azimuth) const {
     const double speed = math::length(v),
                  h = math::min(0.3 * math::max(speed, 0.5 * fall_speed_) / math::max(math::length(k), 1e-9),
                                -0.5 * start / math::max(speed, 1e-9));
-    const Step end = step(x, v, k, h);
+    const Step end = step<Plain>(x, v, k, h);
     const double gone = beyond(end.x, t + h);
     if (gone >= 0) {
       // Within the step: the cubic through both ends, halved to a thousandth.
@@ -128,5 +111,12 @@ AimSolver::Pass AimSolver::pass(double elevation, double azimuth) const {
   }
   return {};
 }
+
+template AimSolver::Arrival AimSolver::propagate_in<true>(Vec3d, double, double) const;
+template AimSolver::Arrival AimSolver::propagate_in<false>(Vec3d, double, double) const;
+template AimSolver::Arrival AimSolver::follow_in<true>(Vec3d, double, const Path&) const;
+template AimSolver::Arrival AimSolver::follow_in<false>(Vec3d, double, const Path&) const;
+template AimSolver::Pass AimSolver::pass_in<true>(double, double) const;
+template AimSolver::Pass AimSolver::pass_in<false>(double, double) const;
 
 }  // namespace carom::ballistics::detail

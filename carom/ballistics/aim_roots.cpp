@@ -3,91 +3,105 @@
 
 namespace carom::ballistics::detail {
 
-AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool near) const {
+AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start) const {
   Root root;
+  Path path;
   Inverse inverse;
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
-  // Most of the way paths are rough: they follow the steps of the first one that is good to a few 10^-5 of the way,
-  // and so all err alike. One fine path then tells by how much, and rough ones are flown at a target that is off by
-  // that. What the fine one errs adds up: bends of drag curves and layers of wind pass the estimate unseen.
-  const double fine = 0.1 * allowed / (1 + 0.25 * guess.time), rough = math::max(4e-5 * away, fine);
-  Schedule schedule;
-  double accuracy = near ? fine : math::max(0.02 * away, rough);
-  double last_accuracy = accuracy, last_missed = 1e300, first_missed = 1e300, last_both = 1e300;
-  Vec3d last_u{}, last_x{}, off{}, fine_u{};  // off: fine less rough
-  bool corrected = near;
-  double contraction = 0.1;  // of the miss by a step of Newton's method
+  // Rough paths as long as Newton's method has far to go. Then one whose own error is known by quadrature; what little
+  // is left from there on is found by flying the same steps again, at a target that is off by that.
+  double rough = math::min(2e-4 * away, 75 * allowed);
+  double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
+  Vec3d off{};
+  Vec3d last_u{}, last_x{};
   double last_time = 0;
+  // secant: Broyden's updates; recorded: with the derivatives; plain: with those of the last that was recorded;
+  // measured: with what it errs; again: by the steps of that one, which err alike.
+  enum class Way { secant, recorded, plain, measured, again };
+  Way way = start == Start::near ? Way::measured : eager ? Way::secant : Way::recorded;
   for (int i = 0; i < most; ++i) {
-    const bool recorded = schedule.count > 0 && schedule.count <= Schedule::most;
-    Arrival end = recorded ? follow(guess.u, guess.time, schedule)
-                           : propagate(guess.u, guess.time, accuracy, accuracy <= rough ? &schedule : nullptr);
-    end.position += off;
-    const Vec3d place = target_(guess.time);
-    Vec3d miss = place - end.position;
-    if (i == 0) {
-      inverse = estimate(guess, end);
-    } else {  // what the change of u alone did to the arrival, where that is more than what integration errs
-      const Vec3d moved = end.position - last_x - (guess.time - last_time) * end.velocity;
-      if (recorded || math::length_squared(moved) > math::square(10 * (accuracy + last_accuracy)))
-        update(inverse, guess.u - last_u, moved);
+    Arrival end;
+    if (way == Way::again) {
+      end = follow(guess.u, guess.time, path);
+      end.position += off;
+    } else if (way == Way::plain) {
+      end = propagate(guess.u, guess.time, accuracy);
+    } else if (way == Way::secant) {  // as good on flat paths, and half the work
+      end = propagate(guess.u, guess.time, accuracy);
+      if (i == 0)
+        inverse = estimate(guess, end);
+      else
+        update(inverse, guess.u - last_u, end.position - last_x - (guess.time - last_time) * end.velocity);
+      last_u = guess.u;
+      last_x = end.position;
+      last_time = guess.time;
+    } else {
+      if (!record(guess.u, guess.time, accuracy, path, i == 0 && start == Start::falling)) {
+        if (path.count < Path::most) return root;
+        rough *= 4;  // too many steps
+        accuracy *= 4;
+        continue;
+      }
+      guess.time = path.node[path.count].t;
+      sensitivities(path, way == Way::measured ? 0.8 * allowed : 0);
+      inverse = inverse_of(path.by_velocity);
+      off = path.off;
+      end = path.arrival;
+      end.position += off;
     }
-    last_u = guess.u;
-    last_time = guess.time;
-    last_accuracy = accuracy;
-    const Vec3d barrel = guess.u - shooter_.velocity;
-    const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed;
-    double missed = math::length(miss);
-    if (!math::is_finite(missed)) return root;
-    bool turned = false;  // from rough to fine
-    if (corrected && !near && math::length(guess.u - fine_u) * guess.time > 10 * rough) corrected = false;
-    // Near enough that the fine path errs by as much here as where it will hit.
-    if (accuracy <= rough && !corrected && missed < 5 * rough && math::abs(lack) * guess.time < 5 * rough) {
-      const Arrival best = propagate(guess.u, guess.time, fine);
-      off += best.position - end.position;
-      corrected = turned = true;
-      fine_u = guess.u;
-      end = best;
-      miss = place - end.position;
-      missed = math::length(miss);
-    }
-    last_x = end.position;
+    const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
+    const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
     const Vec3d d = barrel / speed, drift = velocity_of_target(guess.time) - end.velocity;
     const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
-    const double slope = math::dot(d, to_drift);
+    const double slope = math::dot(d, to_drift), both = missed + math::abs(lack) * guess.time;
     if (!math::is_finite(missed) || !math::is_finite(slope) || slope == 0) return root;
-    if (corrected && math::abs(lack) * guess.time < allowed && missed < allowed) {
-      root = {true, slope, guess, end};
-      root.guess.u = shooter_.velocity + shooter_.muzzle_speed * d;
-      return root;
-    }
-    // A correction that the last ones say will land: it is not flown.
-    const double both = missed + math::abs(lack) * guess.time;
-    if (!turned && i > 0) contraction = math::clamp(both / last_both, 0.02, 1.0);
-    const bool lands = i > 0 && corrected && !turned && both < 30 * allowed && contraction * both < 0.25 * allowed;
-    last_both = both;
-    // The next miss is some tenth of this one: then integration may err a tenth of that.
-    accuracy = math::min(accuracy, math::max(0.02 * math::min(missed, last_missed), rough));
-    if (accuracy < 4 * rough) accuracy = rough;
-    if (i == 0) first_missed = missed;
-    if (eager && i >= 4 && missed > 0.2 * first_missed) return root;
-    last_missed = missed;
     double dt = (lack - math::dot(d, to_miss)) / slope;
     dt = math::clamp(dt, -0.5 * guess.time, guess.time);
     Vec3d du = to_miss + dt * to_drift;
     const double longest = shooter_.muzzle_speed;
     if (math::length(du) > longest) du *= longest / math::length(du);
+    const double scale = math::max(away, 0.5 * math::length(end.velocity) * guess.time);
     guess.u += du;
     guess.time += dt;
     if (!(guess.time > 1e-9) || guess.time > 2 * options_.longest_time) return root;
-    if (lands) {
+    const double moved = math::length(du) * guess.time + math::length(end.velocity) * math::abs(dt);
+    // Derivatives are known to a few thousandths, and the next miss is as the square of this one.
+    const double share = way == Way::measured ? 3e-3 + 3 * moved / scale : math::clamp(both / last_both, 0.01, 1.0);
+    const bool known = way == Way::measured || way == Way::again;
+    const bool trusted = math::length(off) < 250 * allowed;  // it is known to about a hundredth
+    if (known && trusted && share * moved < 0.5 * allowed) {
+      const double* pull = path.node[path.count].k;
       const Vec3d aimed = guess.u - shooter_.velocity;
-      root = {true, slope, guess, {target_(guess.time), end.velocity}};
+      root = {true, slope, guess, {target_(guess.time), end.velocity + dt * Vec3d{pull[0], pull[1], pull[2]}}};
       root.guess.u = shooter_.velocity + (shooter_.muzzle_speed / math::length(aimed)) * aimed;
       return root;
     }
+    if (eager && i >= 4 && both > 0.2 * first_both) return root;
+    if (i == 0) first_both = both;
+    if (known && !trusted) rough *= 0.25;
+    if (known && trusted && moved < math::max(100 * allowed, 4e-4 * scale) &&
+        (way == Way::measured || both < 0.3 * last_both))
+      way = Way::again;
+    else if (known || way == Way::plain || moved < 0.02 * scale)
+      way = Way::measured;  // the bends of drag and wind make what it errs another at another place
+    else if (way == Way::recorded && moved < 0.08 * scale)
+      way = Way::plain;
+    else if (way != Way::secant || i > 2 || moved > 0.3 * scale)
+      way = Way::recorded;
+    if (way == Way::measured && moved > 0.08 * scale) way = Way::recorded;
+    accuracy = way == Way::recorded || way == Way::secant ? math::max(0.005 * math::min(moved, scale), rough) : rough;
+    last_both = both;
   }
   return root;
+}
+
+AimSolver::Inverse AimSolver::inverse_of(const Vec3d* rows) {
+  const Vec3d c12 = math::cross(rows[1], rows[2]), c20 = math::cross(rows[2], rows[0]),
+              c01 = math::cross(rows[0], rows[1]);
+  const double determinant = math::dot(rows[0], c12);
+  Inverse inverse;
+  for (int i = 0; i < 3; ++i) inverse.row[i] = (1 / determinant) * Vec3d{c12[i], c20[i], c01[i]};
+  return inverse;
 }
 
 AimSolver::Need AimSolver::need(Guess& guess) const {

@@ -5,7 +5,12 @@ namespace carom::ballistics::detail {
 
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
-    : projectile_(projectile), conditions_(conditions), shooter_(shooter), target_(target), options_(options) {
+    : pull_(projectile, conditions),
+      projectile_(projectile),
+      conditions_(conditions),
+      shooter_(shooter),
+      target_(target),
+      options_(options) {
   const double density = conditions.air.at(shooter.muzzle.y).density;
   const double speed = shooter.muzzle_speed;
   sound_ = conditions.air.at(shooter.muzzle.y).speed_of_sound;
@@ -124,7 +129,7 @@ bool AimSolver::by_guesses(Aims& aims) const {
   const double level = math::min(flown / (2 * height + deep) * speed, 0.7 * speed);
   const double climb = math::sqrt(speed * speed - level * level);
   guess.u = shooter_.velocity + Vec3d{level * way.x / flown, climb, level * way.z / flown};
-  const Root high = refine(guess);
+  const Root high = refine(guess, 40, false, Start::falling);
   if (!high.found || high.guess.time < 1.001 * low.guess.time) return false;  // two roots are all there are
   keep(aims, low);
   keep(aims, high);

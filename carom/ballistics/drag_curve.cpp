@@ -13,7 +13,7 @@ std::optional<DragFunction> drag_function_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-DragCurve::DragCurve(double coefficient) : points_{{0, coefficient}} {}
+DragCurve::DragCurve(double coefficient) : points_{{0, coefficient}} { prepare(Interpolation::linear); }
 
 DragCurve::DragCurve(DragFunction function, Interpolation interpolation) {
   const std::span<const DragPoint> table = drag_table(function);
@@ -51,32 +51,40 @@ void DragCurve::prepare(Interpolation interpolation) {
     first_[cell] = std::uint16_t(node);
   }
   const std::size_t intervals = points_.size() - 1;
-  cubics_.assign(intervals, {});
+  pieces_.assign(intervals + 3, {});
+  pieces_.front().constant = points_.front().coefficient;
+  pieces_[intervals + 1] = {last, points_.back().coefficient, 0, 0, 0};
+  pieces_.back().start = 1e308;
+  Piece* between = pieces_.data() + 1;
   for (std::size_t i = 0; i < intervals; ++i)
-    cubics_[i].slope = (points_[i + 1].coefficient - points_[i].coefficient) / (points_[i + 1].mach - points_[i].mach);
+    between[i] = {points_[i].mach, points_[i].coefficient,
+                  (points_[i + 1].coefficient - points_[i].coefficient) / (points_[i + 1].mach - points_[i].mach), 0,
+                  0};
   if (interpolation == Interpolation::linear || intervals < 2) return;
   // Slopes at the nodes: zero at peaks, else the harmonic mean of both sides, weighted by their lengths; at the ends
   // that of the line.
   std::vector<double> slope(points_.size());
-  slope.front() = cubics_.front().slope;
-  slope.back() = cubics_.back().slope;
+  slope.front() = between[0].slope;
+  slope.back() = between[intervals - 1].slope;
   for (std::size_t i = 1; i < intervals; ++i) {
-    const double before = cubics_[i - 1].slope, after = cubics_[i].slope;
+    const double before = between[i - 1].slope, after = between[i].slope;
     const double h0 = points_[i].mach - points_[i - 1].mach, h1 = points_[i + 1].mach - points_[i].mach;
     const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
     slope[i] = before * after > 0 ? (w0 + w1) / (w0 / before + w1 / after) : 0;
   }
   for (std::size_t i = 0; i < intervals; ++i) {
-    const double h = points_[i + 1].mach - points_[i].mach, line = cubics_[i].slope;
-    cubics_[i] = {slope[i], (3 * line - 2 * slope[i] - slope[i + 1]) / h,
-                  (slope[i] + slope[i + 1] - 2 * line) / (h * h)};
+    const double h = points_[i + 1].mach - points_[i].mach, line = between[i].slope;
+    between[i].slope = slope[i];
+    between[i].square = (3 * line - 2 * slope[i] - slope[i + 1]) / h;
+    between[i].cube = (slope[i] + slope[i + 1] - 2 * line) / (h * h);
   }
 }
 
 DragCurve DragCurve::scaled(double factor) const {
   DragCurve curve = *this;
   for (DragPoint& point : curve.points_) point.coefficient *= factor;
-  for (Cubic& cubic : curve.cubics_) cubic = {factor * cubic.slope, factor * cubic.square, factor * cubic.cube};
+  for (Piece& p : curve.pieces_)
+    p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube};
   return curve;
 }
 

@@ -48,15 +48,18 @@ class CAROM_API DragCurve {
 
   /// `mach` ≥ 0.
   double operator()(double mach) const {
-    // One cell of a uniform grid tells the first node that can lie beyond: a step or two from there.
-    const int cell = int(math::min(math::max(0.0, mach) * cells_per_mach_, double(cells - 1)));
-    std::size_t i = first_[std::size_t(cell)];
-    while (i + 1 < points_.size() && points_[i].mach < mach) ++i;
-    if (i == 0 || points_[i].mach < mach) return points_[i].coefficient;
-    const DragPoint& a = points_[i - 1];
-    const Cubic& c = cubics_[i - 1];
-    const double x = mach - a.mach;
-    return math::max(a.coefficient + x * (c.slope + x * (c.square + x * c.cube)), 0.0);  // rounding, where it is zero
+    const Piece& p = piece(mach);
+    const double x = mach - p.start;
+    return math::max(p.constant + x * (p.slope + x * (p.square + x * p.cube)), 0.0);  // rounding, where it is zero
+  }
+  struct Value {
+    double coefficient = 0, slope = 0;  ///< C_D and dC_D/dM
+  };
+  Value with_slope(double mach) const {
+    const Piece& p = piece(mach);
+    const double x = mach - p.start;
+    return {math::max(p.constant + x * (p.slope + x * (p.square + x * p.cube)), 0.0),
+            p.slope + x * (2 * p.square + x * (3 * p.cube))};
   }
 
   std::span<const DragPoint> points() const { return points_; }
@@ -65,12 +68,19 @@ class CAROM_API DragCurve {
 
  private:
   static constexpr std::size_t cells = 128;
-  struct Cubic {
-    double slope = 0, square = 0, cube = 0;
+  struct Piece {
+    double start = 0, constant = 0, slope = 0, square = 0, cube = 0;
   };
+  const Piece& piece(double mach) const {
+    // One cell of a uniform grid tells the first piece that can hold it: a step or two from there.
+    const int cell = int(math::min(math::max(0.0, mach) * cells_per_mach_, double(cells - 1)));
+    const Piece* p = pieces_.data() + first_[std::size_t(cell)];
+    while (p[1].start < mach) ++p;
+    return *p;
+  }
   void prepare(Interpolation interpolation);
   std::vector<DragPoint> points_;
-  std::vector<Cubic> cubics_;  // between a node and the next
+  std::vector<Piece> pieces_;  // before the first node, from each to the next, after the last, and one beyond all
   std::array<std::uint16_t, cells> first_{};
   double cells_per_mach_ = 0;
 };

@@ -1,7 +1,6 @@
 #include "carom/environment/column.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace carom::environment {
 
@@ -10,6 +9,7 @@ AirColumn::AirColumn(const AtmosphereOffset& offset, double ground_altitude) {
   lowest_ = lowest - ground_altitude;
   per_metre_ = 1 / spacing;
   const int count = int((highest - lowest) / spacing) + 1;
+  last_ = count - 1;
   nodes_.reserve(std::size_t(count));
   for (int i = 0; i < count; ++i) {
     const AirState air = standard_atmosphere(lowest + spacing * i, offset);
@@ -25,7 +25,7 @@ AirColumn AirColumn::uniform(double density, double speed_of_sound) {
 
 WindColumn::WindColumn(const Wind& wind, double top) {
   if (wind.profile == WindProfile::uniform) {
-    levels_ = {{0, wind.velocity}};
+    *this = WindColumn(wind.velocity);
     return;
   }
   // Profiles are steep near the ground: heights in geometric steps of 5 %, from where the wind begins.
@@ -43,33 +43,28 @@ WindColumn::WindColumn(std::span<const Level> levels) : levels_(levels.begin(), 
   prepare();
 }
 
-std::size_t WindColumn::cell(double height) const {
-  const std::uint64_t place = std::bit_cast<std::uint64_t>(height - levels_.front().height) >> 48;
-  return std::size_t(math::clamp(place, first_cell_, first_cell_ + first_.size() - 1) - first_cell_);
-}
-
 void WindColumn::prepare() {
   constexpr double octaves = 30;  // what is nearer to the lowest level than that is searched level by level
+  if (levels_.empty()) return;
+  lowest_ = levels_.front().velocity;
   if (levels_.size() < 2) return;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    legs_.push_back({levels_[i].height, levels_[i].velocity, {}});
+    const double span = i + 1 < levels_.size() ? levels_[i + 1].height - levels_[i].height : 0;
+    if (span > 0) legs_.back().shear = (levels_[i + 1].velocity - levels_[i].velocity) / span;
+  }
+  legs_.push_back({1e308, {}, {}});
   const double whole = levels_.back().height - levels_.front().height;
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x) >> 48; };
   first_cell_ = bits(math::max(whole, 0.0) * math::exp2(-octaves));
-  first_.assign(std::size_t(bits(whole) - first_cell_) + 1, 0);
+  last_cell_ = bits(whole);
+  first_.assign(std::size_t(last_cell_ - first_cell_) + 1, 0);
   std::uint32_t level = 0;
   for (std::size_t i = 1; i < first_.size(); ++i) {
     const double start = std::bit_cast<double>((first_cell_ + i) << 48);
     while (level + 2 < levels_.size() && levels_[level + 1].height - levels_.front().height <= start) ++level;
     first_[i] = level;
   }
-}
-
-math::Vec3d WindColumn::between(double height) const {
-  if (!(height > levels_.front().height)) return levels_.front().velocity;
-  if (height >= levels_.back().height) return levels_.back().velocity;
-  std::size_t i = first_[cell(height)];
-  while (levels_[i + 1].height <= height) ++i;  // the last level is above it
-  const Level &a = levels_[i], &b = levels_[i + 1];
-  return a.velocity + ((height - a.height) / (b.height - a.height)) * (b.velocity - a.velocity);
 }
 
 }  // namespace carom::environment

@@ -1,6 +1,7 @@
 // Air and wind over height as tables: what models that ask a thousand times a flight use instead of the formulas.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,18 +28,27 @@ class CAROM_API AirColumn {
   static AirColumn uniform(double density, double speed_of_sound = 340.294);
 
   Air at(double height) const {
-    const int last = int(nodes_.size()) - 1;
-    const double place = math::clamp((height - lowest_) * per_metre_, 0.0, double(last));
-    const int i = place > 0 ? math::min(int(place), last - 1) : 0;
+    const double place = math::min(math::max(0.0, (height - lowest_) * per_metre_), last_);
+    const int i = math::min(int(place), int(last_) - 1);
     const double t = place - double(i);
     const Air &a = nodes_[std::size_t(i)], &b = nodes_[std::size_t(i) + 1];
     return {a.density + t * (b.density - a.density), a.speed_of_sound + t * (b.speed_of_sound - a.speed_of_sound)};
+  }
+  /// With what a metre of height changes.
+  Air at(double height, Air& by_metre) const {
+    const double place = math::min(math::max(0.0, (height - lowest_) * per_metre_), last_);
+    const int i = math::min(int(place), int(last_) - 1);
+    const double t = place - double(i);
+    const Air &a = nodes_[std::size_t(i)], &b = nodes_[std::size_t(i) + 1];
+    const double density = b.density - a.density, sound = b.speed_of_sound - a.speed_of_sound;
+    by_metre = {density * per_metre_, sound * per_metre_};
+    return {a.density + t * density, a.speed_of_sound + t * sound};
   }
 
  private:
   struct Empty {};
   explicit AirColumn(Empty) {}
-  double lowest_ = 0, per_metre_ = 0;
+  double lowest_ = 0, per_metre_ = 0, last_ = 1;
   std::vector<Air> nodes_;
 };
 
@@ -52,26 +62,50 @@ class CAROM_API WindColumn {
 
   WindColumn() = default;  ///< calm
   /// The same wind at every height.
-  explicit WindColumn(math::Vec3d velocity) : levels_{{0, velocity}} {}
+  explicit WindColumn(math::Vec3d velocity) : levels_{{0, velocity}}, lowest_(velocity) {}
   /// A profile, sampled up to `top` m.
   explicit WindColumn(const Wind& wind, double top = 1000);
   /// Levels of rising height; of equal heights the later one counts above. Any order is accepted and sorted.
   explicit WindColumn(std::span<const Level> levels);
 
   math::Vec3d at(double height) const {
-    if (levels_.size() > 1) return between(height);
-    return levels_.empty() ? math::Vec3d{} : levels_.front().velocity;
+    if (legs_.empty()) return lowest_;
+    const double above = height - legs_.front().height;
+    if (!(above > 0)) return lowest_;
+    const Leg& leg = leg_of(above, height);
+    return leg.velocity + (height - leg.height) * leg.shear;
+  }
+  /// With what a metre of height changes (1/s).
+  math::Vec3d at(double height, math::Vec3d& shear) const {
+    shear = {};
+    if (legs_.empty()) return lowest_;
+    const double above = height - legs_.front().height;
+    if (!(above > 0)) return lowest_;
+    const Leg& leg = leg_of(above, height);
+    shear = leg.shear;
+    return leg.velocity + (height - leg.height) * leg.shear;
   }
   std::span<const Level> levels() const { return levels_; }
 
  private:
-  math::Vec3d between(double height) const;
-  /// Sixteen cells an octave of the height above the lowest level, by the first bits of the number.
-  std::size_t cell(double height) const;
+  struct Leg {
+    double height = 0;
+    math::Vec3d velocity{}, shear{};  // at that height, and by the metre above it
+  };
+  const Leg& leg_of(double above, double height) const {
+    const std::uint64_t cell = math::clamp(std::bit_cast<std::uint64_t>(above) >> 48, first_cell_, last_cell_);
+    const Leg* leg = legs_.data() + first_[std::size_t(cell - first_cell_)];
+    while (leg[1].height <= height) ++leg;
+    return *leg;
+  }
   void prepare();
   std::vector<Level> levels_;
-  std::vector<std::uint32_t> first_;  // the level at or below the beginning of a cell
-  std::uint64_t first_cell_ = 0;
+  math::Vec3d lowest_{};
+  std::vector<Leg> legs_;  // from each level to the next, above the last, and one beyond all; none without shear
+  // Sixteen cells an octave of the height above the lowest level, by the first bits of the number: the leg that is at
+  // or below the beginning of each.
+  std::vector<std::uint32_t> first_;
+  std::uint64_t first_cell_ = 0, last_cell_ = 0;
 };
 
 }  // namespace carom::environment

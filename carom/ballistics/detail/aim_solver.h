@@ -1,9 +1,9 @@
-// How AimSolver and its parts are divided: aim_flight.cpp flies, aim_roots.cpp finds the shot near a guess,
-// aim_search.cpp finds guesses, or that there are none.
+// How AimSolver and its parts are divided: aim_flight.cpp flies, aim_path.cpp knows what a flight owes to its start,
+// aim_roots.cpp finds the shot near a guess, aim_search.cpp finds guesses, or that there are none.
 #pragma once
 
 #include "carom/ballistics/aim.h"
-#include "carom/ballistics/detail/point_mass.h"
+#include "carom/ballistics/detail/flight_path.h"
 
 namespace carom::ballistics::detail {
 
@@ -19,9 +19,7 @@ class AimSolver {
     Vec3d u{};  // the initial velocity in the world
     double time = 0;
   };
-  struct Arrival {
-    Vec3d position{}, velocity{};
-  };
+  using Arrival = FlightPath::Arrival;
 
   /// Newton's method for u and T together.
   struct Root {
@@ -30,8 +28,10 @@ class AimSolver {
     Guess guess{};
     Arrival arrival{};
   };
-  /// `eager`: gives up where the first steps do not lead there; `near`: the guess is as good as there.
-  Root refine(Guess guess, int most = 40, bool eager = false, bool near = false) const;
+  /// `eager`: gives up where the first steps do not lead there. `near`: the guess is as good as there; `falling`: its
+  /// time is only the order of magnitude, the right one is when it comes down to the target's height.
+  enum class Start { anywhere, near, falling };
+  Root refine(Guess guess, int most = 40, bool eager = false, Start start = Start::anywhere) const;
 
   /// All roots by a walk through the flight times, the earliest and the latest of them.
   Aims scan() const;
@@ -92,40 +92,53 @@ class AimSolver {
   Inverse estimate(const Guess& guess, const Arrival& end) const;
   /// The inverse of the derivative by differences.
   Inverse derivatives(const Guess& guess, const Arrival& end, double accuracy) const;
+  static Inverse inverse_of(const Vec3d* rows);
   /// Broyden's update of the inverse: it must give du for dx.
   static void update(Inverse& inverse, Vec3d du, Vec3d dx);
 
-  /// The steps of a path as shares of its time. Paths that follow the same ones err alike, whatever air in layers and
-  /// the bends of drag curves do to the estimate of the error: Newton's method converges on them without noise.
-  struct Schedule {
-    static constexpr int most = 600;
-    int count = 0;  // most + 1: too many
-    float ends[most];
-    void add(double end) {
-      if (count < most) ends[count] = float(end);
-      if (count <= most) ++count;
-    }
-  };
-  struct Step {
-    Vec3d x{}, v{}, k{};
-    double error = 0;  // m/s
-  };
-  /// Dormand and Prince's pair of orders 5 and 4; k1 is the acceleration at the start, k the one at the end.
-  Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
+  using Path = FlightPath;
+  /// `falling`: until it comes down to the target's height, not until `time`. False: too many steps.
+  bool record(Vec3d u, double time, double allowed, Path& path, bool falling = false) const {
+    return pull_.plain() ? record_in<true>(u, time, allowed, path, falling)
+                         : record_in<false>(u, time, allowed, path, falling);
+  }
+  template <bool Plain>
+  bool record_in(Vec3d u, double time, double allowed, Path& path, bool falling) const;
+  /// Backward along a recorded path: how the arrival depends on the start; `fine` > 0: also what the path errs, by
+  /// quadrature of how far its interpolant is from the equation of motion, to about that (m).
+  void sensitivities(Path& path, double fine = 0) const {
+    return pull_.plain() ? sensitivities_in<true>(path, fine) : sensitivities_in<false>(path, fine);
+  }
+  template <bool Plain>
+  void sensitivities_in(Path& path, double fine) const;
+
+  using Step = FlightStep;
+  template <bool Plain>
+  [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
-  Arrival propagate(Vec3d u, double time, double allowed, Schedule* schedule = nullptr) const;
-  Arrival follow(Vec3d u, double time, const Schedule& schedule) const;
+  Arrival propagate(Vec3d u, double time, double allowed) const {
+    return pull_.plain() ? propagate_in<true>(u, time, allowed) : propagate_in<false>(u, time, allowed);
+  }
+  template <bool Plain>
+  Arrival propagate_in(Vec3d u, double time, double allowed) const;
+  /// The steps of a recorded path again, as shares of the time: both err alike.
+  Arrival follow(Vec3d u, double time, const Path& path) const {
+    return pull_.plain() ? follow_in<true>(u, time, path) : follow_in<false>(u, time, path);
+  }
+  template <bool Plain>
+  Arrival follow_in(Vec3d u, double time, const Path& path) const;
   /// How a shot passes the distance of the target.
   struct Pass {
     bool plain = false;  // it does so once and at a slant, or never
     double over = 0;     // m above the target; where it falls short, less what it lacks in distance
     double aside = 0;    // rad, how much farther to turn
   };
-  Pass pass(double elevation, double azimuth) const;
-  Vec3d at(Vec3d position, Vec3d velocity) const {
-    return point_mass_acceleration(projectile_, conditions_, position, velocity);
+  Pass pass(double elevation, double azimuth) const {
+    return pull_.plain() ? pass_in<true>(elevation, azimuth) : pass_in<false>(elevation, azimuth);
   }
-
+  template <bool Plain>
+  Pass pass_in(double elevation, double azimuth) const;
+  const PointMassPull pull_;
   const Projectile& projectile_;
   const Conditions& conditions_;
   const Shooter& shooter_;

@@ -6,24 +6,15 @@
 
 namespace carom::ballistics::detail {
 
-inline math::Vec3d point_mass_acceleration(const Projectile& projectile, const Conditions& conditions,
-                                           math::Vec3d position, math::Vec3d velocity) {
-  const double height = position.y;
+/// Gravity and what the turning of the frame adds.
+inline math::Vec3d beside_drag(const Conditions& conditions, math::Vec3d position, math::Vec3d velocity) {
   math::Vec3d a{};
-  if (projectile.area_per_mass > 0) {
-    const environment::AirColumn::Air air = conditions.air.at(height);
-    const math::Vec3d w = velocity - conditions.wind.at(height);
-    // What hangs on the height alone is known before the velocity is: the processor does not wait for it.
-    const double slowness = 1 / air.speed_of_sound, weight = -0.5 * air.density * projectile.area_per_mass;
-    const double speed = math::length(w);
-    a = (projectile.drag(speed * slowness) * (weight * speed)) * w;
-  }
   switch (conditions.gravity_model) {
     case GravityModel::uniform:
       a.y -= conditions.gravity;
       break;
     case GravityModel::inverse_square:
-      a.y -= conditions.gravity * math::square(conditions.earth_radius / (conditions.earth_radius + height));
+      a.y -= conditions.gravity * math::square(conditions.earth_radius / (conditions.earth_radius + position.y));
       break;
     case GravityModel::round_earth: {
       const math::Vec3d r = position + math::Vec3d{0, conditions.earth_radius, 0};
@@ -33,6 +24,78 @@ inline math::Vec3d point_mass_acceleration(const Projectile& projectile, const C
     }
   }
   return a - 2.0 * math::cross(conditions.rotation, velocity);
+}
+
+/// Of one projectile under one set of conditions, for loops: what does not change is decided before them.
+class PointMassPull {
+ public:
+  PointMassPull(const Projectile& projectile, const Conditions& conditions)
+      : projectile_(projectile),
+        conditions_(conditions),
+        half_area_(0.5 * projectile.area_per_mass),
+        plain_(conditions.gravity_model == GravityModel::uniform && conditions.rotation == math::Vec3d{}) {}
+
+  /// How drag changes: ∂a/∂v = −drag I − bend w wᵀ, w the velocity through the air; rise = ∂a/∂y.
+  struct Slope {
+    float drag, bend, w[3], rise[3];
+  };
+  /// Gravity is uniform and the frame does not turn: of the position the height alone matters.
+  bool plain() const { return plain_; }
+
+  math::Vec3d operator()(math::Vec3d position, math::Vec3d velocity) const {
+    return plain_ ? at<true>(position, velocity) : at<false>(position, velocity);
+  }
+  template <bool Plain>
+  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
+    math::Vec3d a{};
+    if (half_area_ > 0) {
+      const environment::AirColumn::Air air = conditions_.air.at(position.y);
+      const math::Vec3d w = velocity - conditions_.wind.at(position.y);
+      // What hangs on the height alone is known before the velocity is: the processor does not wait for it.
+      const double slowness = 1 / air.speed_of_sound, weight = -half_area_ * air.density;
+      const double speed = math::length(w);
+      a = (projectile_.drag(speed * slowness) * (weight * speed)) * w;
+    }
+    return beside<Plain>(a, position, velocity);
+  }
+  template <bool Plain>
+  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
+    environment::AirColumn::Air by_metre;
+    math::Vec3d shear;
+    const environment::AirColumn::Air air = conditions_.air.at(position.y, by_metre);
+    const math::Vec3d w = velocity - conditions_.wind.at(position.y, shear);
+    const double slowness = 1 / air.speed_of_sound, weight = half_area_ * air.density;
+    const double speed = math::length(w), mach = speed * slowness;
+    const DragCurve::Value drag = projectile_.drag.with_slope(mach);
+    const double pull = weight * drag.coefficient * speed, steep = weight * drag.slope * mach;
+    const double bend = (weight * drag.coefficient + steep) / math::max(speed, 1e-9);
+    slope.drag = float(pull);
+    slope.bend = float(bend);
+    const double along = bend * math::dot(w, shear) + steep * speed * slowness * by_metre.speed_of_sound -
+                         half_area_ * by_metre.density * drag.coefficient * speed;
+    for (int i = 0; i < 3; ++i) {
+      slope.w[i] = float(w[i]);
+      slope.rise[i] = float(pull * shear[i] + along * w[i]);
+    }
+    return beside<Plain>(-pull * w, position, velocity);
+  }
+
+ private:
+  template <bool Plain>
+  [[gnu::always_inline]] math::Vec3d beside(math::Vec3d a, math::Vec3d position, math::Vec3d velocity) const {
+    if constexpr (!Plain) return a + beside_drag(conditions_, position, velocity);
+    a.y -= conditions_.gravity;
+    return a;
+  }
+  const Projectile& projectile_;
+  const Conditions& conditions_;
+  double half_area_ = 0;  // m²/kg
+  bool plain_ = true;
+};
+
+inline math::Vec3d point_mass_acceleration(const Projectile& projectile, const Conditions& conditions,
+                                           math::Vec3d position, math::Vec3d velocity) {
+  return PointMassPull(projectile, conditions)(position, velocity);
 }
 
 }  // namespace carom::ballistics::detail
