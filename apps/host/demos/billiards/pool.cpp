@@ -30,6 +30,9 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         "a ball stops, meets another, a cushion, a jaw or a pocket. So the lines drawn before the shot are the "
         "shot.\n\n"
         "  sliding: a = −μ_s g û,  dω/dt = 5 μ_s g/(2R)      rolling: a = −μ_r g v̂\n\n"
+        "A ball that leaves the cue with the slip u₀ = v₀ − R ω₀ slides for 2u₀/(7μ_s g), loses 2/7 of the slip, and "
+        "rolls "
+        "(Shepard, Amateur Physics for the Amateur Pool Player, 1997): the points, anew from every contact.\n\n"
         "The tip's offset gives spin, ω = (5/2) v b/R, and pushes the ball a little to the other side (squirt). Balls "
         "throw each other by friction that falls with slip; cushions are Stronge's compliant impact. White: the cue "
         "ball "
@@ -51,7 +54,10 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         {"table", "Table", "", "", "0: 7 ft, 1: 8 ft, 2: 9 ft pool, 3: snooker, 4: Russian pyramid", 0, 4, 1, 2, false},
     };
     d.plots = {{"Energy", {"time", "s"}, {"energy of the balls", "J"}, {{"all"}}},
-               {"Speed of the cue ball", {"time", "s"}, {"speed", "m/s"}, {{"cue ball"}}}};
+               {"Speed of the cue ball",
+                {"time", "s"},
+                {"speed", "m/s"},
+                {{"cue ball"}, {"slides, then rolls", Series::Style::points}}}};
     d.inputs = {{"aim_left", "Aim left", {"ArrowLeft"}, false, 1},
                 {"aim_right", "Aim right", {"ArrowRight"}, false, 1},
                 {"aim_fine", "Aim finely", {"ShiftLeft", "ShiftRight"}, false, 1},
@@ -135,6 +141,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     const double t = stage.world().time(), energy = game_->energy();
     stage.sample(0, 0, t, energy);
     stage.sample(1, 0, t, length(game_->state(0).velocity));
+    follow_law(stage, t);
     if (shots_ > 0 && !struck_) rise_ = max(rise_, energy - energy_);
     struck_ = false;
     energy_ = energy;
@@ -144,6 +151,9 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     const double m = game_->physics().ball.mass, offset = square(stage.value("side")) + square(stage.value("height"));
     out.push_back({"speed of the cue ball", "m/s", "2V/(1 + m/M + 2.5 b²)", started_,
                    2 * stage.value("speed") / (1 + m / 0.567 + 2.5 * offset), 1e-9});
+    const double way = distance(start_[0], start_[1]) - 2 * game_->physics().ball.radius;  // to the foremost ball
+    out.push_back({"time that the cue ball keeps to sliding and rolling", "s", "up to its first contact",
+                   law_time_ - law_from_, way / started_, 2.0 / 60});
     out.push_back({"greatest rise of energy in a step", "J", "energy never rises", rise_, 0, 1e-6});
     int moved = 0;
     for (int i = 1; i < game_->balls(); ++i) moved += distance(game_->state(i).position, start_[std::size_t(i)]) > 0.02;
@@ -162,6 +172,30 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     return s;
   }
   bool resting() const { return game_->next_event_time() == sports::never; }
+
+  /// The speed by the law of sliding and rolling, from the stroke or the last contact on.
+  void follow_law(Stage3& stage, double t) {
+    const auto& physics = game_->physics();
+    const BilliardState now = game_->state(0);
+    const double g = physics.gravity, since = clock_ - law_at_, slip = length(law_slip_);
+    const double slides = 2 * slip / (7 * physics.cloth.sliding_friction * g);
+    Vec3d law = law_velocity_;
+    if (slip > 0) law -= (physics.cloth.sliding_friction * g * min(since, slides) / slip) * law_slip_;
+    const double speed = length(law), rolled = physics.cloth.rolling_friction * g * max(0.0, since - slides);
+    if (speed > 0) law *= max(0.0, speed - rolled) / speed;
+    if (distance(law, now.velocity) < 1e-6) {
+      if (length(law) > 0 && ++law_steps_ % 3 == 0) stage.sample(1, 1, t, length(law));
+      if (free_) law_time_ = t;
+      return;
+    }
+    free_ = false;
+    begin_law(now, clock_);
+  }
+  void begin_law(const BilliardState& state, double time) {
+    law_at_ = time;
+    law_velocity_ = state.velocity;
+    law_slip_ = sports::bed_slip(state, game_->physics().ball.radius);
+  }
 
   /// The golden ball on the line of aim may be pulled: the cue follows.
   void drag(Stage3& stage) {
@@ -204,6 +238,11 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     struck_ = true;
     struck_at_ = game_->time();
     if (shots_ == 1) started_ = length(hit->velocity);
+    if (shots_ == 1) {
+      free_ = true;
+      law_from_ = stage.world().time();
+    }
+    begin_law(game_->state(0), struck_at_);
     stage.say(hit->miscue ? std::string("miscue: the tip slipped off")
                           : format("%.1f m/s, squirt %.1f°", length(hit->velocity), degrees(hit->squirt)));
     reported_ = false;
@@ -299,7 +338,11 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
   Vec3d handle_place_{};
   double handle_away_ = 0.4;
   double clock_ = 0, stroke_clock_ = -1, energy_ = 0, rise_ = 0, started_ = 0, struck_at_ = 0;
+  double law_at_ = 0, law_time_ = 0, law_from_ = 0;
+  Vec3d law_velocity_{}, law_slip_{};
+  int law_steps_ = 0;
   int shots_ = 0;
+  bool free_ = false;  // has met nothing since the stroke
   bool struck_ = false, reported_ = true;
 };
 

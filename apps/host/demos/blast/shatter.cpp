@@ -36,8 +36,9 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
         {"mass", "Mass of the ball", "kg", "kg", "", 1, 500, 1, 160, true},
         {"seed", "Seed", "", "", "of the cells", 1, 100, 1, 7, false},
     };
-    d.plots = {{"What holds", {"time", "s"}, {"bodies of the wall", ""}, {{"bodies"}, {"broken bonds"}}},
-               {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}}}};
+    d.plots = {
+        {"What holds", {"time", "s"}, {"bodies of the wall", ""}, {{"bodies"}, {"broken bonds"}}},
+        {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}, {"free flight", Series::Style::points}}}};
     d.inputs = {{"shoot", "Shoot", {"Space"}, true, 1}};
     return d;
   }
@@ -72,6 +73,9 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
   void before_step(Stage3& stage) override {
     if (stage.presses("shoot") == 0 && !(shots_ == 0 && stage.world().time() >= 0.4)) return;
     ++shots_;
+    thrown_at_ = stage.world().time();
+    thrown_ = {0, 1, -stage.value("speed")};
+    if (shots_ == 1) shot_at_ = thrown_at_;
     const float radius = float(cbrt(stage.value("mass") / (7800 * 4 / 3.0 * pi)));
     rigid::BodyDef<Dim3> body;
     body.name = "ball";
@@ -90,8 +94,7 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
     const double t = stage.world().time();
     stage.sample(0, 0, t, double(wall_.cluster_count()));
     stage.sample(0, 1, t, double(wall_.broken()));
-    if (shots_ > 0 && stage.world().contains(ball_))
-      stage.sample(1, 0, t, double(length(stage.at(ball_).linear_velocity)));
+    if (shots_ > 0 && stage.world().contains(ball_)) compare(stage, t);
     if (!wall_.events().empty())
       stage.say(format("broken bonds: %.0f, the worst at %.1f times its strength; %.0f bodies",
                        double(wall_.events().size()), worst(), double(wall_.cluster_count())));
@@ -103,10 +106,27 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
     for (std::uint32_t p = 0; p < wall_.part_count(); ++p)
       if (stage.keep(stage.world().state(wall_.body_of(p))).mass == 0) mass += wall_.definition().parts[p].mass.mass;
     out.push_back({"mass of all parts", "kg", "cutting loses nothing", mass, mass_, 1e-5 * mass_});
+    const double gap = 4 - 0.11 - cbrt(stage.value("mass") / (7800 * 4 / 3.0 * pi));
+    out.push_back({"time that the ball flies freely", "s", "from the throw to the wall", flown_,
+                   gap / stage.value("speed"), 2.0 / 60});
     out.push_back({"the wall broke", "", "a ball of 160 kg at 32 m/s", wall_.broken() > 5 ? 1.0 : 0.0, 1, 0});
   }
 
  private:
+  /// The speed by free flight, from the throw or the last contact on.
+  void compare(Stage3& stage, double t) {
+    const Vec3d velocity(stage.at(ball_).linear_velocity);
+    stage.sample(1, 0, t, length(velocity));
+    const Vec3d law = thrown_ - Vec3d{0, 9.80665 * (t - thrown_at_), 0};
+    if (distance(law, velocity) < 0.02) {
+      stage.sample(1, 1, t, length(law));
+      if (first_) flown_ = t - shot_at_;
+      return;
+    }
+    first_ = false;
+    thrown_ = velocity;
+    thrown_at_ = t;
+  }
   double worst() const {
     double w = 0;
     for (const auto& event : wall_.events()) w = max(w, event.load);
@@ -115,7 +135,9 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
   blast::Structure3 wall_;
   blast::FractureStepper3 stepper_;
   rigid::BodyId ball_;
-  double mass_ = 0;
+  double mass_ = 0, shot_at_ = 0, flown_ = 0, thrown_at_ = 0;
+  Vec3d thrown_{};
+  bool first_ = true;
   int shots_ = 0;
 };
 

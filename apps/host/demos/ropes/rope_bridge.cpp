@@ -25,7 +25,10 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
         "mass of a piece of its rope.\n\n"
         "A bridge of weight W that sags by f over a span L pulls at its ends along with about\n\n"
         "  H = W L/8f\n\n"
-        "and its ropes bear the more the tighter they are.";
+        "and its ropes bear the more the tighter they are: at an end √(H² + W²/4), shared by both. The rope of a ball "
+        "that was let go at the angle θ₀ bears\n\n"
+        "  T = m g (3 cos θ − 2 cos θ₀)\n\n"
+        "Both are drawn beside what is measured until the ball arrives, as is the parabola of an evenly loaded rope.";
     d.duration = 12;
     d.camera = {{0, 4.5, 15}, {0, 1.2, 0}, 0.7};
     d.ground = -1.5;
@@ -34,7 +37,12 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
         {"ball", "Mass of the ball", "kg", "kg", "", 50, 2000, 0, 500, false},
         {"strength", "Strength of a rope", "N", "kN", "tension above which it breaks", 2000, 2e5, 0, 60000, false},
     };
-    d.plots = {{"Tension", {"time", "s"}, {"tension", "kN"}, {{"bridge"}, {"ball's rope"}}}};
+    d.plots = {
+        {"Tension",
+         {"time", "s"},
+         {"tension", "kN"},
+         {{"bridge"}, {"ball's rope"}, {"bridge, √(H² + W²/4)/2"}, {"ball's rope, mg(3cosθ − 2cosθ₀)"}}},
+        {"Line of the deck at 1 s", {"along", "m"}, {"height", "m"}, {{"rope", Series::Style::points}, {"parabola"}}}};
     return d;
   }
 
@@ -53,7 +61,7 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
                                  .axial_damping = 4e3,
                                  .drag_coefficient = 1.2,
                                  .break_tension = stage.value("strength")};
-    const double span = 12, length = span * (1 + stage.value("slack"));
+    const double length = span_ * (1 + stage.value("slack"));
     const int segments = 2 * planks_ + 1;
     for (int k = 0; k < 2; ++k) {
       const double z = k == 0 ? -0.7 : 0.7;
@@ -79,14 +87,14 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
       rigid::ShapeDef<Dim3> shape;
       shape.density = 500;
       const BodyId plank = stage.add(def, geometry::Box{{0.2f, 0.04f, 0.75f}}, shape, sand);
+      weight_ += 9.80665 * 500 * 0.4 * 0.08 * 1.5;
       for (int k = 0; k < 4; ++k)
         stage.check(ropes_.attach(
             k % 2, {.node = node + k / 2, .body = plank, .point = {k < 2 ? -half : half, 0, k % 2 == 0 ? -0.7 : 0.7}},
             stage.world()));
     }
     // The ball hangs from a gallows, drawn aside.
-    const double reach = 6.7;
-    ball_at_ = Vec3d{0, 7.4, 0} + reach * Vec3d{0, -0.5, -0.866};
+    ball_at_ = Vec3d{0, gallows_, 0} + reach_ * Vec3d{0, -0.5, -0.866};
     def.rotation = {};
     def.name = "ball";
     def.position = ball_at_;
@@ -94,7 +102,7 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
     const double radius = 0.5;
     heavy.density = float(stage.value("ball") / (4.0 / 3 * math::pi * radius * radius * radius));
     ball_ = stage.add(def, geometry::Sphere{float(radius)}, heavy, red);
-    const Vec3d points[] = {{0, 7.4, 0}, ball_at_};
+    const Vec3d points[] = {{0, gallows_, 0}, ball_at_};
     stage.keep(
         ropes_.add({.material = {.mass_per_length = 2, .radius = 0.025, .axial_stiffness = 5e6, .axial_damping = 2e4},
                     .points = points,
@@ -114,18 +122,60 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
       for (const double tension : ropes_.tensions(k)) bridge = max(bridge, tension);
     stage.sample(0, 0, t, 1e-3 * bridge);
     stage.sample(0, 1, t, 1e-3 * ropes_.peak_tension(2));
+    compare(stage, t, bridge);
     broken_ += int(ropes_.breaks().size());
     for (const auto& event : ropes_.breaks()) stage.say(format("a rope broke at %.1f kN", 1e-3 * event.tension));
     stretch_ = max(stretch_, ropes_.length(2) / ropes_.rest_length(2) - 1);
   }
 
-  void expectations(Stage3&, std::vector<Expectation>& out) override {
+  void expectations(Stage3& stage, std::vector<Expectation>& out) override {
     out.push_back({"stretch of the ball's rope, most", "", "1 : 1000 without stretch, below 1 %", stretch_, 0, 0.01});
+    out.push_back({"mean tension of the bridge before, over √(H² + W²/4)/2", "", "parabola of an evenly loaded rope",
+                   rest_ / max(rests_, 1), 1, 0.08});
+    out.push_back({"deck at 1 s, farthest from the parabola over its sag", "", "parabola of an evenly loaded rope",
+                   bent_, 0, 0.05});
+    out.push_back({"tension of the ball's rope as it arrives, over mg(3cosθ − 2cosθ₀)", "", "pendulum; a rope of 13 kg",
+                   swing_, 1, 0.03 + 13 / stage.value("ball")});
     out.push_back({"ropes that broke", "", "they bear the ball", double(broken_), 0, 0});
   }
   std::uint64_t state_hash(std::uint64_t world) const override { return world ^ ropes_.state_hash(); }
 
  private:
+  static constexpr double span_ = 12, gallows_ = 7.4, reach_ = 6.7;
+
+  void compare(Stage3& stage, double t, double bridge) {
+    const Vec3d ball = stage.at(ball_).pose.position;
+    const double cosine = (gallows_ - ball.y) / distance(ball, Vec3d{0, gallows_, 0});
+    if (arrived_ || cosine < last_cosine_ || ball.z > -1.3) {
+      arrived_ = true;
+      return;
+    }
+    last_cosine_ = cosine;
+    const auto line = ropes_.positions(0);
+    double lowest = line.front().y;
+    for (const Vec3d& p : line) lowest = min(lowest, double(p.y));
+    const double sag = line.front().y - lowest, weight = weight_ + 2 * 9.80665 * 0.8 * ropes_.length(0);
+    const double along = weight * span_ / (8 * sag), expected = 0.5 * math::hypot(along, 0.5 * weight);
+    const double swing = stage.value("ball") * 9.80665 * (3 * cosine - 2 * 0.5);
+    stage.sample(0, 2, t, 1e-3 * expected);
+    stage.sample(0, 3, t, 1e-3 * swing);
+    if (t > 0.3) {  // it sways a little from the start: the mean
+      rest_ += bridge / expected;
+      ++rests_;
+    }
+    swing_ = ropes_.peak_tension(2) / swing;
+    if (drawn_ || t < 0.99) return;
+    drawn_ = true;
+    for (const Vec3d& p : line) {
+      stage.sample(1, 0, p.x, p.y);
+      const double u = 2 * p.x / span_;
+      bent_ = max(bent_, math::abs(p.y - (line.front().y - sag * (1 - u * u))) / sag);
+    }
+    for (int i = 0; i <= 48; ++i) {
+      const double u = i / 24.0 - 1;
+      stage.sample(1, 1, 0.5 * span_ * u, line.front().y - sag * (1 - u * u));
+    }
+  }
   /// The line of the deck: a parabola as long as the ropes, length/span = 1 + 8/3 (f/L)².
   Vec3d deck(Stage3& stage, double t) {
     const double sag = 12 * math::sqrt(0.375 * stage.value("slack")), u = 2 * t - 1;
@@ -135,7 +185,9 @@ class RopeBridge final : public Repeatable<RopeBridge, Demo3> {
   RopeSet ropes_;
   BodyId ball_{};
   Vec3d ball_at_{};
-  double stretch_ = 0;
+  double stretch_ = 0, weight_ = 0, rest_ = 0, swing_ = 0, bent_ = 0, last_cosine_ = 0;
+  int rests_ = 0;
+  bool arrived_ = false, drawn_ = false;
   int broken_ = 0;
 };
 

@@ -24,13 +24,23 @@ class TorsionChain final : public Repeatable<TorsionChain, Demo3> {
         "drawn "
         "by both its neighbours, and a wave runs along them, long ones with\n\n"
         "  c = √(k/I)\n\n"
-        "rods a second.";
+        "rods a second. N rods, held at one end and free at the other, swing in N modes (Lagrange's loaded "
+        "string):\n\n"
+        "  ω_m = 2 √(k/I) sin β_m/2,   Θ_i ∝ sin i β_m,   β_m = (2m − 1) π/(2N + 1)\n\n"
+        "The points are their sum, moved by the first rod's pulse, without damping.";
     d.duration = 9;
     d.camera = {{0, 2.2, 7.5}, {0, 0, 0}, 0.75};
     d.parameters = {
         {"stiffness", "Stiffness of a piece", "N·m", "N·m", "moment a radian", 2, 60, 0, 10, false},
     };
-    d.plots = {{"Angles", {"time", "s"}, {"angle", "°"}, {{"first"}, {"middle"}, {"last"}}}};
+    d.plots = {{"Angles",
+                {"time", "s"},
+                {"angle", "°"},
+                {{"first"},
+                 {"middle"},
+                 {"last"},
+                 {"middle, by the modes", Series::Style::points},
+                 {"last, by the modes", Series::Style::points}}}};
     return d;
   }
 
@@ -95,6 +105,13 @@ class TorsionChain final : public Repeatable<TorsionChain, Demo3> {
     const int shown[] = {0, rods_ / 2, rods_ - 1};
     for (int k = 0; k < 3; ++k) stage.sample(0, k, t, math::degrees(angle_[std::size_t(shown[k])]));
     const int half = rods_ / 2;
+    ++steps_;
+    for (const int k : {1, 2}) {
+      const double by_modes = modes(shown[k], t, stage.value("stiffness"));
+      if (steps_ % 5 == 0) stage.sample(0, 2 + k, t, math::degrees(by_modes));
+      off_ = max(off_, math::abs(angle_[std::size_t(shown[k])] - by_modes));
+      most_ = max(most_, math::abs(by_modes));
+    }
     const double middle = angle_[std::size_t(half)];
     if (t < half / math::sqrt(stage.value("stiffness") / inertia_) + pulse_ && middle > peak_) {
       peak_ = middle;
@@ -106,16 +123,36 @@ class TorsionChain final : public Repeatable<TorsionChain, Demo3> {
     const double expected = half / math::sqrt(stage.value("stiffness") / inertia_);
     // A pulse of this length is slowed a little by the gaps between the rods.
     out.push_back({"time of the pulse to the middle", "s", "√(I/k) a rod", arrival_, expected, 0.06 * expected});
+    out.push_back({"middle and last rod, farthest from the sum of the modes", "of the greatest angle",
+                   "Lagrange's loaded string", off_ / max(most_, 1e-9), 0, 0.05});
   }
   std::uint64_t state_hash(std::uint64_t world) const override { return world ^ ropes_.state_hash(); }
 
  private:
+  /// The angle of a rod at the time t (rad): each mode is a swing without damping, which the first rod's pulse
+  /// A (1 − cos p t) drives as long as it lasts and leaves to itself.
+  double modes(int rod, double t, double stiffness) const {
+    const int n = rods_ - 1;
+    const double p = 2 * math::pi / pulse_, amplitude = math::pi / 6, rate = stiffness / inertia_;
+    double angle = 0;
+    for (int m = 1; m <= n; ++m) {
+      const double beta = (2 * m - 1) * math::pi / (2 * n + 1), w = 2 * math::sqrt(rate) * math::sin(beta / 2);
+      const double drive = rate * amplitude * math::sin(beta) * 4 / (2 * n + 1);
+      const double s = min(t, pulse_), gap = w * w - p * p;
+      double q = drive * ((1 - math::cos(w * s)) / (w * w) - (math::cos(p * s) - math::cos(w * s)) / gap);
+      const double v = drive * (math::sin(w * s) / w - (w * math::sin(w * s) - p * math::sin(p * s)) / gap);
+      if (t > pulse_) q = q * math::cos(w * (t - pulse_)) + v / w * math::sin(w * (t - pulse_));
+      angle += q * math::sin(rod * beta);
+    }
+    return angle;
+  }
   static constexpr int rods_ = 21;
   static constexpr double inertia_ = 1.0 / 3, pulse_ = 2;
   RopeSet ropes_;
   std::vector<BodyId> bodies_;
   std::vector<double> angle_;
-  double peak_ = 0, arrival_ = 0;
+  double peak_ = 0, arrival_ = 0, off_ = 0, most_ = 0;
+  int steps_ = 0;
 };
 
 }  // namespace
