@@ -31,6 +31,8 @@ class OffDirections {
   /// Looks along a direction of any length, and remembers it if it does.
   bool learn(Vec3f n, Vec3f p, Vec3f q, Vec3f r) {
     if (!used_ || (solid_ && n.y <= 0)) return false;
+    const float off = corners_.least(n) - max(dot(n, p), max(dot(n, q), dot(n, r)));
+    if (!(off > 0 && off * off > 0.99f * most_ * most_ * length_squared(n))) return false;
     const float size = length(n);
     if (!(size > 1e-12f)) return false;
     n = n * (1 / size);
