@@ -265,7 +265,7 @@ void update_trees(WorldImplementation<D>& world) {
     for (int k = begin; k < end; ++k) {
       if (k + 6 < end) {
         const ShapeRecord<D>& soon = world.shapes.at(scratch.outgrown[std::size_t(k) + 6]);
-        prefetch_lines(&soon, 192);
+        prefetch_lines(&soon, D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192);
         __builtin_prefetch(&world.bodies.pose[std::size_t(soon.body)]);
         prefetch_lines(&world.bodies.motion[std::size_t(soon.body)], sizeof(BodyMotion<D>));
       }

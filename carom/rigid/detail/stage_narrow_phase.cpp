@@ -700,7 +700,8 @@ void update_contacts(WorldImplementation<D>& world) {
       const auto look_at_soon = [&](int k) __attribute__((always_inline)) {  // as prefetch_lines
         const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k])]);
         for (const std::int32_t body : soon.body) __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
-        for (const std::int32_t shape : soon.shape) prefetch_lines(&world.shapes.at(shape), 192);
+        for (const std::int32_t shape : soon.shape)
+          prefetch_lines(&world.shapes.at(shape), D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192);
         if (soon.first_manifold != none)
           prefetch_lines(&world.contacts.manifold(soon.first_manifold), ManifoldRecord<D>::hot_bytes);
       };
