@@ -184,7 +184,8 @@ struct StillNear {
       if (world.shapes.trees[tree].size() > 0)
         world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const typename D::Bounds& other) {
           if (tree == tree_fixed && !comes_near(world, world.shapes.at(std::int32_t(item)), box)) return true;
-          if (count < most) shape[count] = std::int32_t(item), bounds[count] = other;
+          if (const std::size_t place = std::size_t(count); place < std::size_t(most))
+            shape[place] = std::int32_t(item), bounds[place] = other;
           return ++count <= most;
         });
   }
