@@ -9,6 +9,8 @@ namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
 using namespace math;
 
+constexpr float touching_gap = 2e-5f;  ///< m, over which a row goes from soft to rigid
+
 template <int W>
 struct WideVec2 {
   WideFloat<W> x, y;

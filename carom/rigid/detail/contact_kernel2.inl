@@ -96,18 +96,20 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
     const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
     const F turn_a = cross(ra, n), turn_b = turn_a + offset_turn;
     const F old = F::load(point.impulse);
-    F bias, mass_scale = one, impulse_scale = zero;
+    F bias, yields = one;  // mass_scale; impulse_scale is 1 less that
     const auto apart = s > zero;
     if constexpr (UseBias) {
       bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
-      mass_scale = select(apart, one, F::load(c.mass_scale));
-      impulse_scale = select(apart, zero, F::load(c.impulse_scale));
+      // From soft to rigid within so little: rounding must not decide which of the two it is.
+      const F rigid = clamp(s * F::splat(1 / touching_gap), zero, one);
+      yields = F::load(c.mass_scale) + rigid * F::load(c.impulse_scale);
     } else {
       bias = keep(apart, s * inverse_h);
     }
     const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
     const F mass = share * F::load(point.normal_mass);
-    const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
+    const F wanted = old - mass * (vn + bias);
+    const F lambda = max(UseBias ? yields * wanted : wanted, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
     if constexpr (!UseBias) (F::load(point.total) + lambda * counted).store(point.total);

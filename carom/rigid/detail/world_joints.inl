@@ -41,6 +41,8 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   const JointId id = joints.slots.allocate();
   const std::size_t slot = std::size_t(joints.slots.slot(id));
   if (slot >= joints.data.size()) {
+    grow_by_a_quarter(joints.data);
+    grow_by_a_quarter(joints.headers);
     joints.data.resize(slot + 1);
     joints.headers.resize(slot + 1);
   }
