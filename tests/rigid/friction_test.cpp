@@ -11,6 +11,11 @@ namespace {
 
 constexpr double g = 9.81;
 
+template <class D>
+class FrictionBoth : public testing::Test {};
+using Dimensions = testing::Types<Dim2, Dim3>;
+TYPED_TEST_SUITE(FrictionBoth, Dimensions);
+
 /// Gravity leans instead of the ground: a slope of angle a, downhill in the direction th.
 WorldDef<Dim3> slope(double a, double th) {
   WorldDef<Dim3> d;
@@ -107,25 +112,28 @@ TEST(Friction, SphereRollsDownAnIncline) {
 
 /// What a blow that takes off all of the speed `down` takes off the speed along the ground, over μ times `down`: for a
 /// box that does not turn and slides all the while. `phase`: part of a step's way by which it starts higher.
+template <class D>
 float rubbed_off(float down, float phase) {
   constexpr float friction = 0.5f;
-  World3 world(world_with<Dim3>(0));
+  World<D> world(world_with<D>(0));
   add_ground(world, {friction, 0, 1000, 0});
-  const BodyId box = add_box<Dim3>(world, {0, 2 + down / 60 * phase, 0}, 0.5f, {friction, 0, 1000, 0});
+  const BodyId box = add_box<D>(world, at<D>(0, 2 + down / 60 * phase), 0.5f, {friction, 0, 1000, 0});
   MotionLocks locks;
-  locks.rotation_x = locks.rotation_y = locks.rotation_z = true;
+  locks.rotation_x = locks.rotation_y = D::dimension == 3;
+  locks.rotation_z = true;
   world.set_locks(box, locks).value();
   const float along_ground = down + 5;
-  world.set_velocity(box, {along_ground, -down, 0}, {}).value();
+  world.set_velocity(box, along<D>(along_ground, -down), {}).value();
   run(world, 60);
   EXPECT_NEAR(world.state(box).value().linear_velocity.y, 0, 0.02f * down);
   return (along_ground - world.state(box).value().linear_velocity.x) / (friction * down);
 }
 
 // Coulomb's law in impulses (mechanics.md 5.2): whenever in a step the blow falls, the ground rubs with μ times it.
-TEST(Friction, BlowsRub) {
+TYPED_TEST(FrictionBoth, BlowsRub) {
   for (float down : {3.0f, 10.0f, 30.0f, 60.0f})
-    for (int k = 0; k < 24; ++k) EXPECT_NEAR(rubbed_off(down, k / 24.0f), 1, 0.1f) << down << " m/s, phase " << k;
+    for (int k = 0; k < 24; ++k)
+      EXPECT_NEAR(rubbed_off<TypeParam>(down, k / 24.0f), 1, 0.1f) << down << " m/s, phase " << k;
 }
 
 // A disc spinning on its face under uniform pressure stops after 3 R ω₀/(4 μ g).

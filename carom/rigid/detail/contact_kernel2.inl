@@ -142,33 +142,49 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
     const WideVec2<W> n = load2<W>(c.normal);
     const WideVec2<W> t = {F::splat(0) - n.y, n.x};
-    const F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
     const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
     const auto takes_part = share > F::splat(0);
-    if (extra != nullptr) {
-      ContactExtra<Dim2, W>& e = static_cast<ContactExtra<Dim2, W>*>(extra)[k];
-      const F old = F::load(e.rolling_impulse[0]), limit = F::load(e.rolling_lever) * load;
-      const F lambda = select(
-          takes_part, clamp(old - F::load(e.rolling_response[0]) * (b.w - a.w), F::splat(0) - limit, limit), old);
-      lambda.store(e.rolling_impulse[0]);
-      a.w -= ia * (lambda - old);
-      b.w += ib * (lambda - old);
+    auto rubs = takes_part;
+    F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
+    for (bool struck = false;; struck = true) {  // a blow that falls only here rubs too, as in relax3
+      if (extra != nullptr) {
+        ContactExtra<Dim2, W>& e = static_cast<ContactExtra<Dim2, W>*>(extra)[k];
+        const F old = F::load(e.rolling_impulse[0]), limit = F::load(e.rolling_lever) * load;
+        const F lambda =
+            select(rubs, clamp(old - F::load(e.rolling_response[0]) * (b.w - a.w), F::splat(0) - limit, limit), old);
+        lambda.store(e.rolling_impulse[0]);
+        a.w -= ia * (lambda - old);
+        b.w += ib * (lambda - old);
+      }
+      {
+        WideVec2<W> ra = load2<W>(c.patch_r_a), rb = add(ra, load2<W>(c.center_offset));
+        if (struck) {  // where the surfaces meet now, both arms reach there
+          F pa[4], pb[4];
+          gather<W>(bodies, c.read_a, 4, pa);
+          gather<W>(bodies, c.read_b, 4, pb);
+          const F apart = F::splat(0.5f) * (n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]));
+          ra = {ra.x + apart * n.x, ra.y + apart * n.y};
+          rb = {rb.x - apart * n.x, rb.y - apart * n.y};
+        }
+        const F turn_a = cross(ra, t), turn_b = cross(rb, t);
+        const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
+        const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
+        const F wanted = old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target));
+        const F lambda = select(rubs, clamp(wanted, F::splat(0) - limit, limit), old);
+        const F delta = lambda - old;
+        lambda.store(c.tangent_impulse);
+        const WideVec2<W> p = {delta * t.x, delta * t.y};
+        push_back(a, ma, ia, p, delta * turn_a);
+        push(b, mb, ib, p, delta * turn_b);
+      }
+      if (struck) break;
+      solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+      const F before = load;
+      load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
+      rubs = takes_part & ((load - before) * (ma + mb) > F::splat(least_blow));
+      if (!any(rubs)) break;
     }
-    {
-      const WideVec2<W> ra = load2<W>(c.patch_r_a), rb = add(ra, load2<W>(c.center_offset));
-      const F turn_a = cross(ra, t), turn_b = cross(rb, t);
-      const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
-      const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
-      const F wanted = old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target));
-      const F lambda = select(takes_part, clamp(wanted, F::splat(0) - limit, limit), old);
-      const F delta = lambda - old;
-      lambda.store(c.tangent_impulse);
-      (F::load(c.tangent_total) + lambda * F::splat(counted)).store(c.tangent_total);
-      const WideVec2<W> p = {delta * t.x, delta * t.y};
-      push_back(a, ma, ia, p, delta * turn_a);
-      push(b, mb, ib, p, delta * turn_b);
-    }
-    solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+    (F::load(c.tangent_total) + F::load(c.tangent_impulse) * F::splat(counted)).store(c.tangent_total);
     if (counted > 0) {
       write_velocity<W>(bodies, c.write_a, a);
       write_velocity<W>(bodies, c.write_b, b);
