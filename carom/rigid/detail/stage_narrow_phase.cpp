@@ -407,15 +407,15 @@ bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c,
 }
 
 /// The normal of a manifold as the axis along which the shapes are apart. That of a manifold may be bent (over_border).
-void part_along(ContactRecord<Dim2>& c, const ShapeRecord<Dim2>& a, const ShapeRecord<Dim2>& b,
-                const Dim2::Manifold& m) {
+void go_on_apart(ContactRecord<Dim2>& c, const ShapeRecord<Dim2>& a, const ShapeRecord<Dim2>& b,
+                 const Dim2::Manifold& m) {
   const Vec2f back = inverse_rotate(c.base.q, -m.normal);
   const float apart = dot(m.normal, transform_point(c.base, support(b.geometry, back)) - support(a.geometry, m.normal));
   if (!(apart > c.margin())) return;
   c.axis = m.normal;
   c.gap = min(c.gap, apart);
 }
-void part_along(ContactRecord<Dim3>&, const ShapeRecord<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Manifold&) {}
+void go_on_apart(ContactRecord<Dim3>&, const ShapeRecord<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Manifold&) {}
 
 /// Two convex shapes, or a plane: one manifold at most.
 template <class D>
@@ -435,7 +435,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   const float separation = smallest_separation<D>(m);
   c.gap = min(reach, separation);
   if (!of_interest(world, c, sweep, m, separation)) {
-    part_along(c, a, b, m);
+    go_on_apart(c, a, b, m);
     return part(world, c, a, b);
   }
   const std::uint8_t change = touch_change(c, c.gap, pressed_any(world.contacts, c));
