@@ -184,7 +184,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     const double speed = length(law), rolled = physics.cloth.rolling_friction * g * max(0.0, since - slides);
     if (speed > 0) law *= max(0.0, speed - rolled) / speed;
     if (distance(law, now.velocity) < 1e-6) {
-      if (length(law) > 0 && ++law_steps_ % 3 == 0) stage.sample(1, 1, t, length(law));
+      if (length(law) > 0 && ++law_steps_ % 6 == 1) stage.sample(1, 1, t, length(law));
       if (free_) law_time_ = t;
       return;
     }

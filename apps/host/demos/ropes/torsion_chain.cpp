@@ -108,7 +108,7 @@ class TorsionChain final : public Repeatable<TorsionChain, Demo3> {
     ++steps_;
     for (const int k : {1, 2}) {
       const double by_modes = modes(shown[k], t, stage.value("stiffness"));
-      if (steps_ % 5 == 0) stage.sample(0, 2 + k, t, math::degrees(by_modes));
+      if (steps_ % 12 == 0) stage.sample(0, 2 + k, t, math::degrees(by_modes));
       off_ = max(off_, math::abs(angle_[std::size_t(shown[k])] - by_modes));
       most_ = max(most_, math::abs(by_modes));
     }
