@@ -1,6 +1,8 @@
 // What a world costs at rest.
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "tests/rigid/scene_pieces.h"
 
 namespace carom::rigid::test {
@@ -17,6 +19,25 @@ TEST(Memory, SleepingBodyTakesAtMostAKilobyte) {
   const Counters c = world.counters();
   EXPECT_EQ(c.awake_bodies, 0);
   EXPECT_LE(c.bytes / std::size_t(c.bodies), 1024u);
+}
+
+// Whatever their number: room for joints grows by quarters.
+TEST(Memory, JointTakesAtMost920Bytes) {
+  for (const int count : {1100, 2100, 4200}) {
+    World3 world(world_with<Dim3>(0));
+    std::vector<BodyId> boxes;
+    for (int i = 0; i <= count; ++i) boxes.push_back(add_box<Dim3>(world, {3.0 * i, 0, 0}));
+    const std::size_t before = world.counters().bytes;
+    for (int i = 0; i < count; ++i) {
+      BallJointDef<Dim3> joint;
+      joint.body_a = boxes[std::size_t(i)];
+      joint.body_b = boxes[std::size_t(i) + 1];
+      joint.frame_a.p = {1.5f, 0, 0};
+      joint.frame_b.p = {-1.5f, 0, 0};
+      world.create_joint(joint).value();
+    }
+    EXPECT_LE((world.counters().bytes - before) / std::size_t(count), 920u) << count << " joints";
+  }
 }
 
 TEST(Memory, CreatingAndDestroyingReachesASteadyState) {
