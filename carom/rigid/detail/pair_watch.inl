@@ -1,0 +1,148 @@
+// When a pair touches, watches on pairs that have been looked at, and whether all that is known of one is still true
+// (part of stage_narrow_phase.cpp).
+#pragma once
+
+namespace carom::rigid::detail {
+namespace {
+
+constexpr float touch_distance = 0.005f;  ///< m: surfaces nearer than this touch, for events
+
+enum ContactChange : std::uint8_t {
+  change_apart = 1,      ///< fat bounds no longer overlap
+  change_manifolds = 2,  ///< new manifolds wait in the found list; the old ones go
+  change_empty = 4,      ///< manifolds go, none come
+  change_begin = 8,
+  change_end = 16,
+};
+
+/// The touch flag, with hysteresis: begins within the touch distance, ends when the manifolds are gone or beyond twice
+/// it.
+template <class D>
+std::uint8_t touch_change(ContactRecord<D>& c, float separation, bool pressed) {
+  const bool was = (c.flags & contact_touching) != 0;
+  const bool is = separation < (was ? 2 * touch_distance : touch_distance) || pressed;
+  if (is == was) return 0;
+  c.flags ^= contact_touching;
+  return is ? change_begin : change_end;
+}
+
+template <class D>
+bool pressed(const ManifoldRecord<D>& m) {
+  for (int i = 0; i < D::max_points; ++i)
+    if (m.impulses.normal[i] > 0) return true;
+  return false;
+}
+
+template <class D>
+bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
+  for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next)
+    if (pressed(store.manifold(m))) return true;
+  return false;
+}
+
+/// The watch on a pair that has just been looked at; the caller says what it watches for.
+template <class D>
+ContactWatch<D>& watch_contact(WorldImplementation<D>& world, const ContactRecord<D>& c,
+                               const typename D::Vector& normal, float extent) {
+  const std::int32_t a = c.body[0], b = c.body[1];
+  ContactWatch<D>& w = world.scratch.watches[std::size_t(c.awake_index)];
+  w.body[0] = a, w.body[1] = b;
+  w.base = relative(world.bodies.pose[std::size_t(a)], world.bodies.pose[std::size_t(b)]);
+  const bool at_origin = (c.flags & contact_at_origin) != 0;
+  w.normal = at_origin ? normal : rotate(world.shapes.at(c.shape[0]).local.q, normal);
+  const ShapeRecord<D>& shape = world.shapes.at(c.shape[1]);
+  w.middle = ball_about(shape).middle;
+  if (!at_origin) w.middle = transform_point(shape.local, w.middle);
+  w.extent = extent;
+  return w;
+}
+/// Rounding must not let a watch hold a moment longer than the exact test.
+template <class D>
+float rounding_of(const ContactWatch<D>& w) {
+  return 1e-5f + 1e-6f * (math::length(w.base.p) + math::length(w.middle));
+}
+template <class D>
+void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const Moved<D>& moved) {
+  ContactWatch<D>& w = watch_contact(world, c, c.axis, moved.extent);
+  w.gap = slack_of(c, moved) - rounding_of(w);
+  w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
+  w.most_way = 0;
+  if (c.axis == typename D::Vector{}) return;
+  w.most_way = longest_slide(c) - moved.most() - rounding_of(w);
+  if (!(w.most_way > 0)) w.body[0] = none;
+}
+/// What touches is watched until it parts; in the plane, what does not until it comes near or bears a load
+/// (store_contacts).
+template <class D>
+void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, float slack, float separation,
+                    const typename D::Vector& normal, float extent) {
+  const bool touching = (c.flags & contact_touching) != 0;
+  if (c.first_manifold != none) world.contacts.manifold(c.first_manifold).waits = !touching;
+  if (!touching && (D::dimension == 3 || c.manifold_count != 1)) return;
+  ContactWatch<D>& w = watch_contact(world, c, normal, extent);
+  const float most = touching ? min(c.margin(), 2 * touch_distance) : c.margin(), rounding = rounding_of(w);
+  w.most_way = slack - rounding;
+  w.gap = separation - most + rounding;
+  w.cap = touching ? -3.4e38f : touch_distance - most + 2 * rounding;
+  if (!(w.most_way > 0 && w.cap < 0)) w.body[0] = none;
+}
+
+/// Do two that slid past each other, apart along an axis, have their bounds still meet and that axis still between
+/// them? Then they go on from here, without being asked how far they are.
+template <class D>
+bool slides_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>& moved,
+               const typename D::Transform& now, ShapeSweep<D>& sweep) {
+  if (D::dimension == 3 || c.axis == typename D::Vector{} || moved.most() < longest_slide(c)) return false;
+  const float gap = c.gap + dot(c.axis, moved.way) - moved.turn;
+  if (!(look_ahead(world, c, sweep, c.axis) < gap - c.margin())) return false;
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf))) return false;
+  c.gap = gap;
+  c.base = now;
+  watch_apart(world, c, Moved<D>(c, b, now));
+  return true;
+}
+
+/// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow.
+template <class D>
+bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
+           ShapeSweep<D>& sweep, std::uint8_t& change) {
+  if ((c.flags & contact_known) == 0 || (c.first_manifold != none && (c.flags & contact_round) != 0)) return false;
+  const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
+  if (c.first_manifold == none) {
+    if (slides_on(world, c, moved, now, sweep)) return true;
+    const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, sweep, c.axis);
+    if (!(near < slack_of(c, moved))) return false;
+    watch_apart(world, c, moved);
+    return true;
+  }
+  // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
+  // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and
+  // far below the size of features, so that nothing sticks to a stale edge.
+  const typename D::Manifold& m = world.contacts.manifold(c.first_manifold).manifold;
+  const typename D::Vector normal = m.normal;
+  const float separation = c.gap + dot(normal, moved.way), far = moved.across(normal);
+  const float most = longest_way(world, c);
+  if (!(separation < c.margin() && far < most)) return false;
+  c.flags |= contact_recycled;
+  change = touch_change(c, separation, pressed_any(world.contacts, c));
+  watch_recycled(world, c, most - far, separation, normal, moved.extent);
+  return true;
+}
+
+/// A contact whose shapes were found to be `c.gap` apart.
+template <class D>
+std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
+                  const ShapeRecord<D>& b) {
+  std::uint8_t change = 0;
+  if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
+    change = change_apart;
+  else if (c.first_manifold != none)
+    change = change_empty;
+  else
+    watch_apart(world, c, Moved<D>(c, b, c.base));
+  return std::uint8_t(change | touch_change(c, c.gap, false));
+}
+
+}  // namespace
+}  // namespace carom::rigid::detail
