@@ -225,8 +225,9 @@ bool ConvexCell::shrink(double distance) {
     const auto corners = loop(face);
     std::uint16_t before = corners[corners.size() - 1];
     for (const std::uint16_t here : corners) {
+      // Each edge from one of its two sides.
       const Vec3d edge = vertices_[here] - vertices_[before];
-      if (!(dot(moved[here] - moved[before], edge) > 0.01 * length_squared(edge))) return false;
+      if (before < here && !(dot(moved[here] - moved[before], edge) > 0.01 * length_squared(edge))) return false;
       before = here;
     }
   }

@@ -182,7 +182,7 @@ core::Result<Fracture> fracture_convex(const Pattern& pattern, const FractureOpt
       piece.mass = cell.mass_properties(1);
       if (!(piece.mass.mass > 0)) continue;
       if (options.meshes) add_convex_triangles(cell, options.texture_scale, piece);
-      if (options.hulls) detail::add_hull(cell, piece.mass.center, options.skin, piece.hulls);
+      if (options.hulls) detail::add_hull(cell, piece.mass.center, piece.mass.center, options.skin, piece.hulls);
     }
   });
   fracture.pieces.reserve(pattern.cells.size());

@@ -1,8 +1,10 @@
 #include "carom/blast/pattern.h"
 
-#include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "carom/blast/detail/cell_cutter.h"
+#include "carom/blast/detail/site_grid.h"
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
@@ -37,99 +39,6 @@ Vec3d draw_inside(const ConvexCell& cell, const geometry::Bounds3d& box, math::R
   return p;
 }
 
-/// Sites sorted into a grid of cubes, about two in each.
-class SiteGrid {
- public:
-  SiteGrid(std::span<const Vec3d> sites, const geometry::Bounds3d& box) : sites_(sites), low_(box.low) {
-    Vec3d size = box.high - box.low;
-    for (const Vec3d& s : sites) low_ = min(low_, s), size = max(size, s - box.low);
-    const double largest = math::max(size.x, math::max(size.y, size.z));
-    size = max(size, 0.01 * Vec3d{largest, largest, largest});
-    edge_ = math::cbrt(2 * size.x * size.y * size.z / double(sites.size()));
-    if (!(edge_ > 0)) edge_ = 1;
-    for (int k = 0; k < 3; ++k) count_[k] = math::clamp(int(size[k] / edge_) + 1, 1, 256);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
-    order.reserve(sites.size());
-    for (std::uint32_t i = 0; i < sites.size(); ++i) order.push_back({index(sites[i]), i});
-    std::sort(order.begin(), order.end());
-    first_.assign(std::size_t(count_[0]) * std::size_t(count_[1]) * std::size_t(count_[2]) + 1, 0);
-    members_.reserve(sites.size());
-    for (const auto& [cube, site] : order) ++first_[cube + 1], members_.push_back({sites[site], site});
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  }
-  double edge() const { return edge_; }
-  int rings() const { return math::max(count_[0], math::max(count_[1], count_[2])); }
-
-  struct Near {
-    double distance_squared;
-    std::uint32_t site;
-  };
-  /// The sites of the cubes that are `ring` away from the site's own and within the limit, nearest first.
-  void ring(std::uint32_t site, int ring, double limit_squared, std::vector<Near>& found) const {
-    found.clear();
-    int c[3], low[3], high[3];
-    for (int k = 0; k < 3; ++k) {
-      c[k] = place(sites_[site], k);
-      low[k] = math::max(c[k] - ring, 0), high[k] = math::min(c[k] + ring, count_[k] - 1);
-    }
-    // No site of a row of cubes is nearer than the row; a hair is left for how places are rounded.
-    const auto gap_squared = [&](int cube, int k) {
-      if (cube == c[k]) return 0.0;
-      const double face = low_[k] + (cube + (cube < c[k])) * edge_;
-      return math::square(math::max(math::abs(face - sites_[site][k]) - 1e-9 * edge_, 0.0));
-    };
-    const Vec3d here = sites_[site];
-    const auto look = [&](std::size_t row, int from, int to) {  // cubes side by side
-      const std::uint32_t begin = first_[row + std::size_t(from)], end = first_[row + std::size_t(to) + 1];
-      std::size_t count = found.size();
-      found.resize(count + (end - begin));
-      for (std::uint32_t m = begin; m < end; ++m) {
-        const double d = distance_squared(members_[m].place, here);
-        found[count] = {d, members_[m].site};
-        count += (d <= limit_squared) & (members_[m].site != site);
-      }
-      found.resize(count);
-    };
-    for (int z = low[2]; z <= high[2]; ++z) {
-      const double from_z = gap_squared(z, 2);
-      if (from_z > limit_squared) continue;
-      for (int y = low[1]; y <= high[1]; ++y) {
-        const double from_row = from_z + gap_squared(y, 1);
-        if (from_row > limit_squared) continue;
-        const std::size_t row = (std::size_t(z) * std::size_t(count_[1]) + std::size_t(y)) * std::size_t(count_[0]);
-        if (math::abs(z - c[2]) == ring || math::abs(y - c[1]) == ring) {
-          int from = low[0], to = high[0];
-          while (from < c[0] && from_row + gap_squared(from, 0) > limit_squared) ++from;
-          while (to > c[0] && from_row + gap_squared(to, 0) > limit_squared) --to;
-          look(row, from, to);
-          continue;
-        }
-        if (c[0] - ring >= 0) look(row, c[0] - ring, c[0] - ring);
-        if (c[0] + ring < count_[0]) look(row, c[0] + ring, c[0] + ring);
-      }
-    }
-    std::sort(found.begin(), found.end(), [](const Near& a, const Near& b) {
-      return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.site < b.site;
-    });
-  }
-
- private:
-  int place(Vec3d p, int axis) const { return math::clamp(int((p[axis] - low_[axis]) / edge_), 0, count_[axis] - 1); }
-  std::uint32_t index(Vec3d p) const {
-    return std::uint32_t((place(p, 2) * count_[1] + place(p, 1)) * count_[0] + place(p, 0));
-  }
-  std::span<const Vec3d> sites_;
-  Vec3d low_;
-  double edge_ = 1;
-  int count_[3] = {1, 1, 1};
-  struct Member {
-    Vec3d place;
-    std::uint32_t site;
-  };
-  std::vector<std::uint32_t> first_;
-  std::vector<Member> members_;  // by cube
-};
-
 /// How far a cell goes from its site: a sphere and a box.
 struct Reach {
   double squared = 0;
@@ -145,7 +54,7 @@ struct Reach {
   }
   static Reach of(const detail::CellCutter& cell, Vec3d site) {
     Reach reach;
-    cell.each_corner([&](const Vec3d& v) { reach.add(v - site); });
+    cell.reach(site, reach.squared, reach.low, reach.high);
     return reach;
   }
   /// No less than the greatest of `way`·(v − site) over the corners v.
@@ -157,25 +66,35 @@ struct Reach {
 
 /// Cuts the cell of a site by the planes halfway to its neighbours, nearest first, as long as they can reach it.
 template <class Clip, class Measure, class Fits>
-ConvexCell::Cut cut_cell(const SiteGrid& grid, std::span<const Vec3d> sites, std::uint32_t i, Reach reach,
-                         std::vector<SiteGrid::Near>& near, std::uint32_t& twin, Clip&& clip, Measure&& measure,
+ConvexCell::Cut cut_cell(const detail::SiteGrid& grid, std::span<const Vec3d> sites, std::uint32_t i, Reach reach,
+                         std::vector<detail::SiteGrid::Near>& near, std::uint32_t& twin, Clip&& clip, Measure&& measure,
                          Fits&& fits) {
   const Vec3d site = sites[i];
   for (int ring = 0; ring < grid.rings(); ++ring) {
     if (ring > 1 && math::square((ring - 1) * grid.edge()) > 4 * reach.squared) break;
-    grid.ring(i, ring, 4 * reach.squared, near);
-    for (const SiteGrid::Near& n : near) {
-      if (n.distance_squared > 4 * reach.squared) break;
-      if (!(n.distance_squared > 0)) {
-        twin = n.site;
-        return ConvexCell::Cut::all;
+    std::span<detail::SiteGrid::Near> left = grid.ring(i, ring, 4 * reach.squared, near);
+    // The nearest first: what they leave of the cell leaves few of the others to be sorted.
+    for (const double within : {1.5 * math::square(grid.edge()), std::numeric_limits<double>::infinity()}) {
+      detail::SiteGrid::Near* first = left.data();
+      for (detail::SiteGrid::Near& n : left)
+        if (n.distance_squared <= within && n.distance_squared <= 4 * reach.squared &&
+            !(reach.along(grid.place(n) - site) <= 0.5 * n.distance_squared && n.distance_squared > 0))
+          std::swap(*first++, n);
+      grid.sort(left.data(), first);
+      for (const detail::SiteGrid::Near& n : std::span(left.data(), first)) {
+        if (n.distance_squared > 4 * reach.squared) break;
+        if (!(n.distance_squared > 0)) {
+          twin = grid.site(n);
+          return ConvexCell::Cut::all;
+        }
+        const Vec3d place = grid.place(n), way = place - site;
+        if (reach.along(way) <= 0.5 * n.distance_squared) continue;
+        const Vec3d middle = 0.5 * (site + place), normal = way / math::sqrt(n.distance_squared);
+        const ConvexCell::Cut cut = clip(HalfSpace{normal, dot(normal, middle), int(grid.site(n))});
+        if (cut == ConvexCell::Cut::all || !fits()) return cut;
+        if (cut == ConvexCell::Cut::part) reach = measure();
       }
-      const Vec3d way = sites[n.site] - site;
-      if (reach.along(way) <= 0.5 * n.distance_squared) continue;
-      const Vec3d middle = 0.5 * (site + sites[n.site]), normal = way / math::sqrt(n.distance_squared);
-      const ConvexCell::Cut cut = clip(HalfSpace{normal, dot(normal, middle), int(n.site)});
-      if (cut == ConvexCell::Cut::all || !fits()) return cut;
-      if (cut == ConvexCell::Cut::part) reach = measure();
+      left = left.subspan(std::size_t(first - left.data()));
     }
   }
   return ConvexCell::Cut::part;
@@ -267,13 +186,13 @@ core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<con
   if (sites.empty()) return core::Error{"voronoi_pattern: no sites, expected at least one"};
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (!is_finite(sites[i])) return core::Error{core::text("voronoi_pattern: site ", i, " is not finite")};
-  const SiteGrid grid(sites, bounds_of(container));
+  const detail::SiteGrid grid(sites, bounds_of(container));
   Pattern pattern;
   pattern.cells.resize(sites.size());
   struct Work {
     ConvexCell::Scratch scratch;
     detail::CellCutter cutter;
-    std::vector<SiteGrid::Near> near;
+    std::vector<detail::SiteGrid::Near> near;
   };
   core::SerialScheduler alone;
   core::TaskScheduler& threads = scheduler != nullptr ? *scheduler : alone;

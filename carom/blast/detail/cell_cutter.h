@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
 
 #include "carom/blast/convex_cell.h"
 #include "carom/math/simd_double.h"
@@ -87,9 +88,27 @@ class CellCutter {
   }
   bool fits() const { return fits_; }
 
-  template <class Function>
-  void each_corner(Function&& f) const {
-    for (std::uint64_t left = alive_; left != 0; left &= left - 1) f(corner(std::size_t(std::countr_zero(left))));
+  /// How far the corners go from a point: the square of the distance, and a box about them and it.
+  void reach(const math::Vec3d& point, double& squared, math::Vec3d& low, math::Vec3d& high) const {
+    using Pair = math::WideDouble<2>;
+    const Pair px = Pair::splat(point.x), py = Pair::splat(point.y), pz = Pair::splat(point.z);
+    typename Pair::Vector far{}, lx{}, ly{}, lz{}, hx{}, hy{}, hz{};
+    const std::size_t top = std::size_t(64 - std::countl_zero(alive_));
+    for (std::size_t i = 0; i < top; i += 2) {
+      // A corner that is gone is taken for the point.
+      const std::int64_t even = std::int64_t(alive_ >> i & 1), odd = std::int64_t(alive_ >> i >> 1 & 1);
+      const Pair::Mask here = {-even, -odd};
+      const auto of = [&](Pair d) { return typename Pair::Vector(Pair::Mask(d.v) & here); };
+      const auto x = of(Pair::load_aligned(&x_[i]) - px), y = of(Pair::load_aligned(&y_[i]) - py),
+                 z = of(Pair::load_aligned(&z_[i]) - pz);
+      const auto d = x * x + y * y + z * z;
+      far = d > far ? d : far;
+      lx = x < lx ? x : lx, ly = y < ly ? y : ly, lz = z < lz ? z : lz;
+      hx = x > hx ? x : hx, hy = y > hy ? y : hy, hz = z > hz ? z : hz;
+    }
+    squared = math::max(far[0], far[1]);
+    low = {math::min(lx[0], lx[1]), math::min(ly[0], ly[1]), math::min(lz[0], lz[1])};
+    high = {math::max(hx[0], hx[1]), math::max(hy[0], hy[1]), math::max(hz[0], hz[1])};
   }
   /// Into a cell, corners and faces close together.
   void store(std::vector<math::Vec3d>& vertices, std::vector<ConvexCell::Face>& faces,
@@ -120,7 +139,7 @@ class CellCutter {
     std::uint64_t mask;
     int tag;
     std::uint8_t count;
-    std::array<std::uint8_t, longest_loop> loop;
+    std::array<std::uint8_t, 2 * longest_loop + 2> loop;  // with room for moves of a fixed length
     void push(std::uint8_t v) {
       loop[count++] = v;
       mask |= std::uint64_t{1} << v;
@@ -156,7 +175,47 @@ class CellCutter {
     crossings_[std::size_t(crossing_count_)] = {inside, outside, std::uint8_t(slot), -1};
     return crossing_count_++;
   }
+  /// Takes the corners outside off a loop. They stand side by side in it but for what rounding does to short edges.
   void trim(Face& face, std::uint64_t outside) {
+    const unsigned count = face.count, all = (1u << count) - 1;
+    unsigned out = 0;
+    for (unsigned k = 0; k < 8; ++k) out |= unsigned(outside >> (face.loop[k] & 63) & 1) << k;
+    for (unsigned k = 8; k < count; ++k) out |= unsigned(outside >> face.loop[k] & 1) << k;
+    out &= all;
+    const unsigned out_before = (out << 1 | out >> (count - 1)) & all, starts = out & ~out_before;
+    if ((starts & (starts - 1)) != 0) return trim_islands(face, outside);
+    const unsigned start = unsigned(std::countr_zero(starts)), end = unsigned(std::countr_zero(out_before & ~out));
+    const std::uint8_t from = face.loop[(start == 0 ? count : start) - 1], gone = face.loop[start],
+                       last = face.loop[(end == 0 ? count : end) - 1], back = face.loop[end];
+    // Along the loop, so that new corners have the same numbers whichever way they are found.
+    const bool leaves_first = start < end;
+    int exit = 0, entry = 0;
+    if (leaves_first) exit = crossing(from, gone);
+    entry = crossing(back, last);
+    if (!leaves_first) exit = crossing(from, gone);
+    if (!fits_) return;
+    const std::uint8_t exit_corner = crossings_[std::size_t(exit)].corner,
+                       entry_corner = crossings_[std::size_t(entry)].corner;
+    // The edge of the cut runs from exit to entry on this face, and back on the cap.
+    crossings_[std::size_t(entry)].next = std::int16_t(exit);
+    const unsigned left = leaves_first ? count - (end - start) + 2 : start - end + 2;
+    if (left > unsigned(longest_loop)) {
+      fits_ = false;
+      return;
+    }
+    // Moves of a fixed length, which are two or three instructions; what lies behind the loop does not count.
+    std::uint8_t* const loop = face.loop.data();
+    if (leaves_first) {
+      std::memmove(loop + start + 2, loop + end, longest_loop);
+      loop[start] = exit_corner, loop[start + 1] = entry_corner;
+    } else {
+      std::memmove(loop + 1, loop + end, longest_loop);
+      loop[0] = entry_corner, loop[left - 1] = exit_corner;
+    }
+    face.count = std::uint8_t(left);
+    face.mask = (face.mask & ~outside) | std::uint64_t{1} << exit_corner | std::uint64_t{1} << entry_corner;
+  }
+  void trim_islands(Face& face, std::uint64_t outside) {
     std::array<std::uint8_t, 2 * longest_loop> loop;
     std::size_t count = 0;
     std::uint8_t before = face.loop[face.count - 1u];
@@ -196,7 +255,7 @@ class CellCutter {
 
   // Of corners that are gone distances are computed as well, and masked.
   alignas(16) std::array<double, most_corners> x_{}, y_{}, z_{}, distance_{};
-  std::array<Face, most_faces> faces_;
+  std::array<Face, most_faces> faces_{};
   std::array<std::uint8_t, most_faces> order_;
   std::array<Crossing, most_corners> crossings_;
   std::uint8_t number_[most_corners][most_corners] = {};  // of the crossing of an edge, by its corners

@@ -8,13 +8,12 @@ namespace carom::blast::detail {
 using math::Vec3d;
 using math::Vec3f;
 
-void add_hull(const ConvexCell& solid, Vec3d center, double skin,
+void add_hull(const ConvexCell& solid, Vec3d origin, Vec3d middle, double skin,
               std::vector<std::shared_ptr<const geometry::Hull>>& hulls) {
   if (solid.empty()) return;
-  const Vec3d middle = solid.mass_properties(1).center;
   double inner = 1e300;
   for (const ConvexCell::Face& face : solid.faces()) inner = math::min(inner, face.offset - dot(face.normal, middle));
-  if (auto hull = make_cell_hull(solid, center, math::min(skin, 0.1 * math::max(inner, 0.0))))
+  if (auto hull = make_cell_hull(solid, origin, math::min(skin, 0.1 * math::max(inner, 0.0))))
     hulls.push_back(std::move(hull));
 }
 
@@ -79,7 +78,8 @@ void add_mesh_hulls(std::span<const HullRequest> requests, const ConvexCell& cel
         if (!s.empty()) s.clip({-n, -middle + dot(n, b), 0}, scratch);
     }
   for (std::size_t i = 0; i < requests.size(); ++i)
-    for (const ConvexCell& s : solids[i]) add_hull(s, {}, options.skin, requests[i].piece->hulls);
+    for (const ConvexCell& s : solids[i])
+      add_hull(s, {}, s.mass_properties(1).center, options.skin, requests[i].piece->hulls);
 }
 
 }  // namespace carom::blast::detail

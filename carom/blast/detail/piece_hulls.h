@@ -7,7 +7,7 @@
 namespace carom::blast::detail {
 
 /// The skin, but at most a tenth of the cell's inner radius.
-void add_hull(const ConvexCell& solid, math::Vec3d center, double skin,
+void add_hull(const ConvexCell& solid, math::Vec3d origin, math::Vec3d middle, double skin,
               std::vector<std::shared_ptr<const geometry::Hull>>& hulls);
 
 struct HullRequest {
