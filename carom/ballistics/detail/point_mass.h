@@ -2,6 +2,7 @@
 // hundred thousand.
 #pragma once
 
+#include "carom/ballistics/detail/hot_inline.h"
 #include "carom/ballistics/flight.h"
 
 namespace carom::ballistics::detail {
@@ -46,7 +47,7 @@ class PointMassPull {
     return plain_ ? at<true>(position, velocity) : at<false>(position, velocity);
   }
   template <bool Plain>
-  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
+  CAROM_HOT_INLINE math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
     math::Vec3d a{};
     if (half_area_ > 0) {
       const environment::AirColumn::Air air = conditions_.air.at(position.y);
@@ -59,7 +60,7 @@ class PointMassPull {
     return beside<Plain>(a, position, velocity);
   }
   template <bool Plain>
-  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
+  CAROM_HOT_INLINE math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
     environment::AirColumn::Air by_metre;
     math::Vec3d shear;
     const environment::AirColumn::Air air = conditions_.air.at(position.y, by_metre);
@@ -82,7 +83,7 @@ class PointMassPull {
 
  private:
   template <bool Plain>
-  [[gnu::always_inline]] math::Vec3d beside(math::Vec3d a, math::Vec3d position, math::Vec3d velocity) const {
+  CAROM_HOT_INLINE math::Vec3d beside(math::Vec3d a, math::Vec3d position, math::Vec3d velocity) const {
     if constexpr (!Plain) return a + beside_drag(conditions_, position, velocity);
     a.y -= conditions_.gravity;
     return a;
