@@ -31,12 +31,12 @@ using Four = math::WideFloat<4>;
 struct Debt {
   Four v[3], y;
 };
-CAROM_HOT_INLINE void add(Debt& to, float s, const Debt& from) {
+[[gnu::always_inline]] inline void add(Debt& to, float s, const Debt& from) {
   const Four scale = Four::splat(s);
   for (int i = 0; i < 3; ++i) to.v[i] = to.v[i] + scale * from.v[i];
   to.y = to.y + scale * from.y;
 }
-CAROM_HOT_INLINE Four times(const Debt& m, const float* v) {
+[[gnu::always_inline]] inline Four times(const Debt& m, const float* v) {
   return Four::splat(v[0]) * m.v[0] + Four::splat(v[1]) * m.v[1] + Four::splat(v[2]) * m.v[2];
 }
 Vec3d times(const Debt& m, Vec3d v) {
@@ -46,7 +46,7 @@ Vec3d times(const Debt& m, Vec3d v) {
 }
 /// What is owed by the velocity and the height of a stage, where `k` is owed by its acceleration: k ∂a/∂v, k ∂a/∂y;
 /// places owe themselves, `own`, to the arrival, but for what the height does.
-CAROM_HOT_INLINE Debt through(const Debt& k, const FlightPath::Stage& stage, float own) {
+[[gnu::always_inline]] inline Debt through(const Debt& k, const FlightPath::Stage& stage, float own) {
   Debt r;
   const Four along = Four::splat(stage.bend) * times(k, stage.w), drag = Four::splat(stage.drag);
   r.v[0] = Four{{own, 0, 0, 0}} - drag * k.v[0] - Four::splat(stage.w[0]) * along;
@@ -61,9 +61,9 @@ using Pair = math::WideDouble<2>;
 struct Pairs {
   Pair xy, z;
 };
-CAROM_HOT_INLINE Pairs pairs(Vec3d v) { return {{Pair::Vector{v.x, v.y}}, {Pair::Vector{v.z, 0}}}; }
-CAROM_HOT_INLINE Vec3d vec(const Pairs& p) { return {p.xy.v[0], p.xy.v[1], p.z.v[0]}; }
-CAROM_HOT_INLINE void add(Pairs& to, double s, const Pairs& from) {
+[[gnu::always_inline]] inline Pairs pairs(Vec3d v) { return {{Pair::Vector{v.x, v.y}}, {Pair::Vector{v.z, 0}}}; }
+[[gnu::always_inline]] inline Vec3d vec(const Pairs& p) { return {p.xy.v[0], p.xy.v[1], p.z.v[0]}; }
+[[gnu::always_inline]] inline void add(Pairs& to, double s, const Pairs& from) {
   const Pair scale = Pair::splat(s);
   to.xy = to.xy + scale * from.xy;
   to.z = to.z + scale * from.z;

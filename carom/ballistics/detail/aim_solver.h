@@ -114,7 +114,7 @@ class AimSolver {
 
   using Step = FlightStep;
   template <bool Plain>
-  CAROM_HOT_INLINE Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
+  [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
   Arrival propagate(Vec3d u, double time, double allowed) const {
     return pull_.plain() ? propagate_in<true>(u, time, allowed) : propagate_in<false>(u, time, allowed);

@@ -1,7 +1,6 @@
 // One step of Dormand and Prince's pair of orders 5 and 4.
 #pragma once
 
-#include "carom/ballistics/detail/hot_inline.h"
 #include "carom/math/vec.h"
 
 namespace carom::ballistics::detail {
@@ -13,7 +12,7 @@ struct FlightStep {
 
 /// k1 is the acceleration at the start, k the one at the end; `at(stage, x, v)` is the acceleration, stages 1 to 6.
 template <class At>
-CAROM_HOT_INLINE FlightStep flight_step(At&& at, math::Vec3d x, math::Vec3d v, math::Vec3d k1, double h) {
+[[gnu::always_inline]] inline FlightStep flight_step(At&& at, math::Vec3d x, math::Vec3d v, math::Vec3d k1, double h) {
   using math::Vec3d;
   // The newest slope comes last in every sum, so that all before it is done when it is known.
   const Vec3d v2 = v + (h / 5) * k1, k2 = at(1, x + (h / 5) * v, v2);

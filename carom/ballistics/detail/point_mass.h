@@ -2,7 +2,6 @@
 // hundred thousand.
 #pragma once
 
-#include "carom/ballistics/detail/hot_inline.h"
 #include "carom/ballistics/flight.h"
 
 namespace carom::ballistics::detail {
@@ -47,7 +46,7 @@ class PointMassPull {
     return plain_ ? at<true>(position, velocity) : at<false>(position, velocity);
   }
   template <bool Plain>
-  CAROM_HOT_INLINE math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
+  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
     math::Vec3d a{};
     if (half_area_ > 0) {
       const environment::AirColumn::Air air = conditions_.air.at(position.y);
@@ -60,7 +59,7 @@ class PointMassPull {
     return beside<Plain>(a, position, velocity);
   }
   template <bool Plain>
-  CAROM_HOT_INLINE math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
+  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
     environment::AirColumn::Air by_metre;
     math::Vec3d shear;
     const environment::AirColumn::Air air = conditions_.air.at(position.y, by_metre);
@@ -83,7 +82,7 @@ class PointMassPull {
 
  private:
   template <bool Plain>
-  CAROM_HOT_INLINE math::Vec3d beside(math::Vec3d a, math::Vec3d position, math::Vec3d velocity) const {
+  [[gnu::always_inline]] math::Vec3d beside(math::Vec3d a, math::Vec3d position, math::Vec3d velocity) const {
     if constexpr (!Plain) return a + beside_drag(conditions_, position, velocity);
     a.y -= conditions_.gravity;
     return a;

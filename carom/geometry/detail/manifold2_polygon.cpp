@@ -140,10 +140,9 @@ bool collide(const Polygon& pa, const Polygon& pb, const Transform2f& x, float m
 bool collide_polygons(const Polygon& a, const Polygon& b, const Transform2f& x, float margin, PairCache& cache,
                       Manifold2& out) {
   using polygon_pair::collide;
-  if (a.count <= 4 && b.count <= 4) return collide<1, 1>(a, b, x, margin, cache, out);
-  if (polygon_pair::has_four(a.count)) return collide<1, 2>(a, b, x, margin, cache, out);
-  if (polygon_pair::has_four(b.count)) return collide<2, 1>(a, b, x, margin, cache, out);
-  return collide<2, 2>(a, b, x, margin, cache, out);
+  if (a.count <= 4)
+    return b.count <= 4 ? collide<1, 1>(a, b, x, margin, cache, out) : collide<1, 2>(a, b, x, margin, cache, out);
+  return b.count <= 4 ? collide<2, 1>(a, b, x, margin, cache, out) : collide<2, 2>(a, b, x, margin, cache, out);
 }
 
 }  // namespace carom::geometry::detail

@@ -256,7 +256,7 @@ void capsule_circle(const Capsule2& a, Vec2f p, float radius, float margin, Mani
 }
 
 void any_polygon_circle(const Polygon& a, Vec2f p, float radius, float margin, Manifold2& out) {
-  if (polygon_pair::has_four(a.count))
+  if (a.count <= 4)
     polygon_circle<1>(a, p, radius, margin, out);
   else
     polygon_circle<2>(a, p, radius, margin, out);
@@ -264,7 +264,7 @@ void any_polygon_circle(const Polygon& a, Vec2f p, float radius, float margin, M
 
 void any_polygon_capsule(const Polygon& a, const Capsule2& capsule, const Transform2f& x, bool of_b, float margin,
                          PairCache& cache, Manifold2& out) {
-  if (polygon_pair::has_four(a.count))
+  if (a.count <= 4)
     polygon_capsule<1>(a, capsule, x, of_b, margin, cache, out);
   else
     polygon_capsule<2>(a, capsule, x, of_b, margin, cache, out);

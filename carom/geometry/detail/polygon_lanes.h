@@ -8,15 +8,6 @@ namespace carom::geometry::detail::polygon_pair {
 
 using Lanes = WideFloat<4>;
 
-/// Do up to four corners have code of their own? Not where a small file counts more (WebAssembly).
-constexpr bool has_four(int count) {
-#ifdef __wasm__
-  return static_cast<void>(count), false;
-#else
-  return count <= 4;
-#endif
-}
-
 /// The even and the odd ones of eight floats.
 CAROM_SIMD_INLINE void part(const float* p, Lanes& even, Lanes& odd) {
   const Lanes low = Lanes::load(p), high = Lanes::load(p + 4);
