@@ -197,7 +197,7 @@ function weightOf(weights, one, other = one) {
  * every byte of what it loads and for every request; a file costs by itself too. `groups`: {users, bytes, functions}.
  */
 function joined(groups, weights) {
-  const REQUEST = 25e3, FILE = 1e6;  // as much as so many bytes, of a request to its user and of a file to all
+  const REQUEST = 15e3, FILE = 3e5;  // as much as so many bytes, of a request to its user and of a file to all
   const weigh = (group) => Object.assign(group, {weight: weightOf(weights, group.users)});
   const gain = (a, b) => FILE + a.weight * (a.bytes + REQUEST) + b.weight * (b.bytes + REQUEST) - weightOf(weights, a.users, b.users) * (a.bytes + b.bytes + REQUEST);
   const list = groups.map(weigh), best = [];
@@ -247,7 +247,7 @@ function partsOf(functions, first, sets, called) {
   const needs = sets.map((_, s) => groups.reduce((sum, g) => sum + (g.users[s >> 5] >>> (s & 31) & 1) * g.bytes, 0));
   const middle = [...needs].sort((a, b) => a - b)[needs.length >> 1];
   const users = (group) => sets.filter((_, s) => group.users[s >> 5] >>> (s & 31) & 1);
-  const made = joined(groups, needs.map((bytes) => Math.max(1, bytes / middle) ** 2));
+  const made = joined(groups, needs.map((bytes) => Math.max(1, bytes / middle) ** 2.5));
   // Named by the group most of whose demos it is of.
   const parts = made.map((group) => {
     const all = users(group), count = (name) => all.filter((s) => s.group === name).length / sets.filter((s) => s.group === name).length;
