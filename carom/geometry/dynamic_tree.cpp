@@ -20,8 +20,9 @@ int DynamicTree<V>::take_node() {
     nodes_[std::size_t(node)] = Node{};
     return node;
   }
-  // By a quarter rather than to the double: a large world at rest should pay for what it holds.
-  if (nodes_.size() == nodes_.capacity()) nodes_.reserve(nodes_.size() + nodes_.size() / 4 + 16);
+  // Not to the double: a large world at rest should pay for what it holds.
+  if (const std::size_t now = nodes_.size(); now == nodes_.capacity())
+    nodes_.reserve(now + now / (now < 1024 ? 4 : 8) + 16);
   nodes_.push_back(Node{});
   return int(nodes_.size()) - 1;
 }

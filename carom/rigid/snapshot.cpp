@@ -14,7 +14,7 @@ namespace detail {
 namespace {
 
 constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
-constexpr std::uint64_t format_version = 5;
+constexpr std::uint64_t format_version = 6;
 constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
 
 /// Where compilers and machines could lay out the plain bytes of a state differently.
@@ -22,11 +22,11 @@ template <class D>
 std::uint64_t layout() {
   core::StateHash hash;
   hash.add(format_version).add(std::int32_t(D::dimension));
-  const std::size_t sizes[] = {sizeof(SolverBody<D>),  sizeof(typename D::Pose), sizeof(BodyMotion<D>),
-                               sizeof(BodyRecord),     sizeof(ShapeExtra<D>),    sizeof(PartSurface<D>),
-                               sizeof(ShapeTraits<D>), sizeof(JointHeader),      sizeof(JointData<D>),
-                               sizeof(EffectorDef<D>), sizeof(ContactRecord<D>), sizeof(ManifoldRecord<D>),
-                               sizeof(WorldDef<D>),    sizeof(std::size_t),      offsetof(BodyRecord, user_data)};
+  const std::size_t sizes[] = {
+      sizeof(SolverBody<D>), sizeof(typename D::Pose), sizeof(BodyMotion<D>),    sizeof(BodyRecord),
+      sizeof(ShapeExtra<D>), sizeof(PartSurface<D>),   sizeof(ShapeTraits<D>),   sizeof(JointHeader),
+      sizeof(SmallJoint<D>), sizeof(EffectorDef<D>),   sizeof(ContactRecord<D>), sizeof(ManifoldRecord<D>),
+      sizeof(WorldDef<D>),   sizeof(LargeJoint<D>),    sizeof(std::size_t),      offsetof(BodyRecord, user_data)};
   for (const std::size_t size : sizes) hash.add(std::uint64_t{size});
   hash.add(std::endian::native == std::endian::little);
 #if defined(_LIBCPP_VERSION)

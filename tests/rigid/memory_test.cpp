@@ -21,9 +21,9 @@ TEST(Memory, SleepingBodyTakesAtMostAKilobyte) {
   EXPECT_LE(c.bytes / std::size_t(c.bodies), 1024u);
 }
 
-// Whatever their number: room for joints grows by quarters.
-TEST(Memory, JointTakesAtMost920Bytes) {
-  for (const int count : {1100, 2100, 4200}) {
+// A ball joint takes 318, and what there is of room ahead; Jolt 5.5's smallest, a point constraint, 370.
+TEST(Memory, SmallJointTakesAtMost370Bytes) {
+  for (const int count : {1300, 2100, 4200, 5000}) {
     World3 world(world_with<Dim3>(0));
     std::vector<BodyId> boxes;
     for (int i = 0; i <= count; ++i) boxes.push_back(add_box<Dim3>(world, {3.0 * i, 0, 0}));
@@ -36,7 +36,7 @@ TEST(Memory, JointTakesAtMost920Bytes) {
       joint.frame_b.p = {-1.5f, 0, 0};
       world.create_joint(joint).value();
     }
-    EXPECT_LE((world.counters().bytes - before) / std::size_t(count), 920u) << count << " joints";
+    EXPECT_LE((world.counters().bytes - before) / std::size_t(count), 370u) << count << " joints";
   }
 }
 

@@ -20,10 +20,12 @@ constexpr Inertia no_inertia() {
     return 0;
 }
 
-/// Makes room for one more. Vectors double by themselves; a world of sleepers should pay for what it holds.
+/// Vectors double by themselves; a world of sleepers should pay for what it holds.
+inline std::size_t next_capacity(std::size_t now) { return now + now / (now < 1024 ? 4 : 8) + 16; }
+/// Makes room for one more.
 template <class T>
-void grow_by_a_quarter(std::vector<T>& v) {
-  if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 4 + 16);
+void grow_a_little(std::vector<T>& v) {
+  if (v.size() == v.capacity()) v.reserve(next_capacity(v.size()));
 }
 
 /// Always inlined: to gcc a function that only pre-loads has no effect, and calls of it go.

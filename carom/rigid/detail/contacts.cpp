@@ -159,7 +159,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
     store.at(index) = {};
   } else {
     index = std::int32_t(store.contacts.size());
-    grow_by_a_quarter(store.contacts);
+    grow_a_little(store.contacts);
     store.contacts.emplace_back();
     store.free_contacts.reserve(store.contacts.capacity());
   }
@@ -313,7 +313,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
     store.manifold(index) = {};
   } else {
     index = std::int32_t(store.manifolds.size());
-    grow_by_a_quarter(store.manifolds);
+    grow_a_little(store.manifolds);
     store.manifolds.emplace_back();
     store.free_manifolds.reserve(store.manifolds.capacity());
   }

@@ -309,8 +309,7 @@ void forget_body_in_effectors(WorldImplementation<D>& world, BodyId body) {
         },
         data.definition);
     if (!bound) continue;
-    if (data.joint != none &&
-        !(world.joints.slots.in_use(data.joint) && world.joints.data[std::size_t(data.joint)].internal))
+    if (data.joint != none && !(world.joints.slots.in_use(data.joint) && world.joints.at(data.joint).internal))
       data.joint = none;  // went with the body's other joints
     release_effector(world, slot);
   }

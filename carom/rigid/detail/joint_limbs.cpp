@@ -130,7 +130,7 @@ void fill_lane(LimbLanes<D, W>& out, int lane, std::int32_t joint, const WorldIm
     set_lane(out.start_tensor_a, lane, record.tensors()[0]);
     set_lane(out.start_tensor_b, lane, record.tensors()[1]);
     const JointPlacement<D> at =
-        place_joint(world.bodies, world.joints.headers[std::size_t(joint)], world.joints.data[std::size_t(joint)]);
+        place_joint(world.bodies, world.joints.headers[std::size_t(joint)], world.joints.at(joint));
     set_lane(out.frame_a, lane, at.frame_a);
     set_lane(out.frame_b, lane, at.frame_b);
   }
@@ -152,7 +152,7 @@ void take_lane(const LimbLanes<Dim3, W>& block, int lane, JointMemory<Dim3>& mem
   memory.hinge = lane_value(block.hinge, lane);
   memory.turn[0] = {};
   memory.turn[0].upper = block.cone.impulse[lane];
-  take_law(block.law, lane, memory.turn[2]);
+  take_law(block.law, lane, memory.turn[1]);
 }
 
 /// Does a lock keep one of the bodies from turning about some axis? Then its tensor must not be turned.
@@ -169,7 +169,7 @@ bool turning_is_locked(const WorldImplementation<D>& world, std::int32_t joint) 
 template <class D>
 std::uint32_t limb_parts(const WorldImplementation<D>& world, std::int32_t joint) {
   constexpr std::uint32_t mask = D::dimension == 2 ? limb_mask2 : limb_mask3;
-  const JointData<D>& data = world.joints.data[std::size_t(joint)];
+  const JointData<D>& data = world.joints.at(joint);
   const std::uint32_t parts = parts_of(data);
   if ((parts & part_pin) == 0 || (parts & ~mask) != 0 || world.joints.tree_of(joint) != none) return 0;
   if (D::dimension == 3 && turning_is_locked(world, joint)) return 0;
@@ -230,7 +230,7 @@ void store_limbs(StepContext<D>& context) {
       for (int b = begin; b < end; ++b)
         for (int lane = 0; lane < W; ++lane) {
           if (blocks[b].joint[lane] == none) continue;
-          JointData<D>& data = joints.data[std::size_t(blocks[b].joint[lane])];
+          JointData<D>& data = joints.at(blocks[b].joint[lane]);
           take_lane(blocks[b], lane, data.memory);
           data.force = data.memory.point * context.inverse_h;
           if constexpr (D::dimension == 2)

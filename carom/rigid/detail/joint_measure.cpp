@@ -66,9 +66,9 @@ void measure_generic(const GenericJointDef<D>& def, const typename D::Rotation& 
 }  // namespace
 
 template <class D>
-bool joint_is_rigid(const AnyJointDef<D>& definition) {
-  if (const auto* weld = std::get_if<WeldJointDef<D>>(&definition)) return !(weld->linear.hertz > 0);
-  return !std::holds_alternative<MotorJointDef<D>>(definition) && !std::holds_alternative<MouseJointDef<D>>(definition);
+bool joint_is_rigid(const JointData<D>& data) {
+  if (const auto* weld = data.template get<WeldJointDef>()) return !(weld->linear.hertz > 0);
+  return data.type != JointType::motor && data.type != JointType::mouse;
 }
 
 template <class D>
@@ -76,18 +76,18 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   const JointHeader& header = world.joints.headers[std::size_t(joint)];
-  const JointData<D>& data = world.joints.data[std::size_t(joint)];
+  const JointData<D>& data = world.joints.at(joint);
   const BodyStore<D>& bodies = world.bodies;
-  const JointFrames<D>& frames = frames_of(data.definition);
+  const JointFrames<D>& frames = data.frames();
   JointState<D> out;
-  out.type = JointType(data.definition.index());
+  out.type = data.type;
   out.body_a = frames.body_a;
   out.body_b = frames.body_b;
   out.force = data.force;
   out.torque = data.torque;
   out.direct = world.joints.tree_of(joint) != none;
 
-  typename D::Position anchor_a = data.world_anchor;
+  typename D::Position anchor_a = data.world_anchor();
   typename D::Rotation frame_a = frames.frame_a.q;
   Vector velocity_a{}, arm_a{};
   Angular spin_a{};
@@ -125,7 +125,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
   };
   switch (out.type) {
     case JointType::distance: {
-      const auto& def = std::get<DistanceJointDef<D>>(data.definition);
+      const auto& def = (*data.template get<DistanceJointDef>());
       out.coordinate = distance;
       out.speed = distance > 0 ? dot(d, v) / distance : 0;
       if (def.rope) {
@@ -140,7 +140,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       break;
     }
     case JointType::ball: {
-      const auto& def = std::get<BallJointDef<D>>(data.definition);
+      const auto& def = (*data.template get<BallJointDef>());
       out.linear_error = distance;
       const float twist = twist_angle(relative_turn);
       out.angular_error = angle_outside(twist, def.twist);
@@ -160,8 +160,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       out.coordinate = twist_angle(relative_turn);
       out.speed = inner(along_z(), spin);
       out.linear_error = distance;
-      out.angular_error =
-          max(z_angle(), angle_outside(out.coordinate, std::get<HingeJointDef<D>>(data.definition).limit));
+      out.angular_error = max(z_angle(), angle_outside(out.coordinate, (*data.template get<HingeJointDef>()).limit));
       break;
     case JointType::slider: {
       Vector x{};
@@ -172,7 +171,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       out.coordinate = dot(x, d);
       out.speed = dot(x, v) - dot(x, cross(spin_a, d));  // as A sees it
       out.linear_error = max(math::length(d - out.coordinate * x),
-                             outside(out.coordinate, std::get<SliderJointDef<D>>(data.definition).limit));
+                             outside(out.coordinate, (*data.template get<SliderJointDef>()).limit));
       out.angular_error = relative_angle<D>(relative_turn);
       break;
     }
@@ -185,8 +184,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       out.linear_error = distance;
       break;
     case JointType::generic:
-      measure_generic(std::get<GenericJointDef<D>>(data.definition), frame_a, frame_b, d, v - cross(spin_a, d), spin,
-                      out);
+      measure_generic(*data.template get<GenericJointDef>(), frame_a, frame_b, d, v - cross(spin_a, d), spin, out);
       break;
     case JointType::gear:
       out.angular_error = math::abs(data.memory.drift);
@@ -196,11 +194,11 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       out.linear_error = math::abs(data.memory.drift);
       break;
     case JointType::path: {
-      const auto& def = std::get<PathJointDef<D>>(data.definition);
+      const auto& def = *data.template get<PathJointDef>();
       const PathCurve<D> curve = curve_of(world.joints, data);
       const Vector local = inverse_rotate(frame_a, d);
       const PathPlace place =
-          data.memory.fresh_path() ? curve.nearest(local) : curve.foot(local, data.memory.path_place);
+          data.more().fresh_path() ? curve.nearest(local) : curve.foot(local, data.more().path_place);
       const auto g = curve.at(place);
       const Vector t = rotate(frame_a, g.d1 * (1 / math::length(g.d1)));
       out.coordinate = curve.arc(place);
@@ -216,7 +214,7 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       break;
     }
     case JointType::pulley: {
-      const auto& def = std::get<PulleyJointDef<D>>(data.definition);
+      const auto& def = *data.template get<PulleyJointDef>();
       const Vector to_a = Vector(anchor_a - def.ground_a),
                    to_b = Vector(world_point(bodies.pose[b], frames.frame_b.p) - def.ground_b);
       out.coordinate = math::length(to_a) + def.ratio * math::length(to_b);
@@ -227,8 +225,8 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
   return out;
 }
 
-template bool joint_is_rigid<Dim2>(const AnyJointDef<Dim2>&);
-template bool joint_is_rigid<Dim3>(const AnyJointDef<Dim3>&);
+template bool joint_is_rigid(const JointData<Dim2>&);
+template bool joint_is_rigid(const JointData<Dim3>&);
 template JointState<Dim2> measure_joint(const WorldImplementation<Dim2>&, std::int32_t);
 template JointState<Dim3> measure_joint(const WorldImplementation<Dim3>&, std::int32_t);
 

@@ -36,22 +36,22 @@ std::uint32_t parts_of(const JointData<D>& data) {
       return part_coupling;
     }
   };
-  return std::uint32_t(std::visit(parts, data.definition));
+  return std::uint32_t(data.visit(parts));
 }
 
 template <class D>
 bool is_rod(const JointData<D>& data) {
-  const auto* d = std::get_if<DistanceJointDef<D>>(&data.definition);
+  const auto* d = data.template get<DistanceJointDef>();
   return d != nullptr && !data.internal && !d->rope && !axis_is_used(d->spring, d->motor, d->limit);
 }
 template <class D>
 bool turns_rigidly(const JointData<D>& data) {
-  if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition)) return !(weld->angular.hertz > 0);
-  return std::holds_alternative<SliderJointDef<D>>(data.definition);
+  if (const auto* weld = data.template get<WeldJointDef>()) return !(weld->angular.hertz > 0);
+  return data.type == JointType::slider;
 }
 template <class D>
 bool holds_axes(const JointData<D>& data) {
-  const auto* d = std::get_if<GenericJointDef<D>>(&data.definition);
+  const auto* d = data.template get<GenericJointDef>();
   if (d == nullptr) return false;
   for (const JointAxis& axis : d->linear)
     if (!axis.free) return true;
@@ -65,8 +65,8 @@ void test_joints(WorldImplementation<D>& world) {
   JointStore<D>& joints = world.joints;
   if (joints.breakable_count == 0) return;
   const auto test = [&](std::int32_t joint) {
-    const JointData<D>& data = joints.data[std::size_t(joint)];
-    const JointFrames<D>& frames = frames_of(data.definition);
+    const JointData<D>& data = joints.at(joint);
+    const JointFrames<D>& frames = data.frames();
     const auto above = [](float x, float limit) { return limit > 0 && x > limit; };
     if (above(math::length(data.force), frames.break_force) || above(magnitude(data.torque), frames.break_torque))
       world.scratch.joint_break.push_back(

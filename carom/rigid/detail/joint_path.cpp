@@ -23,12 +23,13 @@ typename D::Vector knot_tangent(const PathJointDef<D>& definition, std::size_t k
 
 template <class D>
 void add_knots(JointStore<D>& joints, JointData<D>& data) {
-  auto& definition = std::get<PathJointDef<D>>(data.definition);
+  auto& definition = *data.template get<PathJointDef>();
+  JointMore<D>& more = data.more();
   const auto points = definition.points;
   const std::size_t n = points.size(), count = n + (definition.closed ? 1 : 0);
-  data.first_knot = std::int32_t(joints.knot_points.size());
-  data.knot_count = std::int32_t(count);
-  data.own_tangents = !definition.tangents.empty();
+  more.first_knot = std::int32_t(joints.knot_points.size());
+  more.knot_count = std::int32_t(count);
+  more.own_tangents = !definition.tangents.empty();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = i % n;
     const auto tangent = knot_tangent(definition, k);
@@ -38,8 +39,8 @@ void add_knots(JointStore<D>& joints, JointData<D>& data) {
   }
   const PathCurve<D> curve = curve_of(joints, data);
   double arc = 0;
-  for (std::int32_t i = 1; i < data.knot_count; ++i) {
-    const std::size_t knot = std::size_t(data.first_knot) + std::size_t(i);
+  for (std::int32_t i = 1; i < more.knot_count; ++i) {
+    const std::size_t knot = std::size_t(more.first_knot) + std::size_t(i);
     arc += definition.straight ? double(math::distance(joints.knot_points[knot], joints.knot_points[knot - 1]))
                                : double(curve.arc_within(i - 1, 1));
     joints.knot_arcs[knot] = float(arc);
@@ -49,36 +50,37 @@ void add_knots(JointStore<D>& joints, JointData<D>& data) {
 
 template <class D>
 PathCurve<D> curve_of(const JointStore<D>& joints, const JointData<D>& data) {
-  const auto& d = std::get<PathJointDef<D>>(data.definition);
-  const std::size_t first = std::size_t(data.first_knot);
+  const auto& d = *data.template get<PathJointDef>();
+  const std::size_t first = std::size_t(data.more().first_knot);
   return {{&joints.knot_points[first], &joints.knot_tangents[first], &joints.knot_arcs[first]},
-          data.knot_count,
+          data.more().knot_count,
           d.closed,
           d.straight};
 }
 
 template <class D>
 void drop_knots(JointStore<D>& joints, std::int32_t joint) {
-  const JointData<D>& data = joints.data[std::size_t(joint)];
-  if (data.knot_count == 0) return;
+  if (joints.at(joint).type != JointType::path) return;
+  const std::int32_t first = joints.at(joint).more().first_knot, count = joints.at(joint).more().knot_count;
   const auto drop = [&](auto& values) {
-    const auto begin = values.begin() + data.first_knot;
-    values.erase(begin, begin + data.knot_count);
+    const auto begin = values.begin() + first;
+    values.erase(begin, begin + count);
   };
   drop(joints.knot_points);
   drop(joints.knot_tangents);
   drop(joints.knot_arcs);
-  for (JointData<D>& other : joints.data)
-    if (other.knot_count > 0 && other.first_knot > data.first_knot) other.first_knot -= data.knot_count;
+  for (LargeJoint<D>& other : joints.large)
+    if (other.more.first_knot > first) other.more.first_knot -= count;
 }
 
 template <class D>
 AnyJointDef<D> whole_definition(const JointStore<D>& joints, const JointData<D>& data) {
-  AnyJointDef<D> whole = data.definition;
+  AnyJointDef<D> whole = data.visit([](const auto& d) { return AnyJointDef<D>(d); });
   if (auto* path = std::get_if<PathJointDef<D>>(&whole)) {
-    const std::size_t first = std::size_t(data.first_knot), n = std::size_t(data.knot_count - (path->closed ? 1 : 0));
+    const std::size_t first = std::size_t(data.more().first_knot);
+    const std::size_t n = std::size_t(data.more().knot_count - (path->closed ? 1 : 0));
     path->points = {&joints.knot_points[first], n};
-    if (data.own_tangents) path->tangents = {&joints.knot_tangents[first], n};
+    if (data.more().own_tangents) path->tangents = {&joints.knot_tangents[first], n};
   }
   return whole;
 }

@@ -10,7 +10,7 @@ void fill_lane(PinLanes<D, W>& block, int lane, std::int32_t slot, const WorldIm
   block.read_a[lane] = block.read_b[lane] = block.write_a[lane] = block.write_b[lane] = none;
   if (slot == none) return;
   const JointHeader& header = world.joints.headers[std::size_t(slot)];
-  const JointData<D>& data = world.joints.data[std::size_t(slot)];
+  const JointData<D>& data = world.joints.at(slot);
   const auto masses = [&](std::int32_t body, std::int32_t& read, std::int32_t& write, float& mass, float& inertia) {
     read = body;
     if (body == none || !world.bodies.is_dynamic(body)) return;
@@ -42,7 +42,7 @@ void fill_lane(PinLanes<D, W>& block, int lane, std::int32_t slot, const WorldIm
 
 template <class D>
 bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint) {
-  return world.joints.tree_of(joint) == none && parts_of(world.joints.data[std::size_t(joint)]) == part_pin &&
+  return world.joints.tree_of(joint) == none && parts_of(world.joints.at(joint)) == part_pin &&
          is_isotropic(world, joint);
 }
 
@@ -97,7 +97,7 @@ void store_pins(StepContext<D>& context) {
       for (int b = begin; b < end; ++b) {
         for (int lane = 0; lane < W; ++lane) {
           if (blocks[b].joint[lane] == none) continue;
-          JointData<D>& data = joints.data[std::size_t(blocks[b].joint[lane])];
+          JointData<D>& data = joints.at(blocks[b].joint[lane]);
           for (int i = 0; i < D::dimension; ++i) data.memory.point[i] = blocks[b].impulse[i][lane];
           data.force = data.memory.point * context.inverse_h;
           data.torque = {};

@@ -32,7 +32,7 @@ struct JointPlacement {
 
 template <class D>
 JointPlacement<D> place_joint(const BodyStore<D>& bodies, const JointHeader& header, const JointData<D>& data) {
-  const JointFrames<D>& frames = frames_of(data.definition);
+  const JointFrames<D>& frames = data.frames();
   JointPlacement<D> at;
   typename D::Position center_a{};
   if (header.body[0] != none) {
@@ -42,7 +42,7 @@ JointPlacement<D> place_joint(const BodyStore<D>& bodies, const JointHeader& hea
     at.frame_a = rotation * frames.frame_a.q;
     center_a = bodies.motion[a].center;
   } else {
-    center_a = data.world_anchor;
+    center_a = data.world_anchor();
     at.frame_a = frames.frame_a.q;
   }
   const std::size_t b = std::size_t(header.body[1]);

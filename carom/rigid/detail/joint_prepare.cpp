@@ -35,7 +35,7 @@ void fill_motor(AxisLaw& law, const JointMotor& motor, const Clock& t) {
   law.max_motor_impulse = motor.max_force * t.push();
 }
 template <class D>
-inline constexpr int last_turn = D::dimension == 2 ? 0 : 2;
+inline constexpr int last_turn = D::dimension == 2 ? 0 : 1;
 
 /// Which axis of a generic joint (others have their first linear one) a block is for.
 int axis_of_part(JointPart part) {
@@ -107,6 +107,16 @@ void memorise(const AxisLaw& law, Axis& memory) {
   memory.upper = law.upper_impulse;
 }
 
+/// What is remembered of a generic joint's axes, or of the only one of another.
+template <class Data>
+auto& linear_of(Data& data, int axis) {
+  return axis == 0 ? data.memory.linear : data.more().linear[axis - 1];
+}
+template <class Data>
+auto& turn_of(Data& data, int axis) {
+  return axis == 1 ? data.more().turn : data.memory.turn[axis / 2];
+}
+
 template <class D>
 void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlacement<D>& at, JointRecord<D>& record,
                  const Clock& t, int axis) {
@@ -115,7 +125,7 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
   block.offset = at.offset;
   block.axis = axis_of<D>(at.frame_a, axis);
   AxisLaw& law = block.law;
-  if (const auto* slider = std::get_if<SliderJointDef<D>>(&data.definition)) {
+  if (const auto* slider = data.template get<SliderJointDef>()) {
     block.between_anchors = false;
     float stiffer = 1;
     if (slider->spring.hertz > 0) {
@@ -129,10 +139,10 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
     fill_spring(law, slider->spring, slider->target_translation, t, stiffer);
     fill_motor(law, slider->motor, t);
     fill_limit(law, slider->limit);
-  } else if (const auto* generic = std::get_if<GenericJointDef<D>>(&data.definition)) {
+  } else if (const auto* generic = data.template get<GenericJointDef>()) {
     block.between_anchors = false;
     fill_axis(law, generic->linear[axis], t, 1);
-  } else if (const auto* distance = std::get_if<DistanceJointDef<D>>(&data.definition)) {
+  } else if (const auto* distance = data.template get<DistanceJointDef>()) {
     fill_spring(law, distance->spring, distance->length, t);
     fill_motor(law, distance->motor, t);
     fill_limit(law, distance->limit);
@@ -142,7 +152,7 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
       const double mobility = double(pair.row_inverse_mass(row.lever_a, row.lever_b));
       law.flags |= AxisLaw::spring;
       law.rest = distance->length;
-      law.response = spring_response_of(data.stiffness * t.pace * t.pace, data.damping * t.pace,
+      law.response = spring_response_of(data.more().stiffness * t.pace * t.pace, data.more().damping * t.pace,
                                         mobility > 0 ? 1 / mobility : 0, t.h);
     } else if (distance->rope) {
       law.flags |= AxisLaw::pull_only;
@@ -155,7 +165,7 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
       law.rest = distance->length;
     }
   }
-  remember(law, data.memory.linear[axis]);
+  remember(law, linear_of(data, axis));
 }
 
 template <class D>
@@ -164,7 +174,7 @@ void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlac
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
   block.law.flags = AxisLaw::periodic;
-  if (const auto* hinge = std::get_if<HingeJointDef<D>>(&data.definition)) {
+  if (const auto* hinge = data.template get<HingeJointDef>()) {
     float stiffer = 1;
     if (hinge->spring.hertz > 0) {
       const BodyPair<D> pair = pair_of(record);
@@ -179,7 +189,7 @@ void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlac
     fill_spring(block.law, hinge->spring, hinge->target_angle, t, stiffer);
     fill_motor(block.law, hinge->motor, t);
     fill_limit(block.law, hinge->limit);
-  } else if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition)) {
+  } else if (const auto* ball = data.template get<BallJointDef>()) {
     fill_limit(block.law, ball->twist);
   }
   remember(block.law, data.memory.turn[last_turn<D>]);
@@ -191,7 +201,7 @@ void fill_cone(AngularAxis<D>& block, const JointData<D>& data, const JointPlace
   block.frame_b = at.frame_b;
   block.kind = AngleKind::cone;
   block.law.flags = AxisLaw::upper;
-  block.law.high = std::get<BallJointDef<D>>(data.definition).cone_angle;
+  block.law.high = data.template get<BallJointDef>()->cone_angle;
   remember(block.law, data.memory.turn[0]);
 }
 
@@ -201,8 +211,8 @@ void fill_turn(AngularAxis<D>& block, const JointData<D>& data, const JointPlace
   block.frame_b = at.frame_b;
   if constexpr (D::dimension == 3) block.kind = AngleKind(int(AngleKind::cardan_x) + axis);
   block.law.flags = AxisLaw::periodic;
-  fill_axis(block.law, std::get<GenericJointDef<D>>(data.definition).angular[axis], t, 1);
-  remember(block.law, data.memory.turn[axis]);
+  fill_axis(block.law, data.template get<GenericJointDef>()->angular[axis], t, 1);
+  remember(block.law, turn_of(data, axis));
 }
 
 template <class D>
@@ -222,19 +232,19 @@ void fill_coupling(CouplingBlock<D>& block, const JointData<D>& data, const Join
   block.drift = data.memory.drift;
   block.spin_axis_a = spin_axis<D>(at.frame_a, 2);
   block.spin_axis_b = spin_axis<D>(at.frame_b, 2);
-  if (const auto* gear = std::get_if<GearJointDef<D>>(&data.definition)) {
+  if (const auto* gear = data.template get<GearJointDef>()) {
     block.ratio = gear->ratio;
-  } else if (const auto* rack = std::get_if<RackJointDef<D>>(&data.definition)) {
+  } else if (const auto* rack = data.template get<RackJointDef>()) {
     block.kind = CouplingKind::rack;
     block.ratio = rack->radius;
     block.slide_axis = axis_of<D>(at.frame_b, 0);
-  } else if (const auto* screw = std::get_if<ScrewJointDef<D>>(&data.definition)) {
+  } else if (const auto* screw = data.template get<ScrewJointDef>()) {
     block.kind = CouplingKind::screw;
     block.ratio = screw->pitch / (2 * pi_f);
     block.slide_axis = axis_of<D>(at.frame_a, 0);
     block.spin_axis_a = spin_axis<D>(at.frame_a, 0);
     block.slid = dot(at.offset + at.arm_b - at.arm_a, block.slide_axis);
-  } else if (const auto* pulley = std::get_if<PulleyJointDef<D>>(&data.definition)) {
+  } else if (const auto* pulley = data.template get<PulleyJointDef>()) {
     block.kind = CouplingKind::pulley;
     block.ratio = pulley->ratio;
     block.length = pulley->length;
@@ -250,13 +260,13 @@ void fill_path(PathPose<D>& pose, const JointStore<D>& joints, const JointData<D
   pose.offset = at.offset;
   pose.frame_a = at.frame_a;
   pose.curve = curve_of(joints, data);
-  pose.place = data.memory.path_place;
-  pose.normal = data.memory.path_normal;
+  pose.place = data.more().path_place;
+  pose.normal = data.more().path_normal;
   // Who was set down somewhere else is looked for on the whole path.
   const auto d = inverse_rotate(at.frame_a, at.offset + at.arm_b - at.arm_a);
   const auto away = [&](PathPlace place) { return math::distance(pose.curve.at(place).p, d); };
   pose.place = pose.curve.foot(d, pose.place);
-  if (data.memory.fresh_path() || away(pose.place) > 0.05f * pose.curve.length()) {
+  if (data.more().fresh_path() || away(pose.place) > 0.05f * pose.curve.length()) {
     const PathPlace nearest = pose.curve.nearest(d);
     if (away(nearest) < away(pose.place)) pose.place = nearest;
   }
@@ -281,17 +291,17 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
   block.frame_b = at.frame_b;
   block.impulse = data.memory.angular;
   JointSpring spring{};
-  if (const auto* ball = std::get_if<BallJointDef<D>>(&data.definition))
+  if (const auto* ball = data.template get<BallJointDef>())
     spring = ball->spring;
-  else if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition))
+  else if (const auto* weld = data.template get<WeldJointDef>())
     spring = weld->angular;
-  else if (const auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition)) {
+  else if (const auto* mouse = data.template get<MouseJointDef>()) {
     // The hand also slows the body's turning, so that it does not swing for ever.
     const float keep = math::exp(-0.5f * mouse->spring.hertz * mouse->spring.damping_ratio * t.pace * t.h);
     block.rigid = false;
     block.response = {1 - keep, 0, keep, 0};
     return;
-  } else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
+  } else if (const auto* motor = data.template get<MotorJointDef>()) {
     spring = motor->angular;
     block.max_impulse = motor->max_torque * t.push();
   }
@@ -306,12 +316,12 @@ void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlace
   block.offset = at.offset;
   block.impulse = data.memory.point;
   JointSpring spring{};
-  if (const auto* weld = std::get_if<WeldJointDef<D>>(&data.definition))
+  if (const auto* weld = data.template get<WeldJointDef>())
     spring = weld->linear;
-  else if (const auto* motor = std::get_if<MotorJointDef<D>>(&data.definition)) {
+  else if (const auto* motor = data.template get<MotorJointDef>()) {
     spring = motor->linear;
     block.max_impulse = motor->max_force * t.push();
-  } else if (const auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition)) {
+  } else if (const auto* mouse = data.template get<MouseJointDef>()) {
     spring = mouse->spring;
     block.max_impulse = mouse->max_force * t.push();
   }
@@ -324,7 +334,7 @@ void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlace
 template <class D>
 void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, float h) {
   const JointHeader& header = world.joints.headers[std::size_t(record.joint)];
-  const JointData<D>& data = world.joints.data[std::size_t(record.joint)];
+  const JointData<D>& data = world.joints.at(record.joint);
   record.body_a = header.body[0];
   record.body_b = header.body[1];
   record.dynamic_a = record.body_a != none && world.bodies.is_dynamic(record.body_a);
@@ -369,20 +379,20 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
       fill_coupling(block, data, at);
     } else if constexpr (std::is_same_v<Block, PathAxis<D>>) {
       fill_path(block.pose, world.joints, data, at);
-      fill_along(block.law, std::get<PathJointDef<D>>(data.definition), block.pose.curve, t);
-      remember(block.law, memory.linear[0]);
+      fill_along(block.law, *data.template get<PathJointDef>(), block.pose.curve, t);
+      remember(block.law, memory.linear);
       note(block);
     } else if constexpr (std::is_same_v<Block, PathBlock<D>>) {
       fill_path(block.pose, world.joints, data, at);
-      block.follow = std::get<PathJointDef<D>>(data.definition).follow;
+      block.follow = data.template get<PathJointDef>()->follow;
       block.along_b = axis_of<D>(at.frame_b, 0);
-      for (int i = 0; i < Block::most; ++i) block.impulse[i] = memory.path[i];
+      for (int i = 0; i < Block::most; ++i) block.impulse[i] = data.more().path[i];
     } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
       if (part == part_friction) {
         block.friction = true;
         block.rigid = false;
         block.impulse = memory.friction;
-        block.max_impulse = std::get<BallJointDef<D>>(data.definition).friction_torque * t.push();
+        block.max_impulse = data.template get<BallJointDef>()->friction_torque * t.push();
       } else {
         fill_angular(block, data, at, t);
         if (!block.rigid) block.note_speed(moving());
@@ -473,7 +483,7 @@ void prepare_joints(StepContext<D>& context) {
       joints.offset.push_back(units);
       const std::int32_t tree = joints.tree_of(joint);
       if (tree != none) joints.trees.joints[std::size_t(tree)].record = units;
-      units += record_units<D>(parts_of(joints.data[std::size_t(joint)]), is_isotropic(world, joint));
+      units += record_units<D>(parts_of(joints.at(joint)), is_isotropic(world, joint));
     }
     while (joints.pins.size() % width != 0) joints.pins.push_back(none);
     fill_up_limbs(joints, first_limb, width);
@@ -488,7 +498,7 @@ void prepare_joints(StepContext<D>& context) {
       auto& record = *::new (static_cast<void*>(&joints.records[joints.offset[std::size_t(i)]])) JointRecord<D>{};
       record.joint = joints.order[std::size_t(i)];
       record.isotropic = is_isotropic(world, record.joint);
-      record.parts = parts_of(joints.data[std::size_t(record.joint)]);
+      record.parts = parts_of(joints.at(record.joint));
       record.direct = joints.tree_of(record.joint) != none;
       fill_record(record, world, context.h);
     }
@@ -508,7 +518,7 @@ void store_joints(StepContext<D>& context) {
   context.scheduler.parallel_for(int(joints.order.size()), 64, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
-      JointData<D>& data = joints.data[std::size_t(record.joint)];
+      JointData<D>& data = joints.at(record.joint);
       JointMemory<D>& memory = data.memory;
       BodyPair<D> pair;
       load_turns(pair, record, context.bodies);
@@ -517,13 +527,16 @@ void store_joints(StepContext<D>& context) {
       for_each_block(record, [&](JointPart part, auto& block) {
         using Block = std::remove_cvref_t<decltype(block)>;
         if constexpr (std::is_same_v<Block, LinearAxis<D>>) {
-          memorise(block.law, memory.linear[axis_of_part(part)]);
+          memorise(block.law, linear_of(data, axis_of_part(part)));
           force += block.law.total() * block.row(pair).n;
         } else if constexpr (std::is_same_v<Block, PointBlock<D>> || std::is_same_v<Block, PinBlock<D>>) {
           memory.point = block.impulse;
           force += block.impulse;
         } else if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
-          memorise(block.law, memory.turn[part == part_twist ? last_turn<D> : axis_of_part(part)]);
+          if (part == part_twist)
+            memorise(block.law, memory.turn[last_turn<D>]);
+          else
+            memorise(block.law, turn_of(data, axis_of_part(part)));
           float unused;
           torque += block.law.total() * block.row(pair, false, unused);
         } else if constexpr (std::is_same_v<Block, AngularBlock<D>>) {
@@ -536,19 +549,19 @@ void store_joints(StepContext<D>& context) {
           force += block.impulse * row.along_b;
           torque += block.impulse * row.about_b;
         } else if constexpr (std::is_same_v<Block, PathAxis<D>>) {
-          memorise(block.law, memory.linear[0]);
+          memorise(block.law, memory.linear);
           force += block.law.total() * block.row(pair).n;
         } else if constexpr (std::is_same_v<Block, PathBlock<D>>) {
           typename Block::Row row[Block::most];
           const int count = block.rows(pair, row);
           const auto b = rotate(pair.turn_b, block.pose.arm_b);
           for (int k = 0; k < count; ++k) {
-            memory.path[k] = block.impulse[k];
+            data.more().path[k] = block.impulse[k];
             force += block.impulse[k] * row[k].n;
             torque += block.impulse[k] * (row[k].lever_b - cross(b, row[k].n));
           }
-          memory.path_place = block.pose.place;
-          memory.path_normal = block.pose.normal;
+          data.more().path_place = block.pose.place;
+          data.more().path_normal = block.pose.normal;
         } else if constexpr (std::is_same_v<Block, SlideBlock<D>>) {
           typename Block::Row row[Block::rows];
           block.directions(pair, row);

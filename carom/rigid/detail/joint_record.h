@@ -150,13 +150,8 @@ template <class D>
 void store_limbs(StepContext<D>& context);
 
 template <class D>
-const JointFrames<D>& frames_of(const AnyJointDef<D>& definition) {
-  return std::visit([](const auto& d) -> const JointFrames<D>& { return d; }, definition);
-}
-
-template <class D>
-bool may_break(const AnyJointDef<D>& definition) {
-  return frames_of(definition).break_force > 0 || frames_of(definition).break_torque > 0;
+bool may_break(const JointFrames<D>& frames) {
+  return frames.break_force > 0 || frames.break_torque > 0;
 }
 
 /// Detaches the joint and frees its slot.
@@ -167,6 +162,6 @@ template <class D>
 JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t joint);
 /// Is `linear_error` of this joint something that should be zero?
 template <class D>
-bool joint_is_rigid(const AnyJointDef<D>& definition);
+bool joint_is_rigid(const JointData<D>& data);
 
 }  // namespace carom::rigid::detail

@@ -150,11 +150,10 @@ template <class D>
 void release_joint(WorldImplementation<D>& world, std::int32_t joint) {
   JointStore<D>& joints = world.joints;
   detach_joint(world, joint);
-  if (joints.data[std::size_t(joint)].internal) --joints.internal_count;
-  if (may_break(joints.data[std::size_t(joint)].definition)) --joints.breakable_count;
+  if (joints.at(joint).internal) --joints.internal_count;
+  if (may_break(joints.at(joint).frames())) --joints.breakable_count;
   drop_knots(joints, joint);
-  joints.data[std::size_t(joint)] = {};
-  joints.headers[std::size_t(joint)] = {};
+  joints.drop(joint);
   joints.slots.release(joints.slots.handle_at(joint));
 }
 

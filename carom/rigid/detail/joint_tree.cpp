@@ -158,8 +158,8 @@ class Tree {
     if (range_.free) {
       // Of a tree that spins, what the substeps err swings to and fro with its inner motion: taken out each time that
       // it is above nothing, it would bring that motion to rest. So it counts as a sum, which forgets all but a little.
-      const std::size_t first = std::size_t(trees_.joints[std::size_t(range_.first_joint)].joint);
-      float& account = context_.world.joints.data[first].memory.drift;
+      const std::int32_t first = trees_.joints[std::size_t(range_.first_joint)].joint;
+      float& account = context_.world.joints.at(first).memory.drift;
       excess += double(account);
       account = float(max(min(excess, 0.0), -account_share * (after + turning)));
     }

@@ -42,7 +42,7 @@ class Builder {
 
  private:
   bool takes_part(std::int32_t joint) const {
-    return joints_.headers[std::size_t(joint)].place.color >= 0 && has_rigid_rows(joints_.data[std::size_t(joint)]);
+    return joints_.headers[std::size_t(joint)].place.color >= 0 && has_rigid_rows(joints_.at(joint));
   }
   bool is_node(std::int32_t body) const {
     return body != none && world_.bodies.is_dynamic(body) && world_.bodies.motion[std::size_t(body)].inverse_mass > 0;
@@ -145,7 +145,7 @@ class Builder {
 
   /// Where the joint sits on one of its bodies, from that body's centre of mass.
   typename D::Vector arm(std::int32_t joint, bool on_b) const {
-    const JointFrames<D>& frames = frames_of(joints_.data[std::size_t(joint)].definition);
+    const JointFrames<D>& frames = joints_.at(joint).frames();
     const std::int32_t body = joints_.headers[std::size_t(joint)].body[on_b ? 1 : 0];
     const auto center = world_.bodies.motion[std::size_t(body)].local_center;
     return (on_b ? frames.frame_b.p : frames.frame_a.p) - center;
@@ -189,7 +189,7 @@ class Builder {
         inverse_turn += inverse_inertia(parent.body);
       }
       const double carried = grounded ? load.mass : min(load.mass, total - load.mass);
-      const JointData<D>& data = joints_.data[std::size_t(joint.joint)];
+      const JointData<D>& data = joints_.at(joint.joint);
       const bool turns =
           (parts_of(data) & (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0 &&
           (grounded || turns_rigidly(data));               // the hinges of a free figure bear little

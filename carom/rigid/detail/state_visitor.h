@@ -45,13 +45,17 @@ void visit_shapes(Shapes& store, Visit& visit) {
 
 template <class Joints, class Visit>
 void visit_joints(Joints& store, Visit& visit) {
-  auto& [slots, headers, data, births, internal_count, breakable_count, knot_points, knot_tangents, knot_arcs, order,
-         offset, color_begin, records, trees, pins, pin_begin, pin_blocks, pin_kernels, limbs, limb_begin, limb_blocks,
-         limb_kernels] = store;
+  auto& [slots, headers, room, small, large, free_small, free_large, births, internal_count, breakable_count,
+         knot_points, knot_tangents, knot_arcs, order, offset, color_begin, records, trees, pins, pin_begin, pin_blocks,
+         pin_kernels, limbs, limb_begin, limb_blocks, limb_kernels] = store;
   (void)pin_blocks, (void)pin_kernels, (void)limb_blocks, (void)limb_kernels;
   visit_slots(slots, visit);
   visit.state(headers);
-  visit.state(data);
+  visit.state(room);
+  visit.state(small);
+  visit.state(large);
+  visit.state(free_small);
+  visit.state(free_large);
   visit.state(births);
   visit.state(internal_count);
   visit.state(breakable_count);

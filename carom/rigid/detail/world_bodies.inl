@@ -50,7 +50,6 @@ std::vector<std::int32_t> island_of(const WorldImplementation<D>& world, std::in
   }
   return island;
 }
-/// Grows by a quarter, not to the double: a world of sleepers pays for what it holds.
 template <class D>
 void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
   bodies.solver.reserve(count);
@@ -107,7 +106,7 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   const BodyId id = bodies.slots.allocate();
   const std::size_t slot = std::size_t(bodies.slots.slot(id));
   if (slot == bodies.record.size()) {
-    if (slot == bodies.record.capacity()) reserve_bodies(bodies, slot + slot / 4 + 16);
+    if (slot == bodies.record.capacity()) reserve_bodies(bodies, next_capacity(slot));
     bodies.solver.emplace_back();
     bodies.pose.emplace_back();
     bodies.motion.emplace_back();

@@ -161,38 +161,30 @@ void install_effector(WorldImplementation<D>& world, std::int32_t slot, const Ef
   if (const auto* spring = std::get_if<SpringDamper<D>>(&definition)) {
     JointStore<D>& joints = world.joints;
     const JointId id = joints.slots.allocate();
-    const std::size_t joint = std::size_t(joints.slots.slot(id));
-    if (joint >= joints.data.size()) {
-      joints.data.resize(joint + 1);
-      joints.headers.resize(joint + 1);
-    }
+    const std::int32_t joint = joints.slots.slot(id);
     DistanceJointDef<D> def;
     def.length = float(spring->rest_length);
     def.collide_connected = true;
-    JointData<D> data;
-    data.birth = ++joints.births;
-    data.internal = true;
-    data.stiffness = spring->stiffness;
-    data.damping = spring->damping;
-    joints.headers[joint] = {};
-    joints.headers[joint].collide_connected = true;
     if (spring->body_b.is_null()) {
       def.body_b = spring->body_a;
       def.frame_b.p = spring->point_a;
-      data.world_anchor = spring->point_b;
     } else {
       def.body_a = spring->body_a;
       def.body_b = spring->body_b;
       def.frame_a.p = spring->point_a;
       def.frame_b.p = typename D::Vector(spring->point_b);
-      joints.headers[joint].body[0] = world.bodies.slots.slot(def.body_a);
     }
-    joints.headers[joint].body[1] = world.bodies.slots.slot(def.body_b);
-    data.definition = def;
-    joints.data[joint] = data;
+    JointMore<D>& more = joints.make(joint, def, true).more();
+    more.stiffness = spring->stiffness;
+    more.damping = spring->damping;
+    more.world_anchor = spring->point_b;
+    JointHeader& header = joints.headers[std::size_t(joint)];
+    header.collide_connected = true;
+    header.body[0] = spring->body_b.is_null() ? none : world.bodies.slots.slot(def.body_a);
+    header.body[1] = world.bodies.slots.slot(def.body_b);
     ++joints.internal_count;
-    effector.joint = std::int32_t(joint);
-    attach_joint(world, std::int32_t(joint));
+    effector.joint = joint;
+    attach_joint(world, joint);
     return;
   }
   std::visit(

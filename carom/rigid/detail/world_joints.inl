@@ -39,28 +39,15 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   def.frame_b.q = unit_rotation(def.frame_b.q);
   JointStore<D>& joints = world.joints;
   const JointId id = joints.slots.allocate();
-  const std::size_t slot = std::size_t(joints.slots.slot(id));
-  if (slot >= joints.data.size()) {
-    grow_by_a_quarter(joints.data);
-    grow_by_a_quarter(joints.headers);
-    joints.data.resize(slot + 1);
-    joints.headers.resize(slot + 1);
-  }
-  JointData<D> data;
-  data.birth = ++joints.births;
-  if constexpr (mouse)
-    data.world_anchor = def.target;
-  else
-    data.world_anchor = typename D::Position(def.frame_a.p);
-  data.definition = def;
+  const std::int32_t slot = joints.slots.slot(id);
+  JointData<D>& data = joints.make(slot, def);
   if constexpr (std::is_same_v<Def, PathJointDef<D>>) add_knots(joints, data);
-  joints.data[slot] = data;
-  joints.headers[slot] = {};
-  joints.headers[slot].body[0] = a;
-  joints.headers[slot].body[1] = b;
-  if (may_break(data.definition)) ++joints.breakable_count;
-  joints.headers[slot].collide_connected = def.collide_connected || a == none;
-  attach_joint(world, std::int32_t(slot));
+  JointHeader& header = joints.headers[std::size_t(slot)];
+  header.body[0] = a;
+  header.body[1] = b;
+  header.collide_connected = def.collide_connected || a == none;
+  if (may_break(data.frames())) ++joints.breakable_count;
+  attach_joint(world, slot);
   return id;
 }
 
@@ -74,10 +61,9 @@ Result<std::int32_t> find_joint(const WorldImplementation<D>& world, JointId joi
 /// After a change of its definition.
 template <class D>
 void wake_joint(WorldImplementation<D>& world, std::int32_t joint) {
-  const AnyJointDef<D>& any = world.joints.data[std::size_t(joint)].definition;
   // Only these two may have become rigid, or no longer be.
-  if (std::holds_alternative<DistanceJointDef<D>>(any) || std::holds_alternative<WeldJointDef<D>>(any))
-    world.joints.trees.stale = true;
+  const JointType type = world.joints.at(joint).type;
+  if (type == JointType::distance || type == JointType::weld) world.joints.trees.stale = true;
   for (const std::int32_t body : world.joints.headers[std::size_t(joint)].body)
     if (body != none && world.bodies.is_dynamic(body)) wake_body(world, body);
 }
@@ -86,8 +72,9 @@ inline std::string_view joint_type_name(std::size_t index) {
                                         "generic",  "gear", "rack",  "screw",  "pulley", "path"};
   return names[index];
 }
-inline core::Error wrong_joint(std::string_view call, std::size_t index, std::string_view expected) {
-  return core::Error{core::text(call, ": the joint is a ", joint_type_name(index), " joint, expected ", expected)};
+inline core::Error wrong_joint(std::string_view call, JointType type, std::string_view expected) {
+  return core::Error{
+      core::text(call, ": the joint is a ", joint_type_name(std::size_t(type)), " joint, expected ", expected)};
 }
 
 }  // namespace detail
@@ -170,7 +157,7 @@ template <class D>
 Result<AnyJointDef<D>> World<D>::joint_definition(JointId joint) const {
   const auto slot = detail::find_joint<D>(*self_, joint, "World::joint_definition");
   if (!slot.ok()) return slot.error();
-  return detail::whole_definition(self_->joints, self_->joints.data[std::size_t(*slot)]);
+  return detail::whole_definition(self_->joints, self_->joints.at(*slot));
 }
 
 template <class D>
@@ -181,17 +168,17 @@ Status World<D>::set_motor(JointId joint, const JointMotor& motor) {
   detail::Complaint complaint(call);
   complaint.motor("motor", motor);
   if (!complaint.none_yet()) return complaint.error();
-  AnyJointDef<D>& any = self_->joints.data[std::size_t(*slot)].definition;
-  if (auto* distance = std::get_if<DistanceJointDef<D>>(&any))
+  detail::JointData<D>& any = self_->joints.at(*slot);
+  if (auto* distance = any.template get<DistanceJointDef>())
     distance->motor = motor;
-  else if (auto* hinge = std::get_if<HingeJointDef<D>>(&any))
+  else if (auto* hinge = any.template get<HingeJointDef>())
     hinge->motor = motor;
-  else if (auto* slider = std::get_if<SliderJointDef<D>>(&any))
+  else if (auto* slider = any.template get<SliderJointDef>())
     slider->motor = motor;
-  else if (auto* path = std::get_if<PathJointDef<D>>(&any))
+  else if (auto* path = any.template get<PathJointDef>())
     path->motor = motor;
   else
-    return detail::wrong_joint(call, any.index(), "a distance, hinge, slider or path joint");
+    return detail::wrong_joint(call, any.type, "a distance, hinge, slider or path joint");
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }
@@ -201,12 +188,12 @@ Status World<D>::set_limit(JointId joint, const JointLimit& limit) {
   constexpr std::string_view call = "World::set_limit";
   const auto slot = detail::find_joint<D>(*self_, joint, call);
   if (!slot.ok()) return slot.error();
-  AnyJointDef<D>& any = self_->joints.data[std::size_t(*slot)].definition;
-  auto* distance = std::get_if<DistanceJointDef<D>>(&any);
-  auto* ball = std::get_if<BallJointDef<D>>(&any);
-  auto* hinge = std::get_if<HingeJointDef<D>>(&any);
-  auto* slider = std::get_if<SliderJointDef<D>>(&any);
-  auto* path = std::get_if<PathJointDef<D>>(&any);
+  detail::JointData<D>& any = self_->joints.at(*slot);
+  auto* distance = any.template get<DistanceJointDef>();
+  auto* ball = any.template get<BallJointDef>();
+  auto* hinge = any.template get<HingeJointDef>();
+  auto* slider = any.template get<SliderJointDef>();
+  auto* path = any.template get<PathJointDef>();
   detail::Complaint complaint(call);
   if (distance != nullptr)
     complaint.distance_limit("limit", limit);
@@ -228,7 +215,7 @@ Status World<D>::set_limit(JointId joint, const JointLimit& limit) {
   else if (path != nullptr)
     path->limit = limit;
   else
-    return detail::wrong_joint(call, any.index(), "a distance, ball (its twist), hinge, slider or path joint");
+    return detail::wrong_joint(call, any.type, "a distance, ball (its twist), hinge, slider or path joint");
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }
@@ -241,19 +228,18 @@ Status World<D>::set_spring(JointId joint, const JointSpring& spring) {
   detail::Complaint complaint(call);
   complaint.spring("spring", spring);
   if (!complaint.none_yet()) return complaint.error();
-  if (const std::size_t type = self_->joints.data[std::size_t(*slot)].definition.index();
-      type >= std::size_t(JointType::generic) && type != std::size_t(JointType::path))
-    return detail::wrong_joint(call, type, "one with a spring of its own (of a generic joint: set_axis)");
-  std::visit(
-      [&](auto& d) {
-        if constexpr (requires { d.spring; }) {
-          d.spring = spring;
-        } else if constexpr (requires { d.angular.hertz; }) {  // weld and motor joints have two
-          d.linear = spring;
-          d.angular = spring;
-        }
-      },
-      self_->joints.data[std::size_t(*slot)].definition);
+  detail::JointData<D>& any = self_->joints.at(*slot);
+  if (any.type >= JointType::generic && any.type != JointType::path)
+    return detail::wrong_joint(call, any.type, "one with a spring of its own (of a generic joint: set_axis)");
+  any.visit([&](const auto& def) {
+    auto& d = const_cast<std::remove_cvref_t<decltype(def)>&>(def);
+    if constexpr (requires { d.spring; }) {
+      d.spring = spring;
+    } else if constexpr (requires { d.angular.hertz; }) {  // weld and motor joints have two
+      d.linear = spring;
+      d.angular = spring;
+    }
+  });
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }
@@ -263,9 +249,9 @@ Status World<D>::set_axis(JointId joint, int axis, const JointAxis& settings) {
   constexpr std::string_view call = "World::set_axis";
   const auto slot = detail::find_joint<D>(*self_, joint, call);
   if (!slot.ok()) return slot.error();
-  AnyJointDef<D>& any = self_->joints.data[std::size_t(*slot)].definition;
-  auto* generic = std::get_if<GenericJointDef<D>>(&any);
-  if (generic == nullptr) return detail::wrong_joint(call, any.index(), "a generic joint");
+  detail::JointData<D>& any = self_->joints.at(*slot);
+  auto* generic = any.template get<GenericJointDef>();
+  if (generic == nullptr) return detail::wrong_joint(call, any.type, "a generic joint");
   constexpr int turning = D::dimension == 2 ? 1 : 3;
   if (axis < 0 || axis >= D::dimension + turning)
     return core::Error{core::text(call, ": axis is ", axis, ", expected 0 to ", D::dimension + turning - 1)};
@@ -288,12 +274,11 @@ Status World<D>::set_mouse_target(JointId joint, Position target) {
   detail::Complaint complaint(call);
   complaint.vector("target", target);
   if (!complaint.none_yet()) return complaint.error();
-  auto& data = self_->joints.data[std::size_t(*slot)];
-  auto* mouse = std::get_if<MouseJointDef<D>>(&data.definition);
-  if (mouse == nullptr) return detail::wrong_joint(call, data.definition.index(), "a mouse joint");
+  auto& data = self_->joints.at(*slot);
+  auto* mouse = data.template get<MouseJointDef>();
+  if (mouse == nullptr) return detail::wrong_joint(call, data.type, "a mouse joint");
   if (mouse->target == target) return {};
   mouse->target = target;
-  data.world_anchor = target;
   detail::wake_joint<D>(*self_, *slot);
   return {};
 }
@@ -303,10 +288,9 @@ void World<D>::joints(std::vector<JointId>& out) const {
   out.clear();
   const auto& joints = self_->joints;
   for (int slot = 0; slot < joints.slots.capacity(); ++slot)
-    if (joints.slots.in_use(slot) && !joints.data[std::size_t(slot)].internal)
-      out.push_back(joints.slots.handle_at(slot));
+    if (joints.slots.in_use(slot) && !joints.at(slot).internal) out.push_back(joints.slots.handle_at(slot));
   std::sort(out.begin(), out.end(), [&](JointId a, JointId b) {
-    return joints.data[std::size_t(joints.slots.slot(a))].birth < joints.data[std::size_t(joints.slots.slot(b))].birth;
+    return joints.at(joints.slots.slot(a)).birth < joints.at(joints.slots.slot(b)).birth;
   });
 }
 
@@ -315,8 +299,7 @@ float World<D>::worst_joint_error() const {
   const auto& joints = self_->joints;
   float worst = 0;
   for (int slot = 0; slot < joints.slots.capacity(); ++slot)
-    if (joints.slots.in_use(slot) && detail::joint_is_rigid<D>(joints.data[std::size_t(slot)].definition) &&
-        !joints.data[std::size_t(slot)].internal)
+    if (joints.slots.in_use(slot) && detail::joint_is_rigid<D>(joints.at(slot)) && !joints.at(slot).internal)
       worst = max(worst, detail::measure_joint<D>(*self_, slot).linear_error);
   return worst;
 }

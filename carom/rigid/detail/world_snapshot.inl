@@ -207,8 +207,11 @@ void adopt_handles(WorldImplementation<D>& world) {
   const auto adopt = [number](auto& handle) {
     if (!handle.is_null()) handle.world = number;
   };
-  for (JointData<D>& joint : world.joints.data)
-    std::visit([&](auto& d) { adopt(d.body_a), adopt(d.body_b); }, joint.definition);
+  for (int slot = 0; slot < world.joints.slots.capacity(); ++slot)
+    if (world.joints.slots.in_use(slot)) {
+      JointFrames<D>& frames = world.joints.at(slot).frames();
+      adopt(frames.body_a), adopt(frames.body_b);
+    }
   for (EffectorData<D>& effector : world.effectors.data)
     std::visit(
         [&](auto& d) {

@@ -57,7 +57,8 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   for (auto& tree : world.shapes.trees) tree.reserve(int(shapes));
   world.joints.slots.reserve(int(joints));
   world.joints.headers.reserve(joints);
-  world.joints.data.reserve(joints);
+  world.joints.room.reserve(joints);
+  world.joints.small.reserve(joints);
   world.joints.order.reserve(joints);
   world.joints.offset.reserve(joints + 1);
   world.joints.color_begin.reserve(color_count + 2);
