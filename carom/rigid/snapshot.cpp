@@ -26,7 +26,7 @@ std::uint64_t layout() {
       sizeof(SolverBody<D>), sizeof(typename D::Pose), sizeof(BodyMotion<D>),    sizeof(BodyRecord),
       sizeof(ShapeExtra<D>), sizeof(PartSurface<D>),   sizeof(ShapeTraits<D>),   sizeof(JointHeader),
       sizeof(SmallJoint<D>), sizeof(EffectorDef<D>),   sizeof(ContactRecord<D>), sizeof(ManifoldRecord<D>),
-      sizeof(WorldDef<D>),   sizeof(LargeJoint<D>),    sizeof(std::size_t),      offsetof(BodyRecord, user_data)};
+      sizeof(WorldDef<D>),   sizeof(LargeJoint<D>),    sizeof(std::size_t),      sizeof(ShapeTerms)};
   for (const std::size_t size : sizes) hash.add(std::uint64_t{size});
   hash.add(std::endian::native == std::endian::little);
 #if defined(_LIBCPP_VERSION)

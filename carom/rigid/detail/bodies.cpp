@@ -257,8 +257,9 @@ void update_mass(WorldImplementation<D>& world, std::int32_t body) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     if (first || shape.inner_extent < m.inner_extent) m.inner_extent = shape.inner_extent;
     first = false;
-    if (shape.density > 0 && record.type == BodyType::dynamic) {
-      typename D::MassProperties p = geometry::mass_properties(shape.geometry, double(shape.density));
+    const float density = world.shapes.terms_of(shape).density;
+    if (density > 0 && record.type == BodyType::dynamic) {
+      typename D::MassProperties p = geometry::mass_properties(shape.geometry, double(density));
       if (!shape.at_origin) {
         using T = std::conditional_t<D::dimension == 2, Transform2d, Transform3d>;
         using Q = decltype(T{}.q);
@@ -307,7 +308,8 @@ void learn_bounce(WorldImplementation<D>& world) {
   for (const PairRuleEntry& entry : world.pair_rules) any = any || rebounds(entry.rule);
   for (const ShapeExtra<D>& extra : shapes.extras) any = any || extra.modify;  // who may ask for it
   for (const PartSurface<D>& part : shapes.surfaces) any = any || rebounds(part.surface.material);
-  for (std::size_t i = 0; i < shapes.record.size() && !any; ++i) any = rebounds(shapes.record[i].material);
+  for (std::size_t i = 0; i < shapes.record.size() && !any; ++i)
+    any = shapes.slots.in_use(int(i)) && rebounds(shapes.terms_of(std::int32_t(i)).material);
   shapes.bounce = any ? Bounce::some : Bounce::none;
 }
 

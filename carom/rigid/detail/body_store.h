@@ -28,6 +28,19 @@ void grow_a_little(std::vector<T>& v) {
   if (v.size() == v.capacity()) v.reserve(next_capacity(v.size()));
 }
 
+/// The word of a slot in a list that is no longer than it has to be; 0 beyond its end.
+inline std::uint64_t word_of(const std::vector<std::uint64_t>& words, std::int32_t slot) {
+  return std::size_t(slot) < words.size() ? words[std::size_t(slot)] : 0;
+}
+inline void give_word(std::vector<std::uint64_t>& words, std::int32_t slot, std::uint64_t word) {
+  if (std::size_t(slot) >= words.size()) {
+    if (word == 0) return;
+    if (std::size_t(slot) >= words.capacity()) words.reserve(next_capacity(std::size_t(slot)));
+    words.resize(std::size_t(slot) + 1, 0);
+  }
+  words[std::size_t(slot)] = word;
+}
+
 /// Always inlined: to gcc a function that only pre-loads has no effect, and calls of it go.
 [[gnu::always_inline]] inline void prefetch_lines(const void* p, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(p) + k);
@@ -121,7 +134,6 @@ struct BodyRecord {
   std::uint32_t color_mask = 0;     ///< colours of the constraint graph in which this body already is
   float sleep_speed = 0.05f;        ///< m/s
   float sleep_timer = 0;            ///< s below the sleep speed
-  std::uint64_t user_data = 0;
 
   bool awake() const { return (flags & body_awake) != 0; }
   bool enabled() const { return (flags & body_enabled) != 0; }
@@ -135,10 +147,11 @@ struct BodyStore {
   std::vector<typename D::Pose> pose;  ///< of the body's origin, at the start of the step (final after it)
   std::vector<BodyMotion<D>> motion;
   std::vector<BodyRecord> record;
-  std::vector<std::string> names;    ///< empty until the first body with a name
-  std::vector<std::uint64_t> birth;  ///< counts up with every creation: the order in which bodies are listed
-  std::vector<float> time_scale;     ///< empty until the first body with its own clock
-  std::vector<std::int32_t> awake;   ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
+  std::vector<std::string> names;        ///< empty until the first body with a name
+  std::vector<std::uint64_t> user_data;  ///< as far as one was given
+  std::vector<std::uint64_t> birth;      ///< counts up with every creation: the order in which bodies are listed
+  std::vector<float> time_scale;         ///< empty until the first body with its own clock
+  std::vector<std::int32_t> awake;       ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
 
   int substep_wishes = 0;  ///< bodies whose record asks for substeps
 

@@ -134,8 +134,9 @@ bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, c
     if (!sensor_a && !sensor_b) return false;
     if (type_a == BodyType::fixed && type_b == BodyType::fixed) return false;
   }
-  if (a.filter.group != 0 && a.filter.group == b.filter.group) return a.filter.group > 0;
-  return (a.filter.category & b.filter.mask) != 0 && (b.filter.category & a.filter.mask) != 0;
+  const Filter &own = world.shapes.terms_of(a).filter, &other = world.shapes.terms_of(b).filter;
+  if (own.group != 0 && own.group == other.group) return own.group > 0;
+  return (own.category & other.mask) != 0 && (other.category & own.mask) != 0;
 }
 
 template <class D>

@@ -51,7 +51,7 @@ inline const PairRule* find_pair_rule(const WorldImplementation<D>& world, std::
 template <class D>
 inline const Material& material_at(const WorldImplementation<D>& world, std::int32_t shape, std::uint32_t number) {
   const SurfaceMaterial<D>* surface = world.shapes.surface(shape, number);
-  return surface != nullptr ? surface->material : world.shapes.at(shape).material;
+  return surface != nullptr ? surface->material : world.shapes.terms_of(shape).material;
 }
 /// How fast A's surface runs against B's, world axes, where they are belts.
 template <class D>

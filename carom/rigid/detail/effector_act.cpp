@@ -81,7 +81,7 @@ struct FieldForces {
       input.state.linear_velocity = solver.linear_velocity * (1 / pace);
       input.state.angular_velocity = solver.angular_velocity * (1 / pace);
       input.state.mass = motion.mass;
-      input.state.user_data = world.bodies.record[i].user_data;
+      input.state.user_data = word_of(world.bodies.user_data, body.slot);
       const Wrench<D> wrench = e.model(input);
       if (is_finite(wrench.force) && is_finite(wrench.torque)) {
         motion.force += wrench.force;

@@ -49,6 +49,7 @@ template <class D>
 std::size_t bytes_of_world(const WorldImplementation<D>& world) {
   ByteCounter counter{sizeof(world)};
   visit_world(world, counter);
+  counter.bytes += world.shapes.terms.bytes_of_links();
   for (const auto& tree : world.shapes.trees) counter.bytes += tree.scratch_bytes();
   return counter.bytes + world.query_trees.bytes() + world.arena.capacity();
 }

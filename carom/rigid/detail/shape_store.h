@@ -5,10 +5,12 @@
 #include <memory>
 #include <vector>
 
+#include "carom/core/hash.h"
 #include "carom/core/pool.h"
 #include "carom/geometry/dynamic_tree.h"
 #include "carom/geometry/hull.h"
 #include "carom/rigid/detail/body_store.h"
+#include "carom/rigid/detail/shared_values.h"
 
 namespace carom::rigid::detail {
 
@@ -26,6 +28,20 @@ enum ShapeFlag : std::uint8_t {
 /// The tree in which a shape is: after its body's type.
 enum TreeIndex : std::int8_t { tree_fixed = 0, tree_kinematic = 1, tree_dynamic = 2, tree_none = -1 };
 
+/// What shapes mostly have in common.
+struct ShapeTerms {
+  float density = 0;  ///< kg/m³ or kg/m²
+  Material material{};
+  Filter filter{};
+  std::uint64_t hash() const {
+    core::StateHash h;
+    h.add(density).add(material.friction).add(material.restitution).add(material.rolling_resistance);
+    h.add(material.tangent_speed).add(material.user_id).add(filter.category).add(filter.mask).add(filter.group);
+    return h.digest();
+  }
+  friend bool operator==(const ShapeTerms&, const ShapeTerms&) = default;
+};
+
 /// All of a shape but its geometry: plain bytes, which a snapshot copies.
 template <class D>
 struct ShapeTraits {
@@ -39,10 +55,7 @@ struct ShapeTraits {
   float outer_extent = 0;        ///< m: farthest point from the origin of its own frame
   float inner_extent = 0;        ///< m: half its smallest thickness
   float margin = 0;              ///< m by which fat bounds exceed the tight ones
-  float density = 0;             ///< kg/m³ or kg/m²
-  Material material{};
-  Filter filter{};
-  std::uint64_t user_data = 0;
+  std::int32_t terms = none;     ///< number in ShapeStore::terms
 };
 
 template <class D>
@@ -103,6 +116,8 @@ template <class D>
 struct ShapeStore {
   core::SlotPool<ShapeTag> slots;
   std::vector<ShapeRecord<D>> record;                    ///< by slot
+  SharedValues<ShapeTerms> terms;                        ///< density, material and filter of `record`
+  std::vector<std::uint64_t> user_data;                  ///< by slot, as far as one was given
   std::vector<ShapeExtra<D>> extras;                     ///< in the order of their slots
   std::vector<PartSurface<D>> surfaces;                  ///< in the order of their slots and numbers
   std::int32_t moving_surfaces = 0;                      ///< meshes on bodies that are not fixed
@@ -115,6 +130,13 @@ struct ShapeStore {
   explicit ShapeStore(std::uint16_t world) : slots(world) {}
   ShapeRecord<D>& at(std::int32_t slot) { return record[std::size_t(slot)]; }
   const ShapeRecord<D>& at(std::int32_t slot) const { return record[std::size_t(slot)]; }
+  const ShapeTerms& terms_of(const ShapeRecord<D>& shape) const { return terms[shape.terms]; }
+  const ShapeTerms& terms_of(std::int32_t slot) const { return terms[at(slot).terms]; }
+  void set_terms(std::int32_t slot, const ShapeTerms& value) {
+    const std::int32_t old = at(slot).terms;
+    at(slot).terms = terms.take(value);
+    if (old != none) terms.drop(old);
+  }
   /// Null for ordinary shapes.
   const ShapeExtra<D>* extra(std::int32_t slot) const {
     if ((at(slot).flags & shape_special) == 0) return nullptr;
@@ -140,7 +162,10 @@ struct ShapeStore {
   }
   /// Before the slot is given to another.
   void forget_extra(std::int32_t slot) {
-    if (at(slot).material.restitution >= least_bounce) bounce = Bounce::unknown;
+    if (terms_of(slot).material.restitution >= least_bounce) bounce = Bounce::unknown;
+    terms.drop(at(slot).terms);
+    at(slot).terms = none;
+    give_word(user_data, slot, 0);
     if (const ShapeExtra<D>* e = extra(slot); e != nullptr && e->surface_count > 0)
       std::erase_if(surfaces, [&](const PartSurface<D>& p) { return p.shape == slot; });
     set_extra({slot});

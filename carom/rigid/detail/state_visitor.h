@@ -21,10 +21,11 @@ void visit_slots(Slots& slots, Visit& visit) {
 
 template <class Bodies, class Visit>
 void visit_bodies(Bodies& store, Visit& visit) {
-  auto& [slots, solver, pose, motion, record, names, birth, time_scale, awake, substep_wishes] = store;
+  auto& [slots, solver, pose, motion, record, names, user_data, birth, time_scale, awake, substep_wishes] = store;
   visit_slots(slots, visit);
   visit.bodies(solver, pose, motion, record);
   visit.names(names);
+  visit.state(user_data);
   visit.state(birth);
   visit.state(time_scale);
   visit.state(awake);
@@ -33,10 +34,13 @@ void visit_bodies(Bodies& store, Visit& visit) {
 
 template <class Shapes, class Visit>
 void visit_shapes(Shapes& store, Visit& visit) {
-  auto& [slots, record, extras, surfaces, moving_surfaces, bounce, trees, originals, geometry_copy] = store;
+  auto& [slots, record, terms, user_data, extras, surfaces, moving_surfaces, bounce, trees, originals, geometry_copy] =
+      store;
   (void)bounce, (void)geometry_copy, (void)originals;
   visit_slots(slots, visit);
   visit.shapes(record);
+  visit_slots(terms, visit);
+  visit.state(user_data);
   visit.state(extras);
   visit.state(surfaces);
   visit.state(moving_surfaces);

@@ -130,7 +130,7 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   r.substeps = std::uint8_t(d.substeps);
   if (d.substeps > 0) ++bodies.substep_wishes;
   bodies.set_pace(std::int32_t(slot), d.time_scale);
-  r.user_data = d.user_data;
+  give_word(bodies.user_data, std::int32_t(slot), d.user_data);
   set_flag<D>(r, body_enabled, d.enabled);
   set_flag<D>(r, body_bullet, d.bullet);
   set_flag<D>(r, body_allow_sleep, d.allow_sleep);
@@ -198,7 +198,7 @@ Result<BodyState<D>> World<D>::state(BodyId body) const {
   s.type = r.type;
   s.awake = r.awake_index != none;
   s.enabled = r.enabled();
-  s.user_data = r.user_data;
+  s.user_data = word_of(self_->bodies.user_data, *slot);
   return s;
 }
 
@@ -227,7 +227,7 @@ Result<BodyDef<D>> World<D>::body_definition(BodyId body) const {
   d.allow_sleep = (r.flags & body_allow_sleep) != 0;
   d.bullet = (r.flags & body_bullet) != 0;
   d.enabled = r.enabled();
-  d.user_data = r.user_data;
+  d.user_data = word_of(self_->bodies.user_data, *slot);
   if (i < self_->bodies.names.size()) d.name = self_->bodies.names[i];
   return d;
 }

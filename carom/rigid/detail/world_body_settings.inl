@@ -97,9 +97,10 @@ Status World<D>::set_type(BodyId body, BodyType type) {
   for (std::int32_t s = r.first_shape; s != none; s = self_->shapes.at(s).next) {
     const ShapeRecord<D>& shape = self_->shapes.at(s);
     if (type == BodyType::dynamic)
-      if (const Status status = check_dynamic(shape.geometry, shape.density); !status.ok())
+      if (const Status status = check_dynamic(shape.geometry, self_->shapes.terms_of(shape).density); !status.ok())
         return core::Error{core::text("World::set_type: ", status.error().message)};
-    if (const std::int32_t other = clashing_surface(*self_, *slot, type, shape.geometry, shape.filter);
+    if (const std::int32_t other =
+            clashing_surface(*self_, *slot, type, shape.geometry, self_->shapes.terms_of(shape).filter);
         (shape.flags & shape_sensor) == 0 && other != none)
       return core::Error{core::text("World::set_type: ", clash_message(other))};
   }
@@ -225,7 +226,7 @@ template <class D>
 Status World<D>::set_user_data(BodyId body, std::uint64_t data) {
   const Result<std::int32_t> slot = detail::slot_of(*self_, "set_user_data", body);
   if (!slot.ok()) return slot.error();
-  self_->bodies.record[std::size_t(*slot)].user_data = data;
+  detail::give_word(self_->bodies.user_data, *slot, data);
   return {};
 }
 

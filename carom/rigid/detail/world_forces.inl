@@ -106,7 +106,7 @@ Result<int> World<D>::explode(const ExplosionDef<D>& d) {
   self_->shapes.trees[tree_dynamic].query(
       geometry::grow(typename D::Bounds{d.center, d.center}, double(reach)), [&](std::uint32_t item) {
         const ShapeRecord<D>& shape = self_->shapes.at(std::int32_t(item));
-        if ((shape.flags & shape_sensor) == 0 && (shape.filter.category & d.mask) != 0)
+        if ((shape.flags & shape_sensor) == 0 && (self_->shapes.terms_of(shape).filter.category & d.mask) != 0)
           near.push_back(std::int32_t(item));
         return true;
       });

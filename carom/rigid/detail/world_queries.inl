@@ -17,17 +17,20 @@ namespace detail {
 /// A filter with the slot of the body that it ignores.
 struct SeenFilter {
   std::uint64_t category, mask;
+  const SharedValues<ShapeTerms>& terms;
   std::int32_t ignored;
   template <class D>
   SeenFilter(const WorldImplementation<D>& world, const QueryFilter& f)
       : category(f.category),
         mask(f.mask),
+        terms(world.shapes.terms),
         ignored(world.bodies.slots.contains(f.ignore) ? world.bodies.slots.slot(f.ignore) : none) {}
 };
 template <class D>
 bool query_sees(const ShapeRecord<D>& shape, const SeenFilter& filter) {
-  return (shape.flags & shape_sensor) == 0 && (shape.filter.category & filter.mask) != 0 &&
-         (filter.category & shape.filter.mask) != 0 && shape.body != filter.ignored;
+  const Filter& own = filter.terms[shape.terms].filter;
+  return (shape.flags & shape_sensor) == 0 && (own.category & filter.mask) != 0 && (filter.category & own.mask) != 0 &&
+         shape.body != filter.ignored;
 }
 template <class D>
 typename D::Bounds world_bounds(const typename D::Shape& shape, const typename D::Pose& pose) {

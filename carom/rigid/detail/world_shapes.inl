@@ -122,9 +122,9 @@ std::int32_t clashing_surface(const WorldImplementation<D>& world, std::int32_t 
     if (other.body == none || other.body == body || !is_surface(other.geometry) || (other.flags & shape_sensor) != 0)
       continue;
     if (type != BodyType::dynamic && !world.bodies.is_dynamic(other.body)) continue;
-    const bool grouped = filter.group != 0 && filter.group == other.filter.group;
-    if (grouped ? filter.group > 0
-                : (filter.category & other.filter.mask) != 0 && (other.filter.category & filter.mask) != 0)
+    const Filter& its = world.shapes.terms_of(other).filter;
+    const bool grouped = filter.group != 0 && filter.group == its.group;
+    if (grouped ? filter.group > 0 : (filter.category & its.mask) != 0 && (its.category & filter.mask) != 0)
       return std::int32_t(i);
   }
   return none;
@@ -244,12 +244,10 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   s.local.q = unit_rotation(d.local.q);
   s.at_origin = s.local == typename D::Transform{};
   s.body = *slot;
-  s.density = d.density;
-  s.material = d.material;
+  self_->shapes.set_terms(index, {d.density, d.material, d.filter});
+  give_word(self_->shapes.user_data, index, d.user_data);
   if (d.material.restitution >= least_bounce && self_->shapes.bounce == Bounce::none)
     self_->shapes.bounce = Bounce::unknown;
-  s.filter = d.filter;
-  s.user_data = d.user_data;
   s.inner_extent = extents.inner;
   s.outer_extent = extents.outer;
   s.margin = clamp(0.125f * extents.outer, 0.02f, 0.1f);
@@ -333,13 +331,14 @@ Result<ShapeDef<D>> World<D>::shape_definition(ShapeId shape) const {
   const ShapeRecord<D>& s = self_->shapes.at(*slot);
   ShapeDef<D> d;
   d.local = s.local;
-  d.density = s.density;
-  d.material = s.material;
-  d.filter = s.filter;
+  const ShapeTerms& terms = self_->shapes.terms_of(s);
+  d.density = terms.density;
+  d.material = terms.material;
+  d.filter = terms.filter;
   d.sensor = (s.flags & shape_sensor) != 0;
   d.contact_events = (s.flags & shape_contact_events) != 0;
   d.hit_events = (s.flags & shape_hit_events) != 0;
-  d.user_data = s.user_data;
+  d.user_data = word_of(self_->shapes.user_data, *slot);
   if (const ShapeExtra<D>* extra = self_->shapes.extra(*slot)) {
     d.surface_velocity = extra->surface_velocity;
     d.one_way = extra->one_way;
@@ -359,7 +358,9 @@ Status World<D>::set_material(ShapeId shape, const Material& material) {
   check_material(complaint, "material", material);
   if (!complaint.none_yet()) return complaint.error();
   ShapeRecord<D>& s = self_->shapes.at(*slot);
-  s.material = material;
+  ShapeTerms terms = self_->shapes.terms_of(s);
+  terms.material = material;
+  self_->shapes.set_terms(*slot, terms);
   self_->shapes.bounce = Bounce::unknown;
   wake_body(*self_, s.body);
   wake_touching(*self_, s.body);
@@ -383,7 +384,9 @@ Status World<D>::set_density(ShapeId shape, float density) {
   check_range(complaint, "density", density, 0, max_density);
   if (!complaint.none_yet()) return complaint.error();
   wake_body(*self_, self_->shapes.at(*slot).body);
-  self_->shapes.at(*slot).density = density;
+  ShapeTerms terms = self_->shapes.terms_of(*slot);
+  terms.density = density;
+  self_->shapes.set_terms(*slot, terms);
   update_mass(*self_, self_->shapes.at(*slot).body);
   return {};
 }
@@ -450,7 +453,9 @@ Status World<D>::set_filter(ShapeId shape, const Filter& filter) {
   if (const std::int32_t other = clashing_surface(*self_, s.body, type, s.geometry, filter);
       (s.flags & shape_sensor) == 0 && other != none)
     return core::Error{core::text("World::set_filter: ", clash_message(other))};
-  self_->shapes.at(*slot).filter = filter;
+  ShapeTerms terms = self_->shapes.terms_of(s);
+  terms.filter = filter;
+  self_->shapes.set_terms(*slot, terms);
   wake_body(*self_, self_->shapes.at(*slot).body);
   renew_contacts(*self_, *slot);
   return {};

@@ -334,6 +334,7 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
     }
   }
   world.joints.trees.stale = true;
+  world.shapes.terms.link();
   if (data.world_number != world.world_number) adopt_handles(world);
   world.scratch.watches.clear();  // they speak of other contacts
   world.scratch.old_bounds.clear();

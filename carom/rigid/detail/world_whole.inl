@@ -204,8 +204,8 @@ Status World<D>::set_pair_rule(std::uint32_t material_a, std::uint32_t material_
   for (std::size_t k = 0; k < self_->contacts.contacts.size(); ++k) {
     const ContactRecord<D>& c = self_->contacts.contacts[k];
     if ((c.flags & contact_in_use) == 0) continue;
-    const std::uint64_t own = PairRuleEntry::key_of(self_->shapes.at(c.shape[0]).material.user_id,
-                                                    self_->shapes.at(c.shape[1]).material.user_id);
+    const std::uint64_t own = PairRuleEntry::key_of(self_->shapes.terms_of(c.shape[0]).material.user_id,
+                                                    self_->shapes.terms_of(c.shape[1]).material.user_id);
     if (own != key && (c.flags & contact_special) == 0) continue;  // special ones may have parts of other materials
     update_contact_flags(*self_, std::int32_t(k));
     for (std::int32_t m = c.first_manifold; m != none; m = self_->contacts.manifold(m).next) mix_materials(*self_, m);
