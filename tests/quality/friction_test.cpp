@@ -209,20 +209,25 @@ TEST(QualityFriction3, SpinningDisc) {
 }
 
 // Gate 24: a = μ g until t = u/μg, then at the belt's speed.
-TEST(QualityFriction2, Conveyor) {
-  World2 world(world_with<Dim2>());
+template <class D>
+void conveyor() {
+  World<D> world(world_with<D>());
   const BodyId belt = add_ground(world, half);
   std::vector<ShapeId> shapes;
   world.shapes(belt, shapes);
-  const BodyId box = add_box<Dim2>(world, {0, 0.5}, 0.5f, half);
+  const BodyId box = add_box<D>(world, rigid::test::at<D>(0, 0.5), 0.5f, half);
   run(world, 30);
-  Material m = world.shape_definition(shapes[0]).value().material;
-  m.tangent_speed = -3;  // counterclockwise round the shape is positive: the top goes to −x
-  world.set_material(shapes[0], m).value();
+  if constexpr (D::dimension == 2) {
+    Material m = world.shape_definition(shapes[0]).value().material;
+    m.tangent_speed = -3;  // counterclockwise round the shape is positive: the top goes to −x
+    world.set_material(shapes[0], m).value();
+  } else {
+    world.set_surface_velocity(shapes[0], {3, 0, 0}).value();
+  }
   const double t = 3 / (0.5 * g);  // .6116 s
   run(world, 30);
   const double a = double(world.state(box).value().linear_velocity.x) / 0.5;
-  Gate(24, "conveyor at 3 m/s, μ .5: acceleration", 2, "m/s²").near(a, 0.5 * g, 0.01);
+  Gate(24, "conveyor at 3 m/s, μ .5: acceleration", D::dimension, "m/s²").near(a, 0.5 * g, 0.01);
   int steps = 30;
   while (steps < 120 && world.state(box).value().linear_velocity.x < 2.999f) {
     world.step(frame).value();
@@ -230,8 +235,11 @@ TEST(QualityFriction2, Conveyor) {
   }
   EXPECT_NEAR(steps / 60.0, t, 1.0 / 60) << "u/μg, to the step";
   run(world, 60);
-  Gate(24, "the same: speed in the end", 2, "m/s").near(double(world.state(box).value().linear_velocity.x), 3, 0.01);
+  Gate(24, "the same: speed in the end", D::dimension, "m/s")
+      .near(double(world.state(box).value().linear_velocity.x), 3, 0.01);
 }
+TEST(QualityFriction3, Conveyor) { conveyor<Dim3>(); }
+TEST(QualityFriction2, Conveyor) { conveyor<Dim2>(); }
 
 }  // namespace friction
 }  // namespace carom::quality

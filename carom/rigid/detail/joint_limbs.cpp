@@ -170,7 +170,7 @@ template <class D>
 std::uint32_t limb_parts(const WorldImplementation<D>& world, std::int32_t joint) {
   constexpr std::uint32_t mask = D::dimension == 2 ? limb_mask2 : limb_mask3;
   const JointData<D>& data = world.joints.at(joint);
-  const std::uint32_t parts = parts_of(data);
+  const std::uint32_t parts = data.parts;
   if ((parts & part_pin) == 0 || (parts & ~mask) != 0 || world.joints.tree_of(joint) != none) return 0;
   if (D::dimension == 3 && turning_is_locked(world, joint)) return 0;
   const bool stiff = (parts & part_angular) != 0 && turns_rigidly(data);

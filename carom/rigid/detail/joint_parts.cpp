@@ -4,7 +4,7 @@
 namespace carom::rigid::detail {
 
 template <class D>
-std::uint32_t parts_of(const JointData<D>& data) {
+void find_parts(JointData<D>& data) {
   const auto parts = [](const auto& d) -> int {
     using Def = std::remove_cvref_t<decltype(d)>;
     if constexpr (std::is_same_v<Def, DistanceJointDef<D>>) {
@@ -36,7 +36,7 @@ std::uint32_t parts_of(const JointData<D>& data) {
       return part_coupling;
     }
   };
-  return std::uint32_t(data.visit(parts));
+  data.parts = std::uint32_t(data.visit(parts)) & 0xFFFFFFu;
 }
 
 template <class D>
@@ -85,8 +85,8 @@ void break_joints(WorldImplementation<D>& world) {
       release_joint(world, std::int32_t(world.joints.slots.slot(event.joint)));
 }
 
-template std::uint32_t parts_of(const JointData<Dim2>&);
-template std::uint32_t parts_of(const JointData<Dim3>&);
+template void find_parts(JointData<Dim2>&);
+template void find_parts(JointData<Dim3>&);
 template bool is_rod(const JointData<Dim2>&);
 template bool is_rod(const JointData<Dim3>&);
 template bool turns_rigidly(const JointData<Dim2>&);

@@ -42,8 +42,7 @@ void fill_lane(PinLanes<D, W>& block, int lane, std::int32_t slot, const WorldIm
 
 template <class D>
 bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint) {
-  return world.joints.tree_of(joint) == none && parts_of(world.joints.at(joint)) == part_pin &&
-         is_isotropic(world, joint);
+  return world.joints.tree_of(joint) == none && world.joints.at(joint).parts == part_pin && is_isotropic(world, joint);
 }
 
 template <class D>

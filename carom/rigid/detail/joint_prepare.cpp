@@ -483,7 +483,7 @@ void prepare_joints(StepContext<D>& context) {
       joints.offset.push_back(units);
       const std::int32_t tree = joints.tree_of(joint);
       if (tree != none) joints.trees.joints[std::size_t(tree)].record = units;
-      units += record_units<D>(parts_of(joints.at(joint)), is_isotropic(world, joint));
+      units += record_units<D>(joints.at(joint).parts, is_isotropic(world, joint));
     }
     while (joints.pins.size() % width != 0) joints.pins.push_back(none);
     fill_up_limbs(joints, first_limb, width);
@@ -498,7 +498,7 @@ void prepare_joints(StepContext<D>& context) {
       auto& record = *::new (static_cast<void*>(&joints.records[joints.offset[std::size_t(i)]])) JointRecord<D>{};
       record.joint = joints.order[std::size_t(i)];
       record.isotropic = is_isotropic(world, record.joint);
-      record.parts = parts_of(joints.at(record.joint));
+      record.parts = joints.at(record.joint).parts;
       record.direct = joints.tree_of(record.joint) != none;
       fill_record(record, world, context.h);
     }

@@ -112,9 +112,9 @@ void load_turns(BodyPair<D, I>& pair, const JointRecord<D>& record, const Solver
   pair.shift = moved_b - moved_a;
 }
 
-/// The blocks that this joint needs now.
+/// Notes the blocks that a joint needs by its definition.
 template <class D>
-std::uint32_t parts_of(const JointData<D>& data);
+void find_parts(JointData<D>& data);
 /// Does it hold the distance itself?
 template <class D>
 bool is_rod(const JointData<D>& data);

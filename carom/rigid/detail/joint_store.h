@@ -69,9 +69,10 @@ struct JointData {
   JointMemory<D> memory{};
   typename D::Vector force{};    ///< N, on B, in the last substep
   typename D::Angular torque{};  ///< N·m, on B
-  JointType type{};
-  bool large = false;     ///< its room is a LargeJoint
-  bool internal = false;  ///< a spring–damper effector lives as a distance joint; users do not see it
+  std::uint32_t parts : 24 = 0;  ///< blocks that it needs (find_parts, joint_part.h)
+  JointType type : 6 = {};
+  std::uint32_t large : 1 = 0;     ///< its room is a LargeJoint
+  std::uint32_t internal : 1 = 0;  ///< a spring–damper effector lives as a distance joint; users do not see it
   std::uint64_t birth = 0;
 
   const void* definition() const;
@@ -190,7 +191,7 @@ struct JointStore {
     constexpr bool is_small = sizeof(Def) <= SmallJoint<D>::room && alignof(Def) <= 4;
     if (is_small && !internal) return settle<Def>(small[std::size_t(take(slot, small, free_small))], definition);
     JointData<D>& data = settle<Def>(large[std::size_t(take(slot, large, free_large))], definition);
-    data.internal = internal;
+    data.internal = internal ? 1 : 0;
     return data;
   }
   void drop(std::int32_t slot) {
@@ -223,7 +224,7 @@ struct JointStore {
   }
   template <class Def, class T>
   JointData<D>& settle(T& joint, const Def& definition) {
-    joint.data.large = std::is_same_v<T, LargeJoint<D>>;
+    joint.data.large = std::is_same_v<T, LargeJoint<D>> ? 1 : 0;
     joint.data.type = joint_type_of<D, Def>;
     joint.data.birth = ++births;
     if constexpr (sizeof(Def) <= T::room) ::new (static_cast<void*>(joint.definition)) Def(definition);

@@ -18,7 +18,7 @@ constexpr double direct_arm_ratio = 16;
 
 template <class D>
 bool has_rigid_rows(const JointData<D>& data) {
-  const std::uint32_t parts = parts_of(data);
+  const std::uint32_t parts = data.parts;
   if ((parts & (part_pin | part_hinge | part_slide | part_path)) != 0) return true;
   return is_rod(data) || holds_axes(data) || ((parts & part_angular) != 0 && turns_rigidly(data));
 }
@@ -190,10 +190,9 @@ class Builder {
       }
       const double carried = grounded ? load.mass : min(load.mass, total - load.mass);
       const JointData<D>& data = joints_.at(joint.joint);
-      const bool turns =
-          (parts_of(data) & (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0 &&
-          (grounded || turns_rigidly(data));               // the hinges of a free figure bear little
-      if ((parts_of(data) & part_path) != 0) return true;  // a bead lives by its energy
+      const bool turns = (data.parts & (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0 &&
+                         (grounded || turns_rigidly(data));  // the hinges of a free figure bear little
+      if ((data.parts & part_path) != 0) return true;        // a bead lives by its energy
       if (carried * inverse_mass > direct_mass_ratio) return true;
       if (m * d * d * inverse_inertia(body.body) > direct_arm_ratio) return true;
       if (turns && load.inertia * (carried / load.mass) * inverse_turn > direct_inertia_ratio) return true;

@@ -174,7 +174,9 @@ void install_effector(WorldImplementation<D>& world, std::int32_t slot, const Ef
       def.frame_a.p = spring->point_a;
       def.frame_b.p = typename D::Vector(spring->point_b);
     }
-    JointMore<D>& more = joints.make(joint, def, true).more();
+    JointData<D>& data = joints.make(joint, def, true);
+    find_parts(data);
+    JointMore<D>& more = data.more();
     more.stiffness = spring->stiffness;
     more.damping = spring->damping;
     more.world_anchor = spring->point_b;

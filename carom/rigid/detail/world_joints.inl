@@ -46,6 +46,7 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
   header.body[0] = a;
   header.body[1] = b;
   header.collide_connected = def.collide_connected || a == none;
+  find_parts(data);
   if (may_break(data.frames())) ++joints.breakable_count;
   attach_joint(world, slot);
   return id;
@@ -62,6 +63,7 @@ Result<std::int32_t> find_joint(const WorldImplementation<D>& world, JointId joi
 template <class D>
 void wake_joint(WorldImplementation<D>& world, std::int32_t joint) {
   // Only these two may have become rigid, or no longer be.
+  find_parts(world.joints.at(joint));
   const JointType type = world.joints.at(joint).type;
   if (type == JointType::distance || type == JointType::weld) world.joints.trees.stale = true;
   for (const std::int32_t body : world.joints.headers[std::size_t(joint)].body)
