@@ -21,7 +21,7 @@ TEST(Memory, SleepingBodyTakesAtMostAKilobyte) {
   EXPECT_LE(c.bytes / std::size_t(c.bodies), 1024u);
 }
 
-// A ball joint takes 318, and what there is of room ahead; Jolt 5.5's smallest, a point constraint, 370.
+// A ball joint takes 318, and what there is of room ahead; Jolt 5.5's, a point constraint, 370, its hinge 869.
 TEST(Memory, SmallJointTakesAtMost370Bytes) {
   for (const int count : {1300, 2100, 4200, 5000}) {
     World3 world(world_with<Dim3>(0));
