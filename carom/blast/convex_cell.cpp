@@ -1,7 +1,5 @@
 #include "carom/blast/convex_cell.h"
 
-#include <array>
-
 #include "carom/blast/detail/cell_cutter.h"
 #include "carom/blast/detail/solid_sum.h"
 #include "carom/math/elementary.h"
@@ -79,7 +77,7 @@ ConvexCell::Cut ConvexCell::clip(const HalfSpace& h, Scratch& s) {
   }
   if (outsiders == 0) return Cut::none;
   if (outsiders == n) {
-    vertices_.clear(), faces_.clear(), loops_.clear();
+    vertices_.clear(), faces_.clear(), loops_.clear(), twins_.clear();
     return Cut::all;
   }
   s.crossings.clear();
@@ -162,6 +160,7 @@ ConvexCell::Cut ConvexCell::clip(const HalfSpace& h, Scratch& s) {
   s.faces.resize(std::size_t(face_out - s.faces.data()));
   for (std::uint16_t& v : s.loops) v = s.remap[v];
   loops_.swap(s.loops);
+  twins_.clear();
   faces_.swap(s.faces);
   return Cut::part;
 }
@@ -190,68 +189,23 @@ Vec3d ConvexCell::centroid(const Face& face) const {
 
 geometry::MassProperties3 ConvexCell::mass_properties(double density) const {
   if (empty()) return {};
-  detail::SolidSum sum(vertices_[0]);
-  for (const Face& face : faces_) {
-    const auto corners = loop(face);
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
-      sum.add(vertices_[corners[0]], vertices_[corners[k]], vertices_[corners[k + 1]]);
-  }
+  detail::FanSum sum(vertices_[0]);
+  for (const Face& face : faces_)
+    sum.add(face.count, [&, corners = loops_.data() + face.first](std::size_t k) { return vertices_[corners[k]]; });
   return sum.properties(density);
-}
-
-bool ConvexCell::shrink(double distance) {
-  constexpr std::size_t most = 128;
-  const std::size_t count = vertices_.size();
-  if (count > most || 6 * count != 2 * loops_.size()) return false;  // not three faces a corner
-  std::array<std::array<std::uint16_t, 3>, most> faces_of;
-  std::array<std::uint8_t, most> degree{};
-  for (std::size_t f = 0; f < faces_.size(); ++f)
-    for (const std::uint16_t v : loop(faces_[f])) {
-      if (degree[v] == 3) return false;
-      faces_of[v][degree[v]++] = std::uint16_t(f);
-    }
-  // A corner moves by m with n·m = −distance for its three faces: as long as no edge turns round, none vanished on the
-  // way, for its length is linear in the distance.
-  std::array<Vec3d, most> moved;
-  for (std::size_t v = 0; v < count; ++v) {
-    const Vec3d &a = faces_[faces_of[v][0]].normal, &b = faces_[faces_of[v][1]].normal,
-                &c = faces_[faces_of[v][2]].normal;
-    const Vec3d bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
-    const double determinant = dot(a, bc);
-    if (!(math::abs(determinant) > 1e-3)) return false;
-    moved[v] = vertices_[v] - (distance / determinant) * (bc + ca + ab);
-  }
-  for (const Face& face : faces_) {
-    const auto corners = loop(face);
-    std::uint16_t before = corners[corners.size() - 1];
-    for (const std::uint16_t here : corners) {
-      // Each edge from one of its two sides.
-      const Vec3d edge = vertices_[here] - vertices_[before];
-      if (before < here && !(dot(moved[here] - moved[before], edge) > 0.01 * length_squared(edge))) return false;
-      before = here;
-    }
-  }
-  for (std::size_t v = 0; v < count; ++v) vertices_[v] = moved[v];
-  for (Face& face : faces_) face.offset -= distance;
-  return true;
 }
 
 double ConvexCell::volume() const {
   if (empty()) return 0;
-  const Vec3d o = vertices_[0];
-  double six = 0;
-  for (const Face& face : faces_) {
-    const auto corners = loop(face);
-    const Vec3d a = vertices_[corners[0]] - o;
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
-      six += triple(a, vertices_[corners[k]] - o, vertices_[corners[k + 1]] - o);
-  }
-  return six / 6;
+  detail::FanSum sum(vertices_[0]);
+  for (const Face& face : faces_)
+    sum.add(face.count, [&, corners = loops_.data() + face.first](std::size_t k) { return vertices_[corners[k]]; });
+  return sum.volume();
 }
 
-void ConvexCell::take(const detail::CellCutter& cutter, double tolerance) {
-  tolerance_ = tolerance;
-  cutter.store(vertices_, faces_, loops_);
+bool ConvexCell::take(const detail::CellCutter& cutter) {
+  tolerance_ = cutter.tolerance();
+  return cutter.store(vertices_, faces_, loops_, twins_);
 }
 
 double ConvexCell::reach_squared(Vec3d p) const {

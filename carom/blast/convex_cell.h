@@ -63,15 +63,14 @@ class CAROM_API ConvexCell {
     return clip(half_space, scratch);
   }
 
-  /// Moves every face inward by `distance` m where corners and faces go on meeting as they do, three faces a corner.
-  /// False, and nothing moved, where they would not: then cuts must tell.
-  bool shrink(double distance);
-
   bool empty() const { return faces_.empty(); }
   std::span<const math::Vec3d> vertices() const { return vertices_; }
   std::span<const Face> faces() const { return faces_; }
   std::span<const std::uint16_t> loop(const Face& face) const { return {loops_.data() + face.first, face.count}; }
+  std::span<const std::uint16_t> loops() const { return loops_; }  ///< of all faces, one after the other
   int edge_count() const { return int(loops_.size() / 2); }
+  /// For each corner of all the loops, that of the edge from it the other way; empty where nobody knows.
+  std::span<const std::uint16_t> twins() const { return twins_; }
 
   double volume() const;                         ///< m³
   double area(const Face& face) const;           ///< m²
@@ -81,15 +80,15 @@ class CAROM_API ConvexCell {
   /// Square of the greatest distance from p to a vertex.
   double reach_squared(math::Vec3d p) const;
   double tolerance() const { return tolerance_; }  ///< m: what counts as on a plane
-  /// Becomes what the cutter holds.
-  void take(const detail::CellCutter& cutter, double tolerance);
+  /// Becomes what is left of it in the cutter. False, and to be thrown away, where it did not fit there.
+  bool take(const detail::CellCutter& cutter);
 
  private:
   void set_tolerance();
 
   std::vector<math::Vec3d> vertices_;
   std::vector<Face> faces_;
-  std::vector<std::uint16_t> loops_;
+  std::vector<std::uint16_t> loops_, twins_;
   double tolerance_ = 0;  // m: what counts as on a plane
 };
 

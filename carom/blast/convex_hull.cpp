@@ -4,6 +4,7 @@
 
 #include "carom/blast/convex_cell.h"
 #include "carom/blast/detail/cell_cutter.h"
+#include "carom/blast/detail/solid_sum.h"
 #include "carom/math/elementary.h"
 
 namespace carom::blast {
@@ -15,6 +16,7 @@ namespace {
 
 /// Cells have edges as short as chance makes them; floats and contacts want none shorter than this share of the size.
 constexpr double shortest_edge = 2e-5;
+constexpr double thinnest = 1e-5;  // m
 constexpr std::size_t most_vertices = 96;
 constexpr std::uint16_t nowhere = 0xffff;
 
@@ -126,32 +128,6 @@ bool link(geometry::Hull& hull, const HullMaker& maker) {
   return made == count && vertices + hull.faces.size() == count / 2 + 2;
 }
 
-/// Volume (m³) and centre of a cell, without the second moments that a hull does not ask for.
-struct Bulk {
-  double volume = 0;
-  Vec3d center{};
-};
-Bulk bulk_of(const ConvexCell& cell) {
-  const auto points = cell.vertices();
-  const Vec3d o = points[0];
-  double six = 0;
-  Vec3d sum{};
-  for (const ConvexCell::Face& face : cell.faces()) {
-    const auto loop = cell.loop(face);
-    const Vec3d a = points[loop[0]] - o;
-    Vec3d b = points[loop[1]] - o;
-    for (std::size_t k = 2; k < loop.size(); ++k) {
-      const Vec3d c = points[loop[k]] - o;
-      const double part = triple(a, b, c);
-      six += part;
-      sum += part * (a + b + c);
-      b = c;
-    }
-  }
-  if (!(six > 0)) return {};
-  return {six / 6, o + sum / (4 * six)};
-}
-
 std::shared_ptr<const geometry::Hull> by_search(const ConvexCell& solid, Vec3d origin) {
   std::vector<Vec3f> points;
   for (const Vec3d& v : solid.vertices()) points.push_back(Vec3f(v - origin));
@@ -161,69 +137,165 @@ std::shared_ptr<const geometry::Hull> by_search(const ConvexCell& solid, Vec3d o
   return hull.ok() ? *hull : nullptr;
 }
 
-}  // namespace
+struct Extent {
+  double volume = 0, inner = 1e300, size = 0;  // m³, m, m
+  Vec3d center{};
+};
 
-std::shared_ptr<const geometry::Hull> make_cell_hull(const ConvexCell& cell, Vec3d origin, double skin) {
-  constexpr double thinnest = 1e-5;
-  const ConvexCell* solid = &cell;
-  ConvexCell shrunk;
+void finish(geometry::Hull& hull, const Extent& extent, Vec3d origin) {
+  hull.bounds = {hull.vertices[0], hull.vertices[0]};
+  for (const Vec3f& v : hull.vertices) hull.bounds = {min(hull.bounds.low, v), max(hull.bounds.high, v)};
+  hull.volume = float(extent.volume);
+  hull.centroid = Vec3f(extent.center - origin);
+  hull.inner_radius = float(extent.inner);
+  set_lanes(hull.vertex_lanes, hull.vertices.size(), [&](std::size_t i) { return hull.vertices[i]; });
+  set_lanes(hull.normal_lanes, hull.planes.size(), [&](std::size_t i) { return hull.planes[i].normal; });
+}
+
+/// Whether a solid is one, and thick enough. Its centre is the centre of mass.
+bool measure(const ConvexCell& solid, std::span<const Vec3d> corners, double inward, Extent& extent) {
+  detail::FanSum sum(corners[0]);
+  const std::uint16_t* loop = solid.loops().data();
+  for (const ConvexCell::Face& face : solid.faces()) {
+    sum.add(face.count, [&](std::size_t k) { return corners[loop[k]]; });
+    loop += face.count;
+  }
+  extent.volume = sum.volume();
+  if (!(extent.volume > 0)) return false;
+  extent.center = sum.center();
+  for (const ConvexCell::Face& face : solid.faces())
+    extent.inner = math::min(extent.inner, face.offset - inward - dot(face.normal, extent.center));
+  for (const Vec3d& v : corners) {
+    const Vec3d d = v - extent.center;
+    extent.size =
+        math::max(extent.size, math::max(math::max(d.x, -d.x), math::max(math::max(d.y, -d.y), math::max(d.z, -d.z))));
+  }
+  return extent.inner > thinnest;
+}
+
+enum class Made { hull, nothing_left, not_here };
+
+/// The hull of a cell that knows its twins, with every face moved inward by `skin` m. `not_here`: edges would turn
+/// round or are too short, or more than three faces meet at a corner.
+Made from_twins(const ConvexCell& cell, Vec3d origin, double skin, std::shared_ptr<const geometry::Hull>& made) {
+  constexpr std::size_t most_corners = detail::CellCutter::most_corners, most_edges = detail::CellCutter::most_edges;
+  const auto loops = cell.loops(), twins = cell.twins();
+  const auto points = cell.vertices();
+  const auto faces = cell.faces();
+  if (twins.empty() || points.size() > most_corners || loops.size() > most_edges) return Made::not_here;
+  // A corner moves by m with n·m = −skin for its three faces: as long as no edge turns round, none vanished on the way,
+  // for its length is linear in the skin.
+  std::array<Vec3d, most_corners> corners;
   if (skin > 0) {
-    shrunk = cell;
-    if (!shrunk.shrink(skin)) {
-      detail::CellCutter cutter;
-      bool fits = cutter.load(cell, cell.tolerance());
-      for (std::size_t f = 0; f < cell.faces().size() && fits; ++f) {
-        const ConvexCell::Face& face = cell.faces()[f];
-        if (cutter.clip(face.normal, face.offset - skin, face.tag) == ConvexCell::Cut::all) return nullptr;
-        fits = cutter.fits();
-      }
-      if (fits) {
-        shrunk.take(cutter, cell.tolerance());
-      } else {
-        ConvexCell::Scratch scratch;
-        for (const ConvexCell::Face& face : cell.faces())
-          if (shrunk.clip({face.normal, face.offset - skin, face.tag}, scratch) == ConvexCell::Cut::all) return nullptr;
-      }
+    std::array<std::uint16_t, 4 * most_corners> faces_at;
+    std::array<std::uint8_t, most_corners> degree{};
+    const std::uint16_t* loop = loops.data();
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (const std::uint16_t* const end = loop + faces[f].count; loop != end; ++loop)
+        faces_at[4 * std::size_t(*loop) + (degree[*loop]++ & 3)] = std::uint16_t(f);
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      const Vec3d &a = faces[faces_at[4 * v]].normal, &b = faces[faces_at[4 * v + 1]].normal,
+                  &c = faces[faces_at[4 * v + 2]].normal;
+      const Vec3d bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+      const double determinant = dot(a, bc);
+      if (!(determinant * determinant > 1e-6)) return Made::not_here;
+      corners[v] = points[v] - (skin / determinant) * (bc + ca + ab);
     }
-    solid = &shrunk;
+  } else {
+    std::copy(points.begin(), points.end(), corners.begin());
   }
-  if (solid->empty()) return nullptr;
-  const Bulk bulk = bulk_of(*solid);
-  if (!(bulk.volume > 0)) return nullptr;
-  double inner = 1e300, size = 0;
-  for (const ConvexCell::Face& face : solid->faces())
-    inner = math::min(inner, face.offset - dot(face.normal, bulk.center));
-  for (const Vec3d& v : solid->vertices()) {
-    const Vec3d d = abs(v - bulk.center);
-    size = math::max(size, math::max(d.x, math::max(d.y, d.z)));
+  // Half-edges are named in pairs.
+  std::array<std::uint16_t, most_edges> pair, first_of;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    pair[i] = std::uint16_t(count), first_of[count] = std::uint16_t(i);
+    count += twins[i] > i;
   }
-  if (!(inner > thinnest)) return nullptr;
-
-  HullMaker maker;
-  if (solid->vertices().size() > most_vertices || !maker.collect(*solid, shortest_edge * size))
-    return by_search(*solid, origin);
+  double shortest_squared = 1e300;
+  bool turned = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t v = loops[first_of[k]], w = loops[twins[first_of[k]]];
+    const Vec3d before = points[w] - points[v], after = corners[w] - corners[v];
+    shortest_squared = math::min(shortest_squared, length_squared(after));
+    turned |= !(dot(after, before) > 0.01 * length_squared(before));
+  }
+  if (turned) return Made::not_here;
+  Extent extent;
+  if (!measure(cell, {corners.data(), points.size()}, skin, extent)) return Made::nothing_left;
+  if (shortest_squared < math::square(shortest_edge * extent.size)) return Made::not_here;
+  std::array<std::uint16_t, most_edges> name;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const bool second = twins[i] < i;
+    name[i] = std::uint16_t(2 * pair[second ? twins[i] : i] + second);
+  }
   auto hull = std::make_shared<geometry::Hull>();
-  hull->vertices.reserve(solid->vertices().size());
+  hull->vertices.resize(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) hull->vertices[v] = Vec3f(corners[v] - origin);
+  hull->edges.resize(loops.size()), hull->faces.resize(faces.size()), hull->planes.resize(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const ConvexCell::Face& face = faces[f];
+    std::uint16_t next = name[face.first];
+    for (std::size_t i = face.first + face.count; i-- > face.first;) {
+      const std::uint16_t e = name[i];
+      hull->edges[e] = {loops[i], std::uint16_t(e ^ 1), next, std::uint16_t(f)};
+      next = e;
+    }
+    hull->faces[f] = {next, std::uint16_t(face.count)};
+    hull->planes[f] = {Vec3f(face.normal), float(face.offset - skin - dot(face.normal, origin))};
+  }
+  finish(*hull, extent, origin);
+  made = std::move(hull);
+  return Made::hull;
+}
+
+/// Of cells with short edges, or of many corners.
+std::shared_ptr<const geometry::Hull> from_loops(const ConvexCell& solid, Vec3d origin) {
+  Extent extent;
+  if (!measure(solid, solid.vertices(), 0, extent)) return nullptr;
+  HullMaker maker;
+  if (solid.vertices().size() > most_vertices || !maker.collect(solid, shortest_edge * extent.size))
+    return by_search(solid, origin);
+  auto hull = std::make_shared<geometry::Hull>();
+  hull->vertices.reserve(solid.vertices().size());
   maker.index.fill(nowhere);
   for (std::uint16_t& v : maker.corners) {
     if (maker.index[v] == nowhere) {
       maker.index[v] = std::uint16_t(hull->vertices.size());
-      hull->vertices.push_back(Vec3f(solid->vertices()[v] - origin));
+      hull->vertices.push_back(Vec3f(solid.vertices()[v] - origin));
     }
     v = maker.index[v];
   }
   hull->planes.reserve(maker.loops.size());
   for (const HullMaker::Loop& loop : maker.loops)
     hull->planes.push_back({Vec3f(loop.source->normal), float(loop.source->offset - dot(loop.source->normal, origin))});
-  if (!link(*hull, maker)) return by_search(*solid, origin);
-  hull->bounds = {hull->vertices[0], hull->vertices[0]};
-  for (const Vec3f& v : hull->vertices) hull->bounds = {min(hull->bounds.low, v), max(hull->bounds.high, v)};
-  hull->volume = float(bulk.volume);
-  hull->centroid = Vec3f(bulk.center - origin);
-  hull->inner_radius = float(inner);
-  set_lanes(hull->vertex_lanes, hull->vertices.size(), [&](std::size_t i) { return hull->vertices[i]; });
-  set_lanes(hull->normal_lanes, hull->planes.size(), [&](std::size_t i) { return hull->planes[i].normal; });
+  if (!link(*hull, maker)) return by_search(solid, origin);
+  finish(*hull, extent, origin);
   return hull;
+}
+
+}  // namespace
+
+std::shared_ptr<const geometry::Hull> make_cell_hull(const ConvexCell& cell, Vec3d origin, double skin) {
+  if (cell.empty()) return nullptr;
+  std::shared_ptr<const geometry::Hull> hull;
+  if (from_twins(cell, origin, skin, hull) != Made::not_here) return hull;
+  ConvexCell solid;
+  detail::CellCutter cutter;
+  bool fits = cutter.load(cell, {});
+  for (std::size_t f = 0; f < cell.faces().size() && fits && skin > 0; ++f) {
+    const ConvexCell::Face& face = cell.faces()[f];
+    if (cutter.clip(face.normal, face.offset - skin, face.tag) == ConvexCell::Cut::all) return nullptr;
+    fits = cutter.fits();
+  }
+  if (!fits || !solid.take(cutter)) {
+    solid = cell;
+    ConvexCell::Scratch scratch;
+    for (const ConvexCell::Face& face : cell.faces())
+      if (skin > 0 && solid.clip({face.normal, face.offset - skin, face.tag}, scratch) == ConvexCell::Cut::all)
+        return nullptr;
+  }
+  if (from_twins(solid, origin, 0, hull) != Made::not_here) return hull;
+  return from_loops(solid, origin);
 }
 
 }  // namespace carom::blast

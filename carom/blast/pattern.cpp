@@ -52,9 +52,9 @@ struct Reach {
     for (const Vec3d& v : cell.vertices()) reach.add(v - site);
     return reach;
   }
-  static Reach of(const detail::CellCutter& cell, Vec3d site) {
+  static Reach of(const detail::CellCutter& cell) {
     Reach reach;
-    cell.reach(site, reach.squared, reach.low, reach.high);
+    cell.reach(reach.squared, reach.low, reach.high);
     return reach;
   }
   /// No less than the greatest of `way`·(v − site) over the corners v.
@@ -64,17 +64,61 @@ struct Reach {
   }
 };
 
+/// A container that is cut to the cell of a site, in the fast way as soon as what is left of it fits there.
+class Cutting {
+ public:
+  explicit Cutting(const ConvexCell& container)
+      : container_(&container), whole_fits_(whole_.load(container, {})), may_be_fast_(whole_fits_) {}
+
+  Reach start(Vec3d site, bool may_be_fast) {
+    site_ = site, may_be_fast_ = may_be_fast, fast_ = may_be_fast && whole_fits_;
+    if (fast_)
+      cutter_.start(whole_, site);
+    else
+      cell_ = *container_;
+    return fast_ ? Reach::of(cutter_) : Reach::of(cell_, site);
+  }
+  ConvexCell::Cut clip(Vec3d normal, double offset, int tag) {
+    if (fast_) return cutter_.clip(normal, offset, tag);
+    const ConvexCell::Cut cut = cell_.clip({normal, offset, tag}, scratch_);
+    if (cut == ConvexCell::Cut::part && may_be_fast_) fast_ = cutter_.load(cell_, site_);
+    return cut;
+  }
+  Reach reach() const { return fast_ ? Reach::of(cutter_) : Reach::of(cell_, site_); }
+  bool failed() const { return fast_ && !cutter_.fits(); }
+  /// False where it must be cut again in the general way.
+  bool store(ConvexCell& cell) {
+    if (fast_) return cell.take(cutter_);
+    std::swap(cell, cell_);
+    return true;
+  }
+
+ private:
+  const ConvexCell* container_;
+  detail::CellCutter whole_, cutter_;
+  ConvexCell cell_;
+  ConvexCell::Scratch scratch_;
+  Vec3d site_{};
+  bool whole_fits_, may_be_fast_, fast_ = false;
+};
+
 /// Cuts the cell of a site by the planes halfway to its neighbours, nearest first, as long as they can reach it.
-template <class Clip, class Measure, class Fits>
 ConvexCell::Cut cut_cell(const detail::SiteGrid& grid, std::span<const Vec3d> sites, std::uint32_t i, Reach reach,
-                         std::vector<detail::SiteGrid::Near>& near, std::uint32_t& twin, Clip&& clip, Measure&& measure,
-                         Fits&& fits) {
+                         std::vector<detail::SiteGrid::Near>& near, std::uint32_t& twin, Cutting& cell) {
   const Vec3d site = sites[i];
-  for (int ring = 0; ring < grid.rings(); ++ring) {
+  // How far the cell goes is looked up again where a plane missed it: the nearest seldom do.
+  bool stale = false;
+  const auto look = [&] {
+    if (stale) reach = cell.reach();
+    stale = false;
+  };
+  for (int ring = 1; ring <= grid.rings(); ++ring) {
+    look();
     if (ring > 1 && math::square((ring - 1) * grid.edge()) > 4 * reach.squared) break;
     std::span<detail::SiteGrid::Near> left = grid.ring(i, ring, 4 * reach.squared, near);
     // The nearest first: what they leave of the cell leaves few of the others to be sorted.
     for (const double within : {1.5 * math::square(grid.edge()), std::numeric_limits<double>::infinity()}) {
+      look();
       detail::SiteGrid::Near* first = left.data();
       for (detail::SiteGrid::Near& n : left)
         if (n.distance_squared <= within && n.distance_squared <= 4 * reach.squared &&
@@ -88,11 +132,14 @@ ConvexCell::Cut cut_cell(const detail::SiteGrid& grid, std::span<const Vec3d> si
           return ConvexCell::Cut::all;
         }
         const Vec3d place = grid.place(n), way = place - site;
-        if (reach.along(way) <= 0.5 * n.distance_squared) continue;
+        if (!stale && reach.along(way) <= 0.5 * n.distance_squared) continue;
         const Vec3d middle = 0.5 * (site + place), normal = way / math::sqrt(n.distance_squared);
-        const ConvexCell::Cut cut = clip(HalfSpace{normal, dot(normal, middle), int(grid.site(n))});
-        if (cut == ConvexCell::Cut::all || !fits()) return cut;
-        if (cut == ConvexCell::Cut::part) reach = measure();
+        const ConvexCell::Cut cut = cell.clip(normal, dot(normal, middle), int(grid.site(n)));
+        if (cut == ConvexCell::Cut::all || cell.failed()) return cut;
+        if (cut == ConvexCell::Cut::part)
+          stale = true;
+        else
+          look();
       }
       left = left.subspan(std::size_t(first - left.data()));
     }
@@ -190,34 +237,23 @@ core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<con
   Pattern pattern;
   pattern.cells.resize(sites.size());
   struct Work {
-    ConvexCell::Scratch scratch;
-    detail::CellCutter cutter;
+    Cutting cell;
     std::vector<detail::SiteGrid::Near> near;
   };
   core::SerialScheduler alone;
   core::TaskScheduler& threads = scheduler != nullptr ? *scheduler : alone;
-  std::vector<Work> works(std::size_t(threads.thread_count()));
+  std::vector<Work> works(std::size_t(threads.thread_count()), Work{Cutting(container), {}});
   constexpr std::uint32_t nobody = 0xffffffff;
   std::vector<std::uint32_t> twins(sites.size(), nobody);  // another site in the same place
   threads.parallel_for(int(sites.size()), 8, [&](int begin, int end, int worker) {
     Work& work = works[std::size_t(worker)];
     for (std::uint32_t i = std::uint32_t(begin); i < std::uint32_t(end); ++i) {
-      ConvexCell& cell = pattern.cells[i];
-      const Reach whole = Reach::of(container, sites[i]);
-      bool done = false;
-      if (work.cutter.load(container, container.tolerance())) {
-        const auto cut = [&](const HalfSpace& h) { return work.cutter.clip(h.normal, h.offset, h.tag); };
-        const auto found = cut_cell(
-            grid, sites, i, whole, work.near, twins[i], cut, [&] { return Reach::of(work.cutter, sites[i]); },
-            [&] { return work.cutter.fits(); });
-        done = work.cutter.fits();
-        if (done && found != ConvexCell::Cut::all) cell.take(work.cutter, container.tolerance());
+      for (const bool may_be_fast : {true, false}) {
+        const Reach whole = work.cell.start(sites[i], may_be_fast);
+        const auto found = cut_cell(grid, sites, i, whole, work.near, twins[i], work.cell);
+        if (work.cell.failed()) continue;
+        if (found == ConvexCell::Cut::all || work.cell.store(pattern.cells[i])) break;
       }
-      if (done || twins[i] != nobody) continue;
-      cell = container;
-      (void)cut_cell(
-          grid, sites, i, whole, work.near, twins[i], [&](const HalfSpace& h) { return cell.clip(h, work.scratch); },
-          [&] { return Reach::of(cell, sites[i]); }, [] { return true; });
     }
   });
   for (std::size_t i = 0; i < sites.size(); ++i)

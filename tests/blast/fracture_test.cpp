@@ -53,28 +53,74 @@ TEST(ConvexCell, CutsOfABox) {
   EXPECT_TRUE(corner.empty());
 }
 
-TEST(ConvexCell, ShrinkingIsCuttingByEveryFaceMovedInward) {
+TEST(ConvexCell, HullsAreCellsWithEveryFaceMovedInward) {
   const ConvexCell box = unit_box();
   const Pattern pattern = voronoi_pattern(box, uniform_sites(box, 150, 5)).value();
-  int shrunk = 0;
-  for (const double distance : {1e-4, 1e-3, 0.01}) {
+  for (const double skin : {0.0, 1e-4, 1e-3, 0.01}) {
+    int hulls = 0;
     for (const ConvexCell& cell : pattern.cells) {
-      ConvexCell moved = cell, cut = cell;
-      const bool done = moved.shrink(distance);
-      for (const ConvexCell::Face& face : cell.faces()) (void)cut.clip({face.normal, face.offset - distance, face.tag});
-      if (!done) {
-        EXPECT_EQ(moved.volume(), cell.volume()) << "nothing moves where it cannot";
+      ConvexCell cut = cell;
+      for (const ConvexCell::Face& face : cell.faces())
+        if (skin > 0) (void)cut.clip({face.normal, face.offset - skin, face.tag});
+      const Vec3d origin = cell.mass_properties(1).center;
+      const auto hull = make_cell_hull(cell, origin, skin);
+      if (hull == nullptr) {
+        EXPECT_LT(cut.volume(), 1e-4) << "only of thin ones nothing is left";
         continue;
       }
-      ++shrunk;
-      EXPECT_EQ(moved.faces().size(), cell.faces().size());
-      EXPECT_NEAR(moved.volume(), cut.volume(), 1e-9 * cell.volume());
-      EXPECT_LT(math::distance(moved.mass_properties(1).center, cut.mass_properties(1).center), 1e-8);
+      ++hulls;
+      const auto expected = cut.mass_properties(1);
+      EXPECT_NEAR(hull->volume, expected.mass, 1e-6 * expected.mass);
+      EXPECT_LT(distance(Vec3d(hull->centroid), expected.center - origin), 1e-6);
+      EXPECT_TRUE(geometry::validate_hull(*hull, {}, 2e-5).ok());
+    }
+    EXPECT_GT(hulls, skin < 0.005 ? 147 : 130);
+  }
+  EXPECT_EQ(make_cell_hull(ConvexCell(geometry::Bounds3d{{0, 0, 0}, {1, 1, 0.01}}), {}, 0.006), nullptr)
+      << "the two sides would pass each other";
+}
+
+TEST(Fracture, CellsAreWhatTheCutsOfAllSitesLeave) {
+  // Containers of three edges a corner, of four, of five, and of more faces than the fast cuts hold; sites by chance,
+  // and on a lattice, where cuts go through corners.
+  std::vector<std::pair<const char*, ConvexCell>> containers{{"box", unit_box()}};
+  math::Random random(4);
+  const std::vector<math::Vec3f> octahedron{{1, .5f, .5f}, {0, .5f, .5f}, {.5f, 1, .5f},
+                                            {.5f, 0, .5f}, {.5f, .5f, 1}, {.5f, .5f, 0}};
+  containers.emplace_back("octahedron", ConvexCell(*geometry::make_hull(octahedron).value()));
+  for (const int count : {12, 100}) {
+    std::vector<math::Vec3f> points;
+    for (int i = 0; i < count; ++i) points.push_back(math::Vec3f(Vec3d{.5, .5, .5} + 0.5 * random.on_sphere()));
+    containers.emplace_back(count == 12 ? "ball of 12" : "ball of 100",
+                            ConvexCell(*geometry::make_hull(points).value()));
+  }
+  for (const auto& [name, container] : containers) {
+    std::vector<Vec3d> lattice;
+    for (int i = 0; i < 64; ++i)
+      lattice.push_back({0.25 * (i % 4) + 0.125, 0.25 * (i / 4 % 4) + 0.125, 0.25 * (i / 16) + 0.125});
+    for (const auto& sites : {uniform_sites(container, 60, 9), lattice}) {
+      const auto pattern = voronoi_pattern(container, sites);
+      ASSERT_TRUE(pattern) << pattern.error().message;
+      double volume = 0;
+      for (std::size_t i = 0; i < sites.size(); ++i) {
+        const ConvexCell& cell = pattern->cells[i];
+        ConvexCell cut = container;
+        for (std::size_t j = 0; j < sites.size(); ++j) {
+          if (i == j || cut.empty()) continue;
+          const Vec3d n = normalize(sites[j] - sites[i]);
+          cut.clip({n, dot(n, 0.5 * (sites[i] + sites[j])), int(j)});
+        }
+        ASSERT_EQ(cell.empty(), cut.empty()) << name << ", cell " << i;
+        if (cell.empty()) continue;
+        volume += cell.volume();
+        EXPECT_NEAR(cell.volume(), cut.volume(), 1e-12) << name << ", cell " << i;
+        EXPECT_EQ(int(cell.vertices().size()) - cell.edge_count() + int(cell.faces().size()), 2) << name << i;
+        if (cut.volume() > 1e-9)
+          EXPECT_LT(distance(cell.mass_properties(1).center, cut.mass_properties(1).center), 1e-9) << name << i;
+      }
+      EXPECT_NEAR(volume, container.volume(), 1e-12) << name;
     }
   }
-  EXPECT_GT(shrunk, 150);
-  ConvexCell flat(geometry::Bounds3d{{0, 0, 0}, {1, 1, 0.01}});
-  EXPECT_FALSE(flat.shrink(0.006)) << "the two sides would pass each other";
 }
 
 TEST(Fracture, VoronoiPiecesAreTheWhole) {

@@ -45,7 +45,8 @@ class SiteGrid {
       return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : site(a) < site(b);
     });
   }
-  /// The sites of the cubes that are `ring` away from the site's own and within the limit, in no order that counts.
+  /// The sites of the cubes that are `ring` (≥ 1) away from the site's own, for 1 those of its own too, and within the
+  /// limit, in no order that counts.
   std::span<Near> ring(std::uint32_t site, int ring, double limit_squared, std::vector<Near>& found) const {
     std::size_t count = 0;
     int c[3], low[3], high[3];
@@ -76,7 +77,7 @@ class SiteGrid {
         const double from_row = from_z + gap_squared(y, 1);
         if (from_row > limit_squared) continue;
         const std::size_t row = (std::size_t(z) * std::size_t(count_[1]) + std::size_t(y)) * std::size_t(count_[0]);
-        if (math::abs(z - c[2]) == ring || math::abs(y - c[1]) == ring) {
+        if (ring == 1 || z - c[2] == ring || c[2] - z == ring || y - c[1] == ring || c[1] - y == ring) {
           int from = low[0], to = high[0];
           while (from < c[0] && from_row + gap_squared(from, 0) > limit_squared) ++from;
           while (to > c[0] && from_row + gap_squared(to, 0) > limit_squared) --to;
