@@ -22,7 +22,7 @@ int DynamicTree<V>::take_node() {
   }
   // Not to the double: a large world at rest should pay for what it holds.
   if (const std::size_t now = nodes_.size(); now == nodes_.capacity())
-    nodes_.reserve(now + now / (now < 1024 ? 4 : 8) + 16);
+    nodes_.reserve(now + now / (now < (1 << 16) ? 4 : 2) + 16);
   nodes_.push_back(Node{});
   return int(nodes_.size()) - 1;
 }

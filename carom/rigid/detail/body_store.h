@@ -20,8 +20,9 @@ constexpr Inertia no_inertia() {
     return 0;
 }
 
-/// Vectors double by themselves; a world of sleepers should pay for what it holds.
-inline std::size_t next_capacity(std::size_t now) { return now + now / (now < 1024 ? 4 : 8) + 16; }
+/// Vectors double by themselves; a world of sleepers should pay for what it holds. What is large grows faster: most of
+/// the time of filling it goes into copies and new pages.
+inline std::size_t next_capacity(std::size_t now) { return now + now / (now < (1 << 16) ? 4 : 2) + 16; }
 /// Makes room for one more.
 template <class T>
 void grow_a_little(std::vector<T>& v) {
