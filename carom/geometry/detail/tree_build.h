@@ -5,6 +5,10 @@
 #include <span>
 #include <vector>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "carom/geometry/bounds.h"
 
 namespace carom::geometry::detail {
@@ -31,6 +35,14 @@ constexpr bool boxes_meet(const Bounds<Vec3<T>>& a, const Bounds<Vec3<T>>& b) {
   return bool(int(a.low.x <= b.high.x) & int(b.low.x <= a.high.x) & int(a.low.y <= b.high.y) &
               int(b.low.y <= a.high.y) & int(a.low.z <= b.high.z) & int(b.low.z <= a.high.z));
 }
+
+#if defined(__SSE2__)
+inline bool boxes_meet(const Bounds<Vec2<double>>& a, const Bounds<Vec2<double>>& b) {
+  const __m128d low_a = _mm_loadu_pd(&a.low.x), high_a = _mm_loadu_pd(&a.high.x);
+  const __m128d low_b = _mm_loadu_pd(&b.low.x), high_b = _mm_loadu_pd(&b.high.x);
+  return _mm_movemask_pd(_mm_and_pd(_mm_cmple_pd(low_a, high_b), _mm_cmple_pd(low_b, high_a))) == 3;
+}
+#endif
 
 template <class V>
 struct Axes;
@@ -107,6 +119,7 @@ template <class V>
 struct BuildItem {
   Bounds<V> box;
   std::uint32_t index;
+  std::uint32_t bin = 0;  ///< of the split that is being made
 };
 
 inline constexpr int split_depth_limit = 36;  ///< below this depth a build halves by count, so that depth stays bounded
@@ -134,12 +147,12 @@ std::size_t binned_split(std::span<BuildItem<V>> items, int depth) {
   const auto bin_of = [&](const BuildItem<V>& item) {
     // Divided first: the reciprocal of a subnormal extent would be infinite.
     const int b = int((item.box.center()[axis] - low) / extent * T(bins));
-    return b < 0 ? 0 : (b >= bins ? bins - 1 : b);
+    return std::uint32_t(b < 0 ? 0 : (b >= bins ? bins - 1 : b));
   };
   std::size_t counts[bins] = {};
   Bounds<V> boxes[bins];
-  for (const BuildItem<V>& item : items) {
-    const int b = bin_of(item);
+  for (BuildItem<V>& item : items) {
+    const std::uint32_t b = item.bin = bin_of(item);
     boxes[b] = counts[b] == 0 ? item.box : merge(boxes[b], item.box);
     ++counts[b];
   }
@@ -169,7 +182,7 @@ std::size_t binned_split(std::span<BuildItem<V>> items, int depth) {
 
   std::size_t i = 0, j = count;
   while (i < j) {
-    if (bin_of(items[i]) <= best) {
+    if (int(items[i].bin) <= best) {
       ++i;
     } else {
       --j;
