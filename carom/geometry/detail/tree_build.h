@@ -5,10 +5,6 @@
 #include <span>
 #include <vector>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include "carom/geometry/bounds.h"
 
 namespace carom::geometry::detail {
@@ -37,10 +33,13 @@ constexpr bool boxes_meet(const Bounds<Vec3<T>>& a, const Bounds<Vec3<T>>& b) {
 }
 
 #if defined(__SSE2__)
+/// Both axes at once.
 inline bool boxes_meet(const Bounds<Vec2<double>>& a, const Bounds<Vec2<double>>& b) {
-  const __m128d low_a = _mm_loadu_pd(&a.low.x), high_a = _mm_loadu_pd(&a.high.x);
-  const __m128d low_b = _mm_loadu_pd(&b.low.x), high_b = _mm_loadu_pd(&b.high.x);
-  return _mm_movemask_pd(_mm_and_pd(_mm_cmple_pd(low_a, high_b), _mm_cmple_pd(low_b, high_a))) == 3;
+  typedef double Two __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+  Two low_a, high_a, low_b, high_b;
+  __builtin_memcpy(&low_a, &a.low, sizeof low_a), __builtin_memcpy(&high_a, &a.high, sizeof high_a);
+  __builtin_memcpy(&low_b, &b.low, sizeof low_b), __builtin_memcpy(&high_b, &b.high, sizeof high_b);
+  return __builtin_ia32_movmskpd(Two((low_a <= high_b) & (low_b <= high_a))) == 3;
 }
 #endif
 

@@ -174,9 +174,14 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
                   ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, std::uint8_t* marks) {
   const int lanes = int(list.size());
   typename D::Vector across[W];
-  std::uint32_t meets = 0;  // bits by lane
-  for (int lane = 0; lane < lanes; ++lane)
-    meets |= std::uint32_t(put_where_it_meets(context, list[std::size_t(lane)], across[lane])) << lane;
+  std::uint32_t meets = 0, turns = 0;  // bits by lane
+  for (int lane = 0; lane < lanes; ++lane) {
+    const std::int32_t index = list[std::size_t(lane)];
+    const ContactRecord<D>& c = sources.contacts[sources.manifolds[index].contact];
+    turns |= std::uint32_t(c.rolls) << lane;
+    if (may_foresee(c)) meets |= std::uint32_t(put_where_it_meets(context, index, across[lane])) << lane;
+  }
+  turns &= ~meets;
   if constexpr (D::dimension == 2) {
     const WorldImplementation<D>& world = context.world;
     const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
@@ -196,13 +201,14 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
       marks[lane] = gather_lane(context, list[std::size_t(lane)], block, raw, lane);
     for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
   }
-  const std::uint32_t apart = meets;
   for (; meets != 0; meets &= meets - 1) {
     const int lane = std::countr_zero(meets);
     put(block.center_offset, lane, get(block.center_offset, lane) - across[lane]);
   }
-  for (int lane = 0; lane < lanes; ++lane)
-    if ((apart >> lane & 1u) == 0) put_middle(context, list[std::size_t(lane)], block, raw, lane);
+  for (; turns != 0; turns &= turns - 1) {
+    const int lane = std::countr_zero(turns);
+    put_middle(context, list[std::size_t(lane)], block, raw, lane);
+  }
 }
 
 /// How fast something parts shows only where it is slow: what flies faster than that in an overlap was pressed into it
@@ -221,19 +227,31 @@ float settling_slip(const StepContext<D>& context) {
   return context.rest_speed / rest_falls * context.dt;
 }
 
-/// After the kernel: friction that sticks anew remembers where. A contact that settles has a new anchor where its load
-/// moved on the patch, and keeps its slip.
+/// Friction sticks here from now on, less the way that it slipped meanwhile (world axes).
 template <class D, int W>
-void set_anchor(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block, int lane) {
+void put_anchor(const StepContext<D>& context, ManifoldRecord<D>& m, const ContactBlock<D, W>& block, int lane,
+                const typename D::Vector& slip) {
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  const typename D::Vector center = get(block.patch_r_a, lane), center_b = center + get(block.center_offset, lane);
+  m.anchor_a = inverse_rotate(context.world.bodies.pose[std::size_t(c.body[0])].rotation, center);
+  m.anchor_b = inverse_rotate(context.world.bodies.pose[std::size_t(c.body[1])].rotation, center_b + slip);
+}
+
+/// After the kernel: friction that sticks anew remembers where. A contact that settles has a new anchor where its load
+/// moved on the patch, and keeps its slip. False where a face bears nothing yet: what it gets, it may lose in the same
+/// step (store_block).
+template <class D, int W>
+bool set_anchor(const StepContext<D>& context, std::int32_t index, const ContactBlock<D, W>& block, int lane,
+                bool may_wait) {
   using V = typename D::Vector;
   ManifoldRecord<D>& m = context.world.contacts.manifold(index);
-  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
-  const auto &qa = context.world.bodies.pose[std::size_t(c.body[0])].rotation,
-             &qb = context.world.bodies.pose[std::size_t(c.body[1])].rotation;
-  const V center = get(block.patch_r_a, lane), center_b = center + get(block.center_offset, lane);
   V slip{};
   if (m.anchor == Anchor::settles) {
+    const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+    const auto &qa = context.world.bodies.pose[std::size_t(c.body[0])].rotation,
+               &qb = context.world.bodies.pose[std::size_t(c.body[1])].rotation;
     const V n = get(block.normal, lane);
+    const V center = get(block.patch_r_a, lane), center_b = center + get(block.center_offset, lane);
     slip = (rotate(qb, m.anchor_b) - center_b) - (rotate(qa, m.anchor_a) - center);
     slip -= dot(n, slip) * n;
     const float most = settling_slip(context);
@@ -243,10 +261,11 @@ void set_anchor(const StepContext<D>& context, std::int32_t index, const Contact
     for (const auto& point : block.point) load += point.impulse[lane];
     // What meets with a corner or an edge may roll on it.
     const bool face = m.manifold.count == D::max_points;
+    if (may_wait && face && !(load > 0)) return false;
     m.anchor = load > 0 || !face ? Anchor::holds : Anchor::settles;
   }
-  m.anchor_a = inverse_rotate(qa, center);
-  m.anchor_b = inverse_rotate(qb, center_b + slip);
+  put_anchor(context, m, block, lane, slip);
+  return true;
 }
 
 /// After the kernel: how fast the surfaces close, and with what speed they are to part. Returns the lane's mark.
@@ -438,19 +457,26 @@ void stop_watching(WorldImplementation<Dim2>& world, std::int32_t contact) {
 
 template <int W>
 void store_block(StepContext<Dim3>& context, const ContactSources<Dim3>&, std::span<const std::int32_t> list,
-                 const ContactBlock<Dim3, W>& block, const ContactExtra<Dim3, W>* extra) {
+                 const ContactBlock<Dim3, W>& block, const ContactExtra<Dim3, W>* extra, const std::uint8_t*) {
   for (std::size_t lane = 0; lane < list.size(); ++lane) store_lane(context, list[lane], block, extra, int(lane));
 }
 template <int W>
 void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources, std::span<const std::int32_t> list,
-                 const ContactBlock<Dim2, W>& block, const ContactExtra<Dim2, W>* extra) {
+                 const ContactBlock<Dim2, W>& block, const ContactExtra<Dim2, W>* extra, const std::uint8_t* marks) {
   const int lanes = int(list.size());
   const std::uint32_t at_limit = context.world.kernels.store(sources, list.data(), lanes, &block);
   for (int lane = 0; lane < lanes; ++lane) {
     ManifoldRecord<Dim2>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
     if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
     const float load = block.point[0].impulse[lane] + block.point[1].impulse[lane];
-    if (m.anchor != Anchor::none) let_go(context, m, block, lane, load, (at_limit >> lane & 1u) != 0);
+    const bool anew = (marks[lane] & mark_anew) != 0;
+    if (anew && !(load > 0)) continue;
+    if (anew) {
+      m.anchor = Anchor::settles;
+      put_anchor(context, m, block, lane, Vec2f{});
+    } else if (m.anchor != Anchor::none) {
+      let_go(context, m, block, lane, load, (at_limit >> lane & 1u) != 0);
+    }
     if (m.waits && load > 0) stop_watching(context.world, m.contact);
   }
 }
@@ -459,23 +485,22 @@ void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
 /// of the one before it waits. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
 template <class D>
-CAROM_SIMD_INLINE void prefetch_manifold(const WorldImplementation<D>& world, std::span<const std::int32_t> list,
+CAROM_SIMD_INLINE void prefetch_manifold(const ContactSources<D>& from, std::span<const std::int32_t> list,
                                          std::size_t i, bool velocities) {
   constexpr std::size_t manifold_lanes = 64, contact_lanes = 40, body_lanes = 18;
-  if (i + manifold_lanes < list.size())
-    prefetch_lines(&world.contacts.manifold(list[i + manifold_lanes]), ManifoldRecord<D>::hot_bytes);
-  if (i + contact_lanes < list.size())
-    prefetch_lines(&world.contacts.at(world.contacts.manifold(list[i + contact_lanes]).contact),
-                   D::dimension == 2 ? 64 : sizeof(ContactRecord<D>));
-  if (i + body_lanes < list.size()) {
-    const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[i + body_lanes]).contact);
-    for (const std::int32_t body : c.body) {
-      prefetch_lines(&world.bodies.motion[std::size_t(body)], sizeof(BodyMotion<D>));
-      __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
-      if (velocities) __builtin_prefetch(&world.bodies.solver[std::size_t(body)]);
-      if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(&world.bodies.record[std::size_t(body)]);
-    }
+  if (i + body_lanes >= list.size()) return;
+  const ContactRecord<D>& c = from.contacts[from.manifolds[list[i + body_lanes]].contact];
+  for (const std::int32_t body : c.body) {
+    prefetch_lines(from.motion + body, sizeof(BodyMotion<D>));
+    __builtin_prefetch(from.pose + body);
+    if (velocities) __builtin_prefetch(from.bodies + body);
+    if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(from.record + body);
   }
+  if (i + contact_lanes >= list.size()) return;
+  prefetch_lines(from.contacts + from.manifolds[list[i + contact_lanes]].contact,
+                 D::dimension == 2 ? 64 : sizeof(ContactRecord<D>));
+  if (i + manifold_lanes >= list.size()) return;
+  prefetch_lines(from.manifolds + list[i + manifold_lanes], ManifoldRecord<D>::hot_bytes);
 }
 
 /// May blocks of the overflow, which share bodies, be taken at once?
@@ -537,36 +562,38 @@ void prepare_blocks(StepContext<D>& context) {
   const bool any_special = !world.shapes.extras.empty() || world.hit_event_shapes > 0;
   // Where nothing rare is asked for, lanes find by themselves how their contacts roll and bounce.
   const bool by_kernel = world.kernels.approach != nullptr && !any_special && world.bodies.time_scale.empty();
-  for_blocks<D, W>(context, Overflow::at_once,
-                   [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
-                       ContactExtra<D, W>* extra, std::uint8_t* marks) {
-                     ContactRaw<D, W> raw;
-                     const bool approaches = extra != nullptr || world.hit_event_shapes > 0;
-                     const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
-                     for (int lane = 0; lane < lanes; ++lane)
-                       prefetch_manifold(world, manifolds, first + std::size_t(lane), approaches);
-                     gather_block(context, sources, list, block, raw, extra, marks);
-                     for (int lane = 0; lane < lanes; ++lane)
-                       if (marks[lane] != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane]))
-                         marks[lane] = 0;
-                     world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
-                     for (int lane = 0; lane < lanes; ++lane)
-                       if (raw.anchor_state[lane] > 0) set_anchor(context, list[std::size_t(lane)], block, lane);
-                     if (by_kernel) {
-                       if (extra == nullptr) return;
-                       std::uint32_t bounces = world.kernels.approach(sources, list.data(), lanes, &block, extra);
-                       for (; bounces != 0; bounces &= bounces - 1)
-                         if (const int lane = std::countr_zero(bounces); lane < lanes) marks[lane] |= mark_bounces;
-                       return;
-                     }
-                     for (int lane = 0; lane < lanes; ++lane) {
-                       const std::int32_t m = list[std::size_t(lane)];
-                       if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
-                       if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
-                       if (any_special) prepare_special(context, m, block, extra, lane);
-                       if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
-                     }
-                   });
+  const bool may_wait = D::dimension == 2 && !any_special;
+  for_blocks<D, W>(
+      context, Overflow::at_once,
+      [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
+          ContactExtra<D, W>* extra, std::uint8_t* marks) {
+        ContactRaw<D, W> raw;
+        const bool approaches = extra != nullptr || world.hit_event_shapes > 0;
+        const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
+        for (int lane = 0; lane < lanes; ++lane)
+          prefetch_manifold(sources, manifolds, first + std::size_t(lane), approaches);
+        gather_block(context, sources, list, block, raw, extra, marks);
+        for (int lane = 0; lane < lanes; ++lane)
+          if (marks[lane] != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane])) marks[lane] = 0;
+        world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
+        for (int lane = 0; lane < lanes; ++lane)
+          if (raw.anchor_state[lane] > 0 && !set_anchor(context, list[std::size_t(lane)], block, lane, may_wait))
+            marks[lane] |= mark_anew;
+        if (by_kernel) {
+          if (extra == nullptr) return;
+          std::uint32_t bounces = world.kernels.approach(sources, list.data(), lanes, &block, extra);
+          for (; bounces != 0; bounces &= bounces - 1)
+            if (const int lane = std::countr_zero(bounces); lane < lanes) marks[lane] |= mark_bounces;
+          return;
+        }
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::int32_t m = list[std::size_t(lane)];
+          if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
+          if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
+          if (any_special) prepare_special(context, m, block, extra, lane);
+          if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
+        }
+      });
 }
 
 /// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves;
@@ -617,22 +644,21 @@ void store_blocks(StepContext<D>& context) {
   const ContactSources<D> sources = sources_of(context);
   for_blocks<D, W>(context, Overflow::in_order,
                    [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
-                       ContactExtra<D, W>* extra, std::uint8_t*) {
+                       ContactExtra<D, W>* extra, const std::uint8_t* marks) {
                      for (int lane = 0; lane < lanes; ++lane)
                        for (const std::int32_t body : {block.read_a[lane], block.read_b[lane]}) {
-                         __builtin_prefetch(&context.world.scratch.loads[std::size_t(body)], 1);
-                         __builtin_prefetch(&context.bodies[body]);
+                         __builtin_prefetch(sources.loads + 4 * body, 1);
+                         __builtin_prefetch(sources.bodies + body);
                        }
                      for (int lane = 0; lane < lanes; ++lane) {
                        const std::size_t i = first + std::size_t(lane);
                        if (i + 12 < manifolds.size()) {
-                         const char* record =
-                             reinterpret_cast<const char*>(&context.world.contacts.manifold(manifolds[i + 12]));
+                         const char* record = reinterpret_cast<const char*>(sources.manifolds + manifolds[i + 12]);
                          for (std::size_t k = 0; k < ManifoldRecord<D>::hot_bytes; k += 64)
                            __builtin_prefetch(record + k, 1);
                        }
                      }
-                     store_block(context, sources, manifolds.subspan(first, std::size_t(lanes)), block, extra);
+                     store_block(context, sources, manifolds.subspan(first, std::size_t(lanes)), block, extra, marks);
                    });
 }
 
