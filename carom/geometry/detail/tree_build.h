@@ -39,7 +39,8 @@ inline bool boxes_meet(const Bounds<Vec2<double>>& a, const Bounds<Vec2<double>>
   Two low_a, high_a, low_b, high_b;
   __builtin_memcpy(&low_a, &a.low, sizeof low_a), __builtin_memcpy(&high_a, &a.high, sizeof high_a);
   __builtin_memcpy(&low_b, &b.low, sizeof low_b), __builtin_memcpy(&high_b, &b.high, sizeof high_b);
-  return __builtin_ia32_movmskpd(Two((low_a <= high_b) & (low_b <= high_a))) == 3;
+  const auto below = low_a <= high_b, above = low_b <= high_a;
+  return (__builtin_ia32_movmskpd(Two(below)) & __builtin_ia32_movmskpd(Two(above))) == 3;
 }
 #endif
 
