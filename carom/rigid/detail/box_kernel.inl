@@ -19,8 +19,8 @@ void new_meetings(const BoxGroup<D>& group, int members, int others, std::uint64
   for (int i = 0; i < members; ++i) {
     std::uint64_t found = 0;
     for (int k = 0; k < others; k += W) {
-      const auto meets = boxes_meet<W>(group.others, k, group.boxes, i) &
-                         !boxes_meet<W>(group.old_others, k, group.old_boxes, i);
+      const auto meets =
+          boxes_meet<W>(group.others, k, group.boxes, i) & !boxes_meet<W>(group.old_others, k, group.old_boxes, i);
       found |= std::uint64_t(bitmask(meets)) << k;
     }
     news[i] = found;
