@@ -111,6 +111,7 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 #include "carom/rigid/detail/contact_prepare2.inl"
 #include "carom/rigid/detail/contact_prepare3.inl"
 #include "carom/rigid/detail/contact_watch2.inl"
+#include "carom/rigid/detail/contact_watch3.inl"
 // The passes use what the preparation left.
 #include "carom/rigid/detail/contact_kernel2.inl"
 #include "carom/rigid/detail/contact_kernel3.inl"
@@ -142,6 +143,7 @@ ContactKernels<Dim3> kernels3() {
   ContactKernels<Dim3> k;
   k.width = W;
   k.new_meetings = new_meetings<Dim3, W>;
+  k.nothing_new = nothing_new3<W>;
   k.prepare = prepare3<W>;
   k.warm_start = warm_start3<W>;
   k.solve = solve3<W>;

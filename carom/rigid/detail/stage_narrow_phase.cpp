@@ -71,15 +71,16 @@ bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c,
 }
 
 /// The normal of a manifold as the axis along which the shapes are apart. That of a manifold may be bent (over_border).
-void go_on_apart(ContactRecord<Dim2>& c, const ShapeRecord<Dim2>& a, const ShapeRecord<Dim2>& b,
-                 const Dim2::Manifold& m) {
-  const Vec2f back = inverse_rotate(c.base.q, -m.normal);
+template <class D>
+void go_on_apart(ContactRecord<D>& c, const ShapeRecord<D>& a, const ShapeRecord<D>& b, const typename D::Manifold& m) {
+  if constexpr (D::dimension == 3)
+    if (!is_convex(a.geometry) || !is_convex(b.geometry)) return;
+  const typename D::Vector back = inverse_rotate(c.base.q, -m.normal);
   const float apart = dot(m.normal, transform_point(c.base, support(b.geometry, back)) - support(a.geometry, m.normal));
   if (!(apart > c.margin())) return;
   c.axis = m.normal;
   c.gap = min(c.gap, apart);
 }
-void go_on_apart(ContactRecord<Dim3>&, const ShapeRecord<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Manifold&) {}
 
 /// Two convex shapes, or a plane: one manifold at most.
 template <class D>
@@ -344,7 +345,6 @@ void update_contacts(WorldImplementation<D>& world) {
       int number = 0;
       for (; begin < stop; begin += width) {
         const int lanes = min(width, stop - begin);
-        std::uint32_t old = 0;  // bits by lane
         for (int soon = begin + width; soon < min(begin + 2 * width, stop); ++soon) {
           const ContactWatch<D>& watch = watches[soon];
           if (watch.body[0] == none) continue;
@@ -353,13 +353,8 @@ void update_contacts(WorldImplementation<D>& world) {
             __builtin_prefetch(sweeps + body);
           }
         }
-        if (world.kernels.nothing_new != nullptr) {
-          old = world.kernels.nothing_new(watches + begin, lanes, poses, sweeps, world.last_dt);
-        } else {
-          for (int lane = 0; lane < lanes; ++lane)
-            old |= std::uint32_t(nothing_new(watches[begin + lane], world.bodies.pose, scratch.sweeps, world.last_dt))
-                   << lane;
-        }
+        const std::uint32_t old =
+            world.kernels.nothing_new(watches + begin, lanes, poses, sweeps, world.last_dt);  // bits by lane
         for (std::uint32_t news = ~old & ((1u << lanes) - 1); news != 0; news &= news - 1) {
           const int i = begin + std::countr_zero(news);
           prefetch_lines(contacts + awake[i], sizeof(ContactRecord<D>));
