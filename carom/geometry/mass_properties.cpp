@@ -6,6 +6,7 @@
 #include "carom/geometry/detail/volume_integrals.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "carom/math/elementary.h"
 
 namespace carom::geometry {
 

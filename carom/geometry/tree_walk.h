@@ -110,8 +110,15 @@ void query(const WideTree<V>& tree, const Bounds<V>& box, Visit&& visit) {
   while (true) {
     const auto& node = tree.nodes[at];
     const std::uint32_t met = detail::meet_children<V>(node, box);
-    for (int lane = 3; lane >= 0; --lane)
-      if ((met >> lane & 1u) != 0 && node.child[lane] != 0) stack[top++] = node.child[lane];
+    for (int lane = 3; lane >= 0; --lane) {
+      const std::uint32_t child = node.child[lane];
+      if ((met >> lane & 1u) == 0 || child == 0) continue;
+      stack[top++] = child;
+      if ((child & WideTree<V>::leaf_bit) == 0)
+        __builtin_prefetch(&tree.nodes[child]);
+      else if (WideTree<V>::leaf_count(child) > 1)
+        __builtin_prefetch(&tree.items[child & WideTree<V>::first_mask]);
+    }
     while (true) {
       if (top == 0) return;
       at = stack[--top];

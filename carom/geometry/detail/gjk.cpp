@@ -223,7 +223,38 @@ void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess,
       [](const Vec3d&, double) { return false; }, out);
 }
 
-bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
+/// In closed form: of an edge and an edge, or of a corner of the triangle before a face. Not for what nearly touches.
+static bool distance_of_edges(const Vec3f (&p)[3], const PlacedCorners& b, int beyond, CoreDistance& out) {
+  PlacedCorners::Edge edge{}, nearest{};
+  int on = -1, ends = 0;
+  for (int e = 0; e < 3; ++e) {
+    if ((beyond >> e & 1) == 0) continue;
+    const int next = e == 2 ? 0 : e + 1;
+    if (!b.nearest_edge(p[e], p[next] - p[e], edge)) return false;
+    if (on < 0 || edge.distance_squared < nearest.distance_squared) nearest = edge, on = e;
+    ends |= 1 << e | 1 << next;
+  }
+  const Vec3d start(p[on]), from(nearest.start);
+  gjk::of_segments(start, Vec3d(p[on == 2 ? 0 : on + 1]) - start, from, Vec3d(nearest.way), out.point_a, out.point_b);
+  double least = math::length(out.point_b - out.point_a);
+  for (int k = 0; k < 3; ++k) {
+    if ((ends >> k & 1) == 0) continue;
+    const PlacedCorners::Before face = b.face_before(p[k], p[k], p[k]);
+    if (!(face.distance > 0 && double(face.distance) < least)) continue;
+    const Vec3f foot = p[k] - face.normal * face.distance;
+    if (b.face_before(foot, foot, foot).distance > 1e-5f) continue;  // beside the face
+    least = double(face.distance);
+    out.point_a = Vec3d(p[k]), out.point_b = Vec3d(foot);
+  }
+  if (!(least > 1e-4)) return false;
+  out.overlap = false;
+  out.count = 0;
+  out.distance = least;
+  out.normal = (out.point_b - out.point_a) * (1 / least);
+  return true;
+}
+
+bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff, int beyond,
                        OffDirections& off, CoreDistance& out) {
   const Vec3d origin(b.origin());
   const Vec3d p[3] = {corner[0] - origin, corner[1] - origin, corner[2] - origin};
@@ -241,7 +272,10 @@ bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d t
     is_off = off.may_learn(reach, v) && off.learn(Vec3f(v), q[0], q[1], q[2]);
     return is_off;
   };
-  gjk::search(support(toward_b), cutoff, support, keeps_off, out);
+  if (beyond != 0 && distance_of_edges(q, b, beyond, out))
+    keeps_off(out.normal, out.distance);
+  else
+    gjk::search(support(toward_b), cutoff, support, keeps_off, out);
   if (is_off) return false;
   out.point_a += origin, out.point_b += origin;
   if (!out.overlap) return true;

@@ -37,7 +37,8 @@ struct CoreDistance {
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out);
 
 /// The same for a triangle and corners that are placed already. False, and all else unknown, where these keep off.
-bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff,
+/// `beyond`: bits of the edges on which the nearest point of the triangle lies; 0: anywhere, or the two meet.
+bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff, int beyond,
                        OffDirections& off, CoreDistance& out);
 
 /// The same for a triangle and a segment (or a point, twice) in closed form. False where they touch, or the triangle is

@@ -1,5 +1,6 @@
 // Sharp boxes by the separating axis theorem over their 15 axes (Gottschalk, Lin & Manocha 1996) and clipping.
 #include "carom/geometry/detail/contact_points.h"
+#include "carom/math/simd.h"
 
 namespace carom::geometry::detail {
 namespace box_pair {
@@ -106,24 +107,28 @@ void collide_box_box(const Box& box_a, const Box& box_b, const Transform3f& x, f
   if (kept + 2 * slack >= best) best = kept, axis = remembered;
   const float face = best;
 
+  // n = A_i × B_j, for all j at once; its length is the sine of the angle between the two edges.
+  using Four = math::WideFloat<4>;
+  const auto row = [](float x, float y, float z) { return Four{Four::Vector{x, y, z, 0}}; };
+  const Four turned[3] = {row(B[0].x, B[1].x, B[2].x), row(B[0].y, B[1].y, B[2].y), row(B[0].z, B[1].z, B[2].z)};
+  const Four near_b = row(eb.y, eb.z, eb.x), far_b = row(eb.z, eb.x, eb.y), one = Four::splat(1);
   int edge_i = -1, edge_j = 0;
   float edge = -1e30f, edge_scale = 1;
   for (int i = 0; i < 3; ++i) {
     const int i1 = i == 2 ? 0 : i + 1, i2 = i == 0 ? 2 : i - 1;
+    const Four r1 = turned[i1], r2 = turned[i2], l2 = r1 * r1 + r2 * r2;
+    const math::WideMask<4> skew = !(l2 < Four::splat(1e-4f));
+    const Four scale = one / sqrt(select(skew, l2, one));
+    const Four ra = Four::splat(ea[i1]) * abs(r2) + Four::splat(ea[i2]) * abs(r1);
+    const Four rb = near_b * row(Q[2][i], Q[0][i], Q[1][i]) + far_b * row(Q[1][i], Q[2][i], Q[0][i]);
+    const Four s =
+        select(skew, (abs(Four::splat(t[i2]) * r1 - Four::splat(t[i1]) * r2) - ra - rb) * scale, Four::splat(-1e30f));
     for (int j = 0; j < 3; ++j) {
-      // n = A_i × B_j; its length is the sine of the angle between the two edges.
-      const float r1 = B[j][i1], r2 = B[j][i2];
-      const float l2 = r1 * r1 + r2 * r2;
-      if (l2 < 1e-4f) continue;
-      const int j1 = j == 2 ? 0 : j + 1, j2 = j == 0 ? 2 : j - 1;
-      const float scale = 1 / math::sqrt(l2);
-      const float ra = ea[i1] * Q[j][i2] + ea[i2] * Q[j][i1], rb = eb[j1] * Q[j2][i] + eb[j2] * Q[j1][i];
-      const float s = (abs(t[i2] * r1 - t[i1] * r2) - ra - rb) * scale;
-      if (s > margin) {
-        out.points[0].separation = s;
+      if (s[j] > margin) {
+        out.points[0].separation = s[j];
         return;
       }
-      if (s > edge) edge = s, edge_i = i, edge_j = j, edge_scale = scale;
+      if (s[j] > edge) edge = s[j], edge_i = i, edge_j = j, edge_scale = scale[j];
     }
   }
 

@@ -388,11 +388,22 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const Vec3d own[3] = {Vec3d(t.corner[0]), Vec3d(t.corner[1]), Vec3d(t.corner[2])};
   // What stands over the face with the point that comes nearest to its plane has no nearer one. Else the nearest point
   // of the triangle lies on an edge that the foot is beyond: distances from a convex shape are a convex function, and
-  // grow on every way away from its foot. Where all of these are flat, the contact is the neighbours'.
+  // grow on every way away from its foot. Where all of these are flat, the contact is the neighbours'. The same holds
+  // of any point of the plane that is in the shape, unless an edge that it is beyond goes through the shape.
   int beyond = 0;
-  if (along_face > 0)
+  const auto look_beyond = [&](Vec3f p) {
     for (int e = 0; e < 3; ++e)
-      if (dot(cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal), foot - t.corner[e]) > 0) beyond |= 1 << e;
+      if (dot(cross(t.corner[e == 2 ? 0 : e + 1] - t.corner[e], t.normal), p - t.corner[e]) > 0) beyond |= 1 << e;
+  };
+  if (along_face > 0) {
+    look_beyond(foot);
+  } else if (corners.has_faces() && behind > 0) {
+    look_beyond(foot + (center - foot) * (along_face / (along_face - behind)));
+    for (int e = 0; e < 3; ++e)
+      if ((beyond >> e & 1) != 0 &&
+          corners.meets_segment(t.corner[e] - x.p, t.corner[e == 2 ? 0 : e + 1] - t.corner[e]))
+        beyond = 0;
+  }
   if (line ? along_face > 0 && (beyond & ~flat_edges) == 0 : beyond != 0 && (beyond & ~flat_edges) == 0)
     return on_face();
   const auto stands_over = [&] {
@@ -411,7 +422,7 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
     const Placed pa(t), pb(b, x);
     if (!corners.known())
       core_distance(pa, pb, cutoff, {}, found);
-    else if (!triangle_distance(own, corners, Vec3d(t.normal), cutoff, off, found))
+    else if (!triangle_distance(own, corners, Vec3d(t.normal), cutoff, beyond, off, found))
       return false;
     if (found.overlap && !core_depth(pa, pb, found)) return on_face();
   }

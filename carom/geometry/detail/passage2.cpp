@@ -96,7 +96,25 @@ struct Search {
     if (lowest(core, end, n, offset) < max(-shallow, sagitta - most)) return false;
     return sagitta <= 0.25 * inner || lowest(core, start, n, offset) >= sagitta - most;
   }
-  /// The same for the four sides of a box about b, of the boxes about a.
+  /// Does the lowest corner of a touch a line of b from the start, seen at a glance?
+  bool touches(const Rounded2& line, Vec2d n, double offset) const {
+    Vec2d corner;
+    double least = 1e300;
+    for (int i = 0; i < core.count; ++i) {
+      const Vec2d p = transform_point(start, Vec2d(core.v[i]));
+      if (const double height = dot(n, p); height < least) least = height, corner = p;
+    }
+    if (least < offset || least - offset - double(core.radius) > 0.5 * target) return false;
+    const Vec2d along(line.v[1] - line.v[0]);
+    const double from = dot(along, corner - Vec2d(line.v[0]));
+    return from >= 0 && from <= dot(along, along);
+  }
+  /// Does the guarded part of a, of which no point is nearer to its surface than this, stay above a line of b?
+  bool guard_clears(Vec2d n, double offset) const {
+    const double inset = 0.74 * double(core.count < 3 ? core.radius : min(float(inner), size_of(core)));
+    return min(lowest(core, start, n, offset), lowest(core, end, n, offset)) + inset > sagitta + target + 1e-5;
+  }
+  /// Do the boxes about a stay so to one of the four sides of a box about b?
   bool clears(const Bounds2f& from, const Bounds2f& to, const Bounds2f& about) const {
     const float at_end = float(max(-shallow, sagitta - 0.5 * inner)), at_start = float(sagitta - 0.5 * inner);
     for (int k = 0; k < 2; ++k) {
@@ -143,7 +161,9 @@ struct Search {
     if (line.count == 2) {
       const Vec2d n(line.n[0]), p(line.v[0]);
       if (dot(n, transform_point(start, Vec2d(center_of(core))) - p) < 0) return;  // from behind
-      if (clears(n, dot(n, p))) return;
+      const double offset = dot(n, p);
+      if (clears(n, offset)) return;
+      if (touches(line, n, offset) && (!passage.guarded || guard_clears(n, offset))) return;
     }
     meet(line);
   }

@@ -29,6 +29,15 @@ class PlacedCorners {
     Vec3f normal;
   };
   Before face_before(Vec3f p, Vec3f q, Vec3f r) const;
+  /// The edge that comes nearest to the segment from `start` by `way` (seen from the origin). False where the shape has
+  /// too many, or no faces.
+  struct Edge {
+    Vec3f start, way;
+    float distance_squared;  ///< m², to rounding
+  };
+  bool nearest_edge(Vec3f start, Vec3f way, Edge& nearest) const;
+  /// Does a segment (seen from the origin) go through the shape?
+  bool meets_segment(Vec3f start, Vec3f way) const;
   /// Lets the corners go on.
   void go(const ShapeWay& approach);
   /// From the origin, of now and then.
@@ -47,9 +56,14 @@ class PlacedCorners {
     return min(min(low[0], low[1]), min(low[2], low[3]));
   }
 
-  static constexpr int capacity = 64;
+  void place_edges() const;
+
+  static constexpr int capacity = 64, most_edges = 32;
   Vec3f origin_;
+  const Hull* hull_ = nullptr;
   int blocks_ = 0, face_blocks_ = 0;
+  mutable int edge_blocks_ = -1;  ///< −1: not placed yet
+  mutable float edges_[6 * most_edges];
   float lanes_[3 * capacity], then_[3 * capacity], planes_[4 * capacity];
 };
 

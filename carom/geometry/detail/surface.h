@@ -1,6 +1,7 @@
 // The triangles of a mesh, height field or voxel grid near a box, each with what its edges are.
 #pragma once
 
+#include "carom/core/function_ref.h"
 #include "carom/geometry/detail/tree_build.h"
 #include "carom/geometry/detail/voxel_faces.h"
 #include "carom/geometry/height_field.h"
@@ -76,48 +77,8 @@ inline SurfaceTriangle triangle_of(const VoxelFace& face, int k) {
   return t;
 }
 
-/// Calls visit(triangle) → bool (false: stop) for the triangles whose boxes meet `box`.
-template <class Visit>
-void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges, Visit&& visit) {
-  if (surface.type == ShapeType3::mesh) {
-    const TriangleMesh& mesh = *surface.mesh;
-    query(mesh.tree, box, [&](std::uint32_t i) {
-      const SurfaceTriangle t = triangle_of(mesh, i);
-      const Bounds3f b{min(t.corner[0], min(t.corner[1], t.corner[2])),
-                       max(t.corner[0], max(t.corner[1], t.corner[2]))};
-      return boxes_meet(b, box) ? bool(visit(t)) : true;
-    });
-    return;
-  }
-  if (surface.type == ShapeType3::voxels) {
-    visit_voxel_faces(*surface.voxels, box, [&](const VoxelFace& face) {
-      for (int k = 0; k < 2; ++k)
-        if (!visit(triangle_of(face, k))) return false;
-      return true;
-    });
-    return;
-  }
-  const HeightFieldCells cells{*surface.height_field};
-  const HeightField& f = cells.field;
-  if (box.low.y > f.high) return;
-  const auto cell_at = [](float x, float size, int count) {
-    return int(clamp(x / size, -1.0f, float(count)) + 1) - 1;  // rounds down, from −1 to count
-  };
-  const int i0 = max(cell_at(box.low.x, f.cell.x, cells.columns()), 0);
-  const int i1 = min(cell_at(box.high.x, f.cell.x, cells.columns()), cells.columns() - 1);
-  const int j0 = max(cell_at(box.low.z, f.cell.y, cells.rows()), 0);
-  const int j1 = min(cell_at(box.high.z, f.cell.y, cells.rows()), cells.rows() - 1);
-  for (int j = j0; j <= j1; ++j)
-    for (int i = i0; i <= i1; ++i) {
-      if (!cells.exists(i, j)) continue;
-      for (int k = 0; k < 2; ++k) {
-        const SurfaceTriangle t = cells.triangle(i, j, k, false);
-        if (min(t.corner[0].y, min(t.corner[1].y, t.corner[2].y)) > box.high.y ||
-            max(t.corner[0].y, max(t.corner[1].y, t.corner[2].y)) < box.low.y)
-          continue;
-        if (!visit(with_edges ? cells.triangle(i, j, k, true) : t)) return;
-      }
-    }
-}
+/// Calls visit (false: stop) for the triangles whose boxes meet `box`, with what their edges are if it is asked for.
+void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges,
+                     core::FunctionRef<bool(const SurfaceTriangle&)> visit);
 
 }  // namespace carom::geometry::detail

@@ -32,6 +32,18 @@ constexpr bool boxes_meet(const Bounds<Vec3<T>>& a, const Bounds<Vec3<T>>& b) {
               int(b.low.y <= a.high.y) & int(a.low.z <= b.high.z) & int(b.low.z <= a.high.z));
 }
 
+#if defined(__SSE2__)
+/// Both axes at once.
+inline bool boxes_meet(const Bounds<Vec2<double>>& a, const Bounds<Vec2<double>>& b) {
+  typedef double Two __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+  Two low_a, high_a, low_b, high_b;
+  __builtin_memcpy(&low_a, &a.low, sizeof low_a), __builtin_memcpy(&high_a, &a.high, sizeof high_a);
+  __builtin_memcpy(&low_b, &b.low, sizeof low_b), __builtin_memcpy(&high_b, &b.high, sizeof high_b);
+  const auto below = low_a <= high_b, above = low_b <= high_a;
+  return (__builtin_ia32_movmskpd(Two(below)) & __builtin_ia32_movmskpd(Two(above))) == 3;
+}
+#endif
+
 template <class V>
 struct Axes;
 template <class T>
@@ -107,6 +119,7 @@ template <class V>
 struct BuildItem {
   Bounds<V> box;
   std::uint32_t index;
+  std::uint32_t bin = 0;  ///< of the split that is being made
 };
 
 inline constexpr int split_depth_limit = 36;  ///< below this depth a build halves by count, so that depth stays bounded
@@ -134,12 +147,12 @@ std::size_t binned_split(std::span<BuildItem<V>> items, int depth) {
   const auto bin_of = [&](const BuildItem<V>& item) {
     // Divided first: the reciprocal of a subnormal extent would be infinite.
     const int b = int((item.box.center()[axis] - low) / extent * T(bins));
-    return b < 0 ? 0 : (b >= bins ? bins - 1 : b);
+    return std::uint32_t(b < 0 ? 0 : (b >= bins ? bins - 1 : b));
   };
   std::size_t counts[bins] = {};
   Bounds<V> boxes[bins];
-  for (const BuildItem<V>& item : items) {
-    const int b = bin_of(item);
+  for (BuildItem<V>& item : items) {
+    const std::uint32_t b = item.bin = bin_of(item);
     boxes[b] = counts[b] == 0 ? item.box : merge(boxes[b], item.box);
     ++counts[b];
   }
@@ -169,7 +182,7 @@ std::size_t binned_split(std::span<BuildItem<V>> items, int depth) {
 
   std::size_t i = 0, j = count;
   while (i < j) {
-    if (bin_of(items[i]) <= best) {
+    if (int(items[i].bin) <= best) {
       ++i;
     } else {
       --j;

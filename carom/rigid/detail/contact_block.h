@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "carom/rigid/detail/box_lanes.h"
 #include "carom/rigid/detail/contact_watch.h"
 #include "carom/rigid/detail/step_context.h"
 
@@ -121,7 +122,9 @@ template <class D>
 struct ContactKernels {
   using Blocks = void*;
   int width = 4;
-  /// Which of `count` watches in a row, at most the width, tell that nothing is new. Bits by lane. Null in 3D.
+  /// Which of the others (a multiple of 16) each member of a group meets now, but did not before: bits by place.
+  void (*new_meetings)(const BoxGroup<D>& group, int members, int others, std::uint64_t* news) = nullptr;
+  /// Which of `count` watches in a row, at most the width, tell that nothing is new. Bits by lane.
   std::uint32_t (*nothing_new)(const ContactWatch<D>* watches, int count, const typename D::Pose* poses,
                                const BodySweep<D>* sweeps, float dt) = nullptr;
   /// Fills `block` and `raw` from the records of the manifolds in `list`; lanes without one are like the first, but

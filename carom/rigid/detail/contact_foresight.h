@@ -36,13 +36,14 @@ bool meeting_of_balls(const V& c, const V& w, float r, float separation, float d
 /// Is it a contact of which to foresee more than its gap? Of balls all that are apart; of other shapes, which keep
 /// their manifolds, those of two moving bodies that are not near yet.
 template <class D>
-bool may_foresee(const ContactRecord<D>& c, const ManifoldRecord<D>& m) {
+inline bool may_foresee(const ContactRecord<D>& c) {
   if ((c.flags & contact_many) != 0) return false;
-  float least = 0;
-  if ((c.flags & contact_round) == 0) {
-    if ((c.flags & (contact_dynamic | contact_recycled)) != contact_dynamic) return false;
-    least = c.margin();
-  }
+  return (c.flags & contact_round) != 0 || (c.flags & (contact_dynamic | contact_recycled)) == contact_dynamic;
+}
+template <class D>
+bool may_foresee(const ContactRecord<D>& c, const ManifoldRecord<D>& m) {
+  if (!may_foresee(c)) return false;
+  const float least = (c.flags & contact_round) != 0 ? 0 : c.margin();
   for (int i = 0; i < m.manifold.count; ++i)
     if (!(m.manifold.points[i].separation > least) || m.impulses.normal[i] > 0) return false;
   return true;

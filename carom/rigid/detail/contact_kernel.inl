@@ -106,10 +106,12 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE
 
+#include "carom/rigid/detail/box_kernel.inl"
 #include "carom/rigid/detail/contact_gather2.inl"
 #include "carom/rigid/detail/contact_prepare2.inl"
 #include "carom/rigid/detail/contact_prepare3.inl"
 #include "carom/rigid/detail/contact_watch2.inl"
+#include "carom/rigid/detail/contact_watch3.inl"
 // The passes use what the preparation left.
 #include "carom/rigid/detail/contact_kernel2.inl"
 #include "carom/rigid/detail/contact_kernel3.inl"
@@ -122,6 +124,7 @@ ContactKernels<Dim2> kernels2() {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim2> k;
   k.width = W;
+  k.new_meetings = new_meetings<Dim2, W>;
   k.nothing_new = nothing_new2<W>;
   k.gather = gather2<W>;
   k.prepare = prepare2<W>;
@@ -139,6 +142,8 @@ ContactKernels<Dim3> kernels3() {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim3> k;
   k.width = W;
+  k.new_meetings = new_meetings<Dim3, W>;
+  k.nothing_new = nothing_new3<W>;
   k.prepare = prepare3<W>;
   k.warm_start = warm_start3<W>;
   k.solve = solve3<W>;

@@ -19,11 +19,6 @@ template <class D>
 inline float way_between(const BodySweep<D>& a, const BodySweep<D>& b, float dt) {
   return math::length(b.way - a.way) + min(a.turning + b.turning, most_turning * dt);
 }
-/// The same along n, from A to B.
-template <class D>
-inline float way_between(const BodySweep<D>& a, const BodySweep<D>& b, float dt, const typename D::Vector& n) {
-  return max(dot(n, a.way - b.way) + min(a.turning + b.turning, most_turning * dt), 0.0f);
-}
 
 /// How far a turn moves a point one metre from the axis, at most.
 inline float chord(const Rot2f& a, const Rot2f& b) {
@@ -45,22 +40,7 @@ struct ContactWatch {
   float gap = 0;       ///< m, apart: what is left until the shapes are of interest; recycled: less than 0 is close
   float most_way = 0;  ///< m, with the turn, where there is a normal; recycled: across it
   float cap = 0;  ///< m, apart: more than that is not looked ahead; recycled: below zero, as far as the gap may close
+  [[no_unique_address]] RecordRest<D::dimension == 3 ? 1 : 0> rest;
 };
-
-template <class D>
-inline bool nothing_new(const ContactWatch<D>& w, const std::vector<typename D::Pose>& poses,
-                        const std::vector<BodySweep<D>>& sweeps, float dt) {
-  if (w.body[0] == none) return false;
-  const typename D::Pose& pose = poses[std::size_t(w.body[0])];
-  const typename D::Transform now = relative(pose, poses[std::size_t(w.body[1])]);
-  const typename D::Vector way = transform_point(now, w.middle) - transform_point(w.base, w.middle);
-  const float turn = chord(w.base.q, now.q) * w.extent, along = dot(w.normal, way);
-  if (w.cap < 0)
-    return w.gap + along < 0 && w.gap + along > w.cap && math::length(way - along * w.normal) + turn < w.most_way;
-  const BodySweep<D>&a = sweeps[std::size_t(w.body[0])], &b = sweeps[std::size_t(w.body[1])];
-  if (w.most_way == 0) return math::length(way) + turn + min(way_between(a, b, dt), w.cap) < w.gap;
-  const float ahead = min(way_between(a, b, dt, rotate(pose.rotation, w.normal)), w.cap);
-  return ahead + turn - along < w.gap && math::length(way) + turn < w.most_way;
-}
 
 }  // namespace carom::rigid::detail

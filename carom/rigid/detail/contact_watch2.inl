@@ -1,5 +1,6 @@
 // Which pairs of the plane have nothing new to tell, as many at a time as there are lanes: part of contact_kernel.inl.
-// The arithmetic of nothing_new in contact_watch.h.
+// Those that are apart: as B's middle moved since, its surface turned about it, and both may come in this step, along
+// the normal where there is one. Those that touch: the same across it.
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 

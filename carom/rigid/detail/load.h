@@ -62,6 +62,7 @@ template <class D>
 std::uint16_t follow_load(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load,
                           float gravity) {
   if (load.size < 0) return 0;
+  if (m.load_level == 0 && load.size == 0) return 0;
   const float squeeze = 0.5f * (load.size - math::length(load.sum)) * m.inverse_mass * context.inverse_h;  // m/s²
   const float borne = min(load_weights * gravity, load_yield * m.inner_extent * context.contact_stiffness);
   const int level = m.load_level;

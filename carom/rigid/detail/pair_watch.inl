@@ -92,7 +92,7 @@ void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, fl
 template <class D>
 bool slides_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>& moved,
                const typename D::Transform& now, ShapeSweep<D>& sweep) {
-  if (D::dimension == 3 || c.axis == typename D::Vector{} || moved.most() < longest_slide(c)) return false;
+  if (c.axis == typename D::Vector{} || moved.most() < longest_slide(c)) return false;
   const float gap = c.gap + dot(c.axis, moved.way) - moved.turn;
   if (!(look_ahead(world, c, sweep, c.axis) < gap - c.margin())) return false;
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);

@@ -1,6 +1,6 @@
 #include <algorithm>
+#include <bit>
 
-#include "carom/math/simd.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -8,7 +8,7 @@ namespace {
 
 constexpr int pair_grain = 64;
 constexpr int group_grain = 8;
-constexpr int most_in_group = 16;
+constexpr int most_in_group = BoxGroup<Dim2>::most_members;
 constexpr int bounds_grain = 128;
 
 /// Remembers two shapes whose bounds overlap, if they are a pair without a contact.
@@ -45,32 +45,6 @@ void find_pairs_of(WorldImplementation<D>& world, std::int32_t place, std::vecto
     });
 }
 
-/// Boxes side by side, in float: exact, because fat bounds lie on a grid (2⁻¹⁰ m) and all is near one origin.
-template <class D, int Room>
-struct BoxLanes {
-  static constexpr int dimension = D::dimension;
-  float low[dimension][Room], high[dimension][Room];
-
-  void put(int lane, const typename D::Bounds& box, const typename D::Position& origin) {
-    const typename D::Position l = box.low - origin, h = box.high - origin;
-    for (int k = 0; k < dimension; ++k) {
-      low[k][lane] = float(clamp(l[k], -far_away, far_away));
-      high[k][lane] = float(clamp(h[k], -far_away, far_away));
-    }
-  }
-  /// Which of the four from `first` on meet box `lane` of the other?
-  template <int OtherRoom>
-  WideMask<4> meets(int first, const BoxLanes<D, OtherRoom>& other, int lane) const {
-    using F = WideFloat<4>;
-    WideMask<4> all = WideMask<4>::all();
-    for (int k = 0; k < dimension; ++k)
-      all = all & (F::load(low[k] + first) <= F::splat(other.high[k][lane])) &
-            (F::splat(other.low[k][lane]) <= F::load(high[k] + first));
-    return all;
-  }
-  static constexpr double far_away = 8e3;  ///< m: multiples of 2⁻¹⁰ m are exact up to 16 km
-};
-
 /// The same for neighbours in the tree of dynamic shapes: one descent for all, then each against all that was found.
 template <class D>
 void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int32_t> places,
@@ -91,42 +65,41 @@ void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int
       for (const std::int32_t place : places) find_pairs_of(world, place, found);
       return;
     }
-  BoxLanes<D, most_in_group> boxes, old_boxes;
+  BoxGroup<D> group;
   for (int i = 0; i < count; ++i) {
-    boxes.put(i, world.shapes.trees[tree_dynamic].bounds(world.shapes.at(members[i]).leaf), origin);
-    old_boxes.put(i, scratch.old_bounds[std::size_t(places[std::size_t(i)])], origin);
-    // Far from here it met none of these, or a box that is cut off there as well.
+    group.boxes.put(i, world.shapes.trees[tree_dynamic].bounds(world.shapes.at(members[i]).leaf), origin);
+    group.old_boxes.put(i, scratch.old_bounds[std::size_t(places[std::size_t(i)])], origin);
+    // A caller's filter may change its mind about what met before. Far from here it met none of these.
+    bool forgets = bool(world.contact_filter);
     for (int k = 0; k < D::dimension; ++k)
-      if (!(math::abs(old_boxes.low[k][i]) < 4e3f && math::abs(old_boxes.high[k][i]) < 4e3f))
-        old_boxes.low[k][i] = 1e6f, old_boxes.high[k][i] = -1e6f;
+      forgets =
+          forgets || !(math::abs(group.old_boxes.low[k][i]) < 4e3f && math::abs(group.old_boxes.high[k][i]) < 4e3f);
+    if (forgets) group.old_boxes.put_nowhere(i);
   }
 
-  constexpr int room = 64;
-  BoxLanes<D, room> others, old_others;
-  std::int32_t shapes[room];
+  std::int32_t shapes[BoxGroup<D>::room];
+  const Bounds* near[BoxGroup<D>::room];
   int number = 0;
   const auto look = [&] {
-    const int full = (number + 3) / 4 * 4;
-    for (int k = number; k < full; ++k)
-      for (int axis = 0; axis < D::dimension; ++axis) others.low[axis][k] = 1e6f, others.high[axis][k] = -1e6f;
-    for (int i = 0; i < count; ++i) {
-      std::uint64_t news = 0;
-      for (int k = 0; k < full; k += 4) {
-        auto meets = others.meets(k, boxes, i);
-        if (!world.contact_filter) meets = meets & !old_others.meets(k, old_boxes, i);
-        news |= std::uint64_t(bitmask(meets)) << k;
-      }
-      for (; news != 0; news &= news - 1) consider_pair(world, members[i], shapes[__builtin_ctzll(news)], found);
+    for (int k = 0; k < number; ++k) {
+      const std::int32_t place = scratch.moved_place[std::size_t(shapes[k])];
+      group.others.put(k, *near[k], origin);
+      group.old_others.put(k, place >= 0 ? scratch.old_bounds[std::size_t(place)] : *near[k], origin);
     }
+    const int full = (number + 15) / 16 * 16;  // a multiple of all widths
+    for (int k = number; k < full; ++k) group.others.put_nowhere(k), group.old_others.put_nowhere(k);
+    std::uint64_t news[most_in_group];
+    world.kernels.new_meetings(group, count, full, news);
+    for (int i = 0; i < count; ++i)
+      for (std::uint64_t left = news[i]; left != 0; left &= left - 1)
+        consider_pair(world, members[i], shapes[std::countr_zero(left)], found);
     number = 0;
   };
   for (int tree = tree_fixed; tree <= tree_dynamic; ++tree)
     world.shapes.trees[tree].query_boxes(all, [&](std::uint32_t item, const Bounds& box) {
-      const std::int32_t place = scratch.moved_place[item];
-      others.put(number, box, origin);
-      old_others.put(number, place >= 0 ? scratch.old_bounds[std::size_t(place)] : box, origin);
+      near[number] = &box;
       shapes[number++] = std::int32_t(item);
-      if (number == room) look();
+      if (number == BoxGroup<D>::room) look();
       return true;
     });
   look();
@@ -162,7 +135,7 @@ void group_moved(WorldImplementation<D>& world) {
 template <class D>
 typename D::Bounds nowhere() {
   typename D::Bounds box{};
-  box.low.x = 1e300, box.high.x = -1e300;
+  box.low.x = 1e30, box.high.x = -1e30;
   return box;
 }
 

@@ -177,7 +177,7 @@ struct StillNear {
   int most = 0;   ///< that are listed
   int count = 0;  ///< above that: there are more
   std::int32_t shape[capacity];
-  typename D::Bounds bounds[capacity];
+  const typename D::Bounds* bounds[capacity];  ///< as they are in the tree
 
   StillNear(const WorldImplementation<D>& world, const typename D::Bounds& box, int list = 0) : most(list) {
     for (const int tree : {tree_fixed, tree_kinematic})
@@ -185,14 +185,14 @@ struct StillNear {
         world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const typename D::Bounds& other) {
           if (tree == tree_fixed && !comes_near(world, world.shapes.at(std::int32_t(item)), box)) return true;
           if (const std::size_t place = std::size_t(count); place < std::size_t(most))
-            shape[place] = std::int32_t(item), bounds[place] = other;
+            shape[place] = std::int32_t(item), bounds[place] = &other;
           return ++count <= most;
         });
   }
   bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) const {
     if (count > most) return StillNear(world, box).count == 0;
     for (int i = 0; i < count; ++i)
-      if (overlaps(bounds[i], box) &&
+      if (overlaps(*bounds[i], box) &&
           (world.shapes.at(shape[i]).tree != tree_fixed || comes_near(world, world.shapes.at(shape[i]), box)))
         return false;
     return true;
@@ -484,7 +484,7 @@ void stop_fast_bodies(StepContext<D>& context) {
       const std::int32_t body = world.bodies.awake[place];
       slow_what_jams(world, body, scratch.swept[place], context.dt);
       take_back_gravity(world, body, scratch.swept[place], context.dt);
-      update_world_inertia(world, body);
+      if constexpr (D::dimension == 3) update_world_inertia(world, body);
       if (leave_bounds(world, body)) scratch.body_changes[place] = body_outgrew;
     }
   });

@@ -29,9 +29,10 @@ float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
 float small_turn(const Rot2f& q) { return q.s; }
 Vec3f small_turn(const Quatf& q) { return 2 * q.vector(); }
 
-/// m/s², of what acts on the body from afar.
+/// m/s², of what acts on the body from afar; `gravity` is that of the world.
 template <class D>
-float gravity_of(const WorldDef<D>& definition, const BodyMotion<D>& m, float pace) {
+float gravity_of(const WorldDef<D>& definition, const BodyMotion<D>& m, float pace, float gravity) {
+  if (m.force == typename D::Vector{} && m.gravity_scale == 1 && pace == 1) return gravity;
   return pace * pace * math::length(m.gravity_scale * definition.gravity + m.inverse_mass * m.force);
 }
 
@@ -164,7 +165,7 @@ void finalize_bodies(StepContext<D>& context) {
       s.angular_velocity = without_trace(s.angular_velocity);
       m.center = m.center + typename D::Position(s.delta_position);
       m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
-                         ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace)))
+                         ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
                          : 0;
       m.force = {};
       m.torque = {};
@@ -172,7 +173,7 @@ void finalize_bodies(StepContext<D>& context) {
       const float linear = math::length(s.linear_velocity);
       float speed = max(max(linear, 0.01f * spin), way_of_turn(m, pose.rotation, s.angular_velocity));
       // What is still being pushed out of an overlap is not at rest: that way is not in its velocity.
-      const float pushed = math::length(s.delta_position * context.inverse_dt - s.linear_velocity);
+      const auto pushed_squared = math::length_squared(s.delta_position * context.inverse_dt - s.linear_velocity);
       const float sleep_speed = record.sleep_speed * pace;
       const bool may_sleep = record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0;
       const float slow = settling_speed * sleep_speed;
@@ -182,13 +183,13 @@ void finalize_bodies(StepContext<D>& context) {
         speed = max(linear, D::dimension == 3 && m.slender != 0 ? way_of_turn(m, pose.rotation, s.angular_velocity)
                                                                 : left * max(m.outer_extent, 0.01f));
       }
-      if (may_sleep && speed < sleep_speed && pushed < 0.2f * sleep_speed)
+      if (may_sleep && speed < sleep_speed && pushed_squared < square(0.2f * sleep_speed))
         record.sleep_timer += context.dt * pace;
       else
         record.sleep_timer = 0;
       reset_delta(s);
       if (record.flags & body_fast) continue;  // its bounds wait for the end of its way
-      update_world_inertia(world, body);
+      if constexpr (D::dimension == 3) update_world_inertia(world, body);
       // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
       m.slack = turned < 0.2f ? m.slack - (travel + surface_way) : 0;
       const bool quick = travel > quick_share * m.inner_extent;

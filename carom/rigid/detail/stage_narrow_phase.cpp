@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 
 #include "carom/rigid/detail/fly_past.h"
 #include "carom/rigid/detail/found_contacts.h"
@@ -70,15 +71,16 @@ bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c,
 }
 
 /// The normal of a manifold as the axis along which the shapes are apart. That of a manifold may be bent (over_border).
-void go_on_apart(ContactRecord<Dim2>& c, const ShapeRecord<Dim2>& a, const ShapeRecord<Dim2>& b,
-                 const Dim2::Manifold& m) {
-  const Vec2f back = inverse_rotate(c.base.q, -m.normal);
+template <class D>
+void go_on_apart(ContactRecord<D>& c, const ShapeRecord<D>& a, const ShapeRecord<D>& b, const typename D::Manifold& m) {
+  if constexpr (D::dimension == 3)
+    if (!is_convex(a.geometry) || !is_convex(b.geometry)) return;
+  const typename D::Vector back = inverse_rotate(c.base.q, -m.normal);
   const float apart = dot(m.normal, transform_point(c.base, support(b.geometry, back)) - support(a.geometry, m.normal));
   if (!(apart > c.margin())) return;
   c.axis = m.normal;
   c.gap = min(c.gap, apart);
 }
-void go_on_apart(ContactRecord<Dim3>&, const ShapeRecord<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Manifold&) {}
 
 /// Two convex shapes, or a plane: one manifold at most.
 template <class D>
@@ -329,44 +331,42 @@ void update_contacts(WorldImplementation<D>& world) {
   measure_sweeps(world);
   world.scheduler->parallel_for(int(count), contact_grain, [&](int begin, int end, int worker) {
     std::int32_t due[contact_grain];
+    const int width = world.kernels.width;
+    // Found once: to the compiler, whatever is written might move them.
+    const ContactWatch<D>* const watches = scratch.watches.data();
+    const typename D::Pose* const poses = world.bodies.pose.data();
+    const BodySweep<D>* const sweeps = scratch.sweeps.data();
+    const std::int32_t* const awake = world.contacts.awake.data();
+    const ContactRecord<D>* const contacts = world.contacts.contacts.data();
+    const ShapeRecord<D>* const shapes = world.shapes.record.data();
+    const ManifoldRecord<D>* const manifolds = world.contacts.manifolds.data();
     while (begin < end) {
       const int stop = min(begin + contact_grain, end);
       int number = 0;
-      const int width = world.kernels.width;
       for (; begin < stop; begin += width) {
         const int lanes = min(width, stop - begin);
-        std::uint32_t old = 0;  // bits by lane
-        for (int lane = 0; lane < lanes; ++lane) {
-          const ContactWatch<D>& soon = scratch.watches[std::size_t(min(begin + width + lane, stop - 1))];
-          if (soon.body[0] == none) continue;
-          for (const std::int32_t body : soon.body) {
-            __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
-            __builtin_prefetch(&scratch.sweeps[std::size_t(body)]);
+        for (int soon = begin + width; soon < min(begin + 2 * width, stop); ++soon) {
+          const ContactWatch<D>& watch = watches[soon];
+          if (watch.body[0] == none) continue;
+          for (const std::int32_t body : watch.body) {
+            __builtin_prefetch(poses + body);
+            __builtin_prefetch(sweeps + body);
           }
         }
-        if (world.kernels.nothing_new != nullptr) {
-          old = world.kernels.nothing_new(&scratch.watches[std::size_t(begin)], lanes, world.bodies.pose.data(),
-                                          scratch.sweeps.data(), world.last_dt);
-        } else {
-          for (int lane = 0; lane < lanes; ++lane)
-            old |= std::uint32_t(nothing_new(scratch.watches[std::size_t(begin) + std::size_t(lane)], world.bodies.pose,
-                                             scratch.sweeps, world.last_dt))
-                   << lane;
-        }
-        for (int lane = 0; lane < lanes; ++lane) {
-          if ((old >> lane & 1u) != 0) continue;
-          prefetch_lines(&world.contacts.at(world.contacts.awake[std::size_t(begin) + std::size_t(lane)]),
-                         sizeof(ContactRecord<D>));
-          due[number++] = begin + lane;
+        const std::uint32_t old =
+            world.kernels.nothing_new(watches + begin, lanes, poses, sweeps, world.last_dt);  // bits by lane
+        for (std::uint32_t news = ~old & ((1u << lanes) - 1); news != 0; news &= news - 1) {
+          const int i = begin + std::countr_zero(news);
+          prefetch_lines(contacts + awake[i], sizeof(ContactRecord<D>));
+          due[number++] = i;
         }
       }
       const auto look_at_soon = [&](int k) __attribute__((always_inline)) {  // as prefetch_lines
-        const ContactRecord<D>& soon = world.contacts.at(world.contacts.awake[std::size_t(due[k])]);
-        for (const std::int32_t body : soon.body) __builtin_prefetch(&world.bodies.pose[std::size_t(body)]);
+        const ContactRecord<D>& soon = contacts[awake[due[k]]];
+        for (const std::int32_t body : soon.body) __builtin_prefetch(poses + body);
         for (const std::int32_t shape : soon.shape)
-          prefetch_lines(&world.shapes.at(shape), D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192);
-        if (soon.first_manifold != none)
-          prefetch_lines(&world.contacts.manifold(soon.first_manifold), ManifoldRecord<D>::hot_bytes);
+          prefetch_lines(shapes + shape, D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192);
+        if (soon.first_manifold != none) prefetch_lines(manifolds + soon.first_manifold, ManifoldRecord<D>::hot_bytes);
       };
       for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
       for (int k = 0; k < number; ++k) {

@@ -30,6 +30,7 @@ enum ContactMark : std::uint8_t {
   mark_pushed = 2,   ///< so deep that it is pushed out with the push speed
   mark_settles = 4,  ///< that, or beside it: a body of both is the same
   mark_hits = 8,     ///< closes so fast that a hit may have to be told
+  mark_anew = 16,    ///< takes an anchor once it bears a load
 };
 /// Where a colour's contacts are in the arena of the step.
 struct ColorBlocks {

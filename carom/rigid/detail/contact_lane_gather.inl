@@ -1,0 +1,197 @@
+// From the records of manifolds, contacts and bodies to the lanes of a block (part of stage_contacts.cpp).
+#pragma once
+
+namespace carom::rigid::detail {
+namespace {
+
+template <class D, int W>
+void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const typename D::Vector& center,
+               bool at_origin, typename ContactRaw<D, W>::Placed& to, int lane) {
+  const typename D::Transform local = at_origin ? typename D::Transform{} : world.shapes.at(shape).local;
+  put(to.p, lane, local.p - center);
+  put(to.q, lane, local.q);
+}
+
+template <class D>
+ContactSources<D> sources_of(const StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  ContactSources<D> s;
+  s.manifolds = world.contacts.manifolds.data();
+  s.contacts = world.contacts.contacts.data();
+  s.motion = world.bodies.motion.data();
+  s.pose = world.bodies.pose.data();
+  s.record = world.bodies.record.data();
+  s.bodies = context.bodies;
+  s.load_shares = load_shares.share;
+  s.loads = reinterpret_cast<float*>(world.scratch.loads.data());
+  s.contact_softness = context.contact_softness;
+  s.fixed_contact_softness = context.fixed_contact_softness;
+  s.gravity = world.definition.gravity;
+  s.restitution_threshold = world.definition.restitution_threshold;
+  s.push_speed = context.push_speed;
+  s.rest_speed_squared = context.rest_speed * context.rest_speed;
+  s.restless_load = restless_load;
+  return s;
+}
+
+/// Copies what the records hold to a lane; what follows from it the kernel computes for all lanes at once. Returns the
+/// lane's mark.
+template <class D, int W>
+std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block,
+                         ContactRaw<D, W>& raw, int lane) {
+  using V = typename D::Vector;
+  const WorldImplementation<D>& world = context.world;
+  const ManifoldRecord<D>& m = world.contacts.manifold(index);
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const std::int32_t a = c.body[0], b = c.body[1];
+  const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
+  const bool both = (c.flags & contact_dynamic) != 0;
+  const bool dynamic_a = both || world.bodies.is_dynamic(a), dynamic_b = both || world.bodies.is_dynamic(b);
+  const bool at_origin = (c.flags & contact_at_origin) != 0;
+  put(raw.rotation_a, lane, world.bodies.pose[std::size_t(a)].rotation);
+  put(raw.rotation_b, lane, world.bodies.pose[std::size_t(b)].rotation);
+  put_shape<D, W>(world, c.shape[0], ma.local_center, at_origin, raw.shape_a, lane);
+  put_shape<D, W>(world, c.shape[1], mb.local_center, at_origin, raw.shape_b, lane);
+  put(raw.base.p, lane, c.base.p);
+  put(raw.base.q, lane, c.base.q);
+  raw.recycled[lane] = (c.flags & contact_recycled) != 0 ? 1 : 0;
+  put(raw.anchor_a, lane, m.anchor_a);
+  put(raw.anchor_b, lane, m.anchor_b);
+  const bool slides = m.tangent_speed != 0 || (c.flags & contact_round) != 0;
+  raw.anchor_state[lane] = slides ? 0 : 1 + float(m.anchor);
+  put(raw.friction_impulse, lane, m.impulses.friction);
+  raw.tangent_speed[lane] = m.tangent_speed;
+  // Radius of the patch for the twist over the mean distance of its points, under uniform pressure: a disc turns on 2/3
+  // of its radius, rectangles from square to thin line on .54 … .5 of the distance of their corners.
+  raw.patch_factor[lane] = (c.flags & contact_on_disc) != 0 ? 2.0f / 3.0f : 0.53f;
+  // What a single point's disc turns on (prepare_friction3); rolling resistance holds against spin too.
+  raw.point_factor[lane] = m.rolling_lever > 0 ? 0 : 0.589f;
+
+  block.read_a[lane] = a;
+  block.read_b[lane] = b;
+  block.write_a[lane] = dynamic_a ? a : none;
+  block.write_b[lane] = dynamic_b ? b : none;
+  put(block.normal, lane, m.manifold.normal);
+  block.inverse_mass_a[lane] = ma.inverse_mass * load_share(ma);
+  block.inverse_mass_b[lane] = mb.inverse_mass * load_share(mb);
+  put(block.inverse_inertia_a, lane, ma.world_inverse_inertia * load_share(ma));
+  put(block.inverse_inertia_b, lane, mb.world_inverse_inertia * load_share(mb));
+  const Softness& soft = dynamic_a && dynamic_b ? context.contact_softness : context.fixed_contact_softness;
+  block.bias_rate[lane] = soft.bias_rate;
+  block.mass_scale[lane] = soft.mass_scale;
+  block.impulse_scale[lane] = soft.impulse_scale;
+  put(block.center_offset, lane, V(ma.center - mb.center));
+  float deepest = 0;
+  for (int i = 0; i < D::max_points; ++i) {
+    auto& point = block.point[i];
+    const bool exists = i < m.manifold.count;
+    if (exists) deepest = min(deepest, m.manifold.points[i].separation);
+    put(point.r_a, lane, exists ? m.manifold.points[i].point : V{});
+    point.separation[lane] = exists ? m.manifold.points[i].separation : 0;
+    point.normal_mass[lane] = exists ? 1 : 0;
+    // An impulse on its way to nothing is nothing: no denormals, no division by them.
+    point.impulse[lane] = exists && m.impulses.normal[i] > 1e-12f ? m.impulses.normal[i] : 0;
+    point.total[lane] = 0;
+  }
+  block.friction[lane] = m.friction;
+  block.settles[lane] = 0;
+  block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
+  block.twist_impulse[lane] = m.impulses.twist;
+  return deepest * soft.bias_rate < -context.push_speed ? mark_pushed : 0;
+}
+
+template <class Block>
+void zero_lane(Block& block, int width, int lane) {
+  for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
+    reinterpret_cast<float*>(&block)[i + std::size_t(lane)] = 0;
+}
+/// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
+template <class D, int W>
+void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, int lane) {
+  zero_lane(block, W, lane);
+  zero_lane(raw, W, lane);
+  if (extra != nullptr) zero_lane(*extra, W, lane);
+  block.read_a[lane] = block.read_a[0];
+  block.read_b[lane] = block.read_b[0];
+  block.write_a[lane] = block.write_b[lane] = none;
+}
+
+/// Puts the manifold of a pair that will meet in this step there where it does. False: as it is. `across`: foresee.
+template <class D>
+bool put_where_it_meets(const StepContext<D>& context, std::int32_t index, typename D::Vector& across) {
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  Foreseen<D> foreseen;
+  if (!may_foresee(c, m) || !foresee(context.world, c, m.manifold, context.dt, foreseen)) return false;
+  m.manifold = foreseen.manifold;
+  across = foreseen.across;
+  for (float& impulse : m.impulses.normal) impulse = 0;
+  return true;
+}
+
+/// A round contact that turns in this step is solved as it is in its middle, with the gap of now.
+template <class D, int W>
+void put_middle(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block, ContactRaw<D, W>& raw,
+                int lane) {
+  ManifoldRecord<D>& m = context.world.contacts.manifold(index);
+  const ContactRecord<D>& c = context.world.contacts.at(m.contact);
+  MiddleOfStep<D> middle;
+  if (!may_turn(c, m) || !middle_of_step(context.world, c, m.manifold, context.dt, middle)) return;
+  put(block.normal, lane, middle.normal);
+  for (int i = 0; i < m.manifold.count; ++i) put(block.point[i].r_a, lane, middle.point[i]);
+  put(block.center_offset, lane, get(block.center_offset, lane) - middle.across);
+  raw.recycled[lane] = 0;
+  if (m.anchor == Anchor::holds) {
+    const auto& turn = context.world.bodies.pose[std::size_t(c.body[0])].rotation;
+    put(raw.anchor_a, lane, get(raw.anchor_a, lane) + inverse_rotate(turn, middle.across));
+  } else {
+    raw.anchor_state[lane] = 0;
+    m.anchor = Anchor::none;
+  }
+}
+
+/// The lanes of a block from the records of `list`, and their marks.
+template <class D, int W>
+void gather_block(const StepContext<D>& context, const ContactSources<D>& sources, std::span<const std::int32_t> list,
+                  ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, std::uint8_t* marks) {
+  const int lanes = int(list.size());
+  typename D::Vector across[W];
+  std::uint32_t meets = 0, turns = 0;  // bits by lane
+  for (int lane = 0; lane < lanes; ++lane) {
+    const std::int32_t index = list[std::size_t(lane)];
+    const ContactRecord<D>& c = sources.contacts[sources.manifolds[index].contact];
+    turns |= std::uint32_t(c.rolls) << lane;
+    if (may_foresee(c)) meets |= std::uint32_t(put_where_it_meets(context, index, across[lane])) << lane;
+  }
+  turns &= ~meets;
+  if constexpr (D::dimension == 2) {
+    const WorldImplementation<D>& world = context.world;
+    const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
+    for (int lane = 0; lane < lanes; ++lane) {
+      marks[lane] = (found.pushed >> lane & 1u) != 0 ? mark_pushed : 0;
+      if ((found.placed >> lane & 1u) == 0) continue;
+      const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);
+      put_shape<D, W>(world, c.shape[0], world.bodies.motion[std::size_t(c.body[0])].local_center, false, raw.shape_a,
+                      lane);
+      put_shape<D, W>(world, c.shape[1], world.bodies.motion[std::size_t(c.body[1])].local_center, false, raw.shape_b,
+                      lane);
+    }
+    if (extra != nullptr)
+      for (int lane = lanes; lane < W; ++lane) zero_lane(*extra, W, lane);
+  } else {
+    for (int lane = 0; lane < lanes; ++lane)
+      marks[lane] = gather_lane(context, list[std::size_t(lane)], block, raw, lane);
+    for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+  }
+  for (; meets != 0; meets &= meets - 1) {
+    const int lane = std::countr_zero(meets);
+    put(block.center_offset, lane, get(block.center_offset, lane) - across[lane]);
+  }
+  for (; turns != 0; turns &= turns - 1) {
+    const int lane = std::countr_zero(turns);
+    put_middle(context, list[std::size_t(lane)], block, raw, lane);
+  }
+}
+
+}  // namespace
+}  // namespace carom::rigid::detail
