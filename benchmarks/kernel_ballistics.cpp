@@ -75,7 +75,7 @@ void batch_hits(benchmark::State& state) {
 }
 BENCHMARK(batch_hits)->Args({8, 0})->Args({8, 1})->Args({16, 1})->Unit(benchmark::kMillisecond)->Iterations(96);
 
-enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again, just_out, flees, flees_fast };
+enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again, just_out, flees, flees_fast, edge };
 void take_aim(benchmark::State& state) {
   const AimCase which = AimCase(state.range(0));
   Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
@@ -86,6 +86,7 @@ void take_aim(benchmark::State& state) {
   if (which == out_of_reach) target.position = {5500, 200, 0};
   if (which == moving) target.velocity = {-20, 2, 30};
   if (which == just_out) target.position = {4800, 30, 200};
+  if (which == edge) target.position = {4150, 100, 0};  // its two arcs are seconds apart
   if (which == flees) target = {{1900, 30, 200}, {150, 0, 20}};
   if (which == flees_fast) target = {{900, 200, 200}, {300, 10, 100}};
   if (which == mortar) {
@@ -95,7 +96,8 @@ void take_aim(benchmark::State& state) {
   }
   static const char* names[] = {"low arc",           "both arcs",          "out of reach",
                                 "moving, both",      "mortar, both",       "again, low",
-                                "just out of reach", "flees beyond reach", "flees faster than the shot"};
+                                "just out of reach", "flees beyond reach", "flees faster than the shot",
+                                "edge of reach"};
   if (which == again) {  // a frame later
     const Shot last = *aim(shot, windy, shooter, target, options)->low;
     target.position += Vec3d{0.5, 0, 0.3};
@@ -105,7 +107,29 @@ void take_aim(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(aim(shot, windy, shooter, target, options));
   state.SetLabel(names[which]);
 }
-BENCHMARK(take_aim)->DenseRange(low_arc, flees_fast)->Unit(benchmark::kMicrosecond);
+BENCHMARK(take_aim)->DenseRange(low_arc, edge)->Unit(benchmark::kMicrosecond);
+
+/// Both arcs of the ammunition of presets/ammunition, at a target 20 m up at about half of its reach, in the wind.
+void take_aim_of_a_preset(benchmark::State& state) {
+  struct Round {
+    const char* name;
+    Projectile projectile;
+    double speed, range;  // m/s, m
+  };
+  const Round rounds[] = {
+      {"12-pounder shot", projectile_from_size(DragCurve(DragFunction::gs), 5.579, .1148), 438.9, 900},
+      {".22 long rifle", projectile_from_coefficient(DragFunction::ra4, .13), 329.2, 700},
+      {".308 168 gr", projectile_from_coefficient(DragFunction::g7, .218), 807.7, 1800},
+      {"5.56 M855", projectile_from_coefficient(DragFunction::g7, .151), 944.9, 1500},
+      {"9 mm 115 gr", projectile_from_coefficient(DragFunction::g1, .145), 359.7, 800},
+  };
+  const Round& round = rounds[state.range(0)];
+  const Shooter shooter{.muzzle_speed = round.speed, .muzzle = {0, 1.5, 0}};
+  const Target target{{round.range, 20, 100}, {-2, 0, 4}};
+  for (auto _ : state) benchmark::DoNotOptimize(aim(round.projectile, windy, shooter, target));
+  state.SetLabel(round.name);
+}
+BENCHMARK(take_aim_of_a_preset)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
 /// The table of a weapon: made once, then asked.
 void aim_table(benchmark::State& state) {

@@ -6,7 +6,7 @@ namespace carom::ballistics::detail {
 template <bool Plain>
 AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
   return flight_step([&](int, Vec3d position, Vec3d velocity)
-                         __attribute__((always_inline)) { return pull_.at<Plain>(position, velocity); },
+                         __attribute__((always_inline)) { return rough_.at<Plain>(position, velocity); },
                      x, v, k1, h);
 }
 
@@ -18,7 +18,7 @@ AimSolver::Arrival AimSolver::propagate_in(Vec3d u, double time, double allowed)
   const double bend_speed = sound_ * math::clamp(0.6 * math::sqrt(math::sqrt(share)), 0.03, 0.2);
   constexpr double far_bend = 3;
   const double least = 0.5 * fall_speed_, tolerance = allowed / time;
-  Vec3d x = shooter_.muzzle, v = u, k = pull_.at<Plain>(x, v);
+  Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v);
   double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
   for (int i = 0; i < 4000; ++i) {
     const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
@@ -48,7 +48,7 @@ AimSolver::Arrival AimSolver::propagate_in(Vec3d u, double time, double allowed)
 
 template <bool Plain>
 AimSolver::Arrival AimSolver::follow_in(Vec3d u, double time, const Path& path) const {
-  Vec3d x = shooter_.muzzle, v = u, k = pull_.at<Plain>(x, v);
+  Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v);
   const double scale = time / path.node[path.count].t;
   double t = 0;
   for (int i = 1; i <= path.count; ++i) {
@@ -65,49 +65,56 @@ AimSolver::Arrival AimSolver::follow_in(Vec3d u, double time, const Path& path) 
 template <bool Plain>
 AimSolver::Pass AimSolver::pass_in(double elevation, double azimuth) const {
   Vec3d x = shooter_.muzzle, v = shooter_.velocity + shooter_.muzzle_speed * direction(elevation, azimuth),
-        k = pull_.at<Plain>(x, v);
+        k = rough_.at<Plain>(x, v);
   const auto beyond = [&](Vec3d place, double t) {  // m past the target's distance
     const Vec3d to = target_(t) - shooter_.muzzle, way = place - shooter_.muzzle;
     return math::sqrt(way.x * way.x + way.z * way.z) - math::sqrt(to.x * to.x + to.z * to.z);
   };
   const double start = beyond(x, 0);
-  double t = 0;
+  double t = 0, above = x.y - target_(0).y, nearest = -1e300;
   for (int i = 0; i < 400 && t < options_.longest_time; ++i) {
     const double speed = math::length(v),
                  h = math::min(0.3 * math::max(speed, 0.5 * fall_speed_) / math::max(math::length(k), 1e-9),
                                -0.5 * start / math::max(speed, 1e-9));
     const Step end = step<Plain>(x, v, k, h);
-    const double gone = beyond(end.x, t + h);
-    if (gone >= 0) {
+    const double gone = beyond(end.x, t + h), above_end = end.x.y - target_(t + h).y;
+    const bool passes = gone >= 0, crosses = (above > 0) != (above_end > 0);
+    if (passes || crosses) {
       // Within the step: the cubic through both ends, halved to a thousandth.
-      double low = 0, high = 1;
-      Vec3d place = end.x;
-      for (int j = 0; j < 12; ++j) {
-        const double s = 0.5 * (low + high), s2 = s * s, s3 = s2 * s;
-        place =
-            (2 * s3 - 3 * s2 + 1) * x + (s3 - 2 * s2 + s) * h * v + (3 * s2 - 2 * s3) * end.x + (s3 - s2) * h * end.v;
-        (beyond(place, t + s * h) >= 0 ? high : low) = s;
-      }
-      const double when = t + high * h;
-      const Vec3d to = target_(when) - shooter_.muzzle, way = place - shooter_.muzzle;
+      const auto look = [&](double s) {
+        const double s2 = s * s, s3 = s2 * s;
+        return (2 * s3 - 3 * s2 + 1) * x + (s3 - 2 * s2 + s) * h * v + (3 * s2 - 2 * s3) * end.x +
+               (s3 - s2) * h * end.v;
+      };
+      const auto first = [&](auto&& is_there) {
+        double low = 0, high = 1;
+        for (int j = 0; j < 12; ++j) {
+          const double s = 0.5 * (low + high);
+          (is_there(look(s), t + s * h) ? high : low) = s;
+        }
+        return high;
+      };
+      double s = crosses ? first([&](Vec3d place, double at) { return (place.y > target_(at).y) != (above > 0); }) : 2;
+      const bool far = crosses && beyond(look(s), t + s * h) < 0;  // at the target's height before its distance
+      if (!far && passes) s = first([&](Vec3d place, double at) { return beyond(place, at) >= 0; });
+      const double when = t + s * h;
+      const Vec3d place = look(s), to = target_(when) - shooter_.muzzle, way = place - shooter_.muzzle;
       const double radial = (v.x * way.x + v.z * way.z) / math::max(math::hypot(way.x, way.z), 1e-9);
-      const double turn = math::atan2(to.z, to.x) - math::atan2(way.z, way.x);
-      return {radial > 2 * math::length(velocity_of_target(when)), way.y - to.y,
-              turn > math::pi    ? turn - 2 * math::pi
-              : turn < -math::pi ? turn + 2 * math::pi
-                                 : turn};
+      double turn = math::atan2(to.z, to.x) - math::atan2(way.z, way.x);
+      turn += turn > math::pi ? -2 * math::pi : turn < -math::pi ? 2 * math::pi : 0;
+      if (!far) return {radial > 2 * math::length(velocity_of_target(when)), math::max(way.y - to.y, nearest), turn};
+      // What the wind and the shooter's way do hangs on the azimuth.
+      const double drift = math::length(shooter_.velocity) + math::length(conditions_.wind.at(place.y));
+      nearest = math::max(nearest, beyond(place, when) + drift * when * math::min(math::abs(turn), 1.0));
+      if (above > 0) return {end.v.y < velocity_of_target(when).y, nearest, turn};
+      if (passes) return {};
     }
     x = end.x;
     v = end.v;
     k = end.k;
     t += h;
-    const double above = x.y - target_(t).y;
-    if (v.y < 0 && above < 0.5 * start) {
-      // Where the target is nearly as fast as a spent shot, it may have been nearer before.
-      const Vec3d way = x - shooter_.muzzle;
-      const double radial = (v.x * way.x + v.z * way.z) / math::max(math::hypot(way.x, way.z), 1e-9);
-      return {radial > 2 * math::length(velocity_of_target(t)), above + gone, 0};
-    }
+    above = above_end;
+    if (v.y < 0 && above < 0.5 * start) return {true, above + gone, 0};  // it never came up to the target's height
   }
   return {};
 }

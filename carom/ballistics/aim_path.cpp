@@ -1,8 +1,8 @@
 // Recorded paths of the aim solver: how the arrival depends on the start, and by how much it is off.
 #include "carom/ballistics/detail/aim_solver.h"
-#include "carom/math/simd_double.h"
 
 namespace carom::ballistics::detail {
+
 namespace {
 
 /// Dormand and Prince's stages and weights of order 5.
@@ -17,7 +17,6 @@ constexpr float tableau[6][5] = {
 constexpr float weight[6] = {float(35.0 / 384), 0, float(500.0 / 1113), float(125.0 / 192), -float(2187.0 / 6784),
                              float(11.0 / 84)};
 
-Vec3d vec(const double* p) { return {p[0], p[1], p[2]}; }
 void put(double* p, Vec3d v) {
   p[0] = v.x;
   p[1] = v.y;
@@ -56,87 +55,91 @@ Vec3d times(const Debt& m, Vec3d v) {
   return r;
 }
 
-using Pair = math::WideDouble<2>;
-/// x and y, and z with an idle lane.
-struct Pairs {
-  Pair xy, z;
-};
-[[gnu::always_inline]] inline Pairs pairs(Vec3d v) { return {{Pair::Vector{v.x, v.y}}, {Pair::Vector{v.z, 0}}}; }
-[[gnu::always_inline]] inline Vec3d vec(const Pairs& p) { return {p.xy.v[0], p.xy.v[1], p.z.v[0]}; }
-[[gnu::always_inline]] inline void add(Pairs& to, double s, const Pairs& from) {
-  const Pair scale = Pair::splat(s);
-  to.xy = to.xy + scale * from.xy;
-  to.z = to.z + scale * from.z;
+using Pair = PointMassPull::Pair;
+using Pairs = PointMassPull::Pairs;
+void add(Pairs& to, Pair s, const Pairs& from) {
+  to.x = to.x + s * from.x;
+  to.y = to.y + s * from.y;
+  to.z = to.z + s * from.z;
 }
+Vec3d sum(const Pairs& p) { return {p.x.v[0] + p.x.v[1], p.y.v[0] + p.y.v[1], p.z.v[0] + p.z.v[1]}; }
 
 /// Hermite's quintic over a step, from its start at s = 0 to its end at s = 1.
 struct Interpolant {
-  Pairs c[6];  // of the position, by powers of s
-  double h;
-  Interpolant(const FlightPath::Node& a, const FlightPath::Node& b) : h(b.t - a.t) {
-    const Vec3d x = vec(a.x), v = h * vec(a.v), k = (h * h) * vec(a.k);
-    const Vec3d d = vec(b.x) - x - v - 0.5 * k, dv = h * vec(b.v) - v - k, dk = (h * h) * vec(b.k) - k;
-    c[0] = pairs(x);
-    c[1] = pairs(v);
-    c[2] = pairs(0.5 * k);
-    c[3] = pairs(10.0 * d - 4.0 * dv + 0.5 * dk);
-    c[4] = pairs(7.0 * dv - 15.0 * d - dk);
-    c[5] = pairs(6.0 * d - 3.0 * dv + 0.5 * dk);
+  Pair position[3][6], velocity[3][5], acceleration[3][4];  // by powers of s
+  Interpolant(const FlightPath::Node& a, const FlightPath::Node& b) {
+    const double h = b.t - a.t, by_h = 1 / h;
+    for (int i = 0; i < 3; ++i) {
+      const double v = h * a.v[i], k = h * h * a.k[i];
+      const double d = b.x[i] - a.x[i] - v - 0.5 * k, dv = h * b.v[i] - v - k, dk = h * h * b.k[i] - k;
+      const double c3 = 10 * d - 4 * dv + 0.5 * dk, c4 = 7 * dv - 15 * d - dk, c5 = 6 * d - 3 * dv + 0.5 * dk;
+      const double x[6] = {a.x[i], v, 0.5 * k, c3, c4, c5};
+      const double v_of[5] = {a.v[i], by_h * k, 3 * by_h * c3, 4 * by_h * c4, 5 * by_h * c5};
+      for (int j = 0; j < 6; ++j) position[i][j] = Pair::splat(x[j]);
+      for (int j = 0; j < 5; ++j) velocity[i][j] = Pair::splat(v_of[j]);
+      for (int j = 0; j < 4; ++j) acceleration[i][j] = Pair::splat(by_h * (j + 1) * v_of[j + 1]);
+    }
   }
 };
+template <int N>
+[[gnu::always_inline]] inline Pair polynomial(const Pair (&c)[N], Pair s) {
+  Pair r = c[N - 1];
+  for (int i = N - 2; i >= 0; --i) r = c[i] + s * r;
+  return r;
+}
+
+/// Gauss's six points of (0, 1), and their weights.
+constexpr int gauss_pairs = 3;
+constexpr Pair place[gauss_pairs] = {{{0.033765242898423989, 0.16939530676686773}},
+                                     {{0.38069040695840156, 0.61930959304159849}},
+                                     {{0.83060469323313224, 0.96623475710157603}}};
+constexpr Pair gauss[gauss_pairs] = {{{0.085662246189585178, 0.1803807865240693}},
+                                     {{0.23395696728634552, 0.23395696728634552}},
+                                     {{0.1803807865240693, 0.085662246189585178}}};
+// Legendre's polynomials of the fifth and third orders there.
+constexpr Pair fifth[gauss_pairs] = {{{-0.20571231105962262, 0.29439571492543726}},
+                                     {{-0.33461902074104077, 0.33461902074104088}},
+                                     {{-0.29439571492543726, 0.20571231105962262}}};
+constexpr Pair third[gauss_pairs] = {{{-0.62824992464368901, 0.26911576974459905}},
+                                     {{0.32396186535393517, -0.32396186535393534}},
+                                     {{-0.26911576974459905, 0.62824992464368901}}};
 
 /// Gauss's six points from `from` to `to`, halved where the fifth and third Legendre coefficients of the defect say
 /// that they are too few: at bends of drag curves and of the wind. (The defect of a smooth motion is even.)
-template <class At>
-void gather(const At& at, const Interpolant& flown, double from, double to, double budget, Pairs* moment) {
-  constexpr int points = 6;
-  constexpr double place[points] = {0.033765242898423989, 0.16939530676686773, 0.38069040695840156,
-                                    0.61930959304159849,  0.83060469323313224, 0.96623475710157603};
-  constexpr double gauss[points] = {0.085662246189585178, 0.1803807865240693, 0.23395696728634552,
-                                    0.23395696728634552,  0.1803807865240693, 0.085662246189585178};
-  // Legendre's polynomials of these orders there.
-  constexpr double fifth[points] = {-0.20571231105962262, 0.29439571492543726,  -0.33461902074104077,
-                                    0.33461902074104088,  -0.29439571492543726, 0.20571231105962262};
-  constexpr double third[points] = {-0.62824992464368901, 0.26911576974459905,  0.32396186535393517,
-                                    -0.32396186535393534, -0.26911576974459905, 0.62824992464368901};
-  const double width = to - from, by_h = 1 / flown.h;
-  Pairs defect[points], rest{}, less{};
-  for (int q = 0; q < points; ++q) {
-    const double s = from + width * place[q], s2 = s * s, s3 = s2 * s, s4 = s2 * s2;
-    const Pairs* c = flown.c;
-    Pairs x = c[0], v = c[1], k{};
-    add(x, s, c[1]);
-    add(x, s2, c[2]);
-    add(x, s3, c[3]);
-    add(x, s4, c[4]);
-    add(x, s4 * s, c[5]);
-    add(v, 2 * s, c[2]);
-    add(v, 3 * s2, c[3]);
-    add(v, 4 * s3, c[4]);
-    add(v, 5 * s4, c[5]);
-    add(k, 2, c[2]);
-    add(k, 6 * s, c[3]);
-    add(k, 12 * s2, c[4]);
-    add(k, 20 * s3, c[5]);
-    const double share = gauss[q] * width;
-    Pairs d{};
-    add(d, share, pairs(at(vec(x), by_h * vec(v))));
-    add(d, -share * by_h * by_h, k);
-    defect[q] = d;
-    add(rest, fifth[q], d);
-    add(less, third[q], d);
+template <bool Plain>
+void gather(const PointMassPull& pull, const Interpolant& flown, double from, double to, double budget, Pairs* moment) {
+  const double width = to - from;
+
+  Pairs defect[gauss_pairs], rest{}, less{};
+  Pair at[gauss_pairs];
+  for (int q = 0; q < gauss_pairs; ++q) {
+    const Pair s = Pair::splat(from) + Pair::splat(width) * place[q], share = Pair::splat(width) * gauss[q];
+    Pairs x{};
+    if constexpr (!Plain) {
+      x.x = polynomial(flown.position[0], s);
+      x.z = polynomial(flown.position[2], s);
+    }
+    x.y = polynomial(flown.position[1], s);
+    const Pairs v{polynomial(flown.velocity[0], s), polynomial(flown.velocity[1], s), polynomial(flown.velocity[2], s)};
+    const Pairs a = pull.at<Plain>(x, v);
+    defect[q] = {share * (a.x - polynomial(flown.acceleration[0], s)),
+                 share * (a.y - polynomial(flown.acceleration[1], s)),
+                 share * (a.z - polynomial(flown.acceleration[2], s))};
+    at[q] = s;
+    add(rest, fifth[q], defect[q]);
+    add(less, third[q], defect[q]);
   }
   const auto size = [](Vec3d v) { return math::abs(v.x) + math::abs(v.y) + math::abs(v.z); };
-  if (width > 0.2 && size(vec(rest)) + 0.1 * size(vec(less)) > budget) {
-    gather(at, flown, from, 0.5 * (from + to), budget, moment);
-    gather(at, flown, 0.5 * (from + to), to, budget, moment);
+  if (width > 0.2 && size(sum(rest)) + 0.1 * size(sum(less)) > budget) {
+    gather<Plain>(pull, flown, from, 0.5 * (from + to), budget, moment);
+    gather<Plain>(pull, flown, 0.5 * (from + to), to, budget, moment);
     return;
   }
-  for (int q = 0; q < points; ++q) {
-    const double s = from + width * place[q], s2 = s * s, s3 = s2 * s;
-    add(moment[0], 2 * s3 - 3 * s2 + 1, defect[q]);
-    add(moment[1], s3 - 2 * s2 + s, defect[q]);
-    add(moment[2], 3 * s2 - 2 * s3, defect[q]);
+  for (int q = 0; q < gauss_pairs; ++q) {
+    const Pair s = at[q], s2 = s * s, s3 = s2 * s, end = Pair::splat(3) * s2 - Pair::splat(2) * s3;
+    add(moment[0], Pair::splat(1) - end, defect[q]);
+    add(moment[1], s3 - Pair::splat(2) * s2 + s, defect[q]);
+    add(moment[2], end, defect[q]);
     add(moment[3], s3 - s2, defect[q]);
   }
 }
@@ -162,7 +165,7 @@ bool AimSolver::record_in(Vec3d u, double time, double allowed, Path& path, bool
   constexpr double far_bend = 3;
   const double least = 0.5 * fall_speed_, tolerance = allowed / time;
   Path::Stage first;
-  Vec3d x = shooter_.muzzle, v = u, k = pull_.at<Plain>(x, v, first);
+  Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v, first);
   double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
   const auto keep_node = [&] {
     Path::Node& n = path.node[path.count];
@@ -186,7 +189,7 @@ bool AimSolver::record_in(Vec3d u, double time, double allowed, Path& path, bool
     s[0] = first;
     Path::Stage after;
     const auto at = [&](int stage, Vec3d position, Vec3d velocity) __attribute__((always_inline)) {
-      return pull_.at<Plain>(position, velocity, stage < 6 ? s[stage] : after);
+      return rough_.at<Plain>(position, velocity, stage < 6 ? s[stage] : after);
     };
     const Step end = flight_step(at, x, v, k, h);
     const double room = tolerance / math::max(end.error, 1e-30);
@@ -252,11 +255,9 @@ void AimSolver::sensitivities_in(Path& path, double fine) const {
         // The defect of the interpolant, weighted as a cubic in s makes what is owed.
         Pairs moment[4]{};
         const double owed = math::abs(debt.v[0].v[0]) + math::abs(debt.v[1].v[1]) + math::abs(debt.v[2].v[2]);
-        const auto at = [&](Vec3d position, Vec3d velocity)
-                            __attribute__((always_inline)) { return pull_.at<Plain>(position, velocity); };
-        gather(at, Interpolant(a, path.node[n + 1]), 0, 1, fine / (h * owed), moment);
-        off += h * (times(debt, vec(moment[0])) + times(after, vec(moment[2])) -
-                    h * (times(slope, vec(moment[1])) + times(slope_after, vec(moment[3]))));
+        gather<Plain>(pull_, Interpolant(a, path.node[n + 1]), 0, 1, fine / (h * owed), moment);
+        off += h * (times(debt, sum(moment[0])) + times(after, sum(moment[2])) -
+                    h * (times(slope, sum(moment[1])) + times(slope_after, sum(moment[3]))));
       }
       slope_after = slope;
     }

@@ -10,7 +10,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
   // Rough paths as long as Newton's method has far to go. Then one whose own error is known by quadrature; what little
   // is left from there on is found by flying the same steps again, at a target that is off by that.
-  double rough = math::min(2e-4 * away, 75 * allowed);
+  double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
   Vec3d off{};
   Vec3d last_u{}, last_x{};
@@ -68,7 +68,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     // Derivatives are known to a few thousandths, and the next miss is as the square of this one.
     const double share = way == Way::measured ? 3e-3 + 3 * moved / scale : math::clamp(both / last_both, 0.01, 1.0);
     const bool known = way == Way::measured || way == Way::again;
-    const bool trusted = math::length(off) < 250 * allowed;  // it is known to about a hundredth
+    const bool trusted = math::length(off) < 0.1 * math::sqrt(allowed * scale);  // it errs as its square
     if (known && trusted && share * moved < 0.5 * allowed) {
       const double* pull = path.node[path.count].k;
       const Vec3d aimed = guess.u - shooter_.velocity;

@@ -6,6 +6,8 @@ namespace carom::ballistics::detail {
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
     : pull_(projectile, conditions),
+      rough_(projectile, conditions, conditions.air.at(shooter.muzzle.y).speed_of_sound,
+             1.5 * (shooter.muzzle_speed + math::length(shooter.velocity))),
       projectile_(projectile),
       conditions_(conditions),
       shooter_(shooter),
@@ -137,18 +139,18 @@ bool AimSolver::by_guesses(Aims& aims) const {
 }
 
 bool AimSolver::out_of_reach() const {
-  const Vec3d way = target_(0) - shooter_.muzzle;
+  const Vec3d way = target_(0) - shooter_.muzzle, velocity = velocity_of_target(0);
   const double away = math::hypot(way.x, way.z), level = math::atan2(way.y, away);
-  if (away < 0.3 * math::length(way) || math::length(velocity_of_target(0)) > 0.2 * shooter_.muzzle_speed ||
-      math::length(shooter_.velocity) > 0.5 * shooter_.muzzle_speed)
-    return false;
+  const double flees = (way.x * velocity.x + way.z * velocity.z) / math::max(away, 1e-9);
+  if (away < 0.3 * math::length(way) || math::length(shooter_.velocity) > 0.5 * shooter_.muzzle_speed) return false;
+  // A fast target may come past the muzzle and be met behind it, unless it flees.
+  if (math::length(velocity) > math::max(0.2 * shooter_.muzzle_speed, 1.5 * flees)) return false;
   constexpr int shots = 5;
-  double elevation[shots], over[shots], azimuth = math::atan2(way.z, way.x);
+  double over[shots], azimuth = math::atan2(way.z, way.x);
   int best = 0;
   for (int i = 0; i < shots; ++i) {
-    elevation[i] = level + (1.5 - level) * (i + 0.5) / shots;
-    const Pass at = pass(elevation[i], azimuth);
-    if (!at.plain || at.over > -0.05 * away) return false;
+    const Pass at = pass(level + (1.5 - level) * math::square((i + 0.5) / shots), azimuth);
+    if (!at.plain || at.over > -0.02 * away) return false;
     over[i] = at.over;
     azimuth += at.aside;
     if (over[i] > over[best]) best = i;
@@ -156,7 +158,7 @@ bool AimSolver::out_of_reach() const {
   if (best == 0 || best == shots - 1) return false;
   // A parabola through the best and its neighbours: the peak is b²/4a above the middle one.
   const double a = over[best] - 0.5 * (over[best - 1] + over[best + 1]), b = 0.5 * (over[best + 1] - over[best - 1]);
-  return a > 0 && over[best] + 2 * b * b / (4 * a) < -0.05 * away;
+  return a > 0 && over[best] + 2 * b * b / (4 * a) < -0.02 * away;
 }
 
 double AimSolver::best_in_vacuum() const {

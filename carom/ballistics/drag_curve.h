@@ -47,18 +47,14 @@ class CAROM_API DragCurve {
                                              Interpolation interpolation = Interpolation::smooth);
 
   /// `mach` ≥ 0.
-  double operator()(double mach) const {
-    const Piece& p = piece(mach);
-    const double x = mach - p.start;
-    return math::max(p.constant + x * (p.slope + x * (p.square + x * p.cube)), 0.0);  // rounding, where it is zero
-  }
+  double operator()(double mach) const { return with_slope(mach).coefficient; }
   struct Value {
     double coefficient = 0, slope = 0;  ///< C_D and dC_D/dM
   };
   Value with_slope(double mach) const {
     const Piece& p = piece(mach);
     const double x = mach - p.start;
-    return {math::max(p.constant + x * (p.slope + x * (p.square + x * p.cube)), 0.0),
+    return {math::max(p.constant + x * (p.slope + x * (p.square + x * p.cube)), 0.0),  // rounding, where it is zero
             p.slope + x * (2 * p.square + x * (3 * p.cube))};
   }
 

@@ -28,11 +28,8 @@ class CAROM_API AirColumn {
   static AirColumn uniform(double density, double speed_of_sound = 340.294);
 
   Air at(double height) const {
-    const double place = math::min(math::max(0.0, (height - lowest_) * per_metre_), last_);
-    const int i = math::min(int(place), int(last_) - 1);
-    const double t = place - double(i);
-    const Air &a = nodes_[std::size_t(i)], &b = nodes_[std::size_t(i) + 1];
-    return {a.density + t * (b.density - a.density), a.speed_of_sound + t * (b.speed_of_sound - a.speed_of_sound)};
+    Air by_metre;
+    return at(height, by_metre);
   }
   /// With what a metre of height changes.
   Air at(double height, Air& by_metre) const {
@@ -69,11 +66,8 @@ class CAROM_API WindColumn {
   explicit WindColumn(std::span<const Level> levels);
 
   math::Vec3d at(double height) const {
-    if (legs_.empty()) return lowest_;
-    const double above = height - legs_.front().height;
-    if (!(above > 0)) return lowest_;
-    const Leg& leg = leg_of(above, height);
-    return leg.velocity + (height - leg.height) * leg.shear;
+    math::Vec3d shear;
+    return at(height, shear);
   }
   /// With what a metre of height changes (1/s).
   math::Vec3d at(double height, math::Vec3d& shear) const {

@@ -19,7 +19,7 @@ struct WideDouble {
   using Mask = typename DoubleVectors<W>::Longs;  ///< all bits of a lane or none
   Vector v;
 
-  CAROM_SIMD_INLINE static WideDouble splat(double x) { return {Vector{} + x}; }
+  CAROM_SIMD_INLINE static WideDouble splat(double x) { return {x - Vector{}}; }
   CAROM_SIMD_INLINE static WideDouble load_aligned(const double* p) {
     WideDouble r;
     __builtin_memcpy(&r.v, __builtin_assume_aligned(p, 8 * W), sizeof r.v);

@@ -63,8 +63,8 @@ class AimSolver {
   bool looks_far() const;
   void keep(Aims& aims, const Root& root) const;
   bool by_guesses(Aims& aims) const;
-  /// True: certainly no solution. Shots at five elevations pass the target's distance below it, and so does the best
-  /// one between them, by a good margin.
+  /// True: certainly no solution. Shots at five elevations pass the target's distance below it, or fall through its
+  /// height before they get there, and so does the best one between them, by a good margin.
   bool out_of_reach() const;
   /// The flight time at which a gun needs least speed in vacuum, s.
   double best_in_vacuum() const;
@@ -127,10 +127,10 @@ class AimSolver {
   }
   template <bool Plain>
   Arrival follow_in(Vec3d u, double time, const Path& path) const;
-  /// How a shot passes the distance of the target.
+  /// How a shot passes the target's distance, or falls through its height before.
   struct Pass {
-    bool plain = false;  // it does so once and at a slant, or never
-    double over = 0;     // m above the target; where it falls short, less what it lacks in distance
+    bool plain = false;  // once and at a slant, or never
+    double over = 0;     // m above the target at its distance; or how much farther than the target at its height, < 0
     double aside = 0;    // rad, how much farther to turn
   };
   Pass pass(double elevation, double azimuth) const {
@@ -138,7 +138,8 @@ class AimSolver {
   }
   template <bool Plain>
   Pass pass_in(double elevation, double azimuth) const;
-  const PointMassPull pull_;
+  const PointMassPull pull_;  // what holds
+  const RoughPull rough_;     // what paths feel
   const Projectile& projectile_;
   const Conditions& conditions_;
   const Shooter& shooter_;

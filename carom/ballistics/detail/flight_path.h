@@ -2,7 +2,7 @@
 #pragma once
 
 #include "carom/ballistics/detail/flight_step.h"
-#include "carom/ballistics/detail/point_mass.h"
+#include "carom/ballistics/detail/rough_pull.h"
 
 namespace carom::ballistics::detail {
 
@@ -11,7 +11,7 @@ struct FlightPath {
   struct Node {
     double t, x[3], v[3], k[3];
   };
-  using Stage = PointMassPull::Slope;
+  using Stage = RoughPull::Slope;
   struct Arrival {
     math::Vec3d position{}, velocity{};
   };

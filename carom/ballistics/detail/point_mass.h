@@ -3,6 +3,7 @@
 #pragma once
 
 #include "carom/ballistics/flight.h"
+#include "carom/math/simd_double.h"
 
 namespace carom::ballistics::detail {
 
@@ -35,10 +36,6 @@ class PointMassPull {
         half_area_(0.5 * projectile.area_per_mass),
         plain_(conditions.gravity_model == GravityModel::uniform && conditions.rotation == math::Vec3d{}) {}
 
-  /// How drag changes: ∂a/∂v = −drag I − bend w wᵀ, w the velocity through the air; rise = ∂a/∂y.
-  struct Slope {
-    float drag, bend, w[3], rise[3];
-  };
   /// Gravity is uniform and the frame does not turn: of the position the height alone matters.
   bool plain() const { return plain_; }
 
@@ -58,26 +55,38 @@ class PointMassPull {
     }
     return beside<Plain>(a, position, velocity);
   }
+  using Pair = math::WideDouble<2>;
+  struct Pairs {
+    Pair x, y, z;
+  };
+  /// Two at once; where it is plain, of the positions the heights alone are read.
   template <bool Plain>
-  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
-    environment::AirColumn::Air by_metre;
-    math::Vec3d shear;
-    const environment::AirColumn::Air air = conditions_.air.at(position.y, by_metre);
-    const math::Vec3d w = velocity - conditions_.wind.at(position.y, shear);
-    const double slowness = 1 / air.speed_of_sound, weight = half_area_ * air.density;
-    const double speed = math::length(w), mach = speed * slowness;
-    const DragCurve::Value drag = projectile_.drag.with_slope(mach);
-    const double pull = weight * drag.coefficient * speed, steep = weight * drag.slope * mach;
-    const double bend = (weight * drag.coefficient + steep) / math::max(speed, 1e-9);
-    slope.drag = float(pull);
-    slope.bend = float(bend);
-    const double along = bend * math::dot(w, shear) + steep * speed * slowness * by_metre.speed_of_sound -
-                         half_area_ * by_metre.density * drag.coefficient * speed;
-    for (int i = 0; i < 3; ++i) {
-      slope.w[i] = float(w[i]);
-      slope.rise[i] = float(pull * shear[i] + along * w[i]);
+  [[gnu::always_inline]] Pairs at(const Pairs& position, const Pairs& velocity) const {
+    Pairs a{};
+    if (half_area_ > 0) {
+      const double low = position.y.v[0], high = position.y.v[1];
+      const environment::AirColumn::Air air[2] = {conditions_.air.at(low), conditions_.air.at(high)};
+      const math::Vec3d wind[2] = {conditions_.wind.at(low), conditions_.wind.at(high)};
+      const Pair slowness = Pair::splat(1) / Pair{{air[0].speed_of_sound, air[1].speed_of_sound}};
+      const Pair x = velocity.x - Pair{{wind[0].x, wind[1].x}}, y = velocity.y - Pair{{wind[0].y, wind[1].y}},
+                 z = velocity.z - Pair{{wind[0].z, wind[1].z}};
+      const Pair speed = math::sqrt(x * x + y * y + z * z), mach = speed * slowness;
+      const Pair pull = Pair{{projectile_.drag(mach.v[0]), projectile_.drag(mach.v[1])}} * speed *
+                        (Pair::splat(-half_area_) * Pair{{air[0].density, air[1].density}});
+      a = {pull * x, pull * y, pull * z};
     }
-    return beside<Plain>(-pull * w, position, velocity);
+    if constexpr (!Plain) {
+      for (int i = 0; i < 2; ++i) {
+        const math::Vec3d more = beside_drag(conditions_, {position.x.v[i], position.y.v[i], position.z.v[i]},
+                                             {velocity.x.v[i], velocity.y.v[i], velocity.z.v[i]});
+        a.x.v[i] += more.x;
+        a.y.v[i] += more.y;
+        a.z.v[i] += more.z;
+      }
+    } else {
+      a.y = a.y - Pair::splat(conditions_.gravity);
+    }
+    return a;
   }
 
  private:
