@@ -46,9 +46,9 @@ struct AimOptions {
   bool high_arc = true;       ///< false: only the earliest hit is looked for, in a fraction of the time
 };
 
-/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 13 µs, both 25 to
-/// 50 µs, a target at rest that is clearly out of reach 14 µs, one that flees 50 to 150 µs; one that is only just in or
-/// out of reach, or has several arcs, half a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
+/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 10 µs, both 20 to
+/// 80 µs, a target out of reach, at rest or in flight, 8 to 11 µs; one that is only just in or out of reach, or has
+/// several arcs, a third of a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
 

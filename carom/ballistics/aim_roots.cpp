@@ -68,7 +68,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     // Derivatives are known to a few thousandths, and the next miss is as the square of this one.
     const double share = way == Way::measured ? 3e-3 + 3 * moved / scale : math::clamp(both / last_both, 0.01, 1.0);
     const bool known = way == Way::measured || way == Way::again;
-    const bool trusted = math::length(off) < 0.1 * math::sqrt(allowed * scale);  // it errs as its square
+    const bool trusted = math::length(off) < 0.5 * math::sqrt(allowed * scale);  // it errs as its square
     if (known && trusted && share * moved < 0.5 * allowed) {
       const double* pull = path.node[path.count].k;
       const Vec3d aimed = guess.u - shooter_.velocity;

@@ -235,6 +235,10 @@ TEST(Aim, BadInputIsNamed) {
   ASSERT_FALSE(aims);
   EXPECT_EQ(aims.error().message, "aim: muzzle_speed is -5, expected a finite number > 0");
   EXPECT_FALSE(aim({}, {}, {}, Target{{__builtin_nan(""), 0, 0}}));
+  // A function may say anything: no solution.
+  const Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
+  for (const double place : {__builtin_nan(""), __builtin_inf(), 1e200})
+    EXPECT_FALSE(*aim(shot, {}, {}, [&](double) { return Vec3d{place, 0, 0}; })) << place;
 }
 
 // Profiles of wind are steep near the ground and have bends by the hundred: every shot told hits all the same.

@@ -80,7 +80,7 @@ class RoughPull {
     return {place, value.coefficient, 0.5 * value.slope / mach};
   }
   [[gnu::always_inline]] DragCurve::Value drag(double mach2) const {
-    const double place = math::min(mach2 + lowest, farthest_);
+    const double place = math::min(farthest_, mach2 + lowest);  // in this order for what is no number
     const std::uint64_t cell = cell_of(place);
     const double x = place - std::bit_cast<double>(cell << 47);
     const Cell& c = cell_[cell - first_cell];
