@@ -79,6 +79,14 @@ void DestructionPicture::show_pieces(Stage<D>& stage, const scene::SceneWorld& w
     for (const rigid::BodyId body : structure.changed())
       if (stage.world().contains(body)) stage.redraw(body);
   }
+  for (const auto& entry : world.destruction->of<D>().rockets) {
+    if (!entry.thing.just_dropped()) continue;
+    const scene::SceneBody* whole = world.find_body(entry.name);
+    const rigid::BodyId part = entry.thing.dropped().back();
+    if (stage.world().contains(part)) stage.adopt(part, whole != nullptr && whole->colored ? whole->color : 0);
+    stage.adopt_all();
+    if (stage.world().contains(entry.thing.body())) stage.redraw(entry.thing.body());
+  }
 }
 
 template <class D>

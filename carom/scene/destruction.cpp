@@ -149,6 +149,9 @@ Status Destruction::before(rigid::World<D>& world, double dt, Matter* matter) {
   DestructionOf<D>& all = of<D>();
   for (auto& gun : all.guns)
     if (Status s = shoot<D>(gun.thing, world); !s) return s;
+  if constexpr (D::dimension == 3)
+    for (auto& rocket : all.rockets)
+      if (Status s = rocket.thing.before_step(world, dt); !s) return s;
   for (auto& entry : all.explosions) {
     SceneExplosion<D>& e = entry.thing;
     if (e.explosion.finished(world.time())) continue;
@@ -213,14 +216,16 @@ void Destruction::add_to(core::StateHash& hash) const {
         for (const float x : gun.thing.batch.array(component)) hash.add(x);
     }
     for (const auto& s : all.structures) hash.add(std::uint64_t(s.thing.broken()));
+    for (const auto& r : all.rockets)
+      hash.add(r.thing.stages_left()).add(r.thing.under_parachute()).add(r.thing.apex());
   };
   add(plane);
   add(space);
 }
 
 namespace {
-enum DestructionList { explosion_list, gun_list, structure_list };
-constexpr std::string_view list_names[] = {"explosion", "gun", "structure"};
+enum DestructionList { explosion_list, gun_list, structure_list, rocket_list };
+constexpr std::string_view list_names[] = {"explosion", "gun", "structure", "rocket"};
 enum DestructionField {
   front,
   reached,
@@ -236,7 +241,12 @@ enum DestructionField {
   parts,
   pieces,
   broken,
-  load
+  load,
+  thrust,
+  mass,
+  stages,
+  parachute,
+  apex
 };
 struct FieldName {
   int list;
@@ -248,7 +258,9 @@ constexpr FieldName fields[] = {
     {gun_list, "shots", ""},           {gun_list, "in_flight", ""},     {gun_list, "hits", ""},
     {gun_list, "passed", ""},          {gun_list, "ricochets", ""},     {gun_list, "energy", "J"},
     {gun_list, "last_hit", "m", true}, {gun_list, "hit_speed", "m/s"},  {structure_list, "parts", ""},
-    {structure_list, "pieces", ""},    {structure_list, "broken", ""},  {structure_list, "load", ""}};
+    {structure_list, "pieces", ""},    {structure_list, "broken", ""},  {structure_list, "load", ""},
+    {rocket_list, "thrust", "N"},      {rocket_list, "mass", "kg"},     {rocket_list, "stages", ""},
+    {rocket_list, "parachute", ""},    {rocket_list, "apex", "m"}};
 
 template <class See>
 void each_name(const Destruction& all, const See& see) {
@@ -259,6 +271,7 @@ void each_name(const Destruction& all, const See& see) {
     list(explosion_list, of.explosions);
     list(gun_list, of.guns);
     list(structure_list, of.structures);
+    list(rocket_list, of.rockets);
   };
   both(all.plane);
   both(all.space);
@@ -293,6 +306,13 @@ double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time)
     if (s.field == reached) return e.reached;
     return s.field == front ? e.explosion.front_radius(time) : in_space(e.explosion.impulse_given())[s.component];
   }
+  if (s.list == rocket_list) {
+    const ballistics::BodyRocket& rocket = all.rockets[place].thing;
+    if (s.field == thrust) return rocket.thrust();
+    if (s.field == mass) return rocket.mass();
+    if (s.field == stages) return rocket.stages_left();
+    return s.field == parachute ? double(rocket.under_parachute()) : rocket.apex();
+  }
   const blast::Structure<D>& structure = all.structures[place].thing;
   if (s.field == parts) return double(structure.part_count());
   if (s.field == pieces) return double(structure.cluster_count());
@@ -303,7 +323,7 @@ double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time)
 }
 template <class D>
 bool any_of(const DestructionOf<D>& all) {
-  return !all.explosions.empty() || !all.guns.empty() || !all.structures.empty();
+  return !all.explosions.empty() || !all.guns.empty() || !all.structures.empty() || !all.rockets.empty();
 }
 }  // namespace
 

@@ -1,10 +1,12 @@
-// What a running scene has besides bodies and matter: charges that go off, guns that fire, structures that break.
+// What a running scene has besides bodies and matter: charges that go off, guns that fire, structures that break,
+// rockets.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "carom/ballistics/aim.h"
+#include "carom/ballistics/body_rocket.h"
 #include "carom/ballistics/hits.h"
 #include "carom/ballistics/weapon.h"
 #include "carom/blast/explosion.h"
@@ -62,7 +64,8 @@ struct DestructionOf {
   std::vector<Named<SceneExplosion<D>>> explosions;
   std::vector<Named<SceneGun>> guns;
   std::vector<Named<blast::Structure<D>>> structures;
-  ballistics::BatchHits<D> hits;  ///< with what projectiles go through
+  std::vector<Named<ballistics::BodyRocket>> rockets;  ///< of space
+  ballistics::BatchHits<D> hits;                       ///< with what projectiles go through
   blast::FractureStepper<D> stepper;
 };
 
@@ -99,7 +102,7 @@ class CAROM_API Destruction {
   /// What a quantity such as "gun.turret.hits" names; false where it names nothing here.
   bool find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const;
   double read(const Probe::Source& source, double time) const;
-  /// The names that quantities begin with: "explosion.charge", "gun.turret", "structure.wall".
+  /// The names that quantities begin with: "explosion.charge", "gun.turret", "structure.wall", "rocket.alpha".
   std::vector<std::string> names() const;
 };
 

@@ -471,10 +471,12 @@ Result<std::string> write_scene(const SceneWorld& world, const WriteOptions& opt
         "only bodies, joints, effectors and charges can be written: this scene has ropes, cloth, liquids, grains or "
         "particles too"};
   const Destruction* const destruction = world.destruction.get();
-  const auto more = [](const auto& of) { return !of.guns.empty() || !of.structures.empty(); };
+  const auto more = [](const auto& of) { return !of.guns.empty() || !of.structures.empty() || !of.rockets.empty(); };
   if (destruction != nullptr && (more(destruction->plane) || more(destruction->space)))
     return core::Error{
-        "only bodies, joints, effectors and charges can be written: this scene has guns or structures that break too"};
+        "only bodies, joints, effectors and charges can be written: this scene has guns, rockets or structures that "
+        "break "
+        "too"};
   if (world.world2) return SceneWriter<Dim2>(*world.world2, options, world.bodies, destruction).write();
   if (world.world3) return SceneWriter<Dim3>(*world.world3, options, world.bodies, destruction).write();
   return core::Error{"only worlds of bodies can be written"};

@@ -175,7 +175,7 @@ class Builder final : public BodyNames {
 
   static constexpr const char* lists[] = {"bodies",     "joints",      "effectors", "characters", "ropes",
                                           "cloths",     "soft_bodies", "liquids",   "grains",     "particles",
-                                          "structures", "explosions",  "guns"};
+                                          "structures", "explosions",  "guns",      "rockets"};
   void visit_parts() {
     for (const Node& part : document_.parts)
       for (const char* list : lists)

@@ -1,4 +1,4 @@
-// Reads explosions, guns and structures of a scene file into a world.
+// Reads explosions, guns, structures and rockets of a scene file into a world.
 #pragma once
 
 #include "carom/scene/destruction.h"
@@ -7,7 +7,7 @@
 
 namespace carom::scene::detail {
 
-inline constexpr const char* destruction_lists[] = {"structures", "explosions", "guns"};
+inline constexpr const char* destruction_lists[] = {"structures", "explosions", "guns", "rockets"};
 
 /// What readers of these share.
 template <class D>
@@ -34,5 +34,8 @@ template <class D>
 [[gnu::noinline]] void read_gun(DestructionPlace<D>& place, const Object& o);
 template <class D>
 [[gnu::noinline]] void read_structure(DestructionPlace<D>& place, const Object& o);
+[[gnu::noinline]] void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o);
+/// Air, wind and gravity as what flies through the scene from a point meets them.
+ballistics::Conditions conditions_at(math::Vec3d point, double gravity, const environment::Environment* around);
 
 }  // namespace carom::scene::detail

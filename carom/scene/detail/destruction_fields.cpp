@@ -153,8 +153,65 @@ constexpr Field structure_fields[] = {
     {"color", T::color, M::plain, "as #rrggbb, or #rrggbbaa with an opacity"},
 };
 
+constexpr Field rocket_motor_fields[] = {
+    {"description", T::text},
+    {"name", T::text},
+    {"propellant_mass", T::quantity, M::mass},
+    {"mass", T::quantity, M::mass, "with the propellant", nullptr, {}, true},
+    {"thrust", T::number_list, M::plain, "s, N, s, N …, from 0 s on, linear between", nullptr, {}, true},
+};
+constexpr Field stage_fields[] = {
+    {"description", T::text},
+    {"name", T::text},
+    {"motor",
+     T::reference,
+     M::plain,
+     "name of a file of presets/motor (.eng), or written here",
+     &rocket_motor_kind,
+     {},
+     true},
+    {"designation", T::text, M::plain, "which motor of the file; its first unless given"},
+    {"dry_mass", T::quantity, M::mass, "without the motor", nullptr, {}, true},
+    {"dry_centre", T::quantity, M::length, "of the dry mass, from the nose of the whole rocket"},
+    {"motor_centre", T::quantity, M::length, "likewise"},
+    {"ignition_delay", T::quantity, M::time, "after the stage below is gone; of the first: after the launch"},
+    {"separation_delay", T::quantity, M::time, "after its burnout; the last stage stays"},
+};
+constexpr Field rocket_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, such as rocket/two_stage_c6"},
+    {"name", T::text, M::plain, "unique among bodies; {expressions} in braces are replaced"},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this rocket out"},
+    {"position", T::vector, M::length, "of its tail on the rail"},
+    {"direction", T::vector, M::plain, "of the rail; straight up unless given"},
+    {"rail_length", T::quantity, M::length, "1 m unless given"},
+    {"start", T::quantity, M::time, "of the launch"},
+    {"diameter", T::quantity, M::length},
+    {"length", T::quantity, M::length, "of the whole rocket"},
+    {"nose_length", T::quantity, M::length, "of an ogive"},
+    {"drag_coefficient", T::quantity, M::plain, "on the frontal area, while a motor burns"},
+    {"coasting_drag_coefficient", T::quantity, M::plain, "without; the same unless given"},
+    {"fin_count", T::integer, M::plain, "0 to 16"},
+    {"fin_root_chord", T::quantity, M::length},
+    {"fin_tip_chord", T::quantity, M::length},
+    {"fin_span", T::quantity, M::length},
+    {"fin_sweep", T::quantity, M::length, "of the leading edge"},
+    {"fin_position", T::quantity, M::length, "of the root's leading edge, from the nose"},
+    {"parachute_drag_area", T::quantity, M::area, "C_D A; none unless given"},
+    {"parachute_height", T::quantity, M::length, "it opens below, on the way down; at the apex unless given"},
+    {"parachute_delay", T::quantity, M::time, "after that"},
+    {"stages", T::list, M::plain, "1 to 10, the first to burn first", &stage_kind},
+    {"material", T::reference, M::plain, "of its surface", &material_kind},
+    {"filter", T::object, M::plain, "", &filter_kind},
+    {"color", T::color, M::plain, "as #rrggbb, or #rrggbbaa with an opacity"},
+    {"trail", T::flag, M::plain, "pictures draw its path"},
+};
+
 }  // namespace
 
+const ObjectKind rocket_motor_kind{"rocket_motor", "The motor of a stage.", rocket_motor_fields};
+const ObjectKind stage_kind{"stage", "A stage of a rocket.", stage_fields};
+const ObjectKind rocket_kind{"rocket", "A rocket that flies as a body.", rocket_fields};
 const ObjectKind explosion_kind{"explosion", "A charge that goes off.", explosion_fields};
 const ObjectKind ammunition_kind{"ammunition", "What a gun shoots.", ammunition_fields};
 const ObjectKind sight_kind{"sight", "What a gun is aimed with.", sight_fields};

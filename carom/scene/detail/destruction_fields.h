@@ -1,4 +1,4 @@
-// The tables of explosions, guns and structures.
+// The tables of explosions, guns, structures and rockets.
 #pragma once
 
 #include "carom/scene/detail/body_fields.h"
@@ -6,6 +6,6 @@
 namespace carom::scene::detail {
 
 extern const ObjectKind explosion_kind, gun_kind, ammunition_kind, sight_kind, penetration_kind, layer_kind,
-    structure_kind;
+    structure_kind, rocket_kind, stage_kind, rocket_motor_kind;
 
 }  // namespace carom::scene::detail

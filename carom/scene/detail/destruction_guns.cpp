@@ -84,6 +84,16 @@ ballistics::Weapon read_weapon(Reader& r, const Object& o) {
 
 }  // namespace
 
+ballistics::Conditions conditions_at(math::Vec3d point, double gravity, const environment::Environment* around) {
+  ballistics::Conditions conditions{.gravity = gravity};
+  if (around == nullptr) return conditions;
+  const environment::Environment::Definition& d = around->definition();
+  conditions.air = d.vacuum ? environment::AirColumn::uniform(0) : environment::AirColumn(d.air, d.altitude);
+  conditions.wind = environment::WindColumn(d.wind.mean);
+  if (around->has_gravity()) conditions.gravity -= around->gravity(point).y;
+  return conditions;
+}
+
 template <class D>
 void read_gun(DestructionPlace<D>& place, const Object& o) {
   Reader& r = place.reader;
@@ -113,14 +123,7 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
     return r.expected(*o.find("lifetime"), o.path_of("lifetime"), "1 ms to 600 s");
   if (!r.accept(ballistics::check(gun.weapon), *o.node, o.path)) return;
 
-  gun.conditions.gravity = -double(place.world.definition().gravity.y);
-  if (place.around != nullptr) {
-    const environment::Environment::Definition& around = place.around->definition();
-    gun.conditions.air =
-        around.vacuum ? environment::AirColumn::uniform(0) : environment::AirColumn(around.air, around.altitude);
-    gun.conditions.wind = environment::WindColumn(around.wind.mean);
-    if (place.around->has_gravity()) gun.conditions.gravity -= place.around->gravity(gun.muzzle).y;
-  }
+  gun.conditions = conditions_at(gun.muzzle, -double(place.world.definition().gravity.y), place.around);
   if (sighted) {
     const auto aiming = ballistics::zeroed(gun.weapon, gun.conditions);
     if (!r.accept(aiming.ok() ? core::Status{} : core::Status{aiming.error()}, *o.node, o.path)) return;

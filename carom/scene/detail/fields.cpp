@@ -54,6 +54,7 @@ constexpr Field group_fields[] = {
     {"structures", T::list, M::plain, "solids that break", &structure_kind},
     {"explosions", T::list, M::plain, "charges", &explosion_kind},
     {"guns", T::list, M::plain, "guns", &gun_kind},
+    {"rockets", T::list, M::plain, "rockets", &rocket_kind, {}, false, 3},
     {"characters", T::list, M::plain, "", &character_kind},
 };
 const ObjectKind group_kind{
@@ -201,6 +202,7 @@ constexpr Field scene_fields[] = {
     {"structures", T::list, M::plain, "solids that break, and groups", &structure_kind},
     {"explosions", T::list, M::plain, "charges and groups", &explosion_kind},
     {"guns", T::list, M::plain, "guns and groups", &gun_kind},
+    {"rockets", T::list, M::plain, "rockets and groups", &rocket_kind, {}, false, 3},
     {"penetration", T::list, M::plain, "what projectiles go through; all else stops them", &penetration_kind},
     {"characters", T::list, M::plain, "characters and groups", &character_kind},
     {"environment", T::object, M::plain, "gravity, air, wind and water around the bodies", &environment_kind},
@@ -231,6 +233,7 @@ constexpr Field part_fields[] = {
     {"structures", T::list, M::plain, "solids that break", &structure_kind},
     {"explosions", T::list, M::plain, "charges", &explosion_kind},
     {"guns", T::list, M::plain, "guns", &gun_kind},
+    {"rockets", T::list, M::plain, "rockets", &rocket_kind, {}, false, 3},
     {"penetration", T::list, M::plain, "what projectiles go through; all else stops them", &penetration_kind},
     {"characters", T::list, M::plain, "", &character_kind},
 };
@@ -308,6 +311,9 @@ const ObjectKind* const all_kinds[] = {&scene_kind,
                                        &structure_kind,
                                        &explosion_kind,
                                        &gun_kind,
+                                       &rocket_kind,
+                                       &stage_kind,
+                                       &rocket_motor_kind,
                                        &ammunition_kind,
                                        &sight_kind,
                                        &penetration_kind,

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <map>
 
+#include "carom/ballistics/motor.h"
 #include "carom/geometry/mesh_file.h"
+#include "carom/scene/detail/preset_values.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -107,6 +109,8 @@ class PartReader {
       for (const char* key : {"ammunition", "sight"}) name_preset(node, key);
     if (node.is_object() && list == "penetration")
       if (const core::Status read = read_wall(node); !read) return read;
+    if (node.is_object() && list == "stages")
+      if (const core::Status read = read_motor(node); !read) return read;
     for (std::size_t i = 0; i < node.children.size(); ++i) {
       const std::string_view within = node.is_object() ? std::string_view(node.keys[i]) : list;
       if (const core::Status merged = merge_presets(node.children[i], from, depth, within); !merged) return merged;
@@ -136,6 +140,52 @@ class PartReader {
       const Node* layers = nullptr;
       if (const core::Status found = load_preset(named, layers, true); !found) return found;
       owner.children[i] = *layers;
+    }
+    return {};
+  }
+
+  /// "motor": "black_powder" stands for a motor of presets/motor/black_powder.eng.
+  core::Status read_motor(Node& stage) {
+    for (std::size_t i = 0; i < stage.keys.size(); ++i) {
+      if (stage.keys[i] != "motor" || !stage.children[i].is_text()) continue;
+      Node& at = stage.children[i];
+      if (!is_preset_name(at.text))
+        return error(at, "motor", "found " + show(at) + ", expected the name of a file of presets/motor");
+      if (!resolver_) return error(at, "motor", "found a preset, but this scene has no folder to read from");
+      const std::string path = "presets/motor/" + at.text + ".eng";
+      const core::Result<std::string> text = resolver_(path);
+      if (!text) return error(at, "motor", text.error().message);
+      const auto motors = ballistics::read_rasp(std::string_view(*text).substr(0, 65536), path);
+      if (!motors) return error(at, "motor", motors.error().message);
+      const Node* const wanted = stage.find("designation");
+      const ballistics::Motor* motor = wanted == nullptr && !motors->empty() ? &motors->front() : nullptr;
+      std::string known;
+      for (const ballistics::Motor& m : *motors) {
+        if (wanted != nullptr && wanted->is_text() && m.name == wanted->text) motor = &m;
+        known += (known.empty() ? "" : ", ") + m.name;
+      }
+      if (motor == nullptr)
+        return error(wanted != nullptr ? *wanted : at, "designation",
+                     "found " + show(wanted != nullptr ? *wanted : at) + ", expected one of " + path + ": " + known);
+      Node like = at;
+      like.text.clear();
+      const auto number = [&like](double value) {
+        Node n = like;
+        n.kind = NodeKind::number;
+        n.number = value;
+        return n;
+      };
+      Node thrust = like;
+      thrust.kind = NodeKind::array;
+      for (const ballistics::ThrustPoint& p : motor->curve.points()) {
+        thrust.children.push_back(number(p.time));
+        thrust.children.push_back(number(p.thrust));
+      }
+      merged_ += thrust.children.size();
+      at = like;
+      at.kind = NodeKind::object;
+      at.keys = {"propellant_mass", "mass", "thrust"};
+      at.children = {number(motor->propellant_mass), number(motor->mass), std::move(thrust)};
     }
     return {};
   }

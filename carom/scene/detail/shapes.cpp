@@ -379,7 +379,7 @@ void read_filter(Reader& reader, const Object& o, rigid::Filter& filter) {
 SurfaceDefaults read_surface(Reader& reader, const Library& library, const Object& o, SurfaceDefaults defaults) {
   if (const Node* material = o.find("material"))
     read_material(reader, library, *material, o.path_of("material"), defaults);
-  defaults.density = reader.number(o, "density", defaults.density);
+  if (o.kind->find("density") != nullptr) defaults.density = reader.number(o, "density", defaults.density);
   read_filter(reader, o, defaults.filter);
   return defaults;
 }
