@@ -85,7 +85,7 @@ void DynamicTree<V>::set_bounds(int leaf, const Box& box) {
 }
 
 template <class V>
-bool DynamicTree<V>::refit() {
+bool DynamicTree<V>::refit(double worst) {
   if (count_ < 2) return false;
   Node* nodes = nodes_.data();
   inner_.clear();
@@ -107,7 +107,7 @@ bool DynamicTree<V>::refit() {
     sum += double(detail::surface(node.box));
   }
   if (!(least_cost_ > 0) || sum < least_cost_) least_cost_ = sum;
-  if (!(sum > 1.2 * least_cost_)) return false;
+  if (!(sum > worst * least_cost_)) return false;
   rebuild();
   return true;
 }

@@ -33,9 +33,9 @@ class CAROM_API DynamicTree {
   int rebuild_enlarged();
   /// Gives the leaf a new box and leaves everything else wrong until `refit`: for when most leaves move.
   void set_bounds(int leaf, const Box& box);
-  /// Tightens all inner boxes to their leaves, and builds the whole tree anew once it has become a fifth worse than
-  /// the best that it was. True if it did.
-  bool refit();
+  /// Tightens all inner boxes to their leaves, and builds the whole tree anew once its summed surface has become so
+  /// many times the least that it was. True if it did.
+  bool refit(double worst = 1.2);
   /// Builds the whole tree anew from its leaves (binned surface area heuristic); leaves keep their names.
   void rebuild();
   /// Inserts all boxes at once: leaves[i] (if not null) is the leaf of boxes[i], items[i] its item. Much faster, and a

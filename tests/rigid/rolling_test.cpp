@@ -1,6 +1,8 @@
 // Rolling resistance of what is not round, and the sleep of what is long.
 #include <gtest/gtest.h>
 
+#include "carom/geometry/hull.h"
+#include "carom/math/rotation.h"
 #include "scene_pieces.h"
 
 namespace carom::rigid::test {

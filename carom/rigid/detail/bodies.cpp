@@ -382,8 +382,9 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   // A body of several shapes would have all of them leave their bounds in every step of a fall. What is long has few
   // others beside it.
   const double steps = world.bodies.motion[std::size_t(shape.body)].slender != 0 ? 5 : 3;
-  P ahead = has_several_shapes(world, shape.body) ? P(way_of_middle(world, shape)) * steps : way_ahead(world, shape);
-  if (bullet) ahead = P(s.linear_velocity * world.last_dt);
+  const P ahead = bullet                                  ? P(s.linear_velocity * world.last_dt)
+                  : has_several_shapes(world, shape.body) ? P(way_of_middle(world, shape)) * steps
+                                                          : way_ahead(world, shape);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 

@@ -124,6 +124,30 @@ bool come_near(const WorldImplementation<D>& world, std::int32_t a, std::int32_t
   return math::length(start + way * f) <= ma.outer_extent + mb.outer_extent + 0.01f;
 }
 
+/// Do the balls about two bodies that nothing has stopped yet stay apart? Most do, which is told without their turns.
+template <class D>
+bool stay_far(const WorldImplementation<D>& world, const BulletPair& pair) {
+  using V = typename D::Vector;
+  typename D::Position from[2], to[2];
+  float reach = 0.01f;
+  const std::int32_t shapes[2] = {pair.own, pair.other};
+  for (int side = 0; side < 2; ++side) {
+    const std::int32_t place = pair.place[side];
+    const BodyMotion<D>& m = world.bodies.motion[std::size_t(place == none ? world.shapes.at(shapes[side]).body
+                                                                           : world.bodies.awake[std::size_t(place)])];
+    from[side] = to[side] = m.center;
+    reach += m.outer_extent;
+    if (place == none) continue;
+    const SweepStart<D>& start = world.scratch.swept[std::size_t(place)];
+    if (start.fraction < 1) return false;
+    from[side] = start.center;
+  }
+  const V start(from[1] - from[0]), way = V(to[1] - to[0]) - start;
+  const float length_squared = dot(way, way);
+  const float f = length_squared > 0 ? clamp(-dot(start, way) / length_squared, 0.0f, 1.0f) : 0.0f;
+  return math::length_squared(start + way * f) > reach * reach;
+}
+
 /// Do two shapes stay apart on their ways, seen at a glance?
 inline bool goes_past(const ShapeRecord<Dim2>&, const Sweep<Dim2>&, const ShapeRecord<Dim2>&, const Sweep<Dim2>&) {
   return false;

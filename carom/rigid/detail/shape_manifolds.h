@@ -7,6 +7,19 @@
 
 namespace carom::rigid::detail {
 
+/// Which point of a manifold that has any lies deepest; how deep (m, below 0), or how far apart it is.
+template <class Manifold>
+int deepest_point(const Manifold& m) {
+  int deepest = 0;
+  for (int k = 1; k < m.count; ++k)
+    if (m.points[k].separation < m.points[deepest].separation) deepest = k;
+  return deepest;
+}
+template <class Manifold>
+float smallest_separation(const Manifold& m) {
+  return m.points[deepest_point(m)].separation;
+}
+
 /// Of shapes of many parts, those are looked at which come within `around` (m) of a straight way in a's frame.
 template <class Vector>
 struct Around {

@@ -10,6 +10,7 @@ constexpr int pair_grain = 64;
 constexpr int group_grain = 8;
 constexpr int most_in_group = BoxGroup<Dim2>::most_members;
 constexpr int bounds_grain = 128;
+constexpr double most_worse = 2;  ///< times its best: a tree of what flies
 
 /// Remembers two shapes whose bounds overlap, if they are a pair without a contact.
 template <class D>
@@ -26,14 +27,15 @@ void consider_pair(WorldImplementation<D>& world, std::int32_t s, std::int32_t o
 inline int first_tree_for(int tree) { return tree == tree_fixed ? tree_kinematic : tree_fixed; }
 
 template <class D>
-void find_pairs_of(WorldImplementation<D>& world, std::int32_t place, std::vector<FoundPair>& found) {
+void find_pairs_of(WorldImplementation<D>& world, std::int32_t place, std::vector<FoundPair>& found,
+                   int last_tree = tree_dynamic) {
   using Bounds = typename D::Bounds;
   const std::int32_t s = world.scratch.moved[std::size_t(place)];
   const ShapeRecord<D>& shape = world.shapes.at(s);
   if (shape.leaf == none) return;
   const Bounds box = world.shapes.trees[shape.tree].bounds(shape.leaf);
   const Bounds old = world.scratch.old_bounds[std::size_t(place)];
-  for (int tree = first_tree_for(shape.tree); tree <= tree_dynamic; ++tree)
+  for (int tree = first_tree_for(shape.tree); tree <= last_tree; ++tree)
     world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const Bounds& other) {
       // What overlapped when pairs were last looked for was considered then; but a caller's filter may change its mind.
       if (!world.contact_filter) {
@@ -131,6 +133,52 @@ void group_moved(WorldImplementation<D>& world) {
   if (count > 0) scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
 }
 
+/// Did a box go on by a quarter of its size?
+template <class Bounds>
+bool goes_far(const Bounds& old, const Bounds& now) {
+  const auto way = abs(now.center() - old.center()), quarter = 0.25 * (old.high - old.low);
+  for (int k = 0; k < geometry::detail::Axes<std::decay_t<decltype(way)>>::count; ++k)
+    if (way[k] > quarter[k]) return true;
+  return false;
+}
+
+/// Do the bounds of most that forces move go far? Some are asked.
+bool most_fly(const WorldImplementation<Dim3>& world) {
+  const StepScratch<Dim3>& scratch = world.scratch;
+  if (4 * scratch.moved.size() < 3 * std::size_t(world.shapes.trees[tree_dynamic].size())) return false;
+  constexpr std::size_t asked = 64;
+  int fly = 0;
+  for (std::size_t k = 0; k < asked; ++k) {
+    const std::size_t place = k * scratch.moved.size() / asked;
+    const ShapeRecord<Dim3>& shape = world.shapes.at(scratch.moved[place]);
+    if (shape.leaf == none || shape.tree != tree_dynamic) continue;
+    fly += goes_far(scratch.old_bounds[place], world.shapes.trees[tree_dynamic].bounds(shape.leaf)) ? 1 : 0;
+  }
+  return 2 * fly > int(asked);
+}
+
+/// Where most of what forces move flies and is sparse: all of its boxes against each other in one sweep. False where
+/// that would take longer.
+bool sweep_dynamic(WorldImplementation<Dim2>&) { return false; }
+bool sweep_dynamic(WorldImplementation<Dim3>& world) {
+  StepScratch<Dim3>& scratch = world.scratch;
+  if (!most_fly(world) || !scratch.sweep.take(world.shapes.trees[tree_dynamic])) return false;
+  world.scheduler->parallel_for(scratch.sweep.strip_count(), 2, [&](int begin, int end, int worker) {
+    const auto old_of = [&](std::uint32_t item) {
+      const std::int32_t place = scratch.moved_place[item];
+      return place >= 0 ? scratch.old_bounds[std::size_t(place)]
+                        : world.shapes.trees[tree_dynamic].bounds(world.shapes.at(std::int32_t(item)).leaf);
+    };
+    for (int strip = begin; strip < end; ++strip)
+      scratch.sweep.visit_strip(strip, [&](std::uint32_t a, std::uint32_t b) {
+        if (!world.contact_filter && overlaps(old_of(a), old_of(b))) return;
+        if (scratch.moved_place[a] < 0 && scratch.moved_place[b] < 0) return;
+        consider_pair(world, std::int32_t(a), std::int32_t(b), scratch.found_pairs[std::size_t(worker)]);
+      });
+  });
+  return true;
+}
+
 /// A box that overlaps none: pairs with it have not been looked for.
 template <class D>
 typename D::Bounds nowhere() {
@@ -152,13 +200,17 @@ void find_pairs(WorldImplementation<D>& world) {
     scratch.moved_place[std::size_t(scratch.moved[k])] = std::int32_t(k);
   // Where much of the tree moved, neighbours look together.
   const bool grouped = 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
-  if (grouped) group_moved(world);
+  const bool swept = grouped && sweep_dynamic(world);
+  if (grouped && !swept) group_moved(world);
   world.scheduler->parallel_for(int(scratch.moved.size()), pair_grain, [&](int begin, int end, int worker) {
-    for (int i = begin; i < end; ++i)
-      if (!grouped || world.shapes.at(scratch.moved[std::size_t(i)]).tree != tree_dynamic)
-        find_pairs_of(world, i, scratch.found_pairs[std::size_t(worker)]);
+    for (int i = begin; i < end; ++i) {
+      const bool dynamic = world.shapes.at(scratch.moved[std::size_t(i)]).tree == tree_dynamic;
+      if (!grouped || swept || !dynamic)
+        find_pairs_of(world, i, scratch.found_pairs[std::size_t(worker)],
+                      swept && dynamic ? tree_kinematic : tree_dynamic);
+    }
   });
-  if (grouped)
+  if (grouped && !swept)
     world.scheduler->parallel_for(int(scratch.group_ends.size()), group_grain, [&](int begin, int end, int worker) {
       for (int k = begin; k < end; ++k) {
         const std::size_t first = k == 0 ? 0 : std::size_t(scratch.group_ends[std::size_t(k) - 1]);
@@ -246,6 +298,7 @@ void update_trees(WorldImplementation<D>& world) {
     }
   });
   bool enlarged[3] = {};
+  std::size_t far = 0;
   for (std::size_t k = 0; k < scratch.outgrown.size(); ++k) {
     const std::int32_t s = scratch.outgrown[k];
     ShapeRecord<D>& shape = world.shapes.at(s);
@@ -256,16 +309,19 @@ void update_trees(WorldImplementation<D>& world) {
       scratch.moved.push_back(s);
       scratch.old_bounds.push_back(tree.bounds(shape.leaf));
     }
-    if (refit && shape.tree == tree_dynamic)
+    if (refit && shape.tree == tree_dynamic) {
+      far += goes_far(tree.bounds(shape.leaf), scratch.new_bounds[k]) ? 1 : 0;
       tree.set_bounds(shape.leaf, scratch.new_bounds[k]);
-    else
+    } else {
       tree.enlarge(shape.leaf, scratch.new_bounds[k]);
+    }
     enlarged[shape.tree] = true;
   }
   for (int tree = 0; tree < 3; ++tree)
     if (enlarged[tree]) {
       if (refit && tree == tree_dynamic)
-        world.shapes.trees[tree].refit();
+        // What flies is soon elsewhere, and its pairs are found without the tree (sweep_dynamic).
+        world.shapes.trees[tree].refit(2 * far > scratch.outgrown.size() ? most_worse : 1.2);
       else
         world.shapes.trees[tree].rebuild_enlarged();
     }

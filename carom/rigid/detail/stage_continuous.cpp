@@ -294,6 +294,7 @@ void pair_strays(WorldImplementation<D>& world) {
 /// it is known not to.
 template <class D>
 float meeting_time(const WorldImplementation<D>& world, const BulletPair& pair, float after) {
+  if (stay_far(world, pair)) return 2;
   const ShapeRecord<D>&own = world.shapes.at(pair.own), &other = world.shapes.at(pair.other);
   const auto fraction = [&](int side) {
     return pair.place[side] == none ? 0.0f : world.scratch.swept[std::size_t(pair.place[side])].fraction;
@@ -459,8 +460,18 @@ void stop_fast_bodies(StepContext<D>& context) {
   for (std::vector<BulletPair>& list : scratch.found_bullet_pairs) list.clear();
   for (std::vector<StrayShape<D>>& list : scratch.found_strays) list.clear();
   const auto go = [&](int begin, int end, int worker) {
+    const auto look_at_soon = [&](int k) __attribute__((always_inline)) {  // as prefetch_lines
+      const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);
+      const std::int32_t body = world.bodies.awake[place];
+      const BodyRecord& soon = world.bodies.record[std::size_t(body)];
+      __builtin_prefetch(&scratch.swept[place]);
+      prefetch_lines(&world.bodies.motion[std::size_t(body)], 128);
+      if (soon.first_shape != none) prefetch_lines(&world.shapes.at(soon.first_shape), 192);
+      if (soon.first_contact != none) prefetch_lines(&world.contacts.at(soon.first_contact >> 1), 128);
+    };
     for (int k = begin; k < end; ++k) {
       const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);
+      if (k + 3 < end) look_at_soon(k + 3);
       go_past_fixed(world, world.bodies.awake[place], place, any_bullets,
                     scratch.found_bullet_pairs[std::size_t(worker)], scratch.found_strays[std::size_t(worker)],
                     scratch.met_sensors[std::size_t(worker)]);

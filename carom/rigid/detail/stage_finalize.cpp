@@ -92,7 +92,8 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   const double most_slow = quick_share * double(motion.inner_extent);
   const bool quick = math::length_squared(way) > most_slow * most_slow;
   double farthest = 0;
-  if (quick && !has_several_shapes(world, body))
+  const bool bullet = (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;  // looks one step ahead
+  if (quick && (bullet || !has_several_shapes(world, body)))
     for (int k = 0; k < D::dimension; ++k) farthest = max(farthest, math::abs(way[k]));
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);

@@ -3,6 +3,7 @@
 
 #include "carom/rigid/detail/fly_past.h"
 #include "carom/rigid/detail/found_contacts.h"
+#include "carom/rigid/detail/shape_manifolds.h"
 #include "carom/rigid/detail/stages.h"
 // Parts of this file:
 #include "carom/rigid/detail/pair_motion.inl"
@@ -12,13 +13,6 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr int contact_grain = 128;
-
-template <class D>
-float smallest_separation(const typename D::Manifold& m) {
-  float s = m.points[0].separation;
-  for (int i = 1; i < m.count; ++i) s = min(s, m.points[i].separation);
-  return s;
-}
 
 /// Parts are named by their triangle, cell or child; what they are made of may change (edits).
 template <class D>
@@ -58,7 +52,7 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
     }
     farthest = max(farthest, closing - m.points[i].separation);
   }
-  return farthest + smallest_separation<D>(m);
+  return farthest + smallest_separation(m);
 }
 
 /// Nearer than the margin, or so near that they may meet in this step?
@@ -97,7 +91,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
     c.axis = m.normal;
     return part(world, c, a, b);
   }
-  const float separation = smallest_separation<D>(m);
+  const float separation = smallest_separation(m);
   c.gap = min(reach, separation);
   if (!of_interest(world, c, sweep, m, separation)) {
     go_on_apart(c, a, b, m);
@@ -134,7 +128,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   c.axis = {};
   int kept = 0;
   for (int i = 0; i < found.count; ++i) {
-    const float s = smallest_separation<D>(found.manifold[i]);
+    const float s = smallest_separation(found.manifold[i]);
     c.gap = min(c.gap, s);
     if (!of_interest(world, c, sweep, found.manifold[i], s)) continue;
     if (kept != i) {
@@ -181,8 +175,16 @@ bool goes_past(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>
                const ShapeRecord<Dim3>& b) {
   const std::vector<BodySweep<Dim3>>& sweeps = world.scratch.sweeps;
   const Vec3f way = sweeps[std::size_t(c.body[1])].way - sweeps[std::size_t(c.body[0])].way;
-  if (!(math::length_squared(way) > square(4 * c.inner))) return false;
-  const Vec3d base = world.bodies.motion[std::size_t(c.body[0])].center;
+  const float length_squared = math::length_squared(way);
+  if (!(length_squared > square(4 * c.inner)) || !has_inside(a.geometry) || !has_inside(b.geometry)) return false;
+  const BodyMotion<Dim3>& motion_a = world.bodies.motion[std::size_t(c.body[0])];
+  const BodyMotion<Dim3>& motion_b = world.bodies.motion[std::size_t(c.body[1])];
+  const Vec3d base = motion_a.center;
+  // Most are told by the balls about their bodies.
+  const Vec3f start(motion_b.center - base);
+  const float f = clamp(-dot(start, way) / length_squared, 0.0f, 1.0f);
+  if (math::length_squared(start + way * f) > square(motion_a.outer_extent + motion_b.outer_extent + 2 * c.margin()))
+    return true;
   const auto way_of = [&](const ShapeRecord<Dim3>& shape) {
     const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(shape.body)];
     const SolverBody<Dim3>& s = world.bodies.solver[std::size_t(shape.body)];
@@ -284,7 +286,7 @@ void send_touch_event(WorldImplementation<D>& world, const ContactRecord<D>& c, 
       float deepest = 1e30f;
       for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
         const typename D::Manifold& manifold = world.contacts.manifold(m).manifold;
-        const float depth = smallest_separation<D>(manifold);
+        const float depth = smallest_separation(manifold);
         if (depth < deepest) deepest = depth, part = manifold.material;
       }
       scratch.contact_begin.push_back(

@@ -120,8 +120,8 @@ void visit_graph(Graph& graph, Visit& visit) {
 template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, loads, hits, flights, impacts, impact_queue, solver_stages, solver_loops, sweeps, sweeping, watches,
-         old_bounds, moved_place, moved, group_places, group_ends, outgrown, new_bounds, found_pairs, met_sensors,
-         pairs, found_bullet_pairs, found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings,
+         old_bounds, moved_place, moved, group_places, group_ends, sweep, outgrown, new_bounds, found_pairs,
+         met_sensors, pairs, found_bullet_pairs, found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings,
          first_bullet_pair, swept, fast, broken, body_changes, contact_changes, found_manifolds, manifolds,
          island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches, island_restless,
          island_substeps, whole_awake, whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end,
@@ -143,6 +143,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.state(moved);
   visit.scratch(group_places);
   visit.scratch(group_ends);
+  sweep.visit_lists([&](auto& list) { visit.scratch(list); });
   visit.scratch(outgrown);
   visit.scratch(new_bounds);
   for (auto& list : found_pairs) visit.scratch(list);

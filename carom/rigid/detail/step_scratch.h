@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "carom/rigid/detail/box_sweep.h"
 #include "carom/rigid/detail/constraint_graph.h"
 #include "carom/rigid/detail/contact_watch.h"
 #include "carom/rigid/detail/joint_tree.h"
@@ -129,6 +130,7 @@ struct StepScratch {
   std::vector<std::int32_t> moved_place;       ///< by slot of the shape: place in old_bounds, or −1
   std::vector<std::int32_t> moved;             ///< shapes whose fat bounds changed
   std::vector<std::int32_t> group_places, group_ends;   ///< places in `moved` by groups of neighbours
+  BoxSweep sweep;                                       ///< of what flies, where it is sparse
   std::vector<std::int32_t> outgrown;                   ///< shapes that left their fat bounds,
   std::vector<typename D::Bounds> new_bounds;           ///< and what these become
   std::vector<std::vector<FoundPair>> found_pairs;      ///< by worker

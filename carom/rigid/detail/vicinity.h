@@ -42,12 +42,9 @@ template <class Shape, class Place, class Vector, class F>
 float for_deepest(const Shape& shape, const Shape& capsule, const Place& place, float reach, const Around<Vector>& near,
                   F&& f) {
   return for_manifolds(shape, capsule, place, reach, near, [&](const auto& m) {
-    int deepest = 0;
-    for (int k = 1; k < m.count; ++k)
-      if (m.points[k].separation < m.points[deepest].separation) deepest = k;
+    const auto& p = m.points[deepest_point(m)];
     // The manifold's point lies midway; the obstacle's own is half the separation back.
-    const float s = m.points[deepest].separation;
-    f(m.normal, s, m.points[deepest].point - m.normal * (0.5f * s));
+    f(m.normal, p.separation, p.point - m.normal * (0.5f * p.separation));
   });
 }
 

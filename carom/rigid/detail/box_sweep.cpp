@@ -1,0 +1,87 @@
+#include "carom/rigid/detail/box_sweep.h"
+
+#include <algorithm>
+
+namespace carom::rigid::detail {
+
+bool BoxSweep::take(const geometry::DynamicTree3& tree) {
+  const std::size_t count = std::size_t(tree.size());
+  const geometry::Bounds3d whole = tree.root_bounds();
+  const math::Vec3d extent = whole.high - whole.low;
+  constexpr double exact = 8e3;  // m: multiples of 2⁻¹⁰ m are exact in floats up to 16 km
+  if (count < 64 || !(extent.x < exact && extent.y < exact && extent.z < exact)) return false;
+  boxes_.clear();
+  boxes_.reserve(count);
+  math::Vec3d sum{};
+  tree.visit_leaves([&](std::uint32_t item, const geometry::Bounds3d& box) {
+    const math::Vec3d low = box.low - whole.low, high = box.high - whole.low;
+    boxes_.push_back({{float(low.x), float(low.y), float(low.z)}, {float(high.x), float(high.y), float(high.z)}, item});
+    sum += box.high - box.low;
+  });
+  int axes[3] = {0, 1, 2};  // the one first along which boxes overlap least
+  const auto share = [&](int axis) { return sum[axis] / (extent[axis] + 1e-9); };
+  if (share(axes[1]) < share(axes[0])) std::swap(axes[0], axes[1]);
+  if (share(axes[2]) < share(axes[1])) std::swap(axes[1], axes[2]);
+  if (share(axes[1]) < share(axes[0])) std::swap(axes[0], axes[1]);
+
+  // Sorted by bins along the first axis. Bins rise with the coordinate, so that what begins in a later one than that
+  // in which a box ends does not meet it.
+  const float bins_per_metre = float(bins) / (float(extent[axes[0]]) + 1e-6f);
+  const auto bin_of = [&](float x) { return std::uint16_t(math::clamp(int(x * bins_per_metre), 0, bins - 1)); };
+  std::uint32_t place[bins] = {};
+  for (Box& box : boxes_) {
+    box.key = bin_of(box.low[axes[0]]), box.last = bin_of(box.high[axes[0]]);
+    ++place[box.key];
+  }
+  std::uint32_t before = 0;
+  for (std::uint32_t& p : place) {
+    const std::uint32_t here = p;
+    p = before;
+    before += here;
+  }
+  order_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) order_[place[boxes_[i].key]++] = std::uint32_t(i);
+
+  // Strips three boxes wide.
+  const double width = 3 * sum[axes[1]] / double(count) + 1e-3;
+  const int strips = math::clamp(int(extent[axes[1]] / width), 1, most_strips);
+  first_.assign(std::size_t(strips) + 1, 0);
+  strips_per_metre_ = float(strips) / (float(extent[axes[1]]) + 1e-6f);
+  for (const Box& box : boxes_)
+    for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s)
+      ++first_[std::size_t(s) + 1];
+  std::int32_t at[most_strips];
+  std::size_t total = 0;
+  for (int s = 0; s < strips; ++s) {
+    const std::size_t here = std::size_t(first_[std::size_t(s) + 1]);
+    at[s] = std::int32_t(total);
+    first_[std::size_t(s)] = at[s];
+    total += here + padding;
+  }
+  first_[std::size_t(strips)] = std::int32_t(total);
+  if (total > 2 * count + padding * most_strips) return false;
+  const std::size_t room = 2 * count + padding * most_strips;
+  for (int k = 0; k < 3; ++k) low_[k].resize(room), high_[k].resize(room);
+  item_.resize(room), key_.resize(room), last_.resize(room);
+  for (const std::uint32_t i : order_) {
+    const Box& box = boxes_[i];
+    for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s) {
+      const std::size_t p = std::size_t(at[s]++);
+      for (int k = 0; k < 3; ++k) low_[k][p] = box.low[axes[k]], high_[k][p] = box.high[axes[k]];
+      item_[p] = box.item, key_[p] = box.key, last_[p] = box.last;
+    }
+  }
+  for (int s = 0; s < strips; ++s)
+    for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(at[s]) + k] = 1e30f;
+
+  // So many are compared: where boxes crowd, the tree is faster.
+  std::size_t compared = 0;
+  for (int s = 0; s < strips; ++s) {
+    const auto begin = key_.begin() + first_[std::size_t(s)], end = key_.begin() + at[s];
+    for (auto k = begin; k != end; ++k)
+      compared += std::size_t(std::upper_bound(k, end, last_[std::size_t(k - key_.begin())]) - k);
+  }
+  return compared < 64 * count;
+}
+
+}  // namespace carom::rigid::detail
