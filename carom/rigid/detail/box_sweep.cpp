@@ -51,10 +51,11 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
     for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s)
       ++first_[std::size_t(s) + 1];
   std::int32_t at[most_strips];
+  std::uint64_t in_strip[most_strips];
   std::size_t total = 0;
   for (int s = 0; s < strips; ++s) {
     const std::size_t here = std::size_t(first_[std::size_t(s) + 1]);
-    at[s] = std::int32_t(total);
+    at[s] = std::int32_t(total), in_strip[s] = here;
     first_[std::size_t(s)] = at[s];
     total += here + padding;
   }
@@ -63,25 +64,25 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   const std::size_t room = 2 * count + padding * most_strips;
   for (int k = 0; k < 3; ++k) low_[k].resize(room), high_[k].resize(room);
   item_.resize(room), key_.resize(room), last_.resize(room);
-  for (const std::uint32_t i : order_) {
-    const Box& box = boxes_[i];
+  std::uint64_t compared = 0;  // times their number: with what begins before a box ends, as far as it is in its strips
+  for (std::size_t k = 0; k < count; ++k) {
+    const Box& box = boxes_[order_[k]];
+    const std::uint64_t met = place[box.last] - k;  // by now the end of that bin
     for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s) {
+      compared += met * in_strip[s];
       const std::size_t p = std::size_t(at[s]++);
-      for (int k = 0; k < 3; ++k) low_[k][p] = box.low[axes[k]], high_[k][p] = box.high[axes[k]];
+      for (int axis = 0; axis < 3; ++axis) {
+        low_[axis][p] = box.low[axes[axis]];
+        high_[axis][p] = box.high[axes[axis]];
+      }
       item_[p] = box.item, key_[p] = box.key, last_[p] = box.last;
     }
   }
+  const std::uint64_t most = 64 * std::uint64_t(count);
+  if (compared > most * std::uint64_t(count)) return false;  // where boxes crowd, the tree is faster
   for (int s = 0; s < strips; ++s)
     for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(at[s]) + k] = 1e30f;
-
-  // So many are compared: where boxes crowd, the tree is faster.
-  std::size_t compared = 0;
-  for (int s = 0; s < strips; ++s) {
-    const auto begin = key_.begin() + first_[std::size_t(s)], end = key_.begin() + at[s];
-    for (auto k = begin; k != end; ++k)
-      compared += std::size_t(std::upper_bound(k, end, last_[std::size_t(k - key_.begin())]) - k);
-  }
-  return compared < 64 * count;
+  return true;
 }
 
 }  // namespace carom::rigid::detail

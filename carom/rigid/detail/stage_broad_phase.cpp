@@ -133,19 +133,19 @@ void group_moved(WorldImplementation<D>& world) {
   if (count > 0) scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
 }
 
-/// Did a box go on by a quarter of its size?
+/// Did a box go on by an eighth of its size?
 template <class Bounds>
 bool goes_far(const Bounds& old, const Bounds& now) {
-  const auto way = abs(now.center() - old.center()), quarter = 0.25 * (old.high - old.low);
+  const auto way = abs(now.center() - old.center()), eighth = 0.125 * (old.high - old.low);
   for (int k = 0; k < geometry::detail::Axes<std::decay_t<decltype(way)>>::count; ++k)
-    if (way[k] > quarter[k]) return true;
+    if (way[k] > eighth[k]) return true;
   return false;
 }
 
 /// Do the bounds of most that forces move go far? Some are asked.
 bool most_fly(const WorldImplementation<Dim3>& world) {
   const StepScratch<Dim3>& scratch = world.scratch;
-  if (4 * scratch.moved.size() < 3 * std::size_t(world.shapes.trees[tree_dynamic].size())) return false;
+  if (2 * scratch.moved.size() < std::size_t(world.shapes.trees[tree_dynamic].size())) return false;
   constexpr std::size_t asked = 64;
   int fly = 0;
   for (std::size_t k = 0; k < asked; ++k) {
