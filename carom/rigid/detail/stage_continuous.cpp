@@ -45,6 +45,7 @@ void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const t
       const ContactRecord<D>& c = world.contacts.at(key >> 1);
       const int side = key & 1;
       key = c.next[side];
+      if (key != none) __builtin_prefetch(&world.contacts.at(key >> 1));
       if (c.shape[side] != s || (c.flags & contact_passing) != 0) continue;
       const ShapeRecord<D>& other = world.shapes.at(c.shape[1 - side]);
       if ((kinds >> other.tree & 1u) != 0 && overlaps(world.shapes.trees[other.tree].bounds(other.leaf), box))
