@@ -310,7 +310,7 @@ void update_trees(WorldImplementation<D>& world) {
       scratch.old_bounds.push_back(tree.bounds(shape.leaf));
     }
     if (refit && shape.tree == tree_dynamic) {
-      far += goes_far(tree.bounds(shape.leaf), scratch.new_bounds[k]) ? 1 : 0;
+      if (D::dimension == 3 && goes_far(tree.bounds(shape.leaf), scratch.new_bounds[k])) ++far;
       tree.set_bounds(shape.leaf, scratch.new_bounds[k]);
     } else {
       tree.enlarge(shape.leaf, scratch.new_bounds[k]);
