@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace carom::math {
 
@@ -25,11 +26,14 @@ constexpr T clamp(T x, T low, T high) {
 }
 template <class T>
 constexpr T abs(T x) {
-  return x < T(0) ? -x : (x == T(0) ? T(0) : x);
+  // One instruction where comparisons are two branches that cannot be foretold.
+  if constexpr (std::is_same_v<T, float>)
+    return __builtin_fabsf(x);
+  else if constexpr (std::is_same_v<T, double>)
+    return __builtin_fabs(x);
+  else
+    return x < T(0) ? -x : (x == T(0) ? T(0) : x);
 }
-// One instruction where the lines above are two branches that cannot be foretold.
-constexpr float abs(float x) { return __builtin_fabsf(x); }
-constexpr double abs(double x) { return __builtin_fabs(x); }
 template <class T>
 constexpr T square(T x) {
   return x * x;
