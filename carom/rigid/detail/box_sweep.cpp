@@ -45,6 +45,7 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   // Strips three boxes wide.
   const double width = 3 * sum[axes[1]] / double(count) + 1e-3;
   const int strips = math::clamp(int(extent[axes[1]] / width), 1, most_strips);
+  first_.reserve(most_strips + 1);  // the number of strips goes up and down from step to step
   first_.assign(std::size_t(strips) + 1, 0);
   strips_per_metre_ = float(strips) / (float(extent[axes[1]]) + 1e-6f);
   for (const Box& box : boxes_)
