@@ -163,10 +163,11 @@ core::Status BodyRocket::drop(rigid::World3& world, const rigid::BodyState<Dim3>
   const double burnt = stage.dry_mass + stage.motor.mass - stage.motor.propellant_mass,
                length = extent.bottom - extent.top, along = burnt * math::square(rocket.diameter) / 8;
   const Vec3d middle{rocket.length - stage.dry_centre, 0, 0};
+  const std::string name = d.name + " stage " + std::to_string(index + 1);
   rigid::BodyDef<Dim3> body;
   body.position = state.pose.position;
   body.rotation = state.pose.rotation;
-  body.name = d.name + " stage " + std::to_string(index + 1);
+  body.name = name;
   const auto made = world.create_body(body);
   if (!made.ok()) return made.error();
   dropped_.push_back(*made);

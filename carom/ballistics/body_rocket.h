@@ -28,9 +28,9 @@ struct BodyRocketDef {
 
 /// Its body has the x axis forward, out of the nose, and the origin at the tail. Each step takes the model through it
 /// in eight Runge–Kutta steps from where the body is, and gives the body what it needs to arrive with that velocity and
-/// turning; the rail is a force that leaves it only the way along. What touches it acts besides. A stage that drops is
-/// a body of its own with the drag of a cylinder across the air; it waits, disabled, until then. A rocket hangs from
-/// its open parachute by the nose. Copy it with a snapshot of the world, and restore both.
+/// turning; the rail is a force that leaves it only the way along. What touches it acts besides. A stage that drops
+/// becomes a body of its own with the drag of a cylinder across the air. A rocket hangs from its open parachute by the
+/// nose. Copy it with a snapshot of the world, and restore both.
 class CAROM_API BodyRocket {
  public:
   /// Makes the bodies. Errors: what fly_rocket and the world refuse.

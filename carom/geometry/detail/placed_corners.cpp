@@ -91,7 +91,8 @@ void PlacedCorners::place_edges() const {
       const int axis = edge / 4, u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
       from = (edge & 1 ? u : 0) | (edge & 2 ? v : 0), to = from | 1 << axis;
     } else {
-      from = hull_->edges[std::size_t(2 * edge)].origin, to = hull_->edges[std::size_t(2 * edge) + 1].origin;
+      const auto* half_edge = &hull_->edges[2 * std::size_t(edge)];
+      from = half_edge[0].origin, to = half_edge[1].origin;
     }
     const Vec3f start = corner(from), way = corner(to) - start;
     float* lane = edges_ + 24 * (i / 4) + i % 4;
