@@ -30,13 +30,13 @@ const {metafile} = await build({
 });
 cpSync(join(here, 'src/icon.svg'), join(out, 'icon.svg'));
 
-/** Scenes by NAME.json, presets by presets/KIND/NAME.json: the names by which scene files ask for each other. */
+/** Scenes by NAME.json, presets by presets/KIND/NAME.json or, of motors, .eng: the names by which scene files ask for each other. */
 function dataFiles() {
   const files = {};
   for (const entry of readdirSync(join(root, 'scenes'), {withFileTypes: true}))
     if (entry.isFile() && entry.name.endsWith('.json')) files[entry.name] = readFileSync(join(root, 'scenes', entry.name), 'utf8');
   for (const name of readdirSync(join(root, 'presets'), {recursive: true}))
-    if (name.endsWith('.json')) files[relative(root, join(root, 'presets', name))] = readFileSync(join(root, 'presets', name), 'utf8');
+    if (/\.(json|eng)$/.test(name)) files[relative(root, join(root, 'presets', name))] = readFileSync(join(root, 'presets', name), 'utf8');
   return files;
 }
 /**
