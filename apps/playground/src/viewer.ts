@@ -71,6 +71,7 @@ export class Viewer {
   /** A new demo: camera, dimension, nothing drawn yet. */
   open(dimension: 2 | 3, camera: Camera): void {
     this.stale = true;
+    this.lost = '';
     this.clear();
     this.bodies.open(dimension);
     this.dimension = dimension;
@@ -160,8 +161,21 @@ export class Viewer {
     this.fresh = false;
   }
 
-  addBody(body: Body): void { this.stale = true; this.bodies.add(body, this.origin); }
-  removeBodies(ids: number[]): void { this.stale = true; this.bodies.remove(ids); }
+  addBody(body: Body): void {
+    this.stale = true;
+    this.bodies.add(body, this.origin);
+    if (!this.lost || body.name !== this.lost) return;
+    // What changes its shapes comes again under another number.
+    if (this.home.follow === this.follow) this.home = {...this.home, follow: body.id};
+    this.follow = body.id;
+    this.lost = '';
+  }
+  removeBodies(ids: number[]): void {
+    this.stale = true;
+    if (ids.includes(this.follow)) this.lost = this.bodies.get(this.follow)?.body.name ?? '';
+    this.bodies.remove(ids);
+  }
+  private lost = '';  // the name of the body that was followed, when it is gone
   addMesh(mesh: Mesh): void { this.stale = true; this.bodies.addMesh(mesh); }
   setPoints(points: Points): void { this.stale = true; this.cloud.set(points, this.origin.clone().negate(), this.dimension === 2); }
   setSurface(surface: Surface): void { this.stale = true; this.surfaces.set(surface, this.origin.clone().negate(), this.dimension === 2); }
