@@ -121,7 +121,7 @@ core::Result<BodyRocket> BodyRocket::make(rigid::World3& world, const BodyRocket
   shape.density = 0;
   rigid::BodyDef<Dim3> body;
   body.position = d.launch.position;
-  body.rotation = turn_from({1, 0, 0}, flight->run.rail_);
+  body.rotation = turn_from({1, 0, 0}, flight->run.rail);
   body.name = d.name;
   const auto id = world.create_body(body);
   if (!id.ok()) return id.error();
@@ -144,7 +144,7 @@ core::Result<BodyRocket> BodyRocket::make(rigid::World3& world, const BodyRocket
 
 core::Status BodyRocket::set_mass(rigid::World3& world, double time) {
   const Rocket& rocket = flight_->definition.rocket;
-  const detail::MassNow now = detail::mass_at(rocket, flight_->run.schedule_, time);
+  const detail::MassNow now = detail::mass_at(rocket, flight_->run.schedule, time);
   if (now.mass == mass_ && now.centre == centre_) return {};
   mass_ = now.mass, centre_ = now.centre, inertia_ = now.inertia;
   const double along = now.mass * math::square(rocket.diameter) / 8;
@@ -201,7 +201,7 @@ core::Status BodyRocket::before_step(rigid::World3& world, double dt) {
   const detail::RocketRun& run = flight_->run;
   double time = world.time() - d.start;
   just_dropped_ = false;
-  while (time >= run.schedule_.stages[dropped_.size()].separation - 1e-9) {  // the last one's is never
+  while (time >= run.schedule.stages[dropped_.size()].separation - 1e-9) {  // the last one's is never
     if (auto s = drop(world, *state); !s) return s;
     just_dropped_ = true;
   }
@@ -217,13 +217,13 @@ core::Status BodyRocket::before_step(rigid::World3& world, double dt) {
   }
   const Vec3d axis = rotate(math::Quatd(state->pose.rotation), Vec3d{1, 0, 0});
   detail::RocketState s{state->center_of_mass, velocity, axis, cross(spin, axis)};
-  thrust_ = detail::mass_at(rocket, run.schedule_, time).thrust;
-  const double tail = dot(state->pose.position - d.launch.position, run.rail_);
+  thrust_ = detail::mass_at(rocket, run.schedule, time).thrust;
+  const double tail = dot(state->pose.position - d.launch.position, run.rail);
   constexpr int parts = 8;
   const double h = dt / parts;
   Vec3d turned = spin;
   for (int k = 0; k < parts; ++k, time += h) {
-    if (on_rail_ && tail + dot(s.position - state->center_of_mass, run.rail_) >= d.launch.rail_length) on_rail_ = false;
+    if (on_rail_ && tail + dot(s.position - state->center_of_mass, run.rail) >= d.launch.rail_length) on_rail_ = false;
     if (!on_rail_ && !apex_passed_ && s.velocity.y < 0) {
       apex_passed_ = true;
       if (rocket.parachute.drag_area > 0 && deploy_at_ < 0) deploy_at_ = time + rocket.parachute.deploy_delay;

@@ -12,7 +12,7 @@
 namespace carom::ballistics {
 
 namespace detail {
-class RocketRun;
+struct RocketRun;
 }
 
 struct BodyRocketDef {

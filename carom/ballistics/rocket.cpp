@@ -70,14 +70,15 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
   if (!checked.ok()) return checked.error();
   if (!(limits.time > 0) || !math::is_finite(limits.time))
     return core::Error{core::refused("time limit of a flight", limits.time, "a finite number of seconds > 0")};
-  detail::RocketRun run(rocket, conditions, launch, model);
+  const detail::RocketRun run(rocket, conditions, launch, model);
+  bool on_rail = true, under_parachute = false;
   using State = detail::RocketState;
-  State state{launch.position, {}, run.rail_, {}};
+  State state{launch.position, {}, run.rail, {}};
   std::vector<Trajectory::Node> nodes;
   std::vector<double> masses;
   std::vector<RocketMoment> events;
   double time = 0, largest_angle = 0;
-  const auto derivative = [&](double t, const State& s) { return run.derivative(t, s); };
+  const auto derivative = [&](double t, const State& s) { return run.derivative(t, s, on_rail, under_parachute); };
   const auto add_node = [&] {
     nodes.push_back({time, state.position, state.velocity, derivative(time, state).velocity});
     masses.push_back(run.mass(time));
@@ -89,7 +90,7 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
   // corners of the thrust curve, which are stops of their own.
   std::vector<double> stops;
   for (std::size_t i = 0; i < rocket.stages.size(); ++i) {
-    const auto& entry = run.schedule_.stages[i];
+    const auto& entry = run.schedule.stages[i];
     for (const ThrustPoint& p : rocket.stages[i].motor.curve.points()) stops.push_back(entry.ignition + p.time);
     stops.push_back(entry.separation);
   }
@@ -99,14 +100,14 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
   std::vector<char> ignited(rocket.stages.size(), 0), burnt(rocket.stages.size(), 0), dropped(rocket.stages.size(), 0);
   while (time < limits.time && !landed) {
     for (std::size_t i = 0; i < rocket.stages.size(); ++i) {
-      const auto& entry = run.schedule_.stages[i];
+      const auto& entry = run.schedule.stages[i];
       const int stage = int(i) + 1;
       if (!ignited[i] && time >= entry.ignition) ignited[i] = 1, tell(RocketEvent::ignition, stage);
       if (!burnt[i] && time >= entry.burnout) burnt[i] = 1, tell(RocketEvent::burnout, stage);
       if (!dropped[i] && time >= entry.separation) dropped[i] = 1, tell(RocketEvent::separation, stage);
     }
-    if (deploy_at >= 0 && time >= deploy_at && !run.under_parachute) {
-      run.under_parachute = true;
+    if (deploy_at >= 0 && time >= deploy_at && !under_parachute) {
+      under_parachute = true;
       tell(RocketEvent::parachute);
     }
     double until = math::min(limits.time, time + (model == RocketModel::six_degrees ? 0.02 : 0.25));
@@ -122,10 +123,10 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
       const auto consider = [&](double value, int kind) {
         if (value < first) first = value, what = kind;
       };
-      if (run.on_rail) consider(launch.rail_length - math::dot(s.position - launch.position, run.rail_), rail);
-      if (!run.on_rail && !apex_passed) consider(s.velocity.y, apex);
+      if (on_rail) consider(launch.rail_length - math::dot(s.position - launch.position, run.rail), rail);
+      if (!on_rail && !apex_passed) consider(s.velocity.y, apex);
       if (apex_passed && deploy_at >= 1e299) consider(s.position.y - rocket.parachute.deploy_height, height);
-      if (!run.on_rail && s.velocity.y < 0) consider(s.position.y - limits.ground, ground);
+      if (!on_rail && s.velocity.y < 0) consider(s.position.y - limits.ground, ground);
       return first;
     };
     bool found = false;
@@ -137,13 +138,13 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
     time = solver.t();
     state = solver.y();
     if (math::length(state.axis) > 0) state.axis = state.axis / math::length(state.axis);
-    if (!run.on_rail && model == RocketModel::six_degrees && !run.under_parachute && math::length(state.velocity) > 5)
+    if (!on_rail && model == RocketModel::six_degrees && !under_parachute && math::length(state.velocity) > 5)
       largest_angle = math::max(largest_angle, run.angle_of_attack(state));
     if (found) {
       event(time, state);
       if (what == rail) {
-        run.on_rail = false;
-        state.axis = run.rail_;
+        on_rail = false;
+        state.axis = run.rail;
         tell(RocketEvent::rail_exit);
       } else if (what == apex) {
         apex_passed = true;

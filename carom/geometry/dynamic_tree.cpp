@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "carom/core/growth.h"
+
 namespace carom::geometry {
 namespace {
 template <class V>
@@ -20,9 +22,7 @@ int DynamicTree<V>::take_node() {
     nodes_[std::size_t(node)] = Node{};
     return node;
   }
-  // Not to the double: a large world at rest should pay for what it holds.
-  if (const std::size_t now = nodes_.size(); now == nodes_.capacity())
-    nodes_.reserve(now + now / (now < (1 << 16) ? 4 : 2) + 16);
+  core::grow_a_little(nodes_);
   nodes_.push_back(Node{});
   return int(nodes_.size()) - 1;
 }

@@ -56,19 +56,11 @@ core::Result<ballistics::Motor> read_motor(const Node& stage, std::string_view f
   if (!text) return preset_error(file, *name, at + ".motor", text.error().message);
   const auto motors = ballistics::read_rasp(*text, path);
   if (!motors) return preset_error(file, *name, at + ".motor", motors.error().message);
-  if (motors->empty()) return preset_error(file, *name, at + ".motor", path + " has no motor");
   const Node* const wanted = stage.find("designation");
-  if (wanted == nullptr) return motors->front();
-  if (!wanted->is_text())
-    return preset_error(file, *wanted, at + ".designation",
-                        "found " + detail::show(*wanted) + ", expected a motor's name");
-  std::string found;
-  for (const ballistics::Motor& motor : *motors) {
-    if (motor.name == wanted->text) return motor;
-    found += (found.empty() ? "" : ", ") + motor.name;
-  }
-  return preset_error(file, *wanted, at + ".designation",
-                      core::text("found ", core::quoted(wanted->text), ", expected one of ", path, ": ", found));
+  auto motor = detail::choose_motor(*motors, path, wanted);
+  if (motor) return std::move(*motor);
+  return wanted == nullptr ? preset_error(file, *name, at + ".motor", motor.error().message)
+                           : preset_error(file, *wanted, at + ".designation", motor.error().message);
 }
 
 }  // namespace

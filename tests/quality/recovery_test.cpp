@@ -85,13 +85,7 @@ TYPED_TEST(QualityRecovery, NoNumber) {
   add_ground(world);
   std::vector<BodyId> stack;
   for (int i = 0; i < 5; ++i) stack.push_back(add_box<D>(world, rigid::test::at<D>(0, 0.5 + i)));
-  CustomEffector<D> broken;
-  broken.body = stack[2];
-  broken.model = [](const EffectorInput<D>& in) {
-    Wrench<D> w;
-    if (in.time > 0.2) w.force.y = std::numeric_limits<float>::quiet_NaN();
-    return w;
-  };
+  const CustomEffector<D> broken = breaks<D>(stack[2]);
   world.add_effector(broken).value();
   long named = 0, others = 0, spoiled = 0;
   for (int i = 0; i < 240; ++i) {

@@ -156,13 +156,7 @@ TYPED_TEST(WorldEvents, ABodyBrokenByAUserIsQuarantinedAlone) {
     add_ground(*w);
     for (int i = 0; i < 5; ++i) (w == &world ? stack : other).push_back(add_box<D>(*w, at<D>(0, 0.5 + i)));
   }
-  CustomEffector<D> broken;
-  broken.body = stack[2];
-  broken.model = [](const EffectorInput<D>& in) {
-    Wrench<D> w;
-    if (in.time > 0.2) w.force.y = std::numeric_limits<float>::quiet_NaN();
-    return w;
-  };
+  const CustomEffector<D> broken = breaks<D>(stack[2]);
   world.add_effector(broken).value();
   world.add_effector(broken).value();  // twice, told once
   int told = 0;

@@ -1,6 +1,8 @@
 // Small pieces from which the tests of this folder build their scenes.
 #pragma once
 
+#include <limits>
+
 #include "mechanics_world.h"
 
 namespace carom::rigid::test {
@@ -71,6 +73,18 @@ template <class D>
 BodyId add_ball(World<D>& world, typename D::Position position, float radius, const Surface& surface = {},
                 typename D::Vector velocity = {}) {
   return add_body<D>(world, BodyType::dynamic, ball_shape<D>(radius), position, surface, velocity);
+}
+/// A model whose force is no number after 0.2 s.
+template <class D>
+CustomEffector<D> breaks(BodyId body) {
+  CustomEffector<D> broken;
+  broken.body = body;
+  broken.model = [](const EffectorInput<D>& in) {
+    Wrench<D> w;
+    if (in.time > 0.2) w.force.y = std::numeric_limits<float>::quiet_NaN();
+    return w;
+  };
+  return broken;
 }
 template <class D>
 void run(World<D>& world, int steps) {

@@ -2,22 +2,18 @@
 #include <gtest/gtest.h>
 
 #include "carom/scene/scene.h"
+#include "tests/scene/scene_world.h"
 
 namespace carom::scene {
 namespace {
 
-SceneWorld started(const std::string& text) {
-  const Result<Scene> scene = parse_scene(text, "scenes/x.json", {});
-  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
-  return scene->instantiate().value();
-}
+SceneWorld started(const std::string& text) { return test::started(parse_scene(text, "scenes/x.json", {})); }
 std::string fault_of(const std::string& text) {
   const Result<Scene> scene = parse_scene(text, "scenes/x.json", {});
   if (!scene.ok()) return scene.error().message;
   const Result<SceneWorld> world = scene->instantiate();
   return world.ok() ? "" : world.error().message;
 }
-double value_of(const SceneWorld& world, const char* quantity) { return world.read(world.probe(quantity).value()); }
 
 // A square ring of tiles has two outlines, one round it and one round its cave: 12 tiles on 4 by 4 with a hole of 2
 // by 2.
@@ -34,7 +30,7 @@ TEST(SceneTiles, AreTheirOutlines) {
     EXPECT_EQ(world.world2->shape_geometry(s)->chain->points.size(), 4u) << "straight runs are one segment";
   }
   for (int i = 0; i < 120; ++i) world.world2->step(1.0f / 60).value();
-  EXPECT_NEAR(value_of(world, "ball.position.y"), 0.7, 0.01) << "it lies on the floor of the cave";
+  EXPECT_NEAR(test::read(world, "ball.position.y"), 0.7, 0.01) << "it lies on the floor of the cave";
 }
 
 TEST(SceneTiles, AreRefusedWhereTheyAreNone) {
@@ -69,13 +65,13 @@ TEST(SceneCharacters, WalkAsTheyAreTold) {
   ASSERT_EQ(world.characters.size(), 3u);
   ASSERT_EQ(world.bodies.size(), 4u);
   EXPECT_TRUE(world.find_body("legs")->colored);
-  EXPECT_NEAR(value_of(world, "legs.mass"), 70, 0.01);
+  EXPECT_NEAR(test::read(world, "legs.mass"), 70, 0.01);
   for (int i = 0; i < 60; ++i) world.step().value();
-  EXPECT_NEAR(value_of(world, "legs.velocity.x"), 2, 0.02);
-  EXPECT_NEAR(value_of(world, "ghost_1.position.z"), 5, 0.05);
+  EXPECT_NEAR(test::read(world, "legs.velocity.x"), 2, 0.02);
+  EXPECT_NEAR(test::read(world, "ghost_1.position.z"), 5, 0.05);
   scene->apply(world, std::vector<ParameterValue>{{"pace", 1}}).value();
   for (int i = 0; i < 60; ++i) world.step().value();
-  EXPECT_NEAR(value_of(world, "legs.velocity.x"), 1, 0.02);
+  EXPECT_NEAR(test::read(world, "legs.velocity.x"), 1, 0.02);
   SceneWorld again = scene->instantiate().value();
   for (int i = 0; i < 60; ++i) again.step().value();
   scene->apply(again, std::vector<ParameterValue>{{"pace", 1}}).value();

@@ -8,47 +8,32 @@
 
 #include "carom/scene/scene.h"
 #include "carom/scene/write_scene.h"
+#include "tests/scene/scene_world.h"
+#include "tests/scene/source_file.h"
 
 namespace scene_destruction_test {
 using namespace carom;
 using scene::ParameterValue;
 using scene::Scene;
 using scene::SceneWorld;
+using scene::test::read;
+using scene::test::read_source;
 
-std::string read_file(const std::string& path) {
-  std::string text;
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text.push_back(char(c));
-    std::fclose(file);
-  }
-  return text;
-}
 /// A tetrahedron of edge √2 m with its corners counterclockwise seen from outside.
 constexpr const char* tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 scene::Result<Scene> parse(const std::string& text) {
   const scene::Resolver resolver = [](std::string_view path) -> scene::Result<std::string> {
     if (path == "solid.obj") return std::string(tetrahedron);
     if (path == "open.obj") return std::string(tetrahedron).substr(0, std::string(tetrahedron).rfind("f 2"));
-    std::string found = read_file(std::string(CAROM_SOURCE_DIR) + "/" + std::string(path));
-    if (found.empty()) return core::Error{"no such file"};
-    return found;
+    return read_source(path);
   };
   return scene::parse_scene(text, "s.json", resolver);
 }
 SceneWorld start(const std::string& text, std::vector<ParameterValue> values = {}) {
-  const auto scene = parse(text);
-  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
-  auto world = scene.ok() ? scene->instantiate(values) : scene::Result<SceneWorld>(SceneWorld());
-  EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
-  return world.ok() ? std::move(world).value() : SceneWorld();
+  return scene::test::started(parse(text), values);
 }
 void run(SceneWorld& world, double seconds) {
   while (world.time() < seconds - 1e-9) ASSERT_TRUE(world.step().ok());
-}
-double read(const SceneWorld& world, const char* quantity) {
-  const auto probe = world.probe(quantity);
-  EXPECT_TRUE(probe.ok()) << (probe.ok() ? "" : probe.error().message);
-  return probe.ok() ? world.read(*probe) : 0;
 }
 std::string message(const std::string& keys, int dimension = 3) {
   const auto s = parse("{\"dimension\": " + std::to_string(dimension) + ", " + keys + "}");
@@ -307,7 +292,7 @@ TEST(SceneDestruction, ErrorsNameTheirPlace) {
       {R"("explosions": [{"mass": 1, "casing": "nobody"}])", "expected the name of a body"},
       {R"("explosions": [{"mass": 1, "name": "a"}, {"mass": 1, "name": "a"}])", "a second time"},
       {R"("guns": [{}])", "the key \"ammunition\" is missing"},
-      {R"("guns": [{"ammunition": "nothing"}])", "no such file"},
+      {R"("guns": [{"ammunition": "nothing"}])", "no file presets/ammunition/nothing.json"},
       {R"("guns": [{"ammunition": "../x"}])", "expected the name of a preset"},
       {R"("guns": [{"ammunition": 5}])", "guns[0].ammunition"},
       {R"("guns": [{"ammunition": {"mass": -1}}])", "guns[0].ammunition.mass"},
@@ -321,7 +306,7 @@ TEST(SceneDestruction, ErrorsNameTheirPlace) {
       {R"("guns": [{"ammunition": {}, "calibre": 5}])", "calibre"},
       {R"("penetration": [{"wall": []}])", "a list of 1 to 100 layers"},
       {R"("penetration": [{"wall": [{"thickness": "-1 m"}]}])", "penetration[0].wall"},
-      {R"("penetration": [{"wall": "nothing"}])", "no such file"},
+      {R"("penetration": [{"wall": "nothing"}])", "no file presets/wall/nothing.json"},
       {R"("structures": [{}])", "the key \"shape\" is missing"},
       {R"("structures": [{"shape": {"type": "plane"}}])", "does not break"},
       {R"("structures": [{"shape": {"type": "mesh", "file": "open.obj"}}])", "structures[0]"},

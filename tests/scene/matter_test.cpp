@@ -7,41 +7,19 @@
 #include <algorithm>
 
 #include "carom/scene/scene.h"
+#include "tests/scene/scene_world.h"
+#include "tests/scene/source_file.h"
 
 namespace scene_matter_test {
 using namespace carom;
 using scene::Scene;
 using scene::SceneWorld;
+using scene::test::read;
+using scene::test::read_source;
 
 std::string presets_folder() { return std::string(CAROM_SOURCE_DIR) + "/presets/"; }
-std::string read_file(const std::string& path) {
-  std::string text;
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text.push_back(char(c));
-    std::fclose(file);
-  }
-  return text;
-}
-scene::Result<Scene> parse(const std::string& text) {
-  const scene::Resolver resolver = [](std::string_view path) -> scene::Result<std::string> {
-    std::string found = read_file(presets_folder() + std::string(path.substr(8)));
-    if (found.empty()) return core::Error{"no such preset"};
-    return found;
-  };
-  return scene::parse_scene(text, "matter.json", resolver);
-}
-SceneWorld start(const std::string& text) {
-  const auto scene = parse(text);
-  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
-  auto world = scene.ok() ? scene->instantiate() : scene::Result<SceneWorld>(SceneWorld());
-  EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
-  return world.ok() ? std::move(world).value() : SceneWorld();
-}
-double read(const SceneWorld& world, const char* quantity) {
-  const auto probe = world.probe(quantity);
-  EXPECT_TRUE(probe.ok()) << (probe.ok() ? "" : probe.error().message);
-  return probe.ok() ? world.read(*probe) : 0;
-}
+scene::Result<Scene> parse(const std::string& text) { return scene::parse_scene(text, "matter.json", read_source); }
+SceneWorld start(const std::string& text) { return scene::test::started(parse(text)); }
 
 struct Kind {
   const char *folder, *list, *rest;

@@ -9,26 +9,18 @@
 #include "carom/scene/rocket_presets.h"
 #include "carom/scene/scene.h"
 #include "carom/scene/write_scene.h"
+#include "tests/scene/scene_world.h"
 #include "tests/scene/source_file.h"
 
 namespace rocket_scene_test {
 using namespace carom;
 using scene::Scene;
 using scene::SceneWorld;
+using scene::test::read;
 using scene::test::read_source;
 
 SceneWorld start(const std::string& keys) {
-  const auto scene = scene::parse_scene("{\"dimension\": 3, " + keys + "}", "s.json", read_source);
-  EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
-  if (!scene) return {};
-  auto world = scene->instantiate();
-  EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
-  return world.ok() ? std::move(world).value() : SceneWorld();
-}
-double read(const SceneWorld& world, const char* quantity) {
-  const auto probe = world.probe(quantity);
-  EXPECT_TRUE(probe.ok()) << (probe.ok() ? "" : probe.error().message);
-  return probe.ok() ? world.read(*probe) : 0;
+  return scene::test::started(scene::parse_scene("{\"dimension\": 3, " + keys + "}", "s.json", read_source));
 }
 
 struct Case {

@@ -12,6 +12,7 @@
 #include "carom/scene/recording.h"
 #include "carom/scene/scene.h"
 #include "carom/scene/write_scene.h"
+#include "tests/scene/scene_world.h"
 #include "tests/scene/source_file.h"
 
 namespace carom::scene {
@@ -53,15 +54,9 @@ std::string parse_error(std::string_view text) {
   return world.ok() ? "accepted" : world.error().message;
 }
 SceneWorld start(const Scene& scene, std::span<const ParameterValue> values = {}) {
-  Result<SceneWorld> world = scene.instantiate(values);
-  EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
-  return world ? std::move(world).value() : SceneWorld();
+  return test::started(scene, values);
 }
-double read(const SceneWorld& world, std::string_view quantity) {
-  const Result<Probe> probe = world.probe(quantity);
-  EXPECT_TRUE(probe.ok()) << (probe.ok() ? "" : probe.error().message);
-  return probe.ok() ? world.read(*probe) : 0;
-}
+using test::read;
 
 class EverySceneFile : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, EverySceneFile, testing::ValuesIn(scene_files()),

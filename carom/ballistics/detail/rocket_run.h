@@ -75,54 +75,44 @@ inline MassNow mass_at(const Rocket& rocket, const Schedule& schedule, double ti
   return now;
 }
 
-class RocketRun {
- public:
-  RocketRun(const Rocket& rocket, const Conditions& conditions, const Launch& launch, RocketModel model)
-      : rocket_(rocket),
-        conditions_(conditions),
-        launch_(launch),
-        model_(model),
-        schedule_(rocket),
-        stability_(barrowman(rocket)) {
-    rail_ = math::normalize(launch.direction);
-  }
+/// What moves a rocket; what it refers to must outlive it.
+struct RocketRun {
+  RocketRun(const Rocket& r, const Conditions& c, const Launch& l, RocketModel m)
+      : rocket(r), conditions(c), model(m), schedule(r), stability(barrowman(r)), rail(math::normalize(l.direction)) {}
 
-  RocketState derivative(double time, const RocketState& s) const {
-    return derivative(time, s, on_rail, under_parachute);
-  }
   RocketState derivative(double time, const RocketState& s, bool on_rail, bool under_parachute) const {
-    const MassNow now = mass_at(rocket_, schedule_, time);
-    const Vec3d g = point_mass_acceleration({}, conditions_, s.position, s.velocity);
-    const environment::AirColumn::Air air = conditions_.air.at(s.position.y);
-    const Vec3d w = s.velocity - conditions_.wind.at(s.position.y);
-    const double speed = math::length(w), area = math::pi / 4 * rocket_.diameter * rocket_.diameter;
+    const MassNow now = mass_at(rocket, schedule, time);
+    const Vec3d g = point_mass_acceleration({}, conditions, s.position, s.velocity);
+    const environment::AirColumn::Air air = conditions.air.at(s.position.y);
+    const Vec3d w = s.velocity - conditions.wind.at(s.position.y);
+    const double speed = math::length(w), area = math::pi / 4 * rocket.diameter * rocket.diameter;
     const double q = 0.5 * air.density * speed * speed;
     if (under_parachute) {
-      const Vec3d drag = (-0.5 * air.density * rocket_.parachute.drag_area * speed / now.mass) * w;
+      const Vec3d drag = (-0.5 * air.density * rocket.parachute.drag_area * speed / now.mass) * w;
       return {s.velocity, g + drag, {}, {}};
     }
-    const DragCurve& curve = now.thrust > 0 ? rocket_.drag : rocket_.coasting_drag;
+    const DragCurve& curve = now.thrust > 0 ? rocket.drag : rocket.coasting_drag;
     const double cd = curve(speed / air.speed_of_sound);
     Vec3d e = s.axis / math::length(s.axis);
     if (on_rail)
-      e = rail_;
-    else if (model_ == RocketModel::point_mass)
-      e = speed > 1e-6 ? w / speed : rail_;
+      e = rail;
+    else if (model == RocketModel::point_mass)
+      e = speed > 1e-6 ? w / speed : rail;
     Vec3d force = now.thrust * e - (q * area * cd) * (speed > 0 ? w / speed : Vec3d{});
     RocketState out{s.velocity, {}, {}, {}};
-    if (!on_rail && model_ == RocketModel::six_degrees) {
+    if (!on_rail && model == RocketModel::six_degrees) {
       // The air meets the centre of pressure with the turning of the axis: that damps.
-      const double arm = stability_.centre_of_pressure - now.centre;  // > 0: behind the centre of mass
+      const double arm = stability.centre_of_pressure - now.centre;  // > 0: behind the centre of mass
       const Vec3d at_fins = w - arm * s.turning;
       const double fast = math::length(at_fins);
       const Vec3d across = at_fins - math::dot(at_fins, e) * e;
-      const Vec3d normal = (-0.5 * air.density * fast * area * stability_.normal_slope) * across;
+      const Vec3d normal = (-0.5 * air.density * fast * area * stability.normal_slope) * across;
       force += normal;
       // The force acts `arm` behind the centre of mass, along −e.
       Vec3d swing = (-arm / now.inertia) * (normal - math::dot(normal, e) * e);
       // The jet takes along the sideways motion of what it leaves.
       const double flow = mass_flow(time);
-      const double tail = rocket_.length - now.centre;
+      const double tail = rocket.length - now.centre;
       swing -= (flow * tail * tail / now.inertia) * s.turning;
       out.axis = s.turning;
       out.turning = swing - math::length_squared(s.turning) * e;
@@ -130,35 +120,33 @@ class RocketRun {
     out.velocity = g + force / now.mass;
     if (on_rail) {
       // It stands on the pad while the thrust is too weak; what rounding leaves of a velocity back holds nothing.
-      const double along = math::dot(out.velocity, rail_);
-      out.velocity = (math::dot(s.velocity, rail_) <= 0 ? math::max(along, 0.0) : along) * rail_;
+      const double along = math::dot(out.velocity, rail);
+      out.velocity = (math::dot(s.velocity, rail) <= 0 ? math::max(along, 0.0) : along) * rail;
     }
     return out;
   }
 
   double mass_flow(double time) const {
     double flow = 0;
-    for (std::size_t i = 0; i < rocket_.stages.size(); ++i) {
-      const Motor& motor = rocket_.stages[i].motor;
-      const double burning = time - schedule_.stages[i].ignition;
+    for (std::size_t i = 0; i < rocket.stages.size(); ++i) {
+      const Motor& motor = rocket.stages[i].motor;
+      const double burning = time - schedule.stages[i].ignition;
       if (burning >= 0 && motor.exhaust_speed() > 0) flow += motor.curve.thrust(burning) / motor.exhaust_speed();
     }
     return flow;
   }
-  double mass(double time) const { return mass_at(rocket_, schedule_, time).mass; }
+  double mass(double time) const { return mass_at(rocket, schedule, time).mass; }
   double angle_of_attack(const RocketState& s) const {
-    const Vec3d w = s.velocity - conditions_.wind.at(s.position.y);
+    const Vec3d w = s.velocity - conditions.wind.at(s.position.y);
     return math::atan2(math::length(math::cross(s.axis, w)), math::dot(s.axis, w));
   }
 
-  const Rocket& rocket_;
-  const Conditions& conditions_;
-  const Launch& launch_;
-  RocketModel model_;
-  Schedule schedule_;
-  Stability stability_;
-  Vec3d rail_{};
-  bool on_rail = true, under_parachute = false;
+  const Rocket& rocket;
+  const Conditions& conditions;
+  RocketModel model;
+  Schedule schedule;
+  Stability stability;
+  Vec3d rail;  ///< unit
 };
 
 }  // namespace carom::ballistics::detail

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/core/growth.h"
 #include "carom/core/pool.h"
 #include "carom/rigid/definitions.h"
 #include "carom/rigid/detail/solver_body.h"
@@ -20,15 +21,6 @@ constexpr Inertia no_inertia() {
     return 0;
 }
 
-/// Vectors double by themselves; a world of sleepers should pay for what it holds. What is large grows faster: most of
-/// the time of filling it goes into copies and new pages.
-inline std::size_t next_capacity(std::size_t now) { return now + now / (now < (1 << 16) ? 4 : 2) + 16; }
-/// Makes room for one more.
-template <class T>
-void grow_a_little(std::vector<T>& v) {
-  if (v.size() == v.capacity()) v.reserve(next_capacity(v.size()));
-}
-
 /// The word of a slot in a list that is no longer than it has to be; 0 beyond its end.
 inline std::uint64_t word_of(const std::vector<std::uint64_t>& words, std::int32_t slot) {
   return std::size_t(slot) < words.size() ? words[std::size_t(slot)] : 0;
@@ -36,7 +28,7 @@ inline std::uint64_t word_of(const std::vector<std::uint64_t>& words, std::int32
 inline void give_word(std::vector<std::uint64_t>& words, std::int32_t slot, std::uint64_t word) {
   if (std::size_t(slot) >= words.size()) {
     if (word == 0) return;
-    if (std::size_t(slot) >= words.capacity()) words.reserve(next_capacity(std::size_t(slot)));
+    if (std::size_t(slot) >= words.capacity()) words.reserve(core::next_capacity(std::size_t(slot)));
     words.resize(std::size_t(slot) + 1, 0);
   }
   words[std::size_t(slot)] = word;

@@ -160,7 +160,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
     store.at(index) = {};
   } else {
     index = std::int32_t(store.contacts.size());
-    grow_a_little(store.contacts);
+    core::grow_a_little(store.contacts);
     store.contacts.emplace_back();
     store.free_contacts.reserve(store.contacts.capacity());
   }
@@ -314,7 +314,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
     store.manifold(index) = {};
   } else {
     index = std::int32_t(store.manifolds.size());
-    grow_a_little(store.manifolds);
+    core::grow_a_little(store.manifolds);
     store.manifolds.emplace_back();
     store.free_manifolds.reserve(store.manifolds.capacity());
   }

@@ -182,8 +182,8 @@ struct JointStore {
   JointData<D>& make(std::int32_t slot, const Def& definition, bool internal = false) {
     static_assert(sizeof(Def) <= LargeJoint<D>::room && std::is_trivially_copyable_v<Def>);
     if (std::size_t(slot) >= room.size()) {
-      grow_a_little(room);
-      grow_a_little(headers);
+      core::grow_a_little(room);
+      core::grow_a_little(headers);
       room.resize(std::size_t(slot) + 1, none);
       headers.resize(std::size_t(slot) + 1);
     }
@@ -213,7 +213,7 @@ struct JointStore {
   template <class T>
   std::int32_t take(std::int32_t slot, std::vector<T>& rooms, std::vector<std::int32_t>& free) {
     if (free.empty()) {
-      grow_a_little(rooms);
+      core::grow_a_little(rooms);
       free.push_back(std::int32_t(rooms.size()));
       rooms.emplace_back();
     }

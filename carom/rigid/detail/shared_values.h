@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/core/growth.h"
+
 namespace carom::rigid::detail {
 
 /// T has operator== and hash(). Which number a value has follows from the calls made and from nothing else.
@@ -21,8 +23,8 @@ class SharedValues {
         if (values_[std::size_t(i)] == value) return ++users_[std::size_t(i)], i;
     std::int32_t number = std::int32_t(values_.size());
     if (free_.empty()) {
-      grow_a_little(values_), values_.push_back(value);
-      grow_a_little(users_), users_.push_back(1);
+      core::grow_a_little(values_), values_.push_back(value);
+      core::grow_a_little(users_), users_.push_back(1);
     } else {
       number = free_.back();
       free_.pop_back();

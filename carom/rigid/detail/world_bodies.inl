@@ -106,7 +106,7 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   const BodyId id = bodies.slots.allocate();
   const std::size_t slot = std::size_t(bodies.slots.slot(id));
   if (slot == bodies.record.size()) {
-    if (slot == bodies.record.capacity()) reserve_bodies(bodies, next_capacity(slot));
+    if (slot == bodies.record.capacity()) reserve_bodies(bodies, core::next_capacity(slot));
     bodies.solver.emplace_back();
     bodies.pose.emplace_back();
     bodies.motion.emplace_back();

@@ -231,7 +231,7 @@ Result<ShapeId> World<D>::add_shape(BodyId body, const Shape& shape, const Shape
   const ShapeId id = self_->shapes.slots.allocate();
   const std::int32_t index = self_->shapes.slots.slot(id);
   if (std::size_t(index) == self_->shapes.record.size()) {
-    grow_a_little(self_->shapes.record);
+    core::grow_a_little(self_->shapes.record);
     self_->shapes.record.emplace_back();
   }
   ShapeRecord<D>& s = self_->shapes.at(index);

@@ -33,6 +33,21 @@ bool is_inside(std::string_view path) {
   return true;
 }
 
+/// An empty node that stands where another one does, and a number.
+Node node_at(const Node& place, NodeKind kind) {
+  Node n;
+  n.kind = kind;
+  n.file = place.file;
+  n.line = place.line;
+  n.column = place.column;
+  return n;
+}
+Node number_at(const Node& place, double value) {
+  Node n = node_at(place, NodeKind::number);
+  n.number = value;
+  return n;
+}
+
 class PartReader {
  public:
   PartReader(SceneDocument& document, const Resolver& resolver, std::string_view name)
@@ -158,34 +173,19 @@ class PartReader {
       const auto motors = ballistics::read_rasp(std::string_view(*text).substr(0, 65536), path);
       if (!motors) return error(at, "motor", motors.error().message);
       const Node* const wanted = stage.find("designation");
-      const ballistics::Motor* motor = wanted == nullptr && !motors->empty() ? &motors->front() : nullptr;
-      std::string known;
-      for (const ballistics::Motor& m : *motors) {
-        if (wanted != nullptr && wanted->is_text() && m.name == wanted->text) motor = &m;
-        known += (known.empty() ? "" : ", ") + m.name;
-      }
-      if (motor == nullptr)
-        return error(wanted != nullptr ? *wanted : at, "designation",
-                     "found " + show(wanted != nullptr ? *wanted : at) + ", expected one of " + path + ": " + known);
-      Node like = at;
-      like.text.clear();
-      const auto number = [&like](double value) {
-        Node n = like;
-        n.kind = NodeKind::number;
-        n.number = value;
-        return n;
-      };
-      Node thrust = like;
-      thrust.kind = NodeKind::array;
+      const auto motor = choose_motor(*motors, path, wanted);
+      if (!motor)
+        return error(wanted != nullptr ? *wanted : at, wanted != nullptr ? "designation" : "motor",
+                     motor.error().message);
+      Node thrust = node_at(at, NodeKind::array);
       for (const ballistics::ThrustPoint& p : motor->curve.points()) {
-        thrust.children.push_back(number(p.time));
-        thrust.children.push_back(number(p.thrust));
+        thrust.children.push_back(number_at(at, p.time));
+        thrust.children.push_back(number_at(at, p.thrust));
       }
       merged_ += thrust.children.size();
-      at = like;
-      at.kind = NodeKind::object;
+      at = node_at(at, NodeKind::object);
       at.keys = {"propellant_mass", "mass", "thrust"};
-      at.children = {number(motor->propellant_mass), number(motor->mass), std::move(thrust)};
+      at.children = {number_at(at, motor->propellant_mass), number_at(at, motor->mass), std::move(thrust)};
     }
     return {};
   }
@@ -210,30 +210,17 @@ class PartReader {
     if (!mesh) return error(file, "file", mesh.error().message);
     if ((mesh_values_ += mesh->vertices.size() + mesh->indices.size()) > 4000000)
       return error(file, "file", "the meshes of this scene have more than four million numbers");
-    Node like;
-    like.file = file.file;
-    like.line = file.line;
-    like.column = file.column;
-    const auto number = [&like](double value) {
-      Node n = like;
-      n.kind = NodeKind::number;
-      n.number = value;
-      return n;
-    };
-    Node points = like;
-    points.kind = NodeKind::array;
+    Node points = node_at(file, NodeKind::array);
     for (const math::Vec3d& v : mesh->vertices) {
-      Node point = like;
-      point.kind = NodeKind::array;
-      for (int i = 0; i < 3; ++i) point.children.push_back(number(v[i]));
+      Node point = node_at(file, NodeKind::array);
+      for (int i = 0; i < 3; ++i) point.children.push_back(number_at(file, v[i]));
       points.children.push_back(std::move(point));
     }
     shape.keys.push_back(hull ? "points" : "vertices");
     shape.children.push_back(std::move(points));
     if (hull) return {};
-    Node indices = like;
-    indices.kind = NodeKind::array;
-    for (const std::uint32_t i : mesh->indices) indices.children.push_back(number(double(i)));
+    Node indices = node_at(file, NodeKind::array);
+    for (const std::uint32_t i : mesh->indices) indices.children.push_back(number_at(file, double(i)));
     shape.keys.push_back("indices");
     shape.children.push_back(std::move(indices));
     return {};

@@ -85,4 +85,16 @@ core::Result<PresetValues> read_preset(std::string_view text, std::string_view f
   return core::Result<PresetValues>(std::move(out));  // moved, never copied: the names live in the tree
 }
 
+core::Result<ballistics::Motor> choose_motor(std::span<const ballistics::Motor> motors, std::string_view path,
+                                             const Node* designation) {
+  if (motors.empty()) return core::Error{core::text(path, " has no motor")};
+  if (designation == nullptr) return motors.front();
+  std::string known;
+  for (const ballistics::Motor& motor : motors) {
+    if (designation->is_text() && motor.name == designation->text) return motor;
+    known += (known.empty() ? "" : ", ") + motor.name;
+  }
+  return core::Error{core::text("found ", show(*designation), ", expected one of ", path, ": ", known)};
+}
+
 }  // namespace carom::scene::detail

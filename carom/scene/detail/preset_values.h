@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/ballistics/motor.h"
 #include "carom/core/result.h"
 #include "carom/scene/detail/document.h"
 #include "carom/sports/numbers.h"
@@ -36,6 +37,11 @@ core::Result<double> read_preset_quantity(const Node& node, std::string_view uni
                                           std::string_view where);
 /// The tree of a preset with its values, whose kind is checked: "values" an object, or an array where `array` says so.
 core::Result<Node> read_preset_tree(std::string_view text, std::string_view file, bool array);
+
+/// The motor that `designation` names, the first where there is none (null). The error says what was found and
+/// expected, not where.
+core::Result<ballistics::Motor> choose_motor(std::span<const ballistics::Motor> motors, std::string_view path,
+                                             const Node* designation);
 
 /// A name of a preset, never a path.
 inline bool is_preset_name(std::string_view name) {
