@@ -42,11 +42,21 @@ void grain_step(benchmark::State& state) {
   column[0] = 0.5;
   const float radius = D::dimension == 2 ? 0.5f * math::sqrt(float(0.5 / double(state.range(0))))
                                          : 0.5f * float(math::pow(0.5 / double(state.range(0)), 1.0 / 3));
-  auto grains = Granular<D>::create({.radius = radius}).value();
+  auto grains = Granular<D>::create({.radius = radius, .max_grains = 1 << 17}).value();
   grains.add_box({}, column).value();
-  for (int i = 0; i < 20; ++i) grains.step(1.0f / 60).value();
-  for (auto _ : state) grains.step(1.0f / 60).value();
+  for (int i = 0; i < int(state.range(1)); ++i) grains.step(1.0f / 60).value();
+  const Granular<D> start = grains;
+  int steps = 0;
+  for (auto _ : state) {
+    if (++steps % 20 == 0) {
+      state.PauseTiming();
+      grains = start;
+      state.ResumeTiming();
+    }
+    grains.step(1.0f / 60).value();
+  }
   state.counters["grains"] = grains.size();
+  state.counters["contacts"] = grains.statistics().contacts;
 }
 
 BENCHMARK(fluid_step<rigid::Dim2>)
@@ -59,7 +69,12 @@ BENCHMARK(fluid_step<rigid::Dim3>)
     ->Args({30'000, 10})
     ->Args({100'000, 10})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(grain_step<rigid::Dim2>)->Arg(2'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(grain_step<rigid::Dim3>)->Arg(5'000)->Unit(benchmark::kMillisecond);
+// Half a box of grains, after `range(1)` steps: 10, it falls; 150, it is at rest.
+BENCHMARK(grain_step<rigid::Dim2>)->Args({10'000, 10})->Args({10'000, 150})->Unit(benchmark::kMillisecond);
+BENCHMARK(grain_step<rigid::Dim3>)
+    ->Args({10'000, 10})
+    ->Args({10'000, 150})
+    ->Args({100'000, 100})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

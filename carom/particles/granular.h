@@ -39,6 +39,7 @@ struct GranularDef {
   int substeps = 8;                                          ///< 1 … 64
   int iterations = 4;                                        ///< sweeps over the contacts in a substep, 1 … 100
   std::uint64_t seed = 1;                                    ///< of the radii
+  int lanes = 0;                                             ///< 0: as many as the machine has; 4, 8, 16
   int threads = 1;                                           ///< 1 … 64
   core::TaskScheduler* scheduler = nullptr;                  ///< the caller's own, instead; must outlive the grains
 

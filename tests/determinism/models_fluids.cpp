@@ -33,9 +33,9 @@ void fluid_models(int width) {
   print_model("fluid",
               hash.add(water.state_hash()).add(pool.state_hash()).add(plane.state_hash()).add(space.state_hash()));
 
-  auto sand = particles::Granular2::create({.upper = {2, 1}, .radius = 0.02f}).value();
+  auto sand = particles::Granular2::create({.upper = {2, 1}, .radius = 0.02f, .lanes = width}).value();
   sand.add_box({0, 0}, {0.5, 0.8}).value();
-  auto gravel = particles::Granular3::create({.radius = 0.04f}).value();
+  auto gravel = particles::Granular3::create({.radius = 0.04f, .lanes = width}).value();
   gravel.add_box({0.2, 0, 0.2}, {0.6, 0.6, 0.6}).value();
   rigid::World2 yard({.simd_width = width});
   put(yard, geometry::Circle{0.1f}, math::Vec2d{0.8, 0.1}, 500.0f);

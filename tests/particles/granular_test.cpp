@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "carom/core/hash.h"
+
 namespace granular_test {
 using namespace carom;
 using namespace carom::particles;
@@ -153,24 +155,34 @@ TEST(Granular, SandCarriesABox) {
   EXPECT_LT(length(s.linear_velocity), 0.05f);
 }
 
-TEST(Granular, SameBitsForAnyThreadsAndInACopy) {
-  const auto make = [](int threads) {
-    Granular3 g = Granular3::create({.radius = 0.03f, .threads = threads}).value();
+// A sphere at rest in a heap, in lanes of every width, on one thread and on two, and in a copy.
+TEST(Granular, SameBitsForAnyWidthAnyThreadsAndInACopy) {
+  const auto hash = [](int lanes, int threads) {
+    Granular3 g = Granular3::create({.radius = 0.03f, .lanes = lanes, .threads = threads}).value();
     g.add_box({0.2, 0, 0.2}, {0.6, 0.8, 0.6}).value();
-    return g;
+    Granular2 flat = Granular2::create({.radius = 0.01f, .lanes = lanes, .threads = threads}).value();
+    flat.add_box({0.2, 0}, {0.6, 0.8}).value();
+    World3 world({.simd_width = 4});
+    BodyDef<Dim3> body;
+    body.position = {0.4, 0.9, 0.4};
+    world.add_shape(world.create_body(body).value(), geometry::Sphere{0.1f}, {.density = 500}).value();
+    for (int i = 0; i < 30; ++i) {
+      g.step(world, dt).value();
+      world.step(dt).value();
+      flat.step(dt).value();
+    }
+    Granular3 copy = g;
+    for (int i = 0; i < 10; ++i) {
+      g.step(dt).value();
+      copy.step(dt).value();
+    }
+    EXPECT_EQ(g.state_hash(), copy.state_hash());
+    core::StateHash all;
+    return all.add(g.state_hash()).add(flat.state_hash()).add(world.state_hash()).digest();
   };
-  Granular3 one = make(1), two = make(2);
-  for (int i = 0; i < 30; ++i) {
-    one.step(dt).value();
-    two.step(dt).value();
-  }
-  EXPECT_EQ(one.state_hash(), two.state_hash());
-  Granular3 copy = one;
-  for (int i = 0; i < 10; ++i) {
-    one.step(dt).value();
-    copy.step(dt).value();
-  }
-  EXPECT_EQ(one.state_hash(), copy.state_hash());
+  const std::uint64_t first = hash(4, 1);
+  for (const int lanes : {4, 8, 16})
+    for (const int threads : {1, 2}) EXPECT_EQ(hash(lanes, threads), first) << lanes << " lanes, " << threads;
 }
 
 TEST(Granular, BadInputIsRefused) {
@@ -186,6 +198,7 @@ TEST(Granular, BadInputIsRefused) {
   refused({.friction = -1}, "friction");
   refused({.rolling_friction = nan}, "rolling_friction");
   refused({.gravity = {nan, 0}}, "gravity");
+  refused({.lanes = 5}, "lanes");
   refused({.upper = {1e9, 1e9}}, "cells");
   refused({.upper = {-1, 1}}, "upper");
   Granular2 g = Granular2::create({.radius = 0.05f, .max_grains = 10}).value();

@@ -3,6 +3,7 @@
 
 #include "carom/core/hash.h"
 #include "carom/core/string.h"
+#include "carom/math/cpu.h"
 #include "carom/math/random.h"
 #include "carom/particles/detail/granular_solve.inl"
 
@@ -48,6 +49,8 @@ Status check_granular(const GranularDef<D>& d) {
         range("max_grains", d.max_grains, 1, 1 << 20), range("substeps", d.substeps, 1, 64),
         range("iterations", d.iterations, 1, 100), range("threads", d.threads, 1, 64)})
     if (!s.ok()) return s;
+  if (d.lanes != 0 && d.lanes != 4 && d.lanes != 8 && d.lanes != 16)
+    return core::Error{core::text("Granular::create: ", core::refused("lanes", d.lanes, "0, 4, 8 or 16"))};
   double cells = 1;
   for (int a = 0; a < N; ++a) {
     if (!math::is_finite(d.lower[a]) || !math::is_finite(d.upper[a]) || !(math::abs(d.gravity[a]) <= 1e4f))
@@ -66,32 +69,35 @@ Status check_granular(const GranularDef<D>& d) {
 
 template <class D>
 void GranularState<D>::make_grid() {
-  cell = 3 * definition.radius;
-  inverse_cell = 1 / cell;
-  int step = 1;
+  inverse_cell = 1 / (3 * definition.radius);
   for (int a = 0; a < N; ++a) {
     extent[a] = float(definition.upper[a] - definition.lower[a]);
     cells[a] = math::max(1, int(extent[a] * inverse_cell) + 1);
-    stride[a] = step;
-    step *= cells[a];
   }
-  size = step;
+  const int across = N == 2 ? cells[0] : cells[2];
+  slab_cells = math::min(across, N == 2 ? 16 : 4);
+  slabs = (across + slab_cells - 1) / slab_cells;
+  size = slabs * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
   cell_start.assign(std::size_t(size) + 1, 0);
 }
 
 template <class D>
 void GranularState<D>::reserve() {
-  const std::size_t n = std::size_t(definition.max_grains);
+  const std::size_t n = std::size_t(definition.max_grains), contacts = n * (N == 2 ? 4 : 8);
   for (auto* list : {&grains, &sorted}) list->reserve(n);
-  cell_of.reserve(n);
+  for (auto* list : {&cell_of, &old_place, &last_block}) list->reserve(n);
+  for (auto* list : {&first_pair, &old_first_pair, &first_touch, &old_first_touch}) list->reserve(n + 1);
   for (auto& list : near_by) list.reserve(n + 3);
-  for (auto* list : {&contacts, &old_contacts, &sorted_old}) list->reserve(n * (N == 2 ? 4 : 8));
-  for (auto* list : {&surface_contacts, &old_surface_contacts}) list->reserve(n + 16);
-  old_start.assign(n + 1, 0);
-  place_of.assign(n, -1);
-  first_surface.assign(n, -1);
-  free_ids.reserve(n);
-  slab_start.reserve(std::size_t(cells[N - 1]) / grain_slab + 2);
+  for (auto* list : {&pairs, &old_pairs}) list->reserve(contacts);
+  for (auto* list : {&blocks, &old_blocks}) list->reserve(contacts / grain_lanes + std::size_t(slabs));
+  open_block.reserve(contacts / grain_lanes + std::size_t(slabs));
+  filled.reserve(contacts / grain_lanes + std::size_t(slabs));
+  for (auto* list : {&touches, &old_touches}) list->reserve(n + 16);
+  for (auto* list : {&wall_blocks, &old_wall_blocks}) list->reserve(n / grain_lanes + 64);
+  wall_of.reserve(n / grain_lanes + 64);
+  place = AlignedFloats((n + std::size_t(slabs)) * grain_place);
+  motion = AlignedFloats((n + std::size_t(slabs)) * grain_motion<N>);
+  slab_start.reserve(std::size_t(slabs) + 1);
   solids.reserve(64);
   bodies.reserve(64);
   found.reserve(64);
@@ -121,12 +127,6 @@ Status GranularState<D>::add(Position at, Vector velocity, std::uint32_t tag, fl
   const float mass = definition.density * math::pi_f * r * r * (N == 2 ? 1.0f : 4.0f / 3 * r);
   g.inverse_mass = 1 / mass;
   g.inverse_inertia = 1 / ((N == 2 ? 0.5f : 0.4f) * mass * r * r);
-  if (free_ids.empty()) {
-    g.id = next_id++;
-  } else {
-    g.id = free_ids.back();
-    free_ids.pop_back();
-  }
   grains.push_back(g);
   return {};
 }
@@ -257,6 +257,9 @@ Result<Granular<D>> Granular<D>::create(const GranularDef<D>& d) {
   auto self = std::make_unique<Implementation>();
   self->state.definition = d;
   self->choose_scheduler();
+  const math::InstructionSet set = d.lanes == 0 ? math::detect_instruction_set()
+                                                : math::choose_instruction_set(math::instruction_set_of_width(d.lanes));
+  self->state.kernels = &detail::grain_kernels<D::dimension>(math::simd_width(set));
   self->state.make_grid();
   self->state.reserve();
   return Granular(std::move(self));
@@ -274,10 +277,8 @@ template <class D>
 void Granular<D>::clear() {
   detail::GranularState<D>& s = self_->state;
   s.grains.clear();
-  s.contacts.clear();
-  s.surface_contacts.clear();
-  s.free_ids.clear();
-  s.next_id = 0;
+  s.first_pair.clear();
+  s.first_touch.clear();
 }
 
 template <class D>
@@ -365,7 +366,7 @@ std::uint64_t Granular<D>::state_hash() const {
       hash.add(g.spin);
     else
       hash.add(g.spin.x).add(g.spin.y).add(g.spin.z);
-    hash.add(g.radius).add(g.id);
+    hash.add(g.radius);
   }
   return hash.digest();
 }

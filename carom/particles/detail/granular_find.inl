@@ -9,7 +9,15 @@
 
 namespace carom::particles::detail {
 
-inline constexpr int grain_slab = 4;  // layers of cells that one thread solves
+/// Cells are as wide as three of the largest radii. In memory they lie slab by slab (slabs stand side by side: so many
+/// cells across, and what one thread solves), in a slab layer by layer upward, in a layer row by row.
+template <class D>
+int GranularState<D>::cell_at(int x, int y, int z) const {
+  if constexpr (N == 2)
+    return (x / slab_cells * cells[1] + y) * slab_cells + x % slab_cells;
+  else
+    return ((z / slab_cells * cells[1] + y) * slab_cells + z % slab_cells) * cells[0] + x;
+}
 
 /// By cell, without those that left through an open side.
 template <class D>
@@ -18,171 +26,253 @@ void GranularState<D>::sort() {
   cell_of.resize(count);
   std::fill(cell_start.begin(), cell_start.end(), 0);
   for (int i = 0; i < count; ++i) {
-    int index = 0;
+    int at[3] = {};
     bool inside = true;
     for (int b = 0; b < N; ++b) {
       const float x = grains[i].x[b] * inverse_cell;
       inside = inside && x >= 0 && x < float(cells[b]);
-      index += inside ? int(x) * stride[b] : 0;
+      at[b] = inside ? int(x) : 0;
     }
-    cell_of[i] = inside ? index : -1;
-    if (inside)
-      ++cell_start[index + 1];
-    else
-      free_ids.push_back(grains[i].id);
+    cell_of[i] = inside ? cell_at(at[0], at[1], at[2]) : -1;
+    if (inside) ++cell_start[cell_of[i] + 1];
   }
   for (int c = 0; c < size; ++c) cell_start[c + 1] += cell_start[c];
   sorted.resize(cell_start[size]);
-  for (int i = 0; i < count; ++i)
-    if (cell_of[i] >= 0) sorted[cell_start[cell_of[i]]++] = grains[i];
+  old_place.resize(cell_start[size]);
+  for (int i = 0; i < count; ++i) {
+    if (cell_of[i] < 0) continue;
+    const int to = cell_start[cell_of[i]]++;
+    sorted[to] = grains[i];
+    old_place[to] = i;
+  }
   for (int c = size; c > 0; --c) cell_start[c] = cell_start[c - 1];
   cell_start[0] = 0;
   grains.swap(sorted);
-}
-
-/// What the same contact had in the last step: lists are by the id of the first grain.
-template <class D>
-void GranularState<D>::remember(Contact& contact, const std::vector<Contact>& old, std::uint32_t a,
-                                std::uint32_t b) const {
-  for (int k = old_start[a]; k < old_start[a + 1]; ++k)
-    if (old[k].key == b) {
-      contact.normal_impulse = old[k].normal_impulse;
-      contact.friction = old[k].friction;
-      contact.rolling = old[k].rolling;
-      return;
-    }
-  for (int k = old_start[b]; k < old_start[b + 1]; ++k)
-    if (old[k].key == a) {
-      contact.normal_impulse = old[k].normal_impulse;
-      contact.friction = -old[k].friction;
-      contact.rolling = -old[k].rolling;
-      return;
-    }
-}
-
-template <class D>
-void GranularState<D>::find_contacts(float dt) {
-  // The old ones by the id of their first grain; `a` still names the place that the grain had then.
-  old_contacts.swap(contacts);
-  contacts.clear();
-  std::fill(old_start.begin(), old_start.end(), 0);
-  for (const Contact& c : old_contacts) ++old_start[std::size_t(c.a) + 1];
-  for (std::size_t i = 1; i < old_start.size(); ++i) old_start[i] += old_start[i - 1];
-  sorted_old.resize(old_contacts.size());
-  for (const Contact& c : old_contacts) sorted_old[old_start[c.a]++] = c;
-  for (std::size_t i = old_start.size() - 1; i > 0; --i) old_start[i] = old_start[i - 1];
-  old_start[0] = 0;
-
-  // Pairs that may meet before the next search; the cells are that much wider than two grains.
-  const float reach =
-      math::min(2 * statistics.max_speed * dt + 0.02f * definition.radius, cell - 2 * definition.radius);
-  slab_start.clear();
   for (auto& list : near_by) list.resize(grains.size() + 3);  // read by fours
   for (std::size_t i = 0; i < grains.size(); ++i) {
     for (int axis = 0; axis < N; ++axis) near_by[axis][i] = grains[i].x[axis];
     near_by[N][i] = grains[i].radius;
   }
-  using F = math::WideFloat<4>;
-  /// Four grains at a time of a run of neighbours in memory.
-  const auto try_run = [&](int i, int from, int to) {
-    const Grain<D>& grain = grains[i];
-    for (int j = from; j < to; j += 4) {
-      F square = F::zero();
-      for (int axis = 0; axis < N; ++axis) {
-        const F d = F::load(&near_by[axis][j]) - F::splat(grain.x[axis]);
-        square = square + d * d;
-      }
-      const F touch = F::splat(grain.radius) + F::load(&near_by[N][j]) + F::splat(reach);
-      std::uint32_t hits = math::bitmask(square < touch * touch);
-      if (to - j < 4) hits &= (1u << (to - j)) - 1;
-      for (; hits != 0; hits &= hits - 1) {
-        Contact c;
-        c.a = i;
-        c.b = j + std::countr_zero(hits);
-        c.key = grains[c.b].id;
-        remember(c, sorted_old, grain.id, c.key);
-        contacts.push_back(c);
-      }
+}
+
+/// Lists the neighbours of a cell's grains, each pair once: those that come later along x, up or across to the next
+/// slab, so that a slab's pairs have grains of this slab and the next alone.
+template <class D>
+void GranularState<D>::find_neighbours(int x, int y, int z, float reach) {
+  const int c = cell_at(x, y, z), begin = cell_start[c], end = cell_start[c + 1];
+  if (begin == end) return;
+  int from[8], to[8], runs = 0;
+  const auto add = [&](int x0, int x1, int row, int across) {
+    if (row < 0 || row >= cells[1] || across >= cells[2]) return;
+    x0 = math::max(x0, 0);
+    x1 = math::min(x1, cells[0] - 1);
+    if (x0 > x1) return;
+    if (N == 2 && x1 > x0 && x1 % slab_cells == 0) {  // the last column is another slab's
+      from[runs] = cell_start[cell_at(x1, row, across)];
+      to[runs++] = cell_start[cell_at(x1, row, across) + 1];
+      --x1;
     }
+    from[runs] = cell_start[cell_at(x0, row, across)];
+    to[runs++] = cell_start[cell_at(x1, row, across) + 1];
   };
-  for (int z = 0; z < cells[2]; ++z)
-    for (int y = 0; y < cells[1]; ++y) {
-      if ((N == 3 && y == 0 && z % grain_slab == 0) || (N == 2 && y % grain_slab == 0))
-        slab_start.push_back(int(contacts.size()));
-      for (int x = 0; x < cells[0]; ++x) {
-        const int c = x + y * stride[1] + z * stride[2];
-        // The half of the neighbours that come later: rows of up to three cells, which lie side by side.
-        const int left = math::max(x - 1, 0) - x, right = math::min(x + 1, cells[0] - 1) - x;
-        for (int i = cell_start[c]; i < cell_start[c + 1]; ++i) {
-          try_run(i, i + 1, cell_start[c + right + 1]);
-          for (int up = 0; up < (N == 2 ? 1 : 2); ++up)
-            for (int row = up == 0 ? 1 : -1; row <= 1; ++row) {
-              if (y + row < 0 || y + row >= cells[1] || z + up >= cells[2]) continue;
-              const int middle = c + row * stride[1] + up * stride[2];
-              try_run(i, cell_start[middle + left], cell_start[middle + right + 1]);
-            }
+  add(x, x + 1, y, z);
+  const int own = runs - 1;  // from the grain itself on
+  add(N == 2 ? x : x - 1, x + 1, y + 1, z);
+  if constexpr (N == 2)
+    add(x + 1, x + 1, y - 1, z);
+  else
+    for (int row = -1; row <= 1; ++row) add(x - 1, x + 1, y + row, z + 1);
+  using F = math::WideFloat<4>;
+  for (int i = begin; i < end; ++i) {
+    const Grain<D>& grain = grains[i];
+    first_pair[i] = int(pairs.size());
+    from[own] = i + 1;
+    for (int run = 0; run < runs; ++run)
+      for (int j = from[run]; j < to[run]; j += 4) {
+        F square = F::zero();
+        for (int axis = 0; axis < N; ++axis) {
+          const F d = F::load(&near_by[axis][j]) - F::splat(grain.x[axis]);
+          square = square + d * d;
         }
+        const F touch = F::splat(grain.radius + reach) + F::load(&near_by[N][j]);
+        std::uint32_t hits = math::bitmask(square < touch * touch);
+        if (to[run] - j < 4) hits &= (1u << (to[run] - j)) - 1;
+        for (; hits != 0; hits &= hits - 1) pairs.push_back({j + std::countr_zero(hits), 0});
       }
+  }
+}
+
+/// The first block from `first` on that has room and comes after all in which one of the two is: solved block by block
+/// the pairs give what they would one after the other.
+template <class D>
+int GranularState<D>::place_pair(int a, int b, int first, int none) {
+  int block = math::max(first, math::max(last_block[a], last_block[b]) + 1);
+  while (block < int(blocks.size()) && open_block[block] != block) {
+    const int next = open_block[block];
+    if (next < int(blocks.size())) open_block[block] = open_block[next];
+    block = next;
+  }
+  if (block >= int(blocks.size())) {
+    block = int(blocks.size());
+    blocks.emplace_back();
+    open_block.push_back(block);
+    filled.push_back(0);
+    for (int lane = 0; lane < grain_lanes; ++lane) blocks[block].a[lane] = blocks[block].b[lane] = none;
+  }
+  last_block[a] = last_block[b] = block;
+  const int lane = filled[block]++;
+  if (lane == grain_lanes - 1) open_block[block] = block + 1;
+  blocks[block].a[lane] = a;
+  blocks[block].b[lane] = b;
+  if constexpr (N == 2) {
+    blocks[block].curve[0][lane] = 1 / grains[a].radius;
+    blocks[block].curve[1][lane] = 1 / grains[b].radius;
+  }
+  return block * grain_lanes + lane;
+}
+
+/// The impulses that the same pair had, if it had any.
+template <class D>
+void GranularState<D>::take_over(GrainPair& pair, int a, float scale) {
+  const auto find = [&](int first, int second) {
+    if (first + 1 >= int(old_first_pair.size())) return -1;
+    for (int k = old_first_pair[first]; k < old_first_pair[first + 1]; ++k)
+      if (old_pairs[k].b == second) return old_pairs[k].lane;
+    return -1;
+  };
+  int lane = find(old_place[a], old_place[pair.b]);
+  const bool swapped = lane < 0;
+  if (swapped) lane = find(old_place[pair.b], old_place[a]);
+  if (lane < 0) return;
+  const Block& old = old_blocks[lane / grain_lanes];
+  Block& now = blocks[pair.lane / grain_lanes];
+  const int from = lane % grain_lanes, to = pair.lane % grain_lanes;
+  if (!(old.push[from] > 0)) return;
+  now.push[to] = scale * old.push[from];
+  // In the plane friction goes along a tangent that turns with the normal.
+  const float side = swapped ? -scale : scale, along = N == 2 ? scale : side;
+  for (int k = 0; k < Block::turns; ++k) {
+    now.grip[k][to] = along * old.grip[k][from];
+    now.roll[k][to] = side * old.roll[k][from];
+  }
+}
+
+/// `scale`: of the impulses of the last substep, for those of the next.
+template <class D>
+void GranularState<D>::find_pairs(float dt, float scale) {
+  const int count = int(grains.size());
+  old_pairs.swap(pairs);
+  old_first_pair.swap(first_pair);
+  old_blocks.swap(blocks);
+  pairs.clear();
+  blocks.clear();
+  open_block.clear();
+  filled.clear();
+  slab_start.clear();
+  first_pair.resize(std::size_t(count) + 1);
+  last_block.assign(std::size_t(count), -1);
+  // Pairs that may meet before the next search; the cells are that much wider than two grains.
+  const float reach = math::min(2 * statistics.max_speed * dt + 0.02f * definition.radius, definition.radius);
+  const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
+  for (int slab = 0; slab < slabs; ++slab) {
+    const int first = int(blocks.size()), low = slab * slab_cells, high = math::min(low + slab_cells, across);
+    slab_start.push_back(first);
+    for (int y = 0; y < cells[1]; ++y)
+      for (int k = low; k < high; ++k)
+        for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, reach);
+    const int slab_size = size / slabs, end = cell_start[(slab + 1) * slab_size];
+    first_pair[end] = int(pairs.size());
+    for (int i = cell_start[slab * slab_size]; i < end; ++i)
+      for (int k = first_pair[i]; k < first_pair[i + 1]; ++k) {
+        pairs[k].lane = place_pair(i, pairs[k].b, first, count + slab);
+        take_over(pairs[k], i, scale);
+      }
+  }
+  slab_start.push_back(int(blocks.size()));
+}
+
+/// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.
+template <class D>
+void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float scale) {
+  const GrainTouch* old = nullptr;
+  const int was = old_place[grain];
+  if (was + 1 < int(old_first_touch.size()))
+    for (int k = old_first_touch[was]; k < old_first_touch[was + 1]; ++k)
+      if (old_touches[k].key == key) old = &old_touches[k];
+  if (surface >= 2 * N && solids[surface - 2 * N].body >= 0) {
+    Contact c;
+    if (old && old->lane < 0) {
+      c = old_body_contacts[-1 - old->lane];
+      c.normal_impulse *= scale;
+      c.friction = scale * c.friction;
+      c.rolling = scale * c.rolling;
     }
-  slab_start.push_back(int(contacts.size()));
+    c.a = grain;
+    c.solid = surface - 2 * N;
+    touches.push_back({key, -1 - int(body_contacts.size())});
+    body_contacts.push_back(c);
+    return;
+  }
+  int& filling = surface_block[surface];
+  const int none = int(grains.size());
+  int lane = 0;
+  if (filling >= 0)
+    while (lane < grain_lanes && wall_blocks[filling].a[lane] != none) ++lane;
+  if (filling < 0 || lane == grain_lanes) {
+    lane = 0;
+    filling = int(wall_blocks.size());
+    wall_blocks.emplace_back();
+    wall_of.push_back(surface);
+    for (int k = 0; k < grain_lanes; ++k) wall_blocks[filling].a[k] = wall_blocks[filling].b[k] = none;
+  }
+  Block& now = wall_blocks[filling];
+  now.a[lane] = grain;
+  if constexpr (N == 2) now.curve[0][lane] = 1 / grains[grain].radius;
+  if (old && old->lane >= 0) {
+    const Block& then = old_wall_blocks[old->lane / grain_lanes];
+    const int from = old->lane % grain_lanes;
+    now.push[lane] = scale * then.push[from];
+    for (int k = 0; k < Block::turns; ++k) {
+      now.grip[k][lane] = scale * then.grip[k][from];
+      now.roll[k][lane] = scale * then.roll[k][from];
+    }
+  }
+  touches.push_back({key, filling * grain_lanes + lane});
 }
 
 template <class D>
-void GranularState<D>::touch_wall(int i, int side, float reach) {
-  const int axis = side / 2;
-  const bool high = side % 2 == 1;
-  const Grain<D>& g = grains[i];
-  const float distance = high ? extent[axis] - g.x[axis] : g.x[axis];
-  if (distance >= g.radius + reach) return;
-  Contact c;
-  c.a = i;
-  c.b = -1 - side;
-  c.key = std::uint32_t(side);
-  c.normal[axis] = high ? 1.0f : -1.0f;
-  surface_contacts.push_back(c);
-}
-
-template <class D>
-void GranularState<D>::touch_solid(int i, const GrainSolid<D>& solid, int index, float reach) {
+void GranularState<D>::touch_solid(int i, int index, float reach, float scale) {
+  const GrainSolid<D>& solid = solids[index];
   const Grain<D>& g = grains[i];
   const float most = g.radius + reach;
   for (int b = 0; b < N; ++b)
     if (g.x[b] < solid.bounds.low[b] - most || g.x[b] > solid.bounds.high[b] + most) return;
   const Vector local = inverse_transform_point(solid.at, g.x);
-  const float d = signed_distance(solid.shape, local, solid.sheet);
-  if (d >= most) return;
-  Contact c;
-  c.a = i;
-  c.b = -1 - 2 * N - index;
-  c.key = solid.key;
-  surface_contacts.push_back(c);
+  if (signed_distance(solid.shape, local, solid.sheet) < most) touch(i, 2 * N + index, solid.key, scale);
 }
 
 template <class D>
-void GranularState<D>::find_surfaces(float dt) {
-  old_surface_contacts.swap(surface_contacts);
-  surface_contacts.clear();
+void GranularState<D>::find_surfaces(float dt, float scale) {
+  old_touches.swap(touches);
+  old_first_touch.swap(first_touch);
+  old_wall_blocks.swap(wall_blocks);
+  old_body_contacts.swap(body_contacts);
+  touches.clear();
+  wall_blocks.clear();
+  wall_of.clear();
+  body_contacts.clear();
+  surface_block.assign(2 * N + solids.size(), -1);
+  first_touch.resize(grains.size() + 1);
   const float reach = statistics.max_speed * dt + 0.02f * definition.radius;
   for (int i = 0; i < int(grains.size()); ++i) {
-    for (int side = 0; side < 2 * N; ++side)
-      if (definition.walls[side]) touch_wall(i, side, reach);
-    for (int k = 0; k < int(solids.size()); ++k) touch_solid(i, solids[k], k, reach);
+    first_touch[i] = int(touches.size());
+    for (int side = 0; side < 2 * N; ++side) {
+      const float x = grains[i].x[side / 2], distance = side % 2 ? extent[side / 2] - x : x;
+      if (definition.walls[side] && distance < grains[i].radius + reach) touch(i, side, std::uint32_t(side), scale);
+    }
+    for (int k = 0; k < int(solids.size()); ++k) touch_solid(i, k, reach, scale);
   }
-  // Warm: the old ones lie in the order of their grains then; their ids lead to where the grains are now.
-  for (std::size_t i = 0; i < grains.size(); ++i) place_of[grains[i].id] = int(i);
-  for (std::size_t k = 0; k < first_surface.size(); ++k) first_surface[k] = -1;
-  for (std::size_t k = surface_contacts.size(); k-- > 0;) first_surface[surface_contacts[k].a] = int(k);
-  for (const Contact& old : old_surface_contacts) {
-    const int place = place_of[old.a];
-    if (place < 0 || std::size_t(place) >= grains.size() || grains[place].id != std::uint32_t(old.a)) continue;
-    for (int k = first_surface[place]; k >= 0 && k < int(surface_contacts.size()) && surface_contacts[k].a == place;
-         ++k)
-      if (surface_contacts[k].key == old.key) {
-        surface_contacts[k].normal_impulse = old.normal_impulse;
-        surface_contacts[k].friction = old.friction;
-        surface_contacts[k].rolling = old.rolling;
-      }
-  }
+  first_touch[grains.size()] = int(touches.size());
 }
 
 }  // namespace carom::particles::detail

@@ -7,76 +7,119 @@
 
 namespace carom::particles::detail {
 
-/// Normals and gaps where the grains are now.
 template <class D>
-void GranularState<D>::measure() {
-  scheduler->parallel_for(int(contacts.size()), 2048, [&](int begin, int end, int) {
-    for (int k = begin; k < end; ++k) {
-      Contact& c = contacts[k];
-      const Grain<D>&a = grains[c.a], &b = grains[c.b];
-      const Vector d = b.x - a.x;
-      const float distance = length(d);
-      if (distance > 0)
-        c.normal = d / distance;
-      else
-        c.normal = Vector{}, c.normal[1] = 1;
-      c.gap = distance - a.radius - b.radius;
+void GranularState<D>::to_rows() {
+  const int count = int(grains.size());
+  for (int i = 0; i < count + slabs; ++i) {
+    float* const p = &place[std::size_t(i) * grain_place];
+    float* const m = &motion[std::size_t(i) * grain_motion<N>];
+    const Grain<D> none{.radius = 0, .inverse_mass = 1};
+    const Grain<D>& g = i < count ? grains[i] : none;
+    p[2] = 0;
+    for (int k = 0; k < N; ++k) {
+      p[k] = g.x[k];
+      m[k] = g.v[k];
     }
-  });
-  for (Contact& c : surface_contacts) {
-    const Grain<D>& g = grains[c.a];
-    const int surface = -1 - c.b;
-    if (surface < 2 * N) {
-      const int axis = surface / 2;
-      c.gap = (surface % 2 ? extent[axis] - g.x[axis] : g.x[axis]) - g.radius;
-      continue;
+    p[3] = g.radius;
+    if constexpr (N == 2) {
+      m[2] = g.radius * g.spin;
+      m[3] = g.inverse_mass;
+    } else {
+      m[3] = g.inverse_mass;
+      for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
+      m[7] = i < count ? 1 / g.radius : 1.0f;
     }
-    const GrainSolid<D>& solid = solids[surface - 2 * N];
-    const Vector local = inverse_transform_point(solid.at, g.x);
-    const float d = signed_distance(solid.shape, local, solid.sheet), step = 0.02f * g.radius;
-    Vector slope{};
-    for (int b = 0; b < N; ++b) {
-      Vector up = local, down = local;
-      up[b] += step;
-      down[b] -= step;
-      slope[b] = signed_distance(solid.shape, up, solid.sheet) - signed_distance(solid.shape, down, solid.sheet);
-    }
-    const float size = length(slope);
-    if (!(size > 0)) {
-      c.gap = 1;
-      continue;
-    }
-    c.normal = rotate(solid.at.q, slope / -size);
-    c.gap = d - g.radius;
-    if (solid.body >= 0) c.arm = g.x + d * c.normal - bodies[solid.body].center;
   }
 }
 
 template <class D>
-void GranularState<D>::apply_pair(const Contact& c, float normal, Vector friction, Angular rolling) {
-  Grain<D>&a = grains[c.a], &b = grains[c.b];
-  const Vector impulse = normal * c.normal + friction;
-  a.v -= a.inverse_mass * impulse;
-  b.v += b.inverse_mass * impulse;
-  // Arms are r n and −r n: only friction turns.
-  const Angular twist = grain_cross(c.normal, friction);
-  a.spin -= a.inverse_inertia * (a.radius * twist + rolling);
-  b.spin -= b.inverse_inertia * (b.radius * twist - rolling);
+void GranularState<D>::from_rows() {
+  for (int i = 0; i < int(grains.size()); ++i) {
+    const float* const p = &place[std::size_t(i) * grain_place];
+    const float* const m = &motion[std::size_t(i) * grain_motion<N>];
+    Grain<D>& g = grains[i];
+    for (int k = 0; k < N; ++k) {
+      g.x[k] = p[k];
+      g.v[k] = m[k];
+    }
+    if constexpr (N == 2)
+      g.spin = m[2] / g.radius;
+    else
+      for (int k = 0; k < 3; ++k) g.spin[k] = m[4 + k] / g.radius;
+  }
 }
 
 template <class D>
-void GranularState<D>::apply_surface(const Contact& c, float normal, Vector friction, Angular rolling) {
-  Grain<D>& a = grains[c.a];
+bool GranularState<D>::measure_solid(const GrainSolid<D>& solid, const Vector& at, Vector& normal,
+                                     float& distance) const {
+  const Vector local = inverse_transform_point(solid.at, at);
+  distance = signed_distance(solid.shape, local, solid.sheet);
+  const float step = 0.02f * definition.radius;
+  Vector slope{};
+  for (int b = 0; b < N; ++b) {
+    Vector up = local, down = local;
+    up[b] += step;
+    down[b] -= step;
+    slope[b] = signed_distance(solid.shape, up, solid.sheet) - signed_distance(solid.shape, down, solid.sheet);
+  }
+  const float size = length(slope);
+  if (!(size > 0)) return false;
+  normal = rotate(solid.at.q, slope / -size);
+  return true;
+}
+
+/// Where the grains are now.
+template <class D>
+void GranularState<D>::measure_surfaces() {
+  const auto where = [&](int grain) {
+    Vector x{};
+    for (int k = 0; k < N; ++k) x[k] = place[std::size_t(grain) * grain_place + std::size_t(k)];
+    return x;
+  };
+  for (std::size_t i = 0; i < wall_blocks.size(); ++i) {
+    Block& block = wall_blocks[i];
+    const int surface = wall_of[i], axis = surface / 2;
+    for (int lane = 0; lane < grain_lanes && block.a[lane] != int(grains.size()); ++lane) {
+      const Vector x = where(block.a[lane]);
+      const float radius = grains[block.a[lane]].radius;
+      if (surface < 2 * N) {
+        block.gap[lane] = (surface % 2 ? extent[axis] - x[axis] : x[axis]) - radius;
+        block.normal[axis][lane] = surface % 2 ? 1.0f : -1.0f;
+        continue;
+      }
+      Vector normal{};
+      float distance = 0;
+      const bool known = measure_solid(solids[surface - 2 * N], x, normal, distance);
+      block.gap[lane] = known ? distance - radius : definition.radius;
+      if (known)
+        for (int k = 0; k < N; ++k) block.normal[k][lane] = normal[k];
+    }
+  }
+  for (Contact& c : body_contacts) {
+    const Vector x = where(c.a);
+    float distance = 0;
+    const bool known = measure_solid(solids[c.solid], x, c.normal, distance);
+    c.gap = known ? distance - grains[c.a].radius : definition.radius;
+    if (known) c.arm = x + distance * c.normal - bodies[solids[c.solid].body].center;
+  }
+}
+
+template <class D>
+void GranularState<D>::apply_body(const Contact& c, float normal, Vector friction, Angular rolling) {
+  const Grain<D>& a = grains[c.a];
+  float* const m = &motion[std::size_t(c.a) * grain_motion<N>];
   const Vector impulse = normal * c.normal + friction;
-  a.v -= a.inverse_mass * impulse;
-  a.spin -= a.inverse_inertia * (a.radius * grain_cross(c.normal, friction) + rolling);
-  const int surface = -1 - c.b;
-  const int body = surface < 2 * N ? -1 : solids[surface - 2 * N].body;
-  if (body < 0 || !bodies[body].moves) {
+  for (int k = 0; k < N; ++k) m[k] -= a.inverse_mass * impulse[k];
+  const Angular turned = (a.radius * a.inverse_inertia) * (a.radius * grain_cross(c.normal, friction) + rolling);
+  if constexpr (N == 2)
+    m[2] -= turned;
+  else
+    for (int k = 0; k < 3; ++k) m[4 + k] -= turned[k];
+  GrainBody<D>& b = bodies[solids[c.solid].body];
+  if (!b.moves) {
     wall_impulse += Position(impulse);
     return;
   }
-  GrainBody<D>& b = bodies[body];
   const Angular turn = grain_cross(c.arm, impulse) + rolling;
   b.velocity += b.inverse_mass * impulse;
   b.spin += b.inverse_inertia * turn;
@@ -100,186 +143,166 @@ V limited_change(V& held, V wanted, float limit) {
 }  // namespace
 
 template <class D>
-[[gnu::always_inline]] inline void GranularState<D>::solve_pair(Contact& c, float h) {
-  Grain<D>&a = grains[c.a], &b = grains[c.b];
-  const float masses = a.inverse_mass + b.inverse_mass;
-  const Vector across = b.v - a.v;
-  const float speed = dot(across, c.normal);
-  const float bias = c.gap > 0 ? c.gap / h : 0.0f;
-  const float next = math::max(c.normal_impulse - (speed + bias) / masses, 0.0f);
-  const float normal = next - c.normal_impulse;
-  c.normal_impulse = next;
-  if (next == 0 && normal == 0 && grain_size(c.rolling) == 0 && dot(c.friction, c.friction) == 0) return;
-  const Vector push = normal * c.normal;
-  a.v -= a.inverse_mass * push;
-  b.v += b.inverse_mass * push;
-  const Vector slip = b.v - a.v - grain_turn(b.radius * b.spin + a.radius * a.spin, c.normal);
-  const Vector tangent = slip - dot(slip, c.normal) * c.normal;
-  const float turning = masses + a.radius * a.radius * a.inverse_inertia + b.radius * b.radius * b.inverse_inertia;
-  const Vector friction = limited_change(c.friction, -tangent / turning, definition.friction * next);
-  const float lever = 2 * a.radius * b.radius / (a.radius + b.radius);
-  Angular rolling{};
-  if (definition.rolling_friction > 0)
-    rolling = limited_change(c.rolling, (a.spin - b.spin) / (a.inverse_inertia + b.inverse_inertia),
-                             definition.rolling_friction * lever * next);
-  a.v -= a.inverse_mass * friction;
-  b.v += b.inverse_mass * friction;
-  const Angular twist = grain_cross(c.normal, friction);
-  a.spin -= a.inverse_inertia * (a.radius * twist + rolling);
-  b.spin -= b.inverse_inertia * (b.radius * twist - rolling);
-}
-
-template <class D>
-void GranularState<D>::solve_surface(Contact& c, float h) {
+void GranularState<D>::solve_body(Contact& c, float h) {
   const Grain<D>& a = grains[c.a];
-  const int surface = -1 - c.b;
-  const int body = surface < 2 * N ? -1 : solids[surface - 2 * N].body;
-  const float rub = surface < 2 * N ? definition.wall_friction : solids[surface - 2 * N].friction;
-  const GrainBody<D>* b = body >= 0 ? &bodies[body] : nullptr;
-  const auto velocity = [&] { return b ? b->velocity + grain_turn(b->spin, c.arm) : Vector{}; };
+  const float* const m = &motion[std::size_t(c.a) * grain_motion<N>];
+  const GrainSolid<D>& solid = solids[c.solid];
+  const GrainBody<D>& b = bodies[solid.body];
+  // Of the body's surface against the grain's middle.
+  const auto across = [&] {
+    Vector v = b.velocity + grain_turn(b.spin, c.arm);
+    for (int k = 0; k < N; ++k) v[k] -= m[k];
+    return v;
+  };
   // What a unit impulse along `direction` changes between the two.
   const auto response = [&](const Vector& direction, bool rubs) {
     float sum = a.inverse_mass + (rubs ? a.radius * a.radius * a.inverse_inertia : 0.0f);
-    if (b && b->moves) {
-      const Angular turn = b->inverse_inertia * grain_cross(c.arm, direction);
-      sum += b->inverse_mass + dot(grain_turn(turn, c.arm), direction);
+    if (b.moves) {
+      const Angular turn = b.inverse_inertia * grain_cross(c.arm, direction);
+      sum += b.inverse_mass + dot(grain_turn(turn, c.arm), direction);
     }
     return sum;
   };
-  const float speed = dot(velocity() - a.v, c.normal);
   const float bias = c.gap > 0 ? c.gap / h : 0.0f;
-  const float next = math::max(c.normal_impulse - (speed + bias) / response(c.normal, false), 0.0f);
+  const float next = math::max(c.normal_impulse - (dot(across(), c.normal) + bias) / response(c.normal, false), 0.0f);
   const float normal = next - c.normal_impulse;
   c.normal_impulse = next;
   if (next == 0 && normal == 0 && grain_size(c.rolling) == 0 && dot(c.friction, c.friction) == 0) return;
-  apply_surface(c, normal, Vector{}, Angular{});
-  const Vector slip = velocity() - a.v - grain_turn(a.radius * a.spin, c.normal);
+  apply_body(c, normal, Vector{}, Angular{});
+  Angular rim{};  // speed of the grain's
+  if constexpr (N == 2)
+    rim = m[2];
+  else
+    rim = {m[4], m[5], m[6]};
+  const Vector slip = across() - grain_turn(rim, c.normal);
   const Vector tangent = slip - dot(slip, c.normal) * c.normal;
   const float size = length(tangent);
   Vector wanted{};
   if (size > 0) wanted = tangent / -response(tangent / size, true);
-  const Vector friction = limited_change(c.friction, wanted, rub * next);
+  const Vector friction = limited_change(c.friction, wanted, solid.friction * next);
   Angular rolling{};
-  if (definition.rolling_friction > 0) {
-    const Angular spin = b ? b->spin : Angular{};
-    rolling =
-        limited_change(c.rolling, (a.spin - spin) / a.inverse_inertia, definition.rolling_friction * a.radius * next);
-  }
-  apply_surface(c, 0, friction, rolling);
+  if (definition.rolling_friction > 0)
+    rolling = limited_change(c.rolling, (rim / a.radius - b.spin) / a.inverse_inertia,
+                             definition.rolling_friction * a.radius * next);
+  apply_body(c, 0, friction, rolling);
 }
 
-/// Every second slab of layers at a time: no two threads then touch the same grain, and the order is always the same.
-/// A thread goes through several slabs in step: each contact waits for the one before it in its slab, and meanwhile the
-/// processor has those of the other slabs to do.
+/// Every second slab at a time: no two threads then touch the same grain, and the order is always the same.
 template <class D>
 template <class F>
 void GranularState<D>::for_slabs(bool back, F&& f) {
-  constexpr int together = 4;
-  const int slabs = int(slab_start.size()) - 1;
   for (int color = 0; color < 2; ++color) {
-    const int odd = back ? 1 - color : color, count = (slabs + 1 - odd) / 2;
-    const int share = math::clamp(count / scheduler->thread_count(), 1, together);
-    scheduler->parallel_for(count, share, [&](int begin, int end, int) {
-      for (int s = begin; s < end; s += together) {
-        const int streams = math::min(together, end - s);
-        int first[together], size[together], longest = 0;
-        for (int k = 0; k < streams; ++k) {
-          first[k] = slab_start[2 * (s + k) + odd];
-          size[k] = slab_start[2 * (s + k) + odd + 1] - first[k];
-          longest = math::max(longest, size[k]);
-        }
-        for (int n = 0; n < longest; ++n)
-          for (int k = 0; k < streams; ++k)
-            if (n < size[k]) f(contacts[back ? first[k] + size[k] - 1 - n : first[k] + n]);
-      }
+    const int odd = back ? 1 - color : color;
+    scheduler->parallel_for((slabs + 1 - odd) / 2, 1, [&](int begin, int end, int) {
+      for (int k = begin; k < end; ++k) f(slab_start[2 * k + odd], slab_start[2 * k + odd + 1]);
     });
+  }
+}
+
+/// Normals and gaps where the grains are now; and the impulses of the last substep, to begin with.
+template <class D>
+void GranularState<D>::press() {
+  for_slabs(false,
+            [&](int first, int last) { kernels->press(blocks.data(), first, last, place.data(), motion.data()); });
+  measure_surfaces();
+  kernels->press_surface(wall_blocks.data(), 0, int(wall_blocks.size()), place.data(), motion.data());
+  for (Contact& c : body_contacts) {
+    c.friction -= dot(c.friction, c.normal) * c.normal;
+    apply_body(c, c.normal_impulse, c.friction, c.rolling);
   }
 }
 
 /// Back and forth by turns: weight goes down through a heap in the one direction, what the ground answers in the other.
 template <class D>
 void GranularState<D>::sweep(float h, bool back) {
-  if (!back)
-    for (Contact& c : surface_contacts) solve_surface(c, h);
-  for_slabs(back, [&](Contact& c) { solve_pair(c, h); });
-  if (back)
-    for (Contact& c : surface_contacts) solve_surface(c, h);
+  GrainPass pass{.inverse_h = 1 / h, .rolling = definition.rolling_friction};
+  const auto surfaces = [&] {
+    for (int i = 0; i < int(wall_blocks.size()); ++i) {
+      pass.friction = wall_of[i] < 2 * N ? definition.wall_friction : solids[wall_of[i] - 2 * N].friction;
+      kernels->sweep_surface(wall_blocks.data(), i, i + 1, false, motion.data(), pass);
+    }
+    for (Contact& c : body_contacts) solve_body(c, h);
+  };
+  if (!back) surfaces();
+  pass.friction = definition.friction;
+  for_slabs(back, [&](int first, int last) { kernels->sweep(blocks.data(), first, last, back, motion.data(), pass); });
+  if (back) surfaces();
 }
 
 /// Overlaps are taken out of the places alone, so that no speed comes of them.
 template <class D>
 void GranularState<D>::separate() {
-  const float slop = grain_slop * definition.radius;
-  for_slabs(false, [&](Contact& c) {
-    Grain<D>&a = grains[c.a], &b = grains[c.b];
-    const float touch = a.radius + b.radius - slop;
-    const Vector d = b.x - a.x;
-    const float square = dot(d, d);
-    if (square >= touch * touch || !(square > 0)) return;
-    const float distance = math::sqrt(square), masses = a.inverse_mass + b.inverse_mass;
-    const Vector way = (grain_part * (touch - distance) / (distance * masses)) * d;
-    a.x -= a.inverse_mass * way;
-    b.x += b.inverse_mass * way;
-  });
-  for (Contact& c : surface_contacts) {
-    Grain<D>& a = grains[c.a];
-    const int surface = -1 - c.b;
+  const GrainPass pass{.slop = grain_slop * definition.radius, .part = grain_part};
+  for_slabs(false, [&](int first, int last) { kernels->separate(blocks.data(), first, last, place.data(), pass); });
+  const auto push_out = [&](int grain, int surface, const Vector& normal) {
+    float* const p = &place[std::size_t(grain) * grain_place];
     float gap = 0;
     if (surface < 2 * N) {
       const int axis = surface / 2;
-      gap = (surface % 2 ? extent[axis] - a.x[axis] : a.x[axis]) - a.radius;
+      gap = (surface % 2 ? extent[axis] - p[axis] : p[axis]) - grains[grain].radius;
     } else {
       const GrainSolid<D>& solid = solids[surface - 2 * N];
-      gap = signed_distance(solid.shape, inverse_transform_point(solid.at, a.x), solid.sheet) - a.radius;
+      Vector x{};
+      for (int k = 0; k < N; ++k) x[k] = p[k];
+      gap = signed_distance(solid.shape, inverse_transform_point(solid.at, x), solid.sheet) - grains[grain].radius;
     }
-    if (gap < -slop) a.x += (grain_part * (gap + slop)) * c.normal;
+    if (gap < -pass.slop)
+      for (int k = 0; k < N; ++k) p[k] += grain_part * (gap + pass.slop) * normal[k];
+  };
+  for (std::size_t i = 0; i < wall_blocks.size(); ++i) {
+    const Block& block = wall_blocks[i];
+    for (int lane = 0; lane < grain_lanes && block.a[lane] != int(grains.size()); ++lane) {
+      Vector normal{};
+      for (int k = 0; k < N; ++k) normal[k] = block.normal[k][lane];
+      push_out(block.a[lane], wall_of[i], normal);
+    }
   }
+  for (const Contact& c : body_contacts) push_out(c.a, 2 * N + c.solid, c.normal);
 }
 
+/// What walls and fixed bodies took in a substep.
 template <class D>
-void GranularState<D>::warm_start() {
-  for (Contact& c : contacts) {
-    c.friction -= dot(c.friction, c.normal) * c.normal;
-    apply_pair(c, c.normal_impulse, c.friction, c.rolling);
-  }
-  for (Contact& c : surface_contacts) {
-    c.friction -= dot(c.friction, c.normal) * c.normal;
-    apply_surface(c, c.normal_impulse, c.friction, c.rolling);
-  }
+void GranularState<D>::sum_walls() {
+  for (const Block& c : wall_blocks)
+    for (int lane = 0; lane < grain_lanes && c.a[lane] != int(grains.size()); ++lane) {
+      Vector impulse{};
+      for (int k = 0; k < N; ++k) impulse[k] = c.push[lane] * c.normal[k][lane];
+      if constexpr (N == 2)
+        impulse += c.grip[0][lane] * Vector{-c.normal[1][lane], c.normal[0][lane]};
+      else
+        impulse += Vector{c.grip[0][lane], c.grip[1][lane], c.grip[2][lane]};
+      wall_impulse += Position(impulse);
+    }
 }
 
 template <class D>
 void GranularState<D>::round(float dt, int parts) {
-  // Contacts name grains by their ids while the grains are sorted anew.
-  for (Contact& c : contacts) c.a = int(grains[c.a].id);
-  for (Contact& c : surface_contacts) c.a = int(grains[c.a].id);
-  sort();
-  find_contacts(dt);
-  find_surfaces(dt);
   const float h = dt / float(parts);
   const float scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with the substep
-  if (scale != 1)
-    for (auto* list : {&contacts, &surface_contacts})
-      for (Contact& c : *list) {
-        c.normal_impulse *= scale;
-        c.friction = scale * c.friction;
-        c.rolling = scale * c.rolling;
-      }
   last_h = h;
+  sort();
+  find_pairs(dt, scale);
+  find_surfaces(dt, scale);
+  to_rows();
+  const int count = int(grains.size());
   for (int part = 0; part < parts; ++part) {
-    measure();
-    for (Grain<D>& g : grains) g.v += h * definition.gravity;
+    const Vector gained = h * definition.gravity;
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < N; ++k) motion[std::size_t(i) * grain_motion<N> + std::size_t(k)] += gained[k];
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
-    warm_start();
+    press();
     for (int k = 0; k < definition.iterations; ++k) sweep(h, k % 2 == 0);
-    scheduler->parallel_for(int(grains.size()), 4096, [&](int begin, int end, int) {
-      for (int i = begin; i < end; ++i) grains[i].x += h * grains[i].v;
-    });
+    sum_walls();
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < N; ++k)
+        place[std::size_t(i) * grain_place + std::size_t(k)] +=
+            h * motion[std::size_t(i) * grain_motion<N> + std::size_t(k)];
     separate();
   }
-  statistics.contacts = int(contacts.size());
-  statistics.wall_contacts = int(surface_contacts.size());
+  from_rows();
+  statistics.contacts = int(pairs.size());
+  statistics.wall_contacts = int(touches.size());
 }
 
 template <class D>
@@ -302,10 +325,7 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
   const int rounds = ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;
   const int parts = math::max(1, (definition.substeps + rounds - 1) / rounds);
   for (int k = 0; k < rounds; ++k) round(dt / float(rounds), parts);
-  for (const Contact& c : contacts) {
-    const float overlap = grains[c.a].radius + grains[c.b].radius - length(grains[c.b].x - grains[c.a].x);
-    statistics.max_overlap = math::max(statistics.max_overlap, overlap);
-  }
+  statistics.max_overlap = kernels->deepest(blocks.data(), 0, int(blocks.size()), place.data());
   statistics.grains = int(grains.size());
   for (const GrainBody<D>& b : bodies) {
     if (!b.moves || (dot(b.impulse, b.impulse) == 0 && grain_size(b.turn) == 0)) continue;

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "carom/core/scheduler.h"
+#include "carom/particles/detail/aligned.h"
+#include "carom/particles/detail/granular_block.h"
 #include "carom/particles/granular.h"
 
 namespace carom::particles::detail {
@@ -22,19 +24,29 @@ struct Grain {
   typename D::Vector v{};
   typename D::Angular spin{};
   float radius = 0, inverse_mass = 0, inverse_inertia = 0;
-  std::uint32_t id = 0, tag = 0;
+  std::uint32_t tag = 0;
 };
 
-/// Two grains, or a grain and a wall or body (`b` is then −1 − surface).
+/// Two grains that may touch, listed with the first.
+struct GrainPair {
+  int b = 0;
+  int lane = 0;  ///< where it is solved: grain_lanes × block + lane
+};
+/// A grain and a wall or a shape, listed with the grain.
+struct GrainTouch {
+  std::uint32_t key = 0;  ///< of the surface
+  int lane = 0;           ///< as GrainPair; of a body that moves −1 − its contact
+};
+
+/// A grain and a body that moves.
 template <class D>
 struct GrainContact {
-  int a = 0, b = 0;
-  std::uint32_t key = 0;          ///< id of b's grain or number of the surface, to find it again
+  int a = 0, solid = 0;
   float normal_impulse = 0;       ///< N·s
-  typename D::Vector friction{};  ///< N·s on b
-  typename D::Angular rolling{};  ///< N·m·s on b
-  typename D::Vector normal{};    ///< from a to b
-  typename D::Vector arm{};       ///< surfaces of bodies: from their centre to the contact
+  typename D::Vector friction{};  ///< N·s on the body
+  typename D::Angular rolling{};  ///< N·m·s on the body
+  typename D::Vector normal{};    ///< from the grain to the body
+  typename D::Vector arm{};       ///< from its centre to the contact
   float gap = 0;                  ///< m
 };
 
@@ -69,25 +81,39 @@ struct GranularState {
   using Position = typename D::Position;
   using Contact = GrainContact<D>;
 
+  using Block = GrainBlock<N>;
+
   GranularDef<D> definition{};
-  float cell = 0, inverse_cell = 0;
-  int cells[3] = {1, 1, 1}, stride[3] = {1, 0, 0}, size = 0;
+  const GrainKernels<N>* kernels = nullptr;
+  float inverse_cell = 0;
+  int cells[3] = {1, 1, 1}, slab_cells = 1, slabs = 1, size = 0;
   Vector extent{};
   std::vector<Grain<D>> grains, sorted;
-  std::uint32_t next_id = 0;
   std::uint64_t added = 0;  ///< in all, the stream of the next one's radius
   std::vector<int> cell_of, cell_start;
+  std::vector<int> old_place;         ///< of a grain when contacts were last looked for
   std::vector<float> near_by[N + 1];  ///< places, then radii, in the order of the cells
-  std::vector<Contact> contacts, old_contacts, sorted_old, surface_contacts, old_surface_contacts;
-  std::vector<int> slab_start;           ///< first contact of each slab of layers
-  std::vector<int> old_start, place_of;  ///< by id: first old contact; where a grain lies now
-  std::vector<int> first_surface;        ///< by place: first contact with a surface
-  std::vector<std::uint32_t> free_ids;
-  float last_h = 0;
+  // While contacts are solved grains are rows of floats (granular_block.h); behind them one for each slab that is none.
+  AlignedFloats place, motion;
+  // Pairs by grain, and where they are solved: block by block, those of a slab together, in the order of its layers.
+  std::vector<GrainPair> pairs, old_pairs;
+  std::vector<int> first_pair, old_first_pair;
+  std::vector<Block> blocks, old_blocks;
+  std::vector<int> slab_start;              ///< first block of each slab
+  std::vector<std::uint8_t> filled;         ///< lanes by block
+  std::vector<int> open_block, last_block;  ///< the next that has room, by block; the last that a grain is in
+  // Surfaces.
+  std::vector<GrainTouch> touches, old_touches;
+  std::vector<int> first_touch, old_first_touch;
+  std::vector<Block> wall_blocks, old_wall_blocks;
+  std::vector<int> wall_of;  ///< surface by block: a side, or 2 N + a solid
+  std::vector<Contact> body_contacts, old_body_contacts;
+  std::vector<int> surface_block;  ///< by surface: that which is being filled
   std::vector<GrainSolid<D>> solids;
   std::vector<GrainBody<D>> bodies;
   std::vector<rigid::ShapeId> found;
   Position wall_impulse{};
+  float last_h = 0;
   GranularStatistics statistics{};
   core::TaskScheduler* scheduler = nullptr;
 
@@ -96,23 +122,29 @@ struct GranularState {
   core::Status add(Position at, Vector velocity, std::uint32_t tag, float radius, Angular spin, const char* call);
   core::Status fill(Position lower, Position upper, Vector velocity, std::uint32_t tag);
   core::Status gather(rigid::World<D>& world);
+  int cell_at(int x, int y, int z) const;
   void sort();
-  void find_contacts(float dt);
-  void find_surfaces(float dt);
-  void remember(Contact& contact, const std::vector<Contact>& old, std::uint32_t a, std::uint32_t b) const;
-  void touch_solid(int grain, const GrainSolid<D>& solid, int index, float reach);
-  void touch_wall(int grain, int side, float reach);
-  void measure();
-  void round(float dt, int parts);
-  void warm_start();
+  void to_rows();
+  void from_rows();
+  void find_pairs(float dt, float scale);
+  void find_neighbours(int x, int y, int z, float reach);
+  void schedule(int from, int none);
+  int place_pair(int a, int b, int first, int none);
+  void take_over(GrainPair& pair, int a, float scale);
+  void find_surfaces(float dt, float scale);
+  void touch(int grain, int surface, std::uint32_t key, float scale);
+  void touch_solid(int grain, int index, float reach, float scale);
+  void measure_surfaces();
+  bool measure_solid(const GrainSolid<D>& solid, const Vector& at, Vector& normal, float& distance) const;
+  void press();
   template <class F>
   void for_slabs(bool back, F&& f);
   void sweep(float h, bool back);
   void separate();
-  void solve_pair(Contact& contact, float h);
-  void solve_surface(Contact& contact, float h);
-  void apply_pair(const Contact& contact, float normal, Vector friction, Angular rolling);
-  void apply_surface(const Contact& contact, float normal, Vector friction, Angular rolling);
+  void solve_body(Contact& contact, float h);
+  void apply_body(const Contact& contact, float normal, Vector friction, Angular rolling);
+  void sum_walls();
+  void round(float dt, int parts);
   core::Status step(rigid::World<D>* world, float dt);
 };
 

@@ -1,0 +1,9 @@
+// The kernels of grains for 16 lanes.
+#include "carom/math/simd.h"
+#include "carom/particles/detail/granular_block.h"
+
+#define CAROM_GRAIN_NAMESPACE grains_avx512
+#define CAROM_GRAIN_WIDTH 16
+#include "carom/particles/detail/granular_kernel.inl"
+#undef CAROM_GRAIN_NAMESPACE
+#undef CAROM_GRAIN_WIDTH

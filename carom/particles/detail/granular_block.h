@@ -1,0 +1,86 @@
+// Contacts of grains side by side in lanes, and the kernels that solve them: one set for each instruction set.
+#pragma once
+
+#include <cstdint>
+
+namespace carom::particles::detail {
+
+inline constexpr int grain_lanes = 16;  ///< of a block, whatever the width: no grain is in a block twice
+/// Floats of a grain's motion: velocity, inverse mass, and the speed of its rim (spin times radius); in space a vector,
+/// and with it the inverse radius.
+template <int N>
+inline constexpr int grain_motion = N == 2 ? 4 : 8;
+inline constexpr int grain_place = 4;  ///< floats: place, at the last radius
+
+template <int N>
+struct GrainCurves {};
+template <>
+struct GrainCurves<2> {
+  float curve[2][grain_lanes];  ///< 1/m, inverse radii of a and b, for which a motion in the plane has no room
+};
+
+/// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
+/// twice a grain that is none.
+template <int N>
+struct alignas(64) GrainBlock : GrainCurves<N> {
+  static constexpr int turns = N == 2 ? 1 : 3;
+  std::int32_t a[grain_lanes] = {}, b[grain_lanes] = {};
+  float normal[N][grain_lanes] = {};    ///< from a to b
+  float gap[grain_lanes] = {};          ///< m
+  float push[grain_lanes] = {};         ///< N·s along the normal, ≥ 0
+  float grip[turns][grain_lanes] = {};  ///< N·s on b across it; in the plane along the normal turned left
+  float roll[turns][grain_lanes] = {};  ///< N·m·s on b
+};
+
+struct GrainPass {
+  float inverse_h = 0;  ///< 1/s
+  float friction = 0, rolling = 0;
+  float slop = 0;  ///< m of overlap that stays
+  float part = 0;  ///< of the rest, that is taken out
+};
+
+/// All go through the blocks first … last − 1 in turn, or back from the last.
+template <int N>
+struct GrainKernels {
+  using Block = GrainBlock<N>;
+  /// Normals and gaps where the grains are; and the impulses that the contacts hold are given.
+  void (*press)(Block* blocks, int first, int last, const float* place, float* motion);
+  void (*sweep)(Block* blocks, int first, int last, bool back, float* motion, const GrainPass& pass);
+  void (*separate)(const Block* blocks, int first, int last, float* place, const GrainPass& pass);
+  /// The same with a surface, its normals and gaps being given.
+  void (*press_surface)(Block* blocks, int first, int last, const float* place, float* motion);
+  void (*sweep_surface)(Block* blocks, int first, int last, bool back, float* motion, const GrainPass& pass);
+  float (*deepest)(const Block* blocks, int first, int last, const float* place);  ///< m, overlap, ≥ 0
+};
+
+namespace grains_baseline {
+extern const GrainKernels<2> kernels2;
+extern const GrainKernels<3> kernels3;
+}  // namespace grains_baseline
+namespace grains_avx2 {
+extern const GrainKernels<2> kernels2;
+extern const GrainKernels<3> kernels3;
+}  // namespace grains_avx2
+namespace grains_avx512 {
+extern const GrainKernels<2> kernels2;
+extern const GrainKernels<3> kernels3;
+}  // namespace grains_avx512
+
+/// For 4, 8 or 16 lanes; the machine must have them.
+template <int N>
+const GrainKernels<N>& grain_kernels(int lanes) {
+  const auto pick = [](const GrainKernels<2>& plane, const GrainKernels<3>& space) -> const GrainKernels<N>& {
+    if constexpr (N == 2)
+      return static_cast<void>(space), plane;
+    else
+      return static_cast<void>(plane), space;
+  };
+#if defined(__x86_64__)
+  if (lanes == 16) return pick(grains_avx512::kernels2, grains_avx512::kernels3);
+  if (lanes == 8) return pick(grains_avx2::kernels2, grains_avx2::kernels3);
+#endif
+  static_cast<void>(lanes);
+  return pick(grains_baseline::kernels2, grains_baseline::kernels3);
+}
+
+}  // namespace carom::particles::detail

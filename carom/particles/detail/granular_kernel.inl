@@ -1,0 +1,272 @@
+// Contacts of grains, lanes at a time. With u = r ω, the speed of its rim, a grain's radius drops out of friction:
+//   u ← u − k/m n×f,  slip = Δv − (u_a + u_b)×n,  a unit of friction changes the slip by (1 + k)(1/m_a + 1/m_b)
+// where 1/k = ½ for discs and ⅖ for balls is the inertia over m r².
+
+namespace carom::particles::detail::CAROM_GRAIN_NAMESPACE {
+
+constexpr int width = CAROM_GRAIN_WIDTH;
+using F = math::WideFloat<width>;
+using M = math::WideMask<width>;
+
+CAROM_SIMD_INLINE F splat(float x) { return F::splat(x); }
+/// Components over lanes: vectors, and what turns (one number in the plane).
+template <int K>
+struct Lanes {
+  F k[K];
+};
+template <int K>
+CAROM_SIMD_INLINE Lanes<K> load(const float (&from)[K][grain_lanes], int lane) {
+  Lanes<K> r;
+  for (int i = 0; i < K; ++i) r.k[i] = F::load(from[i] + lane);
+  return r;
+}
+template <int K>
+CAROM_SIMD_INLINE void store(const Lanes<K>& v, float (&to)[K][grain_lanes], int lane) {
+  for (int i = 0; i < K; ++i) v.k[i].store(to[i] + lane);
+}
+template <int K>
+CAROM_SIMD_INLINE Lanes<K> operator+(const Lanes<K>& a, const Lanes<K>& b) {
+  Lanes<K> r;
+  for (int i = 0; i < K; ++i) r.k[i] = a.k[i] + b.k[i];
+  return r;
+}
+template <int K>
+CAROM_SIMD_INLINE Lanes<K> operator-(const Lanes<K>& a, const Lanes<K>& b) {
+  Lanes<K> r;
+  for (int i = 0; i < K; ++i) r.k[i] = a.k[i] - b.k[i];
+  return r;
+}
+template <int K>
+CAROM_SIMD_INLINE Lanes<K> operator*(F s, const Lanes<K>& a) {
+  Lanes<K> r;
+  for (int i = 0; i < K; ++i) r.k[i] = s * a.k[i];
+  return r;
+}
+template <int K>
+CAROM_SIMD_INLINE F dot(const Lanes<K>& a, const Lanes<K>& b) {
+  F r = a.k[0] * b.k[0];
+  for (int i = 1; i < K; ++i) r = r + a.k[i] * b.k[i];
+  return r;
+}
+CAROM_SIMD_INLINE Lanes<3> cross(const Lanes<3>& a, const Lanes<3>& b) {
+  return {{a.k[1] * b.k[2] - a.k[2] * b.k[1], a.k[2] * b.k[0] - a.k[0] * b.k[2], a.k[0] * b.k[1] - a.k[1] * b.k[0]}};
+}
+/// The slip across n, without what is along it, of grains whose rims run with u.
+CAROM_SIMD_INLINE Lanes<3> slip_of(const Lanes<3>& across, const Lanes<3>& u, const Lanes<3>& n) {
+  return across - dot(across, n) * n - cross(u, n);
+}
+CAROM_SIMD_INLINE Lanes<1> slip_of(const Lanes<2>& across, const Lanes<1>& u, const Lanes<2>& n) {
+  return {{n.k[0] * across.k[1] - n.k[1] * across.k[0] - u.k[0]}};
+}
+/// A friction as a vector, and its moment about a grain's middle over the radius.
+CAROM_SIMD_INLINE Lanes<3> vector_of(const Lanes<3>& grip, const Lanes<3>& /*n*/) { return grip; }
+CAROM_SIMD_INLINE Lanes<2> vector_of(const Lanes<1>& grip, const Lanes<2>& n) {
+  return {{-n.k[1] * grip.k[0], n.k[0] * grip.k[0]}};
+}
+CAROM_SIMD_INLINE Lanes<3> twist_of(const Lanes<3>& grip, const Lanes<3>& n) { return cross(n, grip); }
+CAROM_SIMD_INLINE Lanes<1> twist_of(const Lanes<1>& grip, const Lanes<2>& /*n*/) { return grip; }
+/// Cut off at a size.
+template <int K>
+CAROM_SIMD_INLINE Lanes<K> limited(const Lanes<K>& v, F limit) {
+  const F square = dot(v, v);
+  const M over = square > limit * limit;
+  if (math::none(over)) return v;
+  return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * v;
+}
+
+/// One side of a contact.
+template <int N>
+struct Side {
+  static constexpr int turns = GrainBlock<N>::turns;
+  Lanes<N> v;
+  Lanes<turns> u;
+  F inverse_mass, curve;
+
+  CAROM_SIMD_INLINE void read(const float* motion, const std::int32_t* index, const GrainBlock<N>& block, int side,
+                              int lane) {
+    F row[grain_motion<N>];
+    math::gather_rows<grain_motion<N>, width>(motion, index, row);
+    if constexpr (N == 2) {
+      v = {{row[0], row[1]}};
+      u = {{row[2]}};
+      inverse_mass = row[3];
+      curve = F::load(block.curve[side] + lane);
+    } else {
+      v = {{row[0], row[1], row[2]}};
+      u = {{row[4], row[5], row[6]}};
+      inverse_mass = row[3];
+      curve = row[7];
+    }
+  }
+  CAROM_SIMD_INLINE void write(float* motion, const std::int32_t* index) const {
+    if constexpr (N == 2) {
+      const F row[4] = {v.k[0], v.k[1], u.k[0], inverse_mass};
+      math::scatter_rows<4, 4, width>(motion, index, row);
+    } else {
+      const F row[8] = {v.k[0], v.k[1], v.k[2], inverse_mass, u.k[0], u.k[1], u.k[2], curve};
+      math::scatter_rows<8, 8, width>(motion, index, row);
+    }
+  }
+};
+
+template <int N>
+constexpr float turning = N == 2 ? 2.0f : 2.5f;  ///< k
+
+/// Gives both sides an impulse, b's; `grip` and `roll` as in a block.
+template <int N, bool pair>
+CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lanes<N>& impulse,
+                            const Lanes<GrainBlock<N>::turns>& grip, const Lanes<GrainBlock<N>::turns>& roll) {
+  const auto twist = twist_of(grip, n);
+  a.v = a.v - a.inverse_mass * impulse;
+  a.u = a.u - (splat(turning<N>) * a.inverse_mass) * (twist + a.curve * roll);
+  if constexpr (pair) {
+    b.v = b.v + b.inverse_mass * impulse;
+    b.u = b.u - (splat(turning<N>) * b.inverse_mass) * (twist - b.curve * roll);
+  }
+}
+
+template <int N>
+CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, const float* place) {
+  F a[grain_place], b[grain_place];
+  math::gather_rows<grain_place, width>(place, c.a + lane, a);
+  math::gather_rows<grain_place, width>(place, c.b + lane, b);
+  Lanes<N> d;
+  for (int i = 0; i < N; ++i) d.k[i] = b[i] - a[i];
+  const F distance = math::sqrt(dot(d, d));
+  const M apart = distance > F::zero();
+  const F over = splat(1) / math::select(apart, distance, splat(1));
+  for (int i = 0; i < N; ++i) d.k[i] = math::select(apart, over * d.k[i], splat(i == 1 ? 1 : 0));
+  store(d, c.normal, lane);
+  (distance - a[3] - b[3]).store(c.gap + lane);
+}
+
+template <int N, bool pair>
+void press(GrainBlock<N>* blocks, int first, int last, const float* place, float* motion) {
+  for (int i = first; i < last; ++i) {
+    GrainBlock<N>& c = blocks[i];
+    for (int lane = 0; lane < grain_lanes; lane += width) {
+      if constexpr (pair) measure_lanes(c, lane, place);
+      const F push = F::load(c.push + lane);
+      if (math::none(push > F::zero())) continue;
+      const auto n = load(c.normal, lane);
+      auto grip = load(c.grip, lane);
+      if constexpr (N == 3) {
+        grip = grip - dot(grip, n) * n;
+        store(grip, c.grip, lane);
+      }
+      Side<N> a, b;
+      a.read(motion, c.a + lane, c, 0, lane);
+      if constexpr (pair) b.read(motion, c.b + lane, c, 1, lane);
+      give<N, pair>(a, b, n, push * n + vector_of(grip, n), grip, load(c.roll, lane));
+      a.write(motion, c.a + lane);
+      if constexpr (pair) b.write(motion, c.b + lane);
+    }
+  }
+  static_cast<void>(place);
+}
+
+template <int N, bool pair>
+CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, const GrainPass& pass) {
+  Side<N> a, b;
+  a.read(motion, c.a + lane, c, 0, lane);
+  if constexpr (pair) b.read(motion, c.b + lane, c, 1, lane);
+  const auto n = load(c.normal, lane);
+  const F masses = pair ? a.inverse_mass + b.inverse_mass : a.inverse_mass, easy = splat(1) / masses;
+  const F before = F::load(c.push + lane);
+  const F bias = math::max(F::load(c.gap + lane), F::zero()) * splat(pass.inverse_h);
+  auto across = splat(-1) * a.v;
+  if constexpr (pair) across = b.v - a.v;
+  const F push = math::max(before - (dot(across, n) + bias) * easy, F::zero());
+  if (math::none((push > F::zero()) | (before > F::zero()))) return;
+  push.store(c.push + lane);
+  const auto blow = (push - before) * n;
+  a.v = a.v - a.inverse_mass * blow;
+  auto u = a.u;
+  if constexpr (pair) {
+    b.v = b.v + b.inverse_mass * blow;
+    across = b.v - a.v;
+    u = a.u + b.u;
+  } else {
+    across = splat(-1) * a.v;
+  }
+  const auto grip = load(c.grip, lane), roll = load(c.roll, lane);
+  const auto gripped =
+      limited(grip - (easy * splat(1 / (1 + turning<N>))) * slip_of(across, u, n), splat(pass.friction) * push);
+  store(gripped, c.grip, lane);
+  const auto more_grip = gripped - grip;
+  Lanes<GrainBlock<N>::turns> more_roll{};
+  if (pass.rolling > 0) {
+    auto rolling = a.curve * a.u;
+    F lightness = a.inverse_mass * (a.curve * a.curve), curves = a.curve + a.curve;
+    if constexpr (pair) {
+      rolling = rolling - b.curve * b.u;
+      lightness = lightness + b.inverse_mass * (b.curve * b.curve);
+      curves = a.curve + b.curve;
+    }
+    const auto rolled =
+        limited(roll + (splat(1) / (splat(turning<N>) * lightness)) * rolling, splat(2 * pass.rolling) * push / curves);
+    store(rolled, c.roll, lane);
+    more_roll = rolled - roll;
+  }
+  give<N, pair>(a, b, n, vector_of(more_grip, n), more_grip, more_roll);
+  a.write(motion, c.a + lane);
+  if constexpr (pair) b.write(motion, c.b + lane);
+}
+
+template <int N, bool pair>
+void sweep(GrainBlock<N>* blocks, int first, int last, bool back, float* motion, const GrainPass& pass) {
+  for (int i = 0; i < last - first; ++i)
+    for (int lane = 0; lane < grain_lanes; lane += width)
+      sweep_lanes<N, pair>(blocks[back ? last - 1 - i : first + i], lane, motion, pass);
+}
+
+template <int N>
+void separate(const GrainBlock<N>* blocks, int first, int last, float* place, const GrainPass& pass) {
+  for (int i = first; i < last; ++i)
+    for (int lane = 0; lane < grain_lanes; lane += width) {
+      const std::int32_t *const ia = blocks[i].a + lane, *const ib = blocks[i].b + lane;
+      F a[grain_place], b[grain_place];
+      math::gather_rows<grain_place, width>(place, ia, a);
+      math::gather_rows<grain_place, width>(place, ib, b);
+      Lanes<N> d;
+      for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
+      const F square = dot(d, d), touch = a[3] + b[3] - splat(pass.slop);
+      const M deep = (square < touch * touch) & (square > F::zero());
+      if (math::none(deep)) continue;
+      // Masses of one density go with r² and r³.
+      const F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
+      const F distance = math::select(deep, math::sqrt(square), splat(1));
+      const F masses = math::select(deep, ma + mb, splat(1));
+      const auto way = math::keep(deep, splat(pass.part) * (touch - distance) / (distance * masses)) * d;
+      for (int k = 0; k < N; ++k) {
+        a[k] = a[k] - mb * way.k[k];
+        b[k] = b[k] + ma * way.k[k];
+      }
+      math::scatter_rows<grain_place, grain_place, width>(place, ia, a);
+      math::scatter_rows<grain_place, grain_place, width>(place, ib, b);
+    }
+}
+
+template <int N>
+float deepest(const GrainBlock<N>* blocks, int first, int last, const float* place) {
+  F most = F::zero();
+  for (int i = first; i < last; ++i)
+    for (int lane = 0; lane < grain_lanes; lane += width) {
+      F a[grain_place], b[grain_place];
+      math::gather_rows<grain_place, width>(place, blocks[i].a + lane, a);
+      math::gather_rows<grain_place, width>(place, blocks[i].b + lane, b);
+      Lanes<N> d;
+      for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
+      most = math::max(most, a[3] + b[3] - math::sqrt(dot(d, d)));
+    }
+  float result = 0;
+  for (int i = 0; i < width; ++i) result = most[i] > result ? most[i] : result;
+  return result;
+}
+
+const GrainKernels<2> kernels2 = {press<2, true>,  sweep<2, true>,  separate<2>,
+                                  press<2, false>, sweep<2, false>, deepest<2>};
+const GrainKernels<3> kernels3 = {press<3, true>,  sweep<3, true>,  separate<3>,
+                                  press<3, false>, sweep<3, false>, deepest<3>};
+
+}  // namespace carom::particles::detail::CAROM_GRAIN_NAMESPACE
