@@ -4,6 +4,7 @@
 #include "carom/geometry/detail/queries.h"
 #include "carom/geometry/detail/surface.h"
 #include "carom/geometry/detail/sweep.h"
+#include "carom/geometry/detail/triangle_lanes.h"
 
 namespace carom::geometry {
 namespace query3 {
@@ -343,11 +344,23 @@ bool touch(const Shape3& a, const Shape3& b, const Transform3f& x) {
   if (!is_convex(b) || a.type == ShapeType3::plane) return any(a, b, x).distance <= 0;
   const Convex core = detail::convex_of(b);
   if (detail::inside_ground(a, transform_point(x, detail::inner_point(core)))) return true;
+  const Bounds3f box = bounds(b, x);
   bool found = false;
-  detail::visit_triangles(a, bounds(b, x), false, [&](const detail::SurfaceTriangle& t) {
+  const auto look = [&](const detail::SurfaceTriangle& t) {
     found = cores_touch(bare_triangle(t), core, x);
     return !found;
-  });
+  };
+  if (a.type == ShapeType3::mesh) {  // mostly the first few tell
+    const TriangleMesh& mesh = *a.mesh;
+    query_leaves(mesh.tree, box, [&](const std::uint32_t* items, int count) {
+      const detail::TriangleLanes lanes(mesh, items, count, {});
+      for (std::uint32_t near = lanes.met_by_box(box); near != 0 && !found; near &= near - 1)
+        look(detail::triangle_of(mesh, items[__builtin_ctz(near)]));
+      return !found;
+    });
+  } else {
+    detail::visit_triangles(a, box, false, look);
+  }
   return found;
 }
 

@@ -2,6 +2,7 @@
 #include "carom/geometry/compound.h"
 #include "carom/geometry/detail/queries.h"
 #include "carom/geometry/detail/surface.h"
+#include "carom/geometry/detail/triangle_lanes.h"
 #include "carom/geometry/hull.h"
 
 namespace carom::geometry {
@@ -182,7 +183,7 @@ CastHit3 on_box(const Box& b, Vec3d o, Vec3d d) {
       if (math::abs(from) > half[k]) return {};
       continue;
     }
-    const double enter = (-half[k] - from) / speed, leave = (half[k] - from) / speed;
+    const double pace = 1 / speed, enter = (-half[k] - from) * pace, leave = (half[k] - from) * pace;
     if (enter > first || (enter == first && from < -half[k])) first = enter, axis = k;
     last = min(last, leave);
   }
@@ -214,13 +215,17 @@ CastHit3 on_mesh(const TriangleMesh& mesh, Vec3f origin, Vec3f translation) {
   const Vec3d o(origin), d(translation);
   Best best;
   std::uint32_t child = 0;
-  cast(mesh.tree, origin, translation, Vec3f{}, 1, [&](std::uint32_t i, float) {
-    const detail::SurfaceTriangle triangle = detail::triangle_of(mesh, i);
-    double t;
-    Vec3d n;
-    if (on_triangle(triangle.corner, o, d, t, n) && (t < best.t || (t == best.t && i < child))) {
-      best.t = t, best.normal = n, best.hit = true;
-      child = i;
+  cast_leaves(mesh.tree, origin, translation, Vec3f{}, 1, [&](const std::uint32_t* items, int count, float) {
+    const detail::TriangleLanes lanes(mesh, items, count, origin);
+    for (std::uint32_t met = lanes.met_by_line(translation); met != 0; met &= met - 1) {
+      const std::uint32_t i = items[__builtin_ctz(met)];
+      const detail::SurfaceTriangle triangle = detail::triangle_of(mesh, i);
+      double t;
+      Vec3d n;
+      if (on_triangle(triangle.corner, o, d, t, n) && (t < best.t || (t == best.t && i < child))) {
+        best.t = t, best.normal = n, best.hit = true;
+        child = i;
+      }
     }
     return best.hit ? float(best.t) * 1.000001f : 1.0f;
   });

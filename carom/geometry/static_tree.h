@@ -1,6 +1,6 @@
 // A bounding-volume tree over a fixed set of boxes, built once and asked often.
-// Every node holds four children whose boxes lie on a grid of 256 steps a side over the node: in a mesh it is one cache
-// line, and four boxes are tested at once (quantised wide trees: Ylitie, Karras & Laine 2017). What a node says of a
+// Every node holds eight children whose boxes lie on a grid of 256 steps a side over the node: it is two cache lines,
+// and the boxes are tested side by side (quantised wide trees: Ylitie, Karras & Laine 2017). What a node says of a
 // child is a little larger than the child, never smaller, so a tree only decides what is looked at, not what is found.
 // tree_walk.h has the walks.
 #pragma once
@@ -19,11 +19,12 @@ namespace carom::geometry {
 template <class V>
 struct WideTree {
   static constexpr int axes = detail::Axes<V>::count;
-  struct Node {
-    V origin{};          ///< the low corner of the grid
-    float step[axes]{};  ///< m, of the grid
-    std::uint8_t low[axes][4]{}, high[axes][4]{};
-    std::uint32_t child[4]{};  ///< a node; or with leaf_bit one or more items; 0: none
+  static constexpr int width = 8;
+  struct alignas(64) Node {
+    V origin{};                                            ///< the low corner of the grid
+    float step[axes]{}, inverse[axes]{};                   ///< m, of the grid, and 1/m
+    std::uint8_t low[axes][width]{}, high[axes][width]{};  ///< 1 to 254; 255 and 0: no child
+    std::uint32_t child[width]{};                          ///< a node; or with leaf_bit one or more items; 0: none
   };
   /// A leaf of one item names it; a leaf of 2 to 4 has (count − 1) << 29 and the first of them in `items`.
   static constexpr std::uint32_t leaf_bit = 1u << 31, first_mask = (1u << 29) - 1;
@@ -35,7 +36,7 @@ struct WideTree {
   std::size_t bytes() const { return nodes.capacity() * sizeof(Node) + items.capacity() * sizeof(std::uint32_t); }
 };
 using StaticTree = WideTree<Vec3f>;
-static_assert(sizeof(StaticTree::Node) == 64);
+static_assert(sizeof(StaticTree::Node) == 128);
 
 /// Binned surface area heuristic; at most `leaf_size` (1 to 4) boxes a leaf, at most 2²⁹ boxes.
 CAROM_API StaticTree build_static_tree(std::span<const Bounds3f> boxes, int leaf_size = 4);
@@ -46,8 +47,8 @@ namespace detail {
 template <class V>
 void build_wide_tree(std::span<BuildItem<V>> items, int leaf_size, WideTree<V>& tree);
 
-/// Three a level remain; no tree is deeper than the 36 levels of its splits and 29 of halving.
-inline constexpr int wide_stack_size = 224;
+/// Seven a level remain; no tree is deeper than the 36 levels of its splits and 29 of halving.
+inline constexpr int wide_stack_size = 7 * 65 + 1;
 
 }  // namespace detail
 }  // namespace carom::geometry

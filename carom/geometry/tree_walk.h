@@ -9,22 +9,17 @@ namespace detail {
 
 using Four = WideFloat<4>;
 
-/// Rows of four bytes, one an axis, as floats.
-template <int Axes>
-CAROM_SIMD_INLINE void bytes_as_floats(const std::uint8_t (&rows)[Axes][4], Four (&out)[Axes]) {
+/// Eight bytes as floats, in two halves.
+CAROM_SIMD_INLINE void bytes_as_floats(const std::uint8_t (&bytes)[8], Four (&out)[2]) {
 #if defined(__SSE2__)
-  // Sixteen bytes are read from twelve (or eight): the node goes on behind both rows.
-  __m128i bytes;
-  __builtin_memcpy(&bytes, rows, sizeof bytes);
   const __m128i zero = _mm_setzero_si128();
-  const __m128i words = _mm_unpacklo_epi8(bytes, zero);
+  const __m128i words = _mm_unpacklo_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes)), zero);
   out[0] = {Four::Vector(_mm_cvtepi32_ps(_mm_unpacklo_epi16(words, zero)))};
   out[1] = {Four::Vector(_mm_cvtepi32_ps(_mm_unpackhi_epi16(words, zero)))};
-  if constexpr (Axes == 3)
-    out[2] = {Four::Vector(_mm_cvtepi32_ps(_mm_unpacklo_epi16(_mm_unpackhi_epi8(bytes, zero), zero)))};
 #else
-  for (int k = 0; k < Axes; ++k)
-    out[k] = {Four::Vector{float(rows[k][0]), float(rows[k][1]), float(rows[k][2]), float(rows[k][3])}};
+  for (int h = 0; h < 2; ++h)
+    out[h] = {
+        Four::Vector{float(bytes[4 * h]), float(bytes[4 * h + 1]), float(bytes[4 * h + 2]), float(bytes[4 * h + 3])}};
 #endif
 }
 
@@ -33,7 +28,7 @@ template <class V>
 struct WideRay {
   static constexpr int axes = Axes<V>::count;
   V origin;
-  float inverse[axes], extents[axes];
+  Four inverse = Four::zero(), extents = Four::zero();  // an axis a lane
 
   WideRay(V from, V translation, V half_extents) : origin(from) {
     // Rounding moves a slab by at most a few ulps of the way and of the node (nodes are padded for their own part).
@@ -42,8 +37,8 @@ struct WideRay {
       reach = math::max(reach, math::abs(float(translation[k])) + 2 * float(half_extents[k]));
     for (int k = 0; k < axes; ++k) {
       const float d = float(translation[k]);
-      inverse[k] = math::abs(d) > 1e-18f ? 1 / d : 1e18f;
-      extents[k] = float(half_extents[k]) * 1.000001f + 5e-7f * reach;
+      inverse.set(k, math::abs(d) > 1e-18f ? 1 / d : 1e18f);
+      extents.set(k, float(half_extents[k]) * 1.000001f + 5e-7f * reach);
     }
   }
 };
@@ -51,88 +46,161 @@ struct WideRay {
 /// Where the children of a node are entered, and which of them before `limit`.
 template <class V>
 CAROM_SIMD_INLINE std::uint32_t enter_children(const typename WideTree<V>::Node& node, const WideRay<V>& ray,
-                                               float limit, Four& enter) {
+                                               float limit, float (&enter)[WideTree<V>::width]) {
   constexpr int axes = WideRay<V>::axes;
-  Four low[axes], high[axes];
-  bytes_as_floats(node.low, low);
-  bytes_as_floats(node.high, high);
-  Four first = Four::zero(), last = Four::splat(limit);
+  const V apart = node.origin - ray.origin;
+  Four from, step;  // an axis a lane
+  if constexpr (axes == 3) {
+    from.v = Four::Vector{float(apart[0]), float(apart[1]), float(apart[2]), 0};
+    step.v = Four::Vector{node.step[0], node.step[1], node.step[2], 0};
+  } else {
+    from.v = Four::Vector{float(apart[0]), float(apart[1]), 0, 0};
+    step.v = Four::Vector{node.step[0], node.step[1], 0, 0};
+  }
+  const Four scales = step * ray.inverse, lows = (from - ray.extents) * ray.inverse,
+             highs = (from + ray.extents) * ray.inverse;
+  Four first[2] = {Four::zero(), Four::zero()}, last[2] = {Four::splat(limit), Four::splat(limit)};
 #pragma GCC unroll 3
   for (int k = 0; k < axes; ++k) {
-    const float from = float(node.origin[k] - ray.origin[k]);
-    const Four scale = Four::splat(node.step[k] * ray.inverse[k]);
-    const Four a = low[k] * scale + Four::splat((from - ray.extents[k]) * ray.inverse[k]);
-    const Four b = high[k] * scale + Four::splat((from + ray.extents[k]) * ray.inverse[k]);
-    first = max(first, min(a, b));
-    last = min(last, max(a, b));
+    Four low[2], high[2];
+    bytes_as_floats(node.low[k], low);
+    bytes_as_floats(node.high[k], high);
+    const Four scale = Four::splat(scales[k]), low_end = Four::splat(lows[k]), high_end = Four::splat(highs[k]);
+#pragma GCC unroll 2
+    for (int h = 0; h < 2; ++h) {
+      const Four a = low[h] * scale + low_end, b = high[h] * scale + high_end;
+      first[h] = max(first[h], min(a, b));
+      last[h] = min(last[h], max(a, b));
+    }
   }
-  enter = first;
-  return bitmask(first <= last);
+  first[0].store(enter), first[1].store(enter + 4);
+  return bitmask(first[0] <= last[0]) | bitmask(first[1] <= last[1]) << 4;
 }
 
-/// Which children meet a box.
+/// A box on the grid of a node: from which step to which, an axis a lane; 0 and 255 are beside it.
+template <class V>
+CAROM_SIMD_INLINE void on_grid(const typename WideTree<V>::Node& node, const Bounds<V>& box, WideInt<4>& low,
+                               WideInt<4>& high) {
+  const V from = box.low - node.origin, to = box.high - node.origin;
+  Four first, last, inverse;
+  if constexpr (WideTree<V>::axes == 3) {
+    first.v = Four::Vector{float(from[0]), float(from[1]), float(from[2]), 0};
+    last.v = Four::Vector{float(to[0]), float(to[1]), float(to[2]), 0};
+    inverse.v = Four::Vector{node.inverse[0], node.inverse[1], node.inverse[2], 0};
+  } else {
+    first.v = Four::Vector{float(from[0]), float(from[1]), 0, 0};
+    last.v = Four::Vector{float(to[0]), float(to[1]), 0, 0};
+    inverse.v = Four::Vector{node.inverse[0], node.inverse[1], 0, 0};
+  }
+  const Four none = Four::zero(), most = Four::splat(255);
+  high = to_int(clamp(last * inverse, none, most));
+  low = WideInt<4>::splat(255) - to_int(clamp(most - first * inverse, none, most));  // rounds up
+}
+
+/// Which children meet a box. What rounding may lose is in the node's own padding.
 template <class V>
 CAROM_SIMD_INLINE std::uint32_t meet_children(const typename WideTree<V>::Node& node, const Bounds<V>& box) {
   constexpr int axes = WideTree<V>::axes;
-  Four low[axes], high[axes];
-  bytes_as_floats(node.low, low);
-  bytes_as_floats(node.high, high);
-  WideMask<4> meet = WideMask<4>::all();
-#pragma GCC unroll 3
-  for (int k = 0; k < axes; ++k) {
-    // Rounded outward by the node's own padding.
-    const Four step = Four::splat(node.step[k]);
-    meet = meet & (low[k] * step <= Four::splat(float(box.high[k] - node.origin[k]))) &
-           (high[k] * step >= Four::splat(float(box.low[k] - node.origin[k])));
+  WideInt<4> low, high;
+  on_grid<V>(node, box, low, high);
+#if defined(__SSE2__)
+  // Each of the box's bytes eight times over, an axis after the other as in the node.
+  const auto spread = [](WideInt<4> x) __attribute__((always_inline)) {
+    const __m128i two = _mm_or_si128(__m128i(x.v), _mm_slli_epi32(__m128i(x.v), 8));
+    return _mm_or_si128(two, _mm_slli_epi32(two, 16));
+  };
+  const auto load = [](const auto& row) __attribute__((always_inline)) {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row));
+  };
+  const __m128i lows = spread(low), highs = spread(high);
+  // Bytes that are not zero where an axis parts the two.
+  __m128i apart = _mm_or_si128(_mm_subs_epu8(load(node.low[0]), _mm_unpacklo_epi32(highs, highs)),
+                               _mm_subs_epu8(_mm_unpacklo_epi32(lows, lows), load(node.high[0])));
+  apart = _mm_or_si128(apart, _mm_srli_si128(apart, 8));
+  if constexpr (axes == 3)  // the second half of what is read is not of this axis, and not looked at
+    apart = _mm_or_si128(apart, _mm_or_si128(_mm_subs_epu8(load(node.low[2]), _mm_unpackhi_epi32(highs, highs)),
+                                             _mm_subs_epu8(_mm_unpackhi_epi32(lows, lows), load(node.high[2]))));
+  return std::uint32_t(_mm_movemask_epi8(_mm_cmpeq_epi8(apart, _mm_setzero_si128()))) & 0xFFu;
+#else
+  std::uint32_t meet = 0;
+  for (int c = 0; c < WideTree<V>::width; ++c) {
+    bool together = true;
+    for (int k = 0; k < axes; ++k)
+      together = together && std::int32_t(node.low[k][c]) <= high[k] && std::int32_t(node.high[k][c]) >= low[k];
+    meet |= std::uint32_t(together) << c;
   }
-  return bitmask(meet);
+  return meet;
+#endif
 }
 
-template <class V, class Visit>
-bool visit_leaf(const WideTree<V>& tree, std::uint32_t leaf, Visit&& visit) {
+/// Has what a child will be looked at for brought near; soon(item): of a leaf of one. Always inlined, as prefetch_lines
+/// of rigid is.
+template <class V, class Soon>
+CAROM_SIMD_INLINE void call_for(const WideTree<V>& tree, std::uint32_t child, Soon&& soon) {
+  if ((child & WideTree<V>::leaf_bit) == 0)
+    __builtin_prefetch(&tree.nodes[child]);
+  else if (WideTree<V>::leaf_count(child) > 1)
+    __builtin_prefetch(&tree.items[child & WideTree<V>::first_mask]);
+  else
+    soon(child & WideTree<V>::first_mask);
+}
+struct NotSoon {
+  CAROM_SIMD_INLINE void operator()(std::uint32_t) const {}
+};
+
+/// look(items, count) at those of a leaf.
+template <class V, class Look>
+auto look_at_leaf(const WideTree<V>& tree, std::uint32_t leaf, Look&& look) {
   const int count = WideTree<V>::leaf_count(leaf);
   const std::uint32_t first = leaf & WideTree<V>::first_mask;
-  if (count == 1) return visit(first);
-  for (int i = 0; i < count; ++i)
-    if (!visit(tree.items[first + std::uint32_t(i)])) return false;
-  return true;
+  return look(count == 1 ? &first : &tree.items[first], count);
 }
 
 }  // namespace detail
 
-/// Calls visit(item) for every item whose leaf overlaps `box` (and some near it); visit returns false to stop.
+/// Calls visit(items, count) for every leaf (1 to 4 items) that overlaps `box` (and some near it); visit returns false
+/// to stop.
 template <class V, class Visit>
-void query(const WideTree<V>& tree, const Bounds<V>& box, Visit&& visit) {
+void query_leaves(const WideTree<V>& tree, const Bounds<V>& box, Visit&& visit) {
   if (tree.nodes.empty()) return;
   std::uint32_t stack[detail::wide_stack_size];
   int top = 0;
   std::uint32_t at = 0;
   while (true) {
     const auto& node = tree.nodes[at];
-    const std::uint32_t met = detail::meet_children<V>(node, box);
-    for (int lane = 3; lane >= 0; --lane) {
+    for (std::uint32_t met = detail::meet_children<V>(node, box); met != 0;) {
+      const int lane = 31 - __builtin_clz(met);  // the first is taken first
+      met ^= 1u << lane;
       const std::uint32_t child = node.child[lane];
-      if ((met >> lane & 1u) == 0 || child == 0) continue;
       stack[top++] = child;
-      if ((child & WideTree<V>::leaf_bit) == 0)
-        __builtin_prefetch(&tree.nodes[child]);
-      else if (WideTree<V>::leaf_count(child) > 1)
-        __builtin_prefetch(&tree.items[child & WideTree<V>::first_mask]);
+      detail::call_for(tree, child, detail::NotSoon{});
     }
     while (true) {
       if (top == 0) return;
       at = stack[--top];
       if ((at & WideTree<V>::leaf_bit) == 0) break;
-      if (!detail::visit_leaf(tree, at, visit)) return;
+      if (!detail::look_at_leaf(tree, at, visit)) return;
     }
   }
 }
 
-/// A box of half extents `extents` (zero: a ray) travels from `origin` by `translation`. Calls
-/// visit(item, limit) → new limit for the items of every leaf it may meet before `limit` (at first `limit`), nearer
-/// leaves first: return `limit` to go on, a smaller fraction to clip, a negative one to stop.
+/// The same item by item: visit(item).
 template <class V, class Visit>
-void cast(const WideTree<V>& tree, V origin, V translation, V extents, float limit, Visit&& visit) {
+void query(const WideTree<V>& tree, const Bounds<V>& box, Visit&& visit) {
+  query_leaves(tree, box, [&](const std::uint32_t* items, int count) {
+    for (int i = 0; i < count; ++i)
+      if (!visit(items[i])) return false;
+    return true;
+  });
+}
+
+/// A box of half extents `extents` (zero: a ray) travels from `origin` by `translation`. Calls
+/// visit(items, count, limit) → new limit for every leaf (1 to 4 items) it may meet before `limit` (at first `limit`),
+/// nearer ones first: return `limit` to go on, a smaller fraction to clip, a negative one to stop. soon(item) hints at
+/// what a leaf of one will be asked about.
+template <class V, class Visit, class Soon = detail::NotSoon>
+void cast_leaves(const WideTree<V>& tree, V origin, V translation, V extents, float limit, Visit&& visit,
+                 Soon&& soon = {}) {
   if (tree.nodes.empty()) return;
   const detail::WideRay<V> ray(origin, translation, extents);
   struct Later {
@@ -144,12 +212,13 @@ void cast(const WideTree<V>& tree, V origin, V translation, V extents, float lim
   std::uint32_t at = 0;
   while (true) {
     const auto& node = tree.nodes[at];
-    detail::Four enter;
+    float enter[WideTree<V>::width];
     const int bottom = top;
     for (std::uint32_t met = detail::enter_children<V>(node, ray, limit, enter); met != 0; met &= met - 1) {
       const int lane = __builtin_ctz(met);
       const Later later{enter[lane], node.child[lane]};
       if (later.child == 0) continue;
+      detail::call_for(tree, later.child, soon);
       int k = top++;
       for (; k > bottom && stack[k - 1].enter < later.enter; --k) stack[k] = stack[k - 1];
       stack[k] = later;
@@ -160,13 +229,21 @@ void cast(const WideTree<V>& tree, V origin, V translation, V extents, float lim
       if (next.enter > limit) continue;
       at = next.child;
       if ((at & WideTree<V>::leaf_bit) == 0) break;
-      detail::visit_leaf(tree, at, [&](std::uint32_t item) {
-        limit = float(visit(item, limit));
-        return !(limit < 0);
-      });
+      limit = detail::look_at_leaf(
+          tree, at, [&](const std::uint32_t* items, int count) { return float(visit(items, count, limit)); });
       if (limit < 0) return;
     }
   }
+}
+
+/// The same item by item: visit(item, limit) → new limit.
+template <class V, class Visit, class Soon = detail::NotSoon>
+void cast(const WideTree<V>& tree, V origin, V translation, V extents, float limit, Visit&& visit, Soon&& soon = {}) {
+  const auto look = [&](const std::uint32_t* items, int count, float now) {
+    for (int i = 0; i < count && !(now < 0); ++i) now = float(visit(items[i], now));
+    return now;
+  };
+  cast_leaves(tree, origin, translation, extents, limit, look, soon);
 }
 
 /// Calls look(item) for the items of leaves nearer to `box` than `best`, which look() lowers; nearer leaves first.
@@ -182,20 +259,22 @@ void nearest(const WideTree<V>& tree, const Bounds<V>& box, const float& best, L
   std::uint32_t at = 0;
   while (true) {
     const auto& node = tree.nodes[at];
-    constexpr int axes = WideTree<V>::axes;
-    detail::Four low[axes], high[axes], sum = detail::Four::zero();
-    detail::bytes_as_floats(node.low, low);
-    detail::bytes_as_floats(node.high, high);
-    for (int k = 0; k < axes; ++k) {
-      const detail::Four step = detail::Four::splat(node.step[k]);
-      const detail::Four gap = max(max(low[k] * step - detail::Four::splat(float(box.high[k] - node.origin[k])),
-                                       detail::Four::splat(float(box.low[k] - node.origin[k])) - high[k] * step),
-                                   detail::Four::zero());
-      sum += gap * gap;
+    detail::Four sum[2] = {detail::Four::zero(), detail::Four::zero()};
+    for (int k = 0; k < WideTree<V>::axes; ++k) {
+      detail::Four low[2], high[2];
+      detail::bytes_as_floats(node.low[k], low);
+      detail::bytes_as_floats(node.high[k], high);
+      const detail::Four step = detail::Four::splat(node.step[k]),
+                         most = detail::Four::splat(float(box.high[k] - node.origin[k])),
+                         least = detail::Four::splat(float(box.low[k] - node.origin[k]));
+      for (int h = 0; h < 2; ++h) {
+        const detail::Four gap = max(max(low[h] * step - most, least - high[h] * step), detail::Four::zero());
+        sum[h] += gap * gap;
+      }
     }
     const int bottom = top;
-    for (int lane = 0; lane < 4 && node.child[lane] != 0; ++lane) {
-      const Later later{sum[lane], node.child[lane]};
+    for (int lane = 0; lane < WideTree<V>::width && node.child[lane] != 0; ++lane) {
+      const Later later{sum[lane / 4][lane % 4], node.child[lane]};
       int k = top++;
       for (; k > bottom && stack[k - 1].gap_squared < later.gap_squared; --k) stack[k] = stack[k - 1];
       stack[k] = later;
@@ -206,9 +285,8 @@ void nearest(const WideTree<V>& tree, const Bounds<V>& box, const float& best, L
       if (!(next.gap_squared < best * best)) continue;
       at = next.child;
       if ((at & WideTree<V>::leaf_bit) == 0) break;
-      detail::visit_leaf(tree, at, [&](std::uint32_t item) {
-        look(item);
-        return true;
+      detail::look_at_leaf(tree, at, [&](const std::uint32_t* items, int count) {
+        for (int i = 0; i < count; ++i) look(items[i]);
       });
       if (!(best > 0)) return;
     }

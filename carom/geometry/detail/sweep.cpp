@@ -488,9 +488,12 @@ bool closed_overlap(const Convex& a, const Convex& b, const Transform3f& x, bool
         overlap = length_squared(center - max(min(center, half), -half)) <= r * r;
         return true;
       }
-      case CoreKind::triangle:
-        overlap = Corners(a).distance_squared(center) <= r * r;
+      case CoreKind::triangle: {
+        const Corners c(a);
+        const double high = dot(c.normal, center - c.p[0]);  // over the plane, times the normal's length
+        overlap = high * high <= r * r * dot(c.normal, c.normal) && c.distance_squared(center) <= r * r;
         return true;
+      }
       default:
         return false;
     }

@@ -12,8 +12,9 @@ namespace carom::rigid::detail {
 /// A tree's shapes with their tight boxes, and a wide tree over them.
 template <class Position>
 struct QueryTree {
-  std::vector<geometry::detail::BuildItem<Position>> items;  ///< the indices are slots of shapes
-  geometry::WideTree<Position> wide;                         ///< of places in `items`; none over a few
+  std::vector<geometry::Bounds<Position>> boxes;
+  std::vector<std::int32_t> slots;    ///< of shapes, beside their boxes
+  geometry::WideTree<Position> wide;  ///< of places in these; none over a few
   static constexpr std::size_t few = 3;
 };
 
@@ -39,15 +40,18 @@ class QueryTrees {
     if (copy.building.exchange(true, std::memory_order_acquire)) return nullptr;
     QueryTree<Position>& made = copy.tree;
     if (copy.version.load(std::memory_order_relaxed) != version) {
-      made.items.clear();
-      made.items.reserve(std::size_t(tree.size()));
+      made.boxes.clear();
+      made.slots.clear();
+      made.boxes.reserve(std::size_t(tree.size()));
+      made.slots.reserve(std::size_t(tree.size()));
       tree.query(tree.root_bounds(), [&](std::uint32_t item) {
-        made.items.push_back({tight(item), item});
+        made.boxes.push_back(tight(item));
+        made.slots.push_back(std::int32_t(item));
         return true;
       });
       copy.order.clear();
-      if (made.items.size() > QueryTree<Position>::few)
-        for (std::size_t i = 0; i < made.items.size(); ++i) copy.order.push_back({made.items[i].box, std::uint32_t(i)});
+      if (made.boxes.size() > QueryTree<Position>::few)
+        for (std::size_t i = 0; i < made.boxes.size(); ++i) copy.order.push_back({made.boxes[i], std::uint32_t(i)});
       geometry::detail::build_wide_tree<Position>(copy.order, 1, made.wide);
       copy.version.store(version, std::memory_order_release);
     }
@@ -57,8 +61,9 @@ class QueryTrees {
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (const Copy& copy : copies_)
-      sum += copy.tree.wide.bytes() +
-             (copy.tree.items.capacity() + copy.order.capacity()) * sizeof(geometry::detail::BuildItem<Position>);
+      sum += copy.tree.wide.bytes() + copy.tree.boxes.capacity() * sizeof(geometry::Bounds<Position>) +
+             copy.tree.slots.capacity() * sizeof(std::int32_t) +
+             copy.order.capacity() * sizeof(geometry::detail::BuildItem<Position>);
     return sum;
   }
 

@@ -85,6 +85,7 @@ Status check_query_shape(std::string_view call, const typename D::Shape& shape) 
 }
 template <class D>
 Status check_cast(std::string_view call, const typename D::Pose& pose, const typename D::Vector& translation) {
+  if (all_finite(pose.position) && all_finite(translation) && pose.rotation == typename D::Rotation{}) return {};
   Complaint complaint(call);
   complaint.vector("pose.position", pose.position);
   complaint.rotation("pose.rotation", pose.rotation);
@@ -129,10 +130,14 @@ void cast_in_trees(const WorldImplementation<D>& world, const typename D::Positi
     if (tree.empty()) continue;
     if (const auto* made = query_tree<D>(world, t)) {
       if (made->wide.nodes.empty())
-        for (const auto& item : made->items) limit = visit(std::int32_t(item.index), limit);
+        for (const std::int32_t slot : made->slots) limit = visit(slot, limit);
       else
-        cast(made->wide, origin, translation, extents, limit,
-             [&](std::uint32_t place, float) { return limit = visit(std::int32_t(made->items[place].index), limit); });
+        cast(
+            made->wide, origin, translation, extents, limit,
+            [&](std::uint32_t place, float) { return limit = visit(made->slots[place], limit); },
+            [&](std::uint32_t place) __attribute__((always_inline)) {
+              prefetch_lines(&world.shapes.at(made->slots[place]), sizeof(ShapeRecord<D>));
+            });
     } else {
       tree.cast(origin, translation, extents,
                 [&](std::uint32_t item, auto) { return limit = visit(std::int32_t(item), limit); });
@@ -146,16 +151,14 @@ void query_trees(const WorldImplementation<D>& world, const typename D::Bounds& 
     const auto& tree = world.shapes.trees[t];
     if (tree.empty()) continue;
     if (const auto* made = query_tree<D>(world, t)) {
-      const auto look = [&](const auto& item) {
-        if (geometry::detail::boxes_meet(item.box, box)) visit(std::int32_t(item.index));
+      const auto look = [&](std::size_t place) {
+        if (geometry::detail::boxes_meet(made->boxes[place], box)) visit(made->slots[place]);
+        return true;
       };
       if (made->wide.nodes.empty())
-        for (const auto& item : made->items) look(item);
+        for (std::size_t i = 0; i < made->slots.size(); ++i) look(i);
       else
-        query(made->wide, box, [&](std::uint32_t place) {
-          look(made->items[place]);
-          return true;
-        });
+        query(made->wide, box, look);
     } else {
       tree.query(box, [&](std::uint32_t item) {
         const auto& shape = world.shapes.at(std::int32_t(item));
@@ -225,7 +228,7 @@ bool anything_near(const WorldImplementation<D>& world, const typename D::Bounds
     if (made == nullptr)
       tree.query(box, found);
     else if (made->wide.nodes.empty())
-      any = !made->items.empty();
+      any = !made->slots.empty();
     else
       query(made->wide, box, found);
   }
