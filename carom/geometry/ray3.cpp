@@ -188,14 +188,17 @@ CastHit3 on_box(const Box& b, Vec3d o, Vec3d d) {
     last = min(last, leave);
   }
   if (first > last) return {};
-  Best best;
-  best.inside = inside;
-  if (!inside && axis >= 0) {
-    Vec3d normal{};
-    normal[axis] = d[axis] < 0 ? 1 : -1;
-    best.offer(first, normal);
+  CastHit3 h;
+  h.hit = inside || axis >= 0;
+  if (inside) {
+    h.fraction = 0;
+    h.point = Vec3f(o);
+  } else if (h.hit) {
+    h.fraction = float(first);
+    h.point = Vec3f(o + d * first);
+    h.normal[axis] = d[axis] < 0 ? 1.0f : -1.0f;
   }
-  return result(best, o, d);
+  return h;
 }
 
 /// Watertight enough in double: edge functions of the ray against the three corners (one-sided).

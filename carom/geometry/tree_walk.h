@@ -77,7 +77,7 @@ CAROM_SIMD_INLINE std::uint32_t enter_children(const typename WideTree<V>::Node&
   return bitmask(first[0] <= last[0]) | bitmask(first[1] <= last[1]) << 4;
 }
 
-/// A box on the grid of a node: from which step to which, an axis a lane; 0 and 255 are beside it.
+/// A box on the grid of a node: from which step to which, an axis a lane; up to 0 and from 255 on are beside it.
 template <class V>
 CAROM_SIMD_INLINE void on_grid(const typename WideTree<V>::Node& node, const Bounds<V>& box, WideInt<4>& low,
                                WideInt<4>& high) {
@@ -92,9 +92,10 @@ CAROM_SIMD_INLINE void on_grid(const typename WideTree<V>::Node& node, const Bou
     last.v = Four::Vector{float(to[0]), float(to[1]), 0, 0};
     inverse.v = Four::Vector{node.inverse[0], node.inverse[1], 0, 0};
   }
-  const Four none = Four::zero(), most = Four::splat(255);
+  // Neither reaches both ends: no child, from 255 to 0, meets nothing.
+  const Four none = Four::zero(), most = Four::splat(254), end = Four::splat(255);
   high = to_int(clamp(last * inverse, none, most));
-  low = WideInt<4>::splat(255) - to_int(clamp(most - first * inverse, none, most));  // rounds up
+  low = WideInt<4>::splat(255) - to_int(clamp(end - first * inverse, none, most));  // rounds up
 }
 
 /// Which children meet a box. What rounding may lose is in the node's own padding.
@@ -122,14 +123,18 @@ CAROM_SIMD_INLINE std::uint32_t meet_children(const typename WideTree<V>::Node& 
                                              _mm_subs_epu8(_mm_unpackhi_epi32(lows, lows), load(node.high[2]))));
   return std::uint32_t(_mm_movemask_epi8(_mm_cmpeq_epi8(apart, _mm_setzero_si128()))) & 0xFFu;
 #else
-  std::uint32_t meet = 0;
-  for (int c = 0; c < WideTree<V>::width; ++c) {
-    bool together = true;
-    for (int k = 0; k < axes; ++k)
-      together = together && std::int32_t(node.low[k][c]) <= high[k] && std::int32_t(node.high[k][c]) >= low[k];
-    meet |= std::uint32_t(together) << c;
+  typedef std::uint8_t Eight __attribute__((vector_size(8)));  // NOLINT(modernize-use-using)
+  std::uint64_t meet = ~std::uint64_t(0);
+  for (int k = 0; k < axes; ++k) {
+    Eight from, to;
+    __builtin_memcpy(&from, node.low[k], sizeof from);
+    __builtin_memcpy(&to, node.high[k], sizeof to);
+    const auto together = (from <= std::uint8_t(high[k])) & (to >= std::uint8_t(low[k]));
+    std::uint64_t bytes;
+    __builtin_memcpy(&bytes, &together, sizeof bytes);
+    meet &= bytes;
   }
-  return meet;
+  return std::uint32_t((meet & 0x8040201008040201u) * 0x0101010101010101u >> 56);  // a bit of each byte
 #endif
 }
 
