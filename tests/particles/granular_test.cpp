@@ -45,13 +45,14 @@ TEST(Granular, OneBallOnASlope) {
 struct Collapse {
   double aspect = 0, run = 0, slope = 0, rise = 0, rest = 0;
 };
-Collapse collapse(float friction, float rolling, double height) {
+Collapse collapse(float friction, float rolling, double height, std::uint64_t seed) {
   const double width = 0.4;
   Granular2 g = Granular2::create({.upper = {6, 2},
                                    .radius = 0.0125f,
                                    .friction = friction,
                                    .rolling_friction = rolling,
-                                   .wall_friction = friction})
+                                   .wall_friction = friction,
+                                   .seed = seed})
                     .value();
   g.add_box({0, 0}, {width, height}).value();
   World2 world;
@@ -88,8 +89,21 @@ Collapse collapse(float friction, float rolling, double height) {
 // 0.05 (without any, discs roll on along a level floor for ever). Grains that resist rolling run no further than sand
 // does in a channel, 1.2 H/L (G. Lube, H. E. Huppert, R. S. J. Sparks, A. Freundt, "Collapses of two-dimensional
 // granular columns", Phys. Rev. E 72 (2005) 041301): to 30 %.
+// How far grains run and what still rolls at the end differ from heap to heap (the latter from 2 to 15 ten-thousandths
+// of the energy for discs): means over four, and the greatest rise.
 TEST(Granular, ColumnsRunAsFarAsPublished) {
-  const Collapse discs = collapse(0.5f, 0.05f, 0.4), grains = collapse(0.5f, 0.4f, 0.4);
+  const auto mean = [](float friction, float rolling, double height) {
+    Collapse all;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const Collapse c = collapse(friction, rolling, height, seed);
+      all.aspect += c.aspect / 4;
+      all.run += c.run / 4;
+      all.rest += c.rest / 4;
+      all.rise = std::max(all.rise, c.rise);
+    }
+    return all;
+  };
+  const Collapse discs = mean(0.5f, 0.05f, 0.4), grains = mean(0.5f, 0.4f, 0.4);
   EXPECT_NEAR(discs.run, 2.5 * discs.aspect, 0.25 * 2.5 * discs.aspect);
   EXPECT_NEAR(grains.run, 1.2 * grains.aspect, 0.30 * 1.2 * grains.aspect);
   for (const Collapse& c : {discs, grains}) {

@@ -1,5 +1,5 @@
 // The kernels of grains for 16 lanes.
-#include "carom/math/simd.h"
+#include "carom/math/simd_rows.h"
 #include "carom/particles/detail/granular_block.h"
 
 #define CAROM_GRAIN_NAMESPACE grains_avx512

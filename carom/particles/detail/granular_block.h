@@ -11,6 +11,9 @@ inline constexpr int grain_lanes = 16;  ///< of a block, whatever the width: no 
 template <int N>
 inline constexpr int grain_motion = N == 2 ? 4 : 8;
 inline constexpr int grain_place = 4;  ///< floats: place, at the last radius
+/// Floats that a pair holds from one search to the next: push, grip, roll (GrainBlock).
+template <int N>
+inline constexpr int grain_held = N == 2 ? 4 : 8;
 
 template <int N>
 struct GrainCurves {};
@@ -24,10 +27,10 @@ struct GrainCurves<2> {
 template <int N>
 struct alignas(64) GrainBlock : GrainCurves<N> {
   static constexpr int turns = N == 2 ? 1 : 3;
-  std::int32_t a[grain_lanes] = {}, b[grain_lanes] = {};
-  float normal[N][grain_lanes] = {};    ///< from a to b
-  float gap[grain_lanes] = {};          ///< m
-  float push[grain_lanes] = {};         ///< N·s along the normal, ≥ 0
+  std::uint32_t a[grain_lanes] = {}, b[grain_lanes] = {};  ///< grain_place × the grain's number
+  float normal[N][grain_lanes] = {};                       ///< from a to b
+  float gap[grain_lanes] = {};                             ///< m
+  float push[grain_lanes] = {};                            ///< N·s along the normal, ≥ 0
   float grip[turns][grain_lanes] = {};  ///< N·s on b across it; in the plane along the normal turned left
   float roll[turns][grain_lanes] = {};  ///< N·m·s on b
 };
@@ -39,18 +42,36 @@ struct GrainPass {
   float part = 0;  ///< of the rest, that is taken out
 };
 
-/// All go through the blocks first … last − 1 in turn, or back from the last.
+/// Grains in the order of their cells, places and then radii in columns that may be read a block of lanes too far.
+template <int N>
+struct GrainColumns {
+  const float* column[N + 1];
+};
+/// Where the neighbours of a cell's grains lie, which are begin … end − 1; the first run begins behind each grain
+/// itself.
+struct GrainRuns {
+  int begin = 0, end = 0, count = 0;
+  int from[8], to[8];
+};
+
+/// All but `find` go through the blocks first … last − 1 in turn, or back from the last.
 template <int N>
 struct GrainKernels {
   using Block = GrainBlock<N>;
+  /// Neighbours nearer than the sum of radii and `reach`: their numbers go to found[at …], for each grain where they
+  /// begin to first[grain]. Returns where they end.
+  int (*find)(const GrainColumns<N>& grains, const GrainRuns& runs, float reach, int* first, int* found, int at);
+  /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1.
+  void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale);
+  void (*keep)(const Block* blocks, int first, int last, const int* pair, float* held);
   /// Normals and gaps where the grains are; and the impulses that the contacts hold are given.
-  void (*press)(Block* blocks, int first, int last, const float* place, float* motion);
+  void (*press)(Block* blocks, int first, int last, float* place, float* motion);
   void (*sweep)(Block* blocks, int first, int last, bool back, float* motion, const GrainPass& pass);
   void (*separate)(const Block* blocks, int first, int last, float* place, const GrainPass& pass);
   /// The same with a surface, its normals and gaps being given.
-  void (*press_surface)(Block* blocks, int first, int last, const float* place, float* motion);
+  void (*press_surface)(Block* blocks, int first, int last, float* place, float* motion);
   void (*sweep_surface)(Block* blocks, int first, int last, bool back, float* motion, const GrainPass& pass);
-  float (*deepest)(const Block* blocks, int first, int last, const float* place);  ///< m, overlap, ≥ 0
+  float (*deepest)(const Block* blocks, int first, int last, float* place);  ///< m, overlap, ≥ 0
 };
 
 namespace grains_baseline {

@@ -87,9 +87,11 @@ void GranularState<D>::reserve() {
   for (auto* list : {&grains, &sorted}) list->reserve(n);
   for (auto* list : {&cell_of, &old_place, &last_block}) list->reserve(n);
   for (auto* list : {&first_pair, &old_first_pair, &first_touch, &old_first_touch}) list->reserve(n + 1);
-  for (auto& list : near_by) list.reserve(n + 3);
-  for (auto* list : {&pairs, &old_pairs}) list->reserve(contacts);
-  for (auto* list : {&blocks, &old_blocks}) list->reserve(contacts / grain_lanes + std::size_t(slabs));
+  for (auto& list : near_by) list.reserve(n + grain_lanes);
+  for (auto* list : {&pairs, &old_pairs}) list->resize(contacts);
+  held.reserve(contacts * grain_held<N>);
+  for (auto* list : {&pair_of, &was}) list->reserve(contacts);
+  blocks.reserve(contacts / grain_lanes + std::size_t(slabs));
   open_block.reserve(contacts / grain_lanes + std::size_t(slabs));
   filled.reserve(contacts / grain_lanes + std::size_t(slabs));
   for (auto* list : {&touches, &old_touches}) list->reserve(n + 16);
@@ -124,6 +126,7 @@ Status GranularState<D>::add(Position at, Vector velocity, std::uint32_t tag, fl
   g.spin = spin;
   g.tag = tag;
   const float r = g.radius;
+  g.curve = 1 / r;
   const float mass = definition.density * math::pi_f * r * r * (N == 2 ? 1.0f : 4.0f / 3 * r);
   g.inverse_mass = 1 / mass;
   g.inverse_inertia = 1 / ((N == 2 ? 0.5f : 0.4f) * mass * r * r);

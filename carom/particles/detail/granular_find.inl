@@ -48,7 +48,7 @@ void GranularState<D>::sort() {
   for (int c = size; c > 0; --c) cell_start[c] = cell_start[c - 1];
   cell_start[0] = 0;
   grains.swap(sorted);
-  for (auto& list : near_by) list.resize(grains.size() + 3);  // read by fours
+  for (auto& list : near_by) list.resize(grains.size() + grain_lanes);
   for (std::size_t i = 0; i < grains.size(); ++i) {
     for (int axis = 0; axis < N; ++axis) near_by[axis][i] = grains[i].x[axis];
     near_by[N][i] = grains[i].radius;
@@ -61,45 +61,34 @@ template <class D>
 void GranularState<D>::find_neighbours(int x, int y, int z, float reach) {
   const int c = cell_at(x, y, z), begin = cell_start[c], end = cell_start[c + 1];
   if (begin == end) return;
-  int from[8], to[8], runs = 0;
+  GrainRuns runs;
+  runs.begin = begin;
+  runs.end = end;
   const auto add = [&](int x0, int x1, int row, int across) {
     if (row < 0 || row >= cells[1] || across >= cells[2]) return;
     x0 = math::max(x0, 0);
     x1 = math::min(x1, cells[0] - 1);
     if (x0 > x1) return;
-    if (N == 2 && x1 > x0 && x1 % slab_cells == 0) {  // the last column is another slab's
-      from[runs] = cell_start[cell_at(x1, row, across)];
-      to[runs++] = cell_start[cell_at(x1, row, across) + 1];
-      --x1;
-    }
-    from[runs] = cell_start[cell_at(x0, row, across)];
-    to[runs++] = cell_start[cell_at(x1, row, across) + 1];
+    const bool next_slab = N == 2 && x1 > x0 && x1 % slab_cells == 0;  // the last column is another slab's
+    runs.from[runs.count] = cell_start[cell_at(x0, row, across)];
+    runs.to[runs.count++] = cell_start[cell_at(next_slab ? x1 - 1 : x1, row, across) + 1];
+    if (!next_slab) return;
+    runs.from[runs.count] = cell_start[cell_at(x1, row, across)];
+    runs.to[runs.count++] = cell_start[cell_at(x1, row, across) + 1];
   };
   add(x, x + 1, y, z);
-  const int own = runs - 1;  // from the grain itself on
   add(N == 2 ? x : x - 1, x + 1, y + 1, z);
   if constexpr (N == 2)
     add(x + 1, x + 1, y - 1, z);
   else
     for (int row = -1; row <= 1; ++row) add(x - 1, x + 1, y + row, z + 1);
-  using F = math::WideFloat<4>;
-  for (int i = begin; i < end; ++i) {
-    const Grain<D>& grain = grains[i];
-    first_pair[i] = int(pairs.size());
-    from[own] = i + 1;
-    for (int run = 0; run < runs; ++run)
-      for (int j = from[run]; j < to[run]; j += 4) {
-        F square = F::zero();
-        for (int axis = 0; axis < N; ++axis) {
-          const F d = F::load(&near_by[axis][j]) - F::splat(grain.x[axis]);
-          square = square + d * d;
-        }
-        const F touch = F::splat(grain.radius + reach) + F::load(&near_by[N][j]);
-        std::uint32_t hits = math::bitmask(square < touch * touch);
-        if (to[run] - j < 4) hits &= (1u << (to[run] - j)) - 1;
-        for (; hits != 0; hits &= hits - 1) pairs.push_back({j + std::countr_zero(hits), 0});
-      }
-  }
+  std::size_t most = 0;
+  for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
+  most = most * std::size_t(end - begin) + std::size_t(pair_count);
+  if (most > pairs.size()) pairs.resize(2 * most);
+  GrainColumns<N> columns;
+  for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
+  pair_count = kernels->find(columns, runs, reach, first_pair.data(), pairs.data(), pair_count);
 }
 
 /// The first block from `first` on that has room and comes after all in which one of the two is: solved block by block
@@ -117,43 +106,55 @@ int GranularState<D>::place_pair(int a, int b, int first, int none) {
     blocks.emplace_back();
     open_block.push_back(block);
     filled.push_back(0);
-    for (int lane = 0; lane < grain_lanes; ++lane) blocks[block].a[lane] = blocks[block].b[lane] = none;
+    pair_of.resize(pair_of.size() + grain_lanes, -1);
+    was.resize(was.size() + grain_lanes, -1);
+    for (int lane = 0; lane < grain_lanes; ++lane)
+      blocks[block].a[lane] = blocks[block].b[lane] = std::uint32_t(none * grain_place);
   }
   last_block[a] = last_block[b] = block;
   const int lane = filled[block]++;
   if (lane == grain_lanes - 1) open_block[block] = block + 1;
-  blocks[block].a[lane] = a;
-  blocks[block].b[lane] = b;
+  blocks[block].a[lane] = std::uint32_t(a * grain_place);
+  blocks[block].b[lane] = std::uint32_t(b * grain_place);
   if constexpr (N == 2) {
-    blocks[block].curve[0][lane] = 1 / grains[a].radius;
-    blocks[block].curve[1][lane] = 1 / grains[b].radius;
+    blocks[block].curve[0][lane] = grains[a].curve;
+    blocks[block].curve[1][lane] = grains[b].curve;
   }
   return block * grain_lanes + lane;
 }
 
-/// The impulses that the same pair had, if it had any.
+/// Gives a grain's pairs their blocks, and finds which they were when last looked for: mostly the same in turn.
 template <class D>
-void GranularState<D>::take_over(GrainPair& pair, int a, float scale) {
-  const auto find = [&](int first, int second) {
-    if (first + 1 >= int(old_first_pair.size())) return -1;
-    for (int k = old_first_pair[first]; k < old_first_pair[first + 1]; ++k)
-      if (old_pairs[k].b == second) return old_pairs[k].lane;
-    return -1;
+void GranularState<D>::place_pairs(int grain, int first, int none) {
+  const auto range = [&](int place) {
+    const bool known = place + 1 < int(old_first_pair.size());
+    return std::pair{known ? old_first_pair[place] : 0, known ? old_first_pair[place + 1] : 0};
   };
-  int lane = find(old_place[a], old_place[pair.b]);
-  const bool swapped = lane < 0;
-  if (swapped) lane = find(old_place[pair.b], old_place[a]);
-  if (lane < 0) return;
-  const Block& old = old_blocks[lane / grain_lanes];
-  Block& now = blocks[pair.lane / grain_lanes];
-  const int from = lane % grain_lanes, to = pair.lane % grain_lanes;
-  if (!(old.push[from] > 0)) return;
-  now.push[to] = scale * old.push[from];
-  // In the plane friction goes along a tangent that turns with the normal.
-  const float side = swapped ? -scale : scale, along = N == 2 ? scale : side;
-  for (int k = 0; k < Block::turns; ++k) {
-    now.grip[k][to] = along * old.grip[k][from];
-    now.roll[k][to] = side * old.roll[k][from];
+  const int own = old_place[grain];
+  const auto [begin, end] = range(own);
+  int next = begin;
+  for (int k = first_pair[grain]; k < first_pair[grain + 1]; ++k) {
+    const int other = old_place[pairs[k]];
+    int old = next;
+    if (old >= end || old_pairs[old] != other) {
+      old = begin;
+      while (old < end && old_pairs[old] != other) ++old;
+    }
+    bool swapped = false;
+    if (old < end) {
+      next = old + 1;
+    } else {
+      const auto [from, to] = range(other);
+      old = from;
+      while (old < to && old_pairs[old] != own) ++old;
+      if (old == to)
+        old = -1;
+      else
+        swapped = true;
+    }
+    const int at = place_pair(grain, pairs[k], first, none);
+    pair_of[at] = k;
+    was[at] = old < 0 ? -1 : 2 * old + int(swapped);
   }
 }
 
@@ -163,9 +164,10 @@ void GranularState<D>::find_pairs(float dt, float scale) {
   const int count = int(grains.size());
   old_pairs.swap(pairs);
   old_first_pair.swap(first_pair);
-  old_blocks.swap(blocks);
-  pairs.clear();
+  pair_count = 0;
   blocks.clear();
+  pair_of.clear();
+  was.clear();
   open_block.clear();
   filled.clear();
   slab_start.clear();
@@ -181,14 +183,11 @@ void GranularState<D>::find_pairs(float dt, float scale) {
       for (int k = low; k < high; ++k)
         for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, reach);
     const int slab_size = size / slabs, end = cell_start[(slab + 1) * slab_size];
-    first_pair[end] = int(pairs.size());
-    for (int i = cell_start[slab * slab_size]; i < end; ++i)
-      for (int k = first_pair[i]; k < first_pair[i + 1]; ++k) {
-        pairs[k].lane = place_pair(i, pairs[k].b, first, count + slab);
-        take_over(pairs[k], i, scale);
-      }
+    first_pair[end] = pair_count;
+    for (int i = cell_start[slab * slab_size]; i < end; ++i) place_pairs(i, first, count + slab);
   }
   slab_start.push_back(int(blocks.size()));
+  kernels->recall(blocks.data(), 0, int(blocks.size()), was.data(), held.data(), scale);
 }
 
 /// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.
@@ -214,7 +213,7 @@ void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float sc
     return;
   }
   int& filling = surface_block[surface];
-  const int none = int(grains.size());
+  const auto none = std::uint32_t(grains.size() * grain_place);
   int lane = 0;
   if (filling >= 0)
     while (lane < grain_lanes && wall_blocks[filling].a[lane] != none) ++lane;
@@ -226,8 +225,8 @@ void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float sc
     for (int k = 0; k < grain_lanes; ++k) wall_blocks[filling].a[k] = wall_blocks[filling].b[k] = none;
   }
   Block& now = wall_blocks[filling];
-  now.a[lane] = grain;
-  if constexpr (N == 2) now.curve[0][lane] = 1 / grains[grain].radius;
+  now.a[lane] = std::uint32_t(grain * grain_place);
+  if constexpr (N == 2) now.curve[0][lane] = grains[grain].curve;
   if (old && old->lane >= 0) {
     const Block& then = old_wall_blocks[old->lane / grain_lanes];
     const int from = old->lane % grain_lanes;

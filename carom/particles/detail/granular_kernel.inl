@@ -51,11 +51,11 @@ CAROM_SIMD_INLINE F dot(const Lanes<K>& a, const Lanes<K>& b) {
 CAROM_SIMD_INLINE Lanes<3> cross(const Lanes<3>& a, const Lanes<3>& b) {
   return {{a.k[1] * b.k[2] - a.k[2] * b.k[1], a.k[2] * b.k[0] - a.k[0] * b.k[2], a.k[0] * b.k[1] - a.k[1] * b.k[0]}};
 }
-/// The slip across n, without what is along it, of grains whose rims run with u.
-CAROM_SIMD_INLINE Lanes<3> slip_of(const Lanes<3>& across, const Lanes<3>& u, const Lanes<3>& n) {
-  return across - dot(across, n) * n - cross(u, n);
+/// The slip across n of grains whose rims run with u and which part with `along` n.
+CAROM_SIMD_INLINE Lanes<3> slip_of(const Lanes<3>& across, F along, const Lanes<3>& u, const Lanes<3>& n) {
+  return across - along * n - cross(u, n);
 }
-CAROM_SIMD_INLINE Lanes<1> slip_of(const Lanes<2>& across, const Lanes<1>& u, const Lanes<2>& n) {
+CAROM_SIMD_INLINE Lanes<1> slip_of(const Lanes<2>& across, F /*along*/, const Lanes<1>& u, const Lanes<2>& n) {
   return {{n.k[0] * across.k[1] - n.k[1] * across.k[0] - u.k[0]}};
 }
 /// A friction as a vector, and its moment about a grain's middle over the radius.
@@ -74,6 +74,18 @@ CAROM_SIMD_INLINE Lanes<K> limited(const Lanes<K>& v, F limit) {
   return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * v;
 }
 
+/// Where the grains' records begin, of Size floats each.
+template <int Size>
+struct Records {
+  float* row[width];
+  CAROM_SIMD_INLINE Records(float* base, const std::uint32_t* at) {
+    math::simd_detail::unrolled<width>([&](auto lane) __attribute__((always_inline)) {
+      constexpr int i = decltype(lane)::value;
+      row[i] = base + std::size_t(at[i]) * (Size / grain_place);
+    });
+  }
+};
+
 /// One side of a contact.
 template <int N>
 struct Side {
@@ -82,10 +94,9 @@ struct Side {
   Lanes<turns> u;
   F inverse_mass, curve;
 
-  CAROM_SIMD_INLINE void read(const float* motion, const std::int32_t* index, const GrainBlock<N>& block, int side,
-                              int lane) {
+  CAROM_SIMD_INLINE void read(const Records<grain_motion<N>>& records, const GrainBlock<N>& block, int side, int lane) {
     F row[grain_motion<N>];
-    math::gather_rows<grain_motion<N>, width>(motion, index, row);
+    math::gather_records<width>(records.row, row);
     if constexpr (N == 2) {
       v = {{row[0], row[1]}};
       u = {{row[2]}};
@@ -98,13 +109,13 @@ struct Side {
       curve = row[7];
     }
   }
-  CAROM_SIMD_INLINE void write(float* motion, const std::int32_t* index) const {
+  CAROM_SIMD_INLINE void write(const Records<grain_motion<N>>& records) const {
     if constexpr (N == 2) {
       const F row[4] = {v.k[0], v.k[1], u.k[0], inverse_mass};
-      math::scatter_rows<4, 4, width>(motion, index, row);
+      math::scatter_records<width>(records.row, row);
     } else {
       const F row[8] = {v.k[0], v.k[1], v.k[2], inverse_mass, u.k[0], u.k[1], u.k[2], curve};
-      math::scatter_rows<8, 8, width>(motion, index, row);
+      math::scatter_records<width>(records.row, row);
     }
   }
 };
@@ -126,10 +137,71 @@ CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lan
 }
 
 template <int N>
-CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, const float* place) {
+int find(const GrainColumns<N>& grains, const GrainRuns& runs, float reach, int* first, int* found, int at) {
+  for (int i = runs.begin; i < runs.end; ++i) {
+    first[i] = at;
+    F x[N];
+    for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
+    const F own = splat(grains.column[N][i] + reach);
+    for (int run = 0; run < runs.count; ++run)
+      for (int j = run == 0 ? i + 1 : runs.from[run]; j < runs.to[run]; j += width) {
+        F square = F::zero();
+        for (int k = 0; k < N; ++k) {
+          const F d = F::load(grains.column[k] + j) - x[k];
+          square = square + d * d;
+        }
+        const F touch = own + F::load(grains.column[N] + j);
+        std::uint32_t hits = math::bitmask(square < touch * touch);
+        if (runs.to[run] - j < width) hits &= (1u << (runs.to[run] - j)) - 1;
+        for (; hits != 0; hits &= hits - 1) found[at++] = j + __builtin_ctz(hits);
+      }
+  }
+  return at;
+}
+
+template <int N>
+void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const float* held, float scale) {
+  constexpr int K = GrainBlock<N>::turns;
+  static const float nothing[grain_held<N>] = {};
+  for (int i = first; i < last; ++i)
+    for (int lane = 0; lane < grain_lanes; lane += width) {
+      const math::WideInt<width> from = math::WideInt<width>::load(was + i * grain_lanes + lane);
+      std::int32_t index[width];
+      (from >> 1).store(index);
+      F row[grain_held<N>];
+      math::gather_rows<grain_held<N>, width>(held, index, nothing, row);
+      const auto one = math::WideInt<width>::splat(1);
+      const F side = math::select((from & one) == one, splat(-scale), splat(scale));
+      (splat(scale) * row[0]).store(blocks[i].push + lane);
+      for (int k = 0; k < K; ++k) {
+        // In the plane friction goes along a tangent that turns with the normal.
+        ((N == 2 ? splat(scale) : side) * row[1 + k]).store(blocks[i].grip[k] + lane);
+        (side * row[1 + K + k]).store(blocks[i].roll[k] + lane);
+      }
+    }
+}
+
+template <int N>
+void keep(const GrainBlock<N>* blocks, int first, int last, const int* pair, float* held) {
+  constexpr int K = GrainBlock<N>::turns;
+  for (int i = first; i < last; ++i)
+    for (int lane = 0; lane < grain_lanes; lane += width) {
+      F row[grain_held<N>];
+      row[0] = F::load(blocks[i].push + lane);
+      for (int k = 0; k < K; ++k) {
+        row[1 + k] = F::load(blocks[i].grip[k] + lane);
+        row[1 + K + k] = F::load(blocks[i].roll[k] + lane);
+      }
+      row[grain_held<N> - 1] = F::zero();
+      math::scatter_rows<grain_held<N>, grain_held<N>, width>(held, pair + i * grain_lanes + lane, row);
+    }
+}
+
+template <int N>
+CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place) {
   F a[grain_place], b[grain_place];
-  math::gather_rows<grain_place, width>(place, c.a + lane, a);
-  math::gather_rows<grain_place, width>(place, c.b + lane, b);
+  math::gather_records<width>(Records<grain_place>(place, c.a + lane).row, a);
+  math::gather_records<width>(Records<grain_place>(place, c.b + lane).row, b);
   Lanes<N> d;
   for (int i = 0; i < N; ++i) d.k[i] = b[i] - a[i];
   const F distance = math::sqrt(dot(d, d));
@@ -141,7 +213,7 @@ CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, const float* pl
 }
 
 template <int N, bool pair>
-void press(GrainBlock<N>* blocks, int first, int last, const float* place, float* motion) {
+void press(GrainBlock<N>* blocks, int first, int last, float* place, float* motion) {
   for (int i = first; i < last; ++i) {
     GrainBlock<N>& c = blocks[i];
     for (int lane = 0; lane < grain_lanes; lane += width) {
@@ -155,11 +227,12 @@ void press(GrainBlock<N>* blocks, int first, int last, const float* place, float
         store(grip, c.grip, lane);
       }
       Side<N> a, b;
-      a.read(motion, c.a + lane, c, 0, lane);
-      if constexpr (pair) b.read(motion, c.b + lane, c, 1, lane);
+      const Records<grain_motion<N>> ra(motion, c.a + lane), rb(motion, c.b + lane);
+      a.read(ra, c, 0, lane);
+      if constexpr (pair) b.read(rb, c, 1, lane);
       give<N, pair>(a, b, n, push * n + vector_of(grip, n), grip, load(c.roll, lane));
-      a.write(motion, c.a + lane);
-      if constexpr (pair) b.write(motion, c.b + lane);
+      a.write(ra);
+      if constexpr (pair) b.write(rb);
     }
   }
   static_cast<void>(place);
@@ -168,30 +241,26 @@ void press(GrainBlock<N>* blocks, int first, int last, const float* place, float
 template <int N, bool pair>
 CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, const GrainPass& pass) {
   Side<N> a, b;
-  a.read(motion, c.a + lane, c, 0, lane);
-  if constexpr (pair) b.read(motion, c.b + lane, c, 1, lane);
+  const Records<grain_motion<N>> ra(motion, c.a + lane), rb(motion, c.b + lane);
+  a.read(ra, c, 0, lane);
+  if constexpr (pair) b.read(rb, c, 1, lane);
   const auto n = load(c.normal, lane);
   const F masses = pair ? a.inverse_mass + b.inverse_mass : a.inverse_mass, easy = splat(1) / masses;
   const F before = F::load(c.push + lane);
   const F bias = math::max(F::load(c.gap + lane), F::zero()) * splat(pass.inverse_h);
   auto across = splat(-1) * a.v;
-  if constexpr (pair) across = b.v - a.v;
-  const F push = math::max(before - (dot(across, n) + bias) * easy, F::zero());
-  if (math::none((push > F::zero()) | (before > F::zero()))) return;
-  push.store(c.push + lane);
-  const auto blow = (push - before) * n;
-  a.v = a.v - a.inverse_mass * blow;
   auto u = a.u;
   if constexpr (pair) {
-    b.v = b.v + b.inverse_mass * blow;
     across = b.v - a.v;
     u = a.u + b.u;
-  } else {
-    across = splat(-1) * a.v;
   }
+  const F along = dot(across, n), push = math::max(before - (along + bias) * easy, F::zero());
+  if (math::none((push > F::zero()) | (before > F::zero()))) return;
+  push.store(c.push + lane);
+  // What the push changes is along n: the slip does not ask for it.
   const auto grip = load(c.grip, lane), roll = load(c.roll, lane);
   const auto gripped =
-      limited(grip - (easy * splat(1 / (1 + turning<N>))) * slip_of(across, u, n), splat(pass.friction) * push);
+      limited(grip - (easy * splat(1 / (1 + turning<N>))) * slip_of(across, along, u, n), splat(pass.friction) * push);
   store(gripped, c.grip, lane);
   const auto more_grip = gripped - grip;
   Lanes<GrainBlock<N>::turns> more_roll{};
@@ -203,14 +272,15 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
       lightness = lightness + b.inverse_mass * (b.curve * b.curve);
       curves = a.curve + b.curve;
     }
-    const auto rolled =
-        limited(roll + (splat(1) / (splat(turning<N>) * lightness)) * rolling, splat(2 * pass.rolling) * push / curves);
+    const F over = splat(1) / (lightness * curves);
+    const auto rolled = limited(roll + (splat(1 / turning<N>) * (curves * over)) * rolling,
+                                splat(2 * pass.rolling) * push * (lightness * over));
     store(rolled, c.roll, lane);
     more_roll = rolled - roll;
   }
-  give<N, pair>(a, b, n, vector_of(more_grip, n), more_grip, more_roll);
-  a.write(motion, c.a + lane);
-  if constexpr (pair) b.write(motion, c.b + lane);
+  give<N, pair>(a, b, n, (push - before) * n + vector_of(more_grip, n), more_grip, more_roll);
+  a.write(ra);
+  if constexpr (pair) b.write(rb);
 }
 
 template <int N, bool pair>
@@ -224,10 +294,10 @@ template <int N>
 void separate(const GrainBlock<N>* blocks, int first, int last, float* place, const GrainPass& pass) {
   for (int i = first; i < last; ++i)
     for (int lane = 0; lane < grain_lanes; lane += width) {
-      const std::int32_t *const ia = blocks[i].a + lane, *const ib = blocks[i].b + lane;
+      const Records<grain_place> ra(place, blocks[i].a + lane), rb(place, blocks[i].b + lane);
       F a[grain_place], b[grain_place];
-      math::gather_rows<grain_place, width>(place, ia, a);
-      math::gather_rows<grain_place, width>(place, ib, b);
+      math::gather_records<width>(ra.row, a);
+      math::gather_records<width>(rb.row, b);
       Lanes<N> d;
       for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
       const F square = dot(d, d), touch = a[3] + b[3] - splat(pass.slop);
@@ -242,19 +312,19 @@ void separate(const GrainBlock<N>* blocks, int first, int last, float* place, co
         a[k] = a[k] - mb * way.k[k];
         b[k] = b[k] + ma * way.k[k];
       }
-      math::scatter_rows<grain_place, grain_place, width>(place, ia, a);
-      math::scatter_rows<grain_place, grain_place, width>(place, ib, b);
+      math::scatter_records<width>(ra.row, a);
+      math::scatter_records<width>(rb.row, b);
     }
 }
 
 template <int N>
-float deepest(const GrainBlock<N>* blocks, int first, int last, const float* place) {
+float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
   F most = F::zero();
   for (int i = first; i < last; ++i)
     for (int lane = 0; lane < grain_lanes; lane += width) {
       F a[grain_place], b[grain_place];
-      math::gather_rows<grain_place, width>(place, blocks[i].a + lane, a);
-      math::gather_rows<grain_place, width>(place, blocks[i].b + lane, b);
+      math::gather_records<width>(Records<grain_place>(place, blocks[i].a + lane).row, a);
+      math::gather_records<width>(Records<grain_place>(place, blocks[i].b + lane).row, b);
       Lanes<N> d;
       for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
       most = math::max(most, a[3] + b[3] - math::sqrt(dot(d, d)));
@@ -264,9 +334,9 @@ float deepest(const GrainBlock<N>* blocks, int first, int last, const float* pla
   return result;
 }
 
-const GrainKernels<2> kernels2 = {press<2, true>,  sweep<2, true>,  separate<2>,
-                                  press<2, false>, sweep<2, false>, deepest<2>};
-const GrainKernels<3> kernels3 = {press<3, true>,  sweep<3, true>,  separate<3>,
-                                  press<3, false>, sweep<3, false>, deepest<3>};
+const GrainKernels<2> kernels2 = {find<2>,     recall<2>,       keep<2>,         press<2, true>, sweep<2, true>,
+                                  separate<2>, press<2, false>, sweep<2, false>, deepest<2>};
+const GrainKernels<3> kernels3 = {find<3>,     recall<3>,       keep<3>,         press<3, true>, sweep<3, true>,
+                                  separate<3>, press<3, false>, sweep<3, false>, deepest<3>};
 
 }  // namespace carom::particles::detail::CAROM_GRAIN_NAMESPACE

@@ -7,13 +7,20 @@
 
 namespace carom::particles::detail {
 
+/// Of a lane of a surface's block; −1: none, nor in those behind it.
+template <class D>
+int GranularState<D>::grain_in(const Block& block, int lane) const {
+  const int grain = int(block.a[lane] / grain_place);
+  return grain < int(grains.size()) ? grain : -1;
+}
+
 template <class D>
 void GranularState<D>::to_rows() {
   const int count = int(grains.size());
   for (int i = 0; i < count + slabs; ++i) {
     float* const p = &place[std::size_t(i) * grain_place];
     float* const m = &motion[std::size_t(i) * grain_motion<N>];
-    const Grain<D> none{.radius = 0, .inverse_mass = 1};
+    const Grain<D> none{.curve = 1, .inverse_mass = 1};
     const Grain<D>& g = i < count ? grains[i] : none;
     p[2] = 0;
     for (int k = 0; k < N; ++k) {
@@ -27,7 +34,7 @@ void GranularState<D>::to_rows() {
     } else {
       m[3] = g.inverse_mass;
       for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
-      m[7] = i < count ? 1 / g.radius : 1.0f;
+      m[7] = g.curve;
     }
   }
 }
@@ -43,9 +50,9 @@ void GranularState<D>::from_rows() {
       g.v[k] = m[k];
     }
     if constexpr (N == 2)
-      g.spin = m[2] / g.radius;
+      g.spin = m[2] * g.curve;
     else
-      for (int k = 0; k < 3; ++k) g.spin[k] = m[4 + k] / g.radius;
+      for (int k = 0; k < 3; ++k) g.spin[k] = m[4 + k] * g.curve;
   }
 }
 
@@ -79,9 +86,9 @@ void GranularState<D>::measure_surfaces() {
   for (std::size_t i = 0; i < wall_blocks.size(); ++i) {
     Block& block = wall_blocks[i];
     const int surface = wall_of[i], axis = surface / 2;
-    for (int lane = 0; lane < grain_lanes && block.a[lane] != int(grains.size()); ++lane) {
-      const Vector x = where(block.a[lane]);
-      const float radius = grains[block.a[lane]].radius;
+    for (int lane = 0; lane < grain_lanes && grain_in(block, lane) >= 0; ++lane) {
+      const Vector x = where(grain_in(block, lane));
+      const float radius = grains[grain_in(block, lane)].radius;
       if (surface < 2 * N) {
         block.gap[lane] = (surface % 2 ? extent[axis] - x[axis] : x[axis]) - radius;
         block.normal[axis][lane] = surface % 2 ? 1.0f : -1.0f;
@@ -251,10 +258,10 @@ void GranularState<D>::separate() {
   };
   for (std::size_t i = 0; i < wall_blocks.size(); ++i) {
     const Block& block = wall_blocks[i];
-    for (int lane = 0; lane < grain_lanes && block.a[lane] != int(grains.size()); ++lane) {
+    for (int lane = 0; lane < grain_lanes && grain_in(block, lane) >= 0; ++lane) {
       Vector normal{};
       for (int k = 0; k < N; ++k) normal[k] = block.normal[k][lane];
-      push_out(block.a[lane], wall_of[i], normal);
+      push_out(grain_in(block, lane), wall_of[i], normal);
     }
   }
   for (const Contact& c : body_contacts) push_out(c.a, 2 * N + c.solid, c.normal);
@@ -264,7 +271,7 @@ void GranularState<D>::separate() {
 template <class D>
 void GranularState<D>::sum_walls() {
   for (const Block& c : wall_blocks)
-    for (int lane = 0; lane < grain_lanes && c.a[lane] != int(grains.size()); ++lane) {
+    for (int lane = 0; lane < grain_lanes && grain_in(c, lane) >= 0; ++lane) {
       Vector impulse{};
       for (int k = 0; k < N; ++k) impulse[k] = c.push[lane] * c.normal[k][lane];
       if constexpr (N == 2)
@@ -301,7 +308,9 @@ void GranularState<D>::round(float dt, int parts) {
     separate();
   }
   from_rows();
-  statistics.contacts = int(pairs.size());
+  held.resize(std::size_t(pair_count) * grain_held<N>);
+  kernels->keep(blocks.data(), 0, int(blocks.size()), pair_of.data(), held.data());
+  statistics.contacts = pair_count;
   statistics.wall_contacts = int(touches.size());
 }
 

@@ -23,19 +23,15 @@ struct Grain {
   typename D::Vector x{};  ///< m, from the domain's lower corner
   typename D::Vector v{};
   typename D::Angular spin{};
-  float radius = 0, inverse_mass = 0, inverse_inertia = 0;
+  float radius = 0, curve = 0;  ///< m, 1/m: its inverse
+  float inverse_mass = 0, inverse_inertia = 0;
   std::uint32_t tag = 0;
 };
 
-/// Two grains that may touch, listed with the first.
-struct GrainPair {
-  int b = 0;
-  int lane = 0;  ///< where it is solved: grain_lanes × block + lane
-};
 /// A grain and a wall or a shape, listed with the grain.
 struct GrainTouch {
   std::uint32_t key = 0;  ///< of the surface
-  int lane = 0;           ///< as GrainPair; of a body that moves −1 − its contact
+  int lane = 0;           ///< where it is solved: grain_lanes × block + lane; of a body that moves −1 − its contact
 };
 
 /// A grain and a body that moves.
@@ -95,11 +91,14 @@ struct GranularState {
   std::vector<float> near_by[N + 1];  ///< places, then radii, in the order of the cells
   // While contacts are solved grains are rows of floats (granular_block.h); behind them one for each slab that is none.
   AlignedFloats place, motion;
-  // Pairs by grain, and where they are solved: block by block, those of a slab together, in the order of its layers.
-  std::vector<GrainPair> pairs, old_pairs;
-  std::vector<int> first_pair, old_first_pair;
-  std::vector<Block> blocks, old_blocks;
+  // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
+  std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
+  int pair_count = 0;
+  std::vector<float> held;
+  // Where they are solved: block by block, those of a slab together, in the order of its layers.
+  std::vector<Block> blocks;
   std::vector<int> slab_start;              ///< first block of each slab
+  std::vector<int> pair_of, was;            ///< by block and lane: the pair's number, and its old one (GrainKernels)
   std::vector<std::uint8_t> filled;         ///< lanes by block
   std::vector<int> open_block, last_block;  ///< the next that has room, by block; the last that a grain is in
   // Surfaces.
@@ -124,13 +123,13 @@ struct GranularState {
   core::Status gather(rigid::World<D>& world);
   int cell_at(int x, int y, int z) const;
   void sort();
+  int grain_in(const Block& block, int lane) const;
   void to_rows();
   void from_rows();
   void find_pairs(float dt, float scale);
   void find_neighbours(int x, int y, int z, float reach);
-  void schedule(int from, int none);
   int place_pair(int a, int b, int first, int none);
-  void take_over(GrainPair& pair, int a, float scale);
+  void place_pairs(int grain, int first, int none);
   void find_surfaces(float dt, float scale);
   void touch(int grain, int surface, std::uint32_t key, float scale);
   void touch_solid(int grain, int index, float reach, float scale);
