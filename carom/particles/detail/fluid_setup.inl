@@ -57,6 +57,7 @@ void FluidState<D>::reserve() {
   queue.reserve(inner);
   system.rows.reserve(rows);
   system.below.reserve(rows);
+  for (auto* list : {&system.up, &system.down}) list->reserve(rows / FluidRuns::together + 1);
   system.above.reserve(rows);
   for (auto* v : system.vectors()) v->reserve(rows + 1);
   budgets.reserve(n);

@@ -104,6 +104,93 @@ void FluidState<D>::factorise() {
       s.above[i].across[a - 1] = row.plus[a] * s.scale[row.plus_cell[a]] * s.scale[i];
     }
   }
+  find_runs(true);
+  find_runs(false);
+}
+
+template <class D>
+void FluidState<D>::find_runs(bool up) {
+  FluidSystem<N>& s = system;
+  const std::vector<FluidLinks<N>>& links = up ? s.below : s.above;
+  std::vector<FluidRuns>& list = up ? s.up : s.down;
+  const int n = int(s.rows.size()), sign = up ? 1 : -1;
+  list.clear();
+  for (int row = up ? 0 : n - 1; row >= 0 && row < n;) {
+    FluidRuns runs;
+    runs.last = n;
+    for (int k = 0; k < FluidRuns::together && row >= 0 && row < n; ++k) {
+      runs.base[k] = row;
+      do {
+        // What it hangs on of the runs before this one in the group.
+        for (int a = 0; a < N - 1; ++a) {
+          const int on = links[row].cell[a];
+          if (links[row].across[a] == 0) continue;
+          for (int j = 0; j < k; ++j) {
+            const int place = sign * (on - runs.base[j]);
+            if (place >= 0 && place < runs.count[j])
+              runs.lag[k] = math::max(runs.lag[k], runs.lag[j] + place - runs.count[k] + 1);
+          }
+        }
+        ++runs.count[k];
+        row += sign;
+      } while (row >= 0 && row < n && links[row].along != 0);
+    }
+    for (int k = 0; k < FluidRuns::together; ++k) {
+      runs.first = math::max(runs.first, runs.lag[k]);
+      runs.last = math::min(runs.last, runs.lag[k] + runs.count[k]);
+      runs.end = math::max(runs.end, runs.lag[k] + runs.count[k]);
+    }
+    list.push_back(runs);
+  }
+}
+
+/// f(row, what it gave for the row before) for all rows, up or down.
+template <bool up, class F>
+[[gnu::always_inline]] inline void in_step(const std::vector<FluidRuns>& list, F&& f) {
+  constexpr int sign = up ? 1 : -1;
+  for (const FluidRuns& runs : list) {
+    float before[FluidRuns::together] = {};
+    const auto some = [&](int from, int to) {
+      for (int step = from; step < to; ++step)
+        for (int k = 0; k < FluidRuns::together; ++k) {
+          const int m = step - runs.lag[k];
+          if (m >= 0 && m < runs.count[k]) before[k] = f(runs.base[k] + sign * m, before[k]);
+        }
+    };
+    if (runs.last <= runs.first) {
+      some(0, runs.end);
+      continue;
+    }
+    some(0, runs.first);
+    float a = before[0], b = before[1], c = before[2], d = before[3];
+    int i = runs.base[0] + sign * (runs.first - runs.lag[0]), j = runs.base[1] + sign * (runs.first - runs.lag[1]);
+    int k = runs.base[2] + sign * (runs.first - runs.lag[2]), l = runs.base[3] + sign * (runs.first - runs.lag[3]);
+    for (int step = runs.first; step < runs.last; ++step, i += sign, j += sign, k += sign, l += sign) {
+      a = f(i, a);
+      b = f(j, b);
+      c = f(k, c);
+      d = f(l, d);
+    }
+    before[0] = a, before[1] = b, before[2] = c, before[3] = d;
+    some(runs.last, runs.end);
+  }
+}
+
+/// Σ f(i), in double, by four sums in turn.
+template <class F>
+[[gnu::always_inline]] inline double sum_of_rows(int n, F&& f) {
+  double a = 0, b = 0, c = 0, d = 0;
+  int i = 0;
+  for (; i + 4 <= n; i += 4) {
+    a += f(i);
+    b += f(i + 1);
+    c += f(i + 2);
+    d += f(i + 3);
+  }
+  if (i < n) a += f(i);
+  if (i + 1 < n) b += f(i + 1);
+  if (i + 2 < n) c += f(i + 2);
+  return (a + b) + (c + d);
 }
 
 /// The largest residual of the rows as they are, from that between the factors.
@@ -141,14 +228,14 @@ bool FluidState<D>::solve(float tolerance, int limit, bool with_bodies, int& ite
   float *r = s.residual.data(), *p = s.search.data(), *w = s.product.data(), *t = s.z.data();
   const float *scale = s.scale.data(), *middle = s.middle.data();
   const FluidLinks<N>*below = s.below.data(), *above = s.above.data();
-  double square = 0;
-  float before = 0;
-  for (int i = 0; i < n; ++i) {
+  in_step<true>(s.up, [=](int i, float before) {
     float sum = w[i] * scale[i];
     for (int a = 0; a < N - 1; ++a) sum -= below[i].across[a] * r[below[i].cell[a]];
-    before = sum - below[i].along * before;
-    r[i] = before;
-    square += double(before) * double(before);
+    return r[i] = sum - below[i].along * before;
+  });
+  double square = 0;
+  for (int i = 0; i < n; ++i) {
+    square += double(r[i]) * double(r[i]);
     p[i] = 0;
   }
   const double first = square;
@@ -160,39 +247,31 @@ bool FluidState<D>::solve(float tolerance, int limit, bool with_bodies, int& ite
   for (int iteration = 0; iteration < limit; ++iteration) {
     ++iterations;
     // p ← r + β p, t = (I + Lᵀ)⁻¹ p
-    before = 0;
-    for (int i = n - 1; i >= 0; --i) {
-      p[i] = r[i] + again * p[i];
-      float sum = p[i];
+    in_step<false>(s.down, [=](int i, float before) {
+      float sum = p[i] = r[i] + again * p[i];
       for (int a = 0; a < N - 1; ++a) sum -= above[i].across[a] * t[above[i].cell[a]];
-      before = sum - above[i].along * before;
-      t[i] = before;
-    }
+      return t[i] = sum - above[i].along * before;
+    });
     // w = t + (I + L)⁻¹ (p + (D − 2 + J) t): into w what is in brackets, then what is solved, in place.
     for (int i = 0; i < n; ++i) w[i] = p[i] + middle[i] * t[i];
     if (bodies_here) add_bodies(s.z, s.product, true);
-    before = 0;
-    for (int i = 0; i < n; ++i) {
+    in_step<true>(s.up, [=](int i, float before) {
       float sum = w[i];
       for (int a = 0; a < N - 1; ++a) sum -= below[i].across[a] * w[below[i].cell[a]];
-      before = sum - below[i].along * before;
-      w[i] = before;
-    }
-    double part[4] = {0, 0, 0, 0};
-    for (int i = 0; i < n; ++i) {
+      return w[i] = sum - below[i].along * before;
+    });
+    const double curvature = sum_of_rows(n, [=](int i) {
       w[i] += t[i];
-      part[i & 3] += double(p[i]) * double(w[i]);
-    }
-    const double curvature = (part[0] + part[1]) + (part[2] + part[3]);
+      return double(p[i]) * double(w[i]);
+    });
     if (!(curvature > 0)) return false;
     const float way = float(square / curvature);
-    double next[4] = {0, 0, 0, 0};
-    for (int i = 0; i < n; ++i) {
-      s.x[i] += way * (scale[i] * t[i]);
+    float* const x = s.x.data();
+    const double now = sum_of_rows(n, [=](int i) {
+      x[i] += way * (scale[i] * t[i]);
       r[i] -= way * w[i];
-      next[i & 3] += double(r[i]) * double(r[i]);
-    }
-    const double now = (next[0] + next[1]) + (next[2] + next[3]);
+      return double(r[i]) * double(r[i]);
+    });
     again = float(now / square);
     square = now;
     // The rows' own residual takes a look of its own: only where this one says that it may be small enough.

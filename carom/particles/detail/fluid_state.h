@@ -99,10 +99,19 @@ struct FluidLinks {
   int cell[N - 1];      ///< compact index; the number of rows where there is none
 };
 
+/// Four runs of rows, each of which hangs on the row before it: a sweep takes them in step, so that none waits for the
+/// one before it alone. A run lags as many rows behind as what its rows hang on asks for.
+struct FluidRuns {
+  static constexpr int together = 4;
+  int base[together] = {}, lag[together] = {}, count[together] = {};  ///< row m of a run is base ± m
+  int first = 0, last = 0, end = 0;                                   ///< steps in which all have a row; of all
+};
+
 template <int N>
 struct FluidSystem {
   std::vector<FluidRow<N>> rows;
   std::vector<FluidLinks<N>> below, above;  ///< factors of the preconditioner
+  std::vector<FluidRuns> up, down;          ///< runs of its sweeps
   std::vector<float> right, x, residual, search, product, z;
   std::vector<float> scale, inverse_scale;  ///< of a row and its unknown
   std::vector<float> middle;                ///< the scaled diagonal less 2
@@ -204,6 +213,7 @@ struct FluidState {
   // fluid_solver.inl
   bool solve(float tolerance, int limit, bool with_bodies, int& iterations, float& left);
   void factorise();
+  void find_runs(bool up);
   void apply_rows(const std::vector<float>& x, std::vector<float>& y, bool with_bodies);
   void add_bodies(const std::vector<float>& x, std::vector<float>& y, bool scaled);
   float true_residual() const;
