@@ -2,8 +2,6 @@
 
 #include <cassert>
 
-#include "carom/core/growth.h"
-
 namespace carom::geometry {
 namespace {
 template <class V>
@@ -22,7 +20,6 @@ int DynamicTree<V>::take_node() {
     nodes_[std::size_t(node)] = Node{};
     return node;
   }
-  core::grow_a_little(nodes_);
   nodes_.push_back(Node{});
   return int(nodes_.size()) - 1;
 }

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "carom/core/column.h"
 #include "carom/export.h"
 #include "carom/geometry/detail/tree_build.h"
 
@@ -232,7 +233,7 @@ class CAROM_API DynamicTree {
   void rotate(int node);
   int build(std::span<detail::BuildItem<V>> items);
 
-  std::vector<Node> nodes_;
+  core::Column<Node> nodes_;
   // Of a build; kept, so that a tree that was once built does not allocate again.
   std::vector<detail::BuildItem<V>> build_;
   std::vector<Job> jobs_;

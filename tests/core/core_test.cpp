@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carom/core/arena.h"
+#include "carom/core/column.h"
 #include "carom/core/function_ref.h"
 #include "carom/core/hash.h"
 #include "carom/core/pool.h"
@@ -215,6 +216,44 @@ TEST(Spelling, FindsTheNearestName) {
   EXPECT_EQ(edit_distance("ab", "ba"), 1);
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
   EXPECT_EQ(edit_distance(std::string(500, 'a'), std::string(500, 'b')), 64);
+}
+
+struct alignas(64) Row {
+  std::uint64_t value = 17, more[7] = {};
+};
+// Blocks of some size are pages, which move.
+TEST(Column, KeepsItsContentWhileItGrowsAndShrinks) {
+  constexpr std::size_t count = 100000;
+  Column<Row> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    EXPECT_EQ(rows.push_back({i}).value, i);
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(rows.data()) % alignof(Row), 0u);
+  }
+  rows.reserve(3 * count);
+  EXPECT_GE(rows.capacity(), 3 * count);
+  rows.resize(count + 2);
+  EXPECT_EQ(rows[count + 1].value, 17u);
+  rows.push_back(rows[5]);
+  rows.fit();
+  EXPECT_EQ(rows.capacity(), count + 3);
+  rows.push_back(rows[6]);  // one of its own, when there is no room
+  Column<Row> copy = rows, taken = std::move(copy);
+  copy = taken;
+  for (const Column<Row>* c : {&rows, &copy, &taken}) {
+    ASSERT_EQ(c->size(), count + 4);
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ((*c)[i].value, i);
+    EXPECT_EQ((*c)[count + 2].value, 5u);
+    EXPECT_EQ((*c)[count + 3].value, 6u);
+  }
+  rows.resize(1000);  // from pages to a small block
+  rows.fit();
+  EXPECT_EQ(rows[999].value, 999u);
+  rows.clear();
+  rows.fit();
+  EXPECT_EQ(rows.capacity(), 0u);
+  EXPECT_EQ(rows.begin(), rows.end());
+  copy = rows;
+  EXPECT_TRUE(copy.empty());
 }
 
 int twice(int x) { return 2 * x; }

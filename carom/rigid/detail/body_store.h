@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/core/column.h"
 #include "carom/core/growth.h"
 #include "carom/core/pool.h"
 #include "carom/rigid/definitions.h"
@@ -136,13 +137,13 @@ template <class D>
 struct BodyStore {
   core::SlotPool<BodyTag> slots;
   // All indexed by slot.
-  std::vector<SolverBody<D>> solver;
-  std::vector<typename D::Pose> pose;  ///< of the body's origin, at the start of the step (final after it)
-  std::vector<BodyMotion<D>> motion;
-  std::vector<BodyRecord> record;
+  core::Column<SolverBody<D>> solver;
+  core::Column<typename D::Pose> pose;  ///< of the body's origin, at the start of the step (final after it)
+  core::Column<BodyMotion<D>> motion;
+  core::Column<BodyRecord> record;
   std::vector<std::string> names;        ///< empty until the first body with a name
   std::vector<std::uint64_t> user_data;  ///< as far as one was given
-  std::vector<std::uint64_t> birth;      ///< counts up with every creation: the order in which bodies are listed
+  core::Column<std::uint64_t> birth;     ///< counts up with every creation: the order in which bodies are listed
   std::vector<float> time_scale;         ///< empty until the first body with its own clock
   std::vector<std::int32_t> awake;       ///< slots of awake, enabled dynamic and kinematic bodies, in no special order
 

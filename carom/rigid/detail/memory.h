@@ -14,9 +14,13 @@ struct ByteCounter {
   void state(const std::vector<T>& v) {
     bytes += v.capacity() * sizeof(T);
   }
+  template <class T>
+  void state(const core::Column<T>& v) {
+    bytes += v.capacity() * sizeof(T);
+  }
   template <class S, class P, class M>
-  void bodies(const std::vector<S>& solver, const std::vector<P>& pose, const std::vector<M>& motion,
-              const std::vector<BodyRecord>& record) {
+  void bodies(const core::Column<S>& solver, const core::Column<P>& pose, const core::Column<M>& motion,
+              const core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>

@@ -105,8 +105,13 @@ struct MemoryRelease {
     else if (v.capacity() > v.size())
       fit_memory(v);
   }
+  template <class T>
+  void state(core::Column<T>& v) {
+    v.fit();
+  }
   template <class S, class P, class M>
-  void bodies(std::vector<S>& solver, std::vector<P>& pose, std::vector<M>& motion, std::vector<BodyRecord>& record) {
+  void bodies(core::Column<S>& solver, core::Column<P>& pose, core::Column<M>& motion,
+              core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>

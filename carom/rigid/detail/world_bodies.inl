@@ -107,11 +107,11 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   const std::size_t slot = std::size_t(bodies.slots.slot(id));
   if (slot == bodies.record.size()) {
     if (slot == bodies.record.capacity()) reserve_bodies(bodies, core::next_capacity(slot));
-    bodies.solver.emplace_back();
-    bodies.pose.emplace_back();
-    bodies.motion.emplace_back();
-    bodies.record.emplace_back();
-    bodies.birth.emplace_back();
+    bodies.solver.resize(slot + 1);
+    bodies.pose.resize(slot + 1);
+    bodies.motion.resize(slot + 1);
+    bodies.record.resize(slot + 1);
+    bodies.birth.resize(slot + 1);
   }
   bodies.solver[slot] = {};
   bodies.motion[slot] = {};

@@ -34,11 +34,15 @@ class SnapshotWriter {
     put(v.data(), v.size());
   }
   template <class T>
+  void state(const core::Column<T>& v) {
+    put(v.data(), v.size());
+  }
+  template <class T>
   void state(const T& x) {
     put(&x, 1);
   }
-  void bodies(const std::vector<SolverBody<D>>& solver, const std::vector<typename D::Pose>& pose,
-              const std::vector<BodyMotion<D>>& motion, const std::vector<BodyRecord>& record) {
+  void bodies(const core::Column<SolverBody<D>>& solver, const core::Column<typename D::Pose>& pose,
+              const core::Column<BodyMotion<D>>& motion, const core::Column<BodyRecord>& record) {
     to_.bodies_at = to_.sections.size();
     state(solver), state(pose), state(motion), state(record);
   }
@@ -98,12 +102,16 @@ class SnapshotChecker {
     expect(sizeof(T), false);
   }
   template <class T>
+  void state(const core::Column<T>&) {
+    expect(sizeof(T), false);
+  }
+  template <class T>
   void state(const T&) {
     expect(sizeof(T), true);
   }
   template <class S, class P, class M>
-  void bodies(const std::vector<S>& solver, const std::vector<P>& pose, const std::vector<M>& motion,
-              const std::vector<BodyRecord>& record) {
+  void bodies(const core::Column<S>& solver, const core::Column<P>& pose, const core::Column<M>& motion,
+              const core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>
@@ -148,16 +156,19 @@ class SnapshotReader {
   explicit SnapshotReader(const SnapshotData<D>& from) : from_(from) {}
   template <class T>
   void state(std::vector<T>& v) {
-    const SnapshotSection& s = from_.sections[next_++];
-    v.resize(std::size_t(s.count));
-    if (s.count > 0) std::memcpy(static_cast<void*>(v.data()), place(s), std::size_t(s.count) * sizeof(T));
+    list<T>(v);
+  }
+  template <class T>
+  void state(core::Column<T>& v) {
+    list<T>(v);
   }
   template <class T>
   void state(T& x) {
     std::memcpy(static_cast<void*>(&x), place(from_.sections[next_++]), sizeof(T));
   }
   template <class S, class P, class M>
-  void bodies(std::vector<S>& solver, std::vector<P>& pose, std::vector<M>& motion, std::vector<BodyRecord>& record) {
+  void bodies(core::Column<S>& solver, core::Column<P>& pose, core::Column<M>& motion,
+              core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>
@@ -195,6 +206,12 @@ class SnapshotReader {
   void effectors(std::vector<EffectorData<D>>& v) { v = from_.effectors; }
 
  private:
+  template <class T, class List>
+  void list(List& v) {
+    const SnapshotSection& s = from_.sections[next_++];
+    v.resize(std::size_t(s.count));
+    if (s.count > 0) std::memcpy(static_cast<void*>(v.data()), place(s), std::size_t(s.count) * sizeof(T));
+  }
   const void* place(const SnapshotSection& s) const { return from_.image.data() + s.first; }
   const SnapshotData<D>& from_;
   std::size_t next_ = 0;

@@ -10,8 +10,8 @@ namespace carom::rigid {
 namespace detail {
 
 /// Slots of a pool in the order of their birth.
-template <class Slots>
-void by_birth(const Slots& slots, const std::vector<std::uint64_t>& birth, std::vector<std::int32_t>& out) {
+template <class Slots, class Births>
+void by_birth(const Slots& slots, const Births& birth, std::vector<std::int32_t>& out) {
   out.clear();
   for (int i = 0; i < slots.capacity(); ++i)
     if (slots.in_use(i)) out.push_back(i);
