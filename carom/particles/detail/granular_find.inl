@@ -173,8 +173,9 @@ void GranularState<D>::find_pairs(float dt, float scale) {
   slab_start.clear();
   first_pair.resize(std::size_t(count) + 1);
   last_block.assign(std::size_t(count), -1);
-  // Pairs that may meet before the next search; the cells are that much wider than two grains.
-  const float reach = math::min(2 * statistics.max_speed * dt + 0.02f * definition.radius, definition.radius);
+  // Pairs that may meet before the next search: what pulls one of the two pulls the other alike unless it is borne. The
+  // cells are that much wider than two grains.
+  const float reach = math::min(closing_speed * dt + 0.02f * definition.radius, definition.radius);
   const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
   for (int slab = 0; slab < slabs; ++slab) {
     const int first = int(blocks.size()), low = slab * slab_cells, high = math::min(low + slab_cells, across);

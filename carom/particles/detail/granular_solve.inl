@@ -328,7 +328,9 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
   // Contacts are looked for as often as the fastest grain moves by half a radius.
   float fastest = 0;
   for (const Grain<D>& g : grains) fastest = math::max(fastest, dot(g.v, g.v));
-  fastest = math::sqrt(fastest) + dt * length(definition.gravity);
+  const float gained = dt * length(definition.gravity);
+  closing_speed = 2 * math::sqrt(fastest) + gained;
+  fastest = math::sqrt(fastest) + gained;
   statistics.max_speed = fastest;
   const float ways = 2 * fastest * dt / definition.radius;
   const int rounds = ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;

@@ -113,6 +113,7 @@ struct GranularState {
   std::vector<rigid::ShapeId> found;
   Position wall_impulse{};
   float last_h = 0;
+  float closing_speed = 0;  ///< m/s, of two grains in the step, at most
   GranularStatistics statistics{};
   core::TaskScheduler* scheduler = nullptr;
 
