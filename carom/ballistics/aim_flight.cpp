@@ -12,18 +12,15 @@ AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
 
 template <bool Plain>
 AimSolver::Arrival AimSolver::propagate_in(Vec3d u, double time, double allowed) const {
-  // Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
-  // error: no long steps there, the shorter the better the path must be known.
   const double share = allowed / math::max(math::length(u) * time, 1e-9);
-  const double bend_speed = sound_ * math::clamp(0.6 * math::sqrt(math::sqrt(share)), 0.03, 0.2);
-  constexpr double far_bend = 3;
+  const double bend_speed = speed_of_a_bend(share);
   const double least = 0.5 * fall_speed_, tolerance = allowed / time;
   Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v);
   double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
   for (int i = 0; i < 4000; ++i) {
     const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
     if (speed > 0.85 * sound_) {
-      if (h > far_bend * bend) h = far_bend * bend;
+      h = math::min(h, far_bend * bend);
       if (h > bend && speed - h * pull < 1.15 * sound_) h = bend;
     }
     if (share < 5e-4) h = math::min(h, time / 12);

@@ -161,8 +161,7 @@ double fall_within(double from, double from_slope, double to, double to_slope) {
 template <bool Plain>
 bool AimSolver::record_in(Vec3d u, double time, double allowed, Path& path, bool falling) const {
   const double share = allowed / math::max(math::length(u) * time, 1e-9);
-  const double bend_speed = sound_ * math::clamp((share < 5e-4 ? 0.4 : 0.6) * math::sqrt(math::sqrt(share)), 0.03, 0.2);
-  constexpr double far_bend = 3;
+  const double bend_speed = speed_of_a_bend(share);
   const double least = 0.5 * fall_speed_, tolerance = allowed / time;
   Path::Stage first;
   Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v, first);
@@ -179,7 +178,7 @@ bool AimSolver::record_in(Vec3d u, double time, double allowed, Path& path, bool
   for (int i = 0; i < 400 && path.count < Path::most; ++i) {
     const double speed = math::length(v), strength = math::max(math::length(k), 1e-9), bend = bend_speed / strength;
     if (speed > 0.85 * sound_) {
-      if (h > far_bend * bend) h = far_bend * bend;
+      h = math::min(h, far_bend * bend);
       if (h > bend && speed - h * strength < 1.15 * sound_) h = bend;
     }
     if (share < 5e-4) h = math::min(h, time / 12);

@@ -15,7 +15,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
   Vec3d off{};
   Vec3d last_u{}, last_x{};
   double last_time = 0;
-  // secant: Broyden's updates; recorded: with the derivatives; plain: with those of the last that was recorded;
+  // secant: Broyden's updates, from the closed form; recorded: with the derivatives; plain: Broyden's updates of those;
   // measured: with what it errs; again: by the steps of that one, which err alike.
   enum class Way { secant, recorded, plain, measured, again };
   Way way = start == Start::near ? Way::measured : eager ? Way::secant : Way::recorded;
@@ -24,17 +24,12 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     if (way == Way::again) {
       end = follow(guess.u, guess.time, path);
       end.position += off;
-    } else if (way == Way::plain) {
-      end = propagate(guess.u, guess.time, accuracy);
-    } else if (way == Way::secant) {  // as good on flat paths, and half the work
+    } else if (way == Way::plain || way == Way::secant) {  // as good as recorded on flat paths, and half the work
       end = propagate(guess.u, guess.time, accuracy);
       if (i == 0)
         inverse = estimate(guess, end);
       else
         update(inverse, guess.u - last_u, end.position - last_x - (guess.time - last_time) * end.velocity);
-      last_u = guess.u;
-      last_x = end.position;
-      last_time = guess.time;
     } else {
       if (!record(guess.u, guess.time, accuracy, path, i == 0 && start == Start::falling)) {
         if (path.count < Path::most) return root;
@@ -49,6 +44,9 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
       end = path.arrival;
       end.position += off;
     }
+    last_u = guess.u;
+    last_x = end.position;
+    last_time = guess.time;
     const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
     const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
     const Vec3d d = barrel / speed, drift = velocity_of_target(guess.time) - end.velocity;
@@ -60,7 +58,8 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     Vec3d du = to_miss + dt * to_drift;
     const double longest = shooter_.muzzle_speed;
     if (math::length(du) > longest) du *= longest / math::length(du);
-    const double scale = math::max(away, 0.5 * math::length(end.velocity) * guess.time);
+    const double scale =
+        math::max(math::length(target_(guess.time) - shooter_.muzzle), 0.5 * math::length(end.velocity) * guess.time);
     guess.u += du;
     guess.time += dt;
     if (!(guess.time > 1e-9) || guess.time > 2 * options_.longest_time) return root;
@@ -79,16 +78,18 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     if (eager && i >= 4 && both > 0.2 * first_both) return root;
     if (i == 0) first_both = both;
     if (known && !trusted) rough *= 0.25;
-    if (known && trusted && moved < math::max(100 * allowed, 4e-4 * scale) &&
-        (way == Way::measured || both < 0.3 * last_both))
+    // What a path errs hangs on where its steps lie in the bends of drag and wind: most of all where it is flat.
+    const double alike = start == Start::falling ? 600 * allowed : 150 * allowed;
+    if (known && trusted && moved < math::min(alike, 1e-3 * scale) &&
+        moved * math::length(off) < 1e-4 * alike * scale && (way == Way::measured || both < 0.3 * last_both))
       way = Way::again;
-    else if (known || way == Way::plain || moved < 0.02 * scale)
-      way = Way::measured;  // the bends of drag and wind make what it errs another at another place
-    else if (way == Way::recorded && moved < 0.08 * scale)
+    else if (known || way == Way::plain || moved < 0.01 * scale)
+      way = Way::measured;
+    else if (way == Way::recorded && moved < 0.15 * scale)
       way = Way::plain;
     else if (way != Way::secant || i > 2 || moved > 0.3 * scale)
       way = Way::recorded;
-    if (way == Way::measured && moved > 0.08 * scale) way = Way::recorded;
+    if (way == Way::measured && moved > 0.15 * scale) way = Way::recorded;
     accuracy = way == Way::recorded || way == Way::secant ? math::max(0.005 * math::min(moved, scale), rough) : rough;
     last_both = both;
   }

@@ -112,6 +112,14 @@ class AimSolver {
   template <bool Plain>
   void sensitivities_in(Path& path, double fine) const;
 
+  /// Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
+  /// error: no longer steps there than it takes to lose so much speed (m/s; above the barrier `far_bend` times that),
+  /// the shorter the better the path must be known: to `share` of its length.
+  double speed_of_a_bend(double share) const {
+    return sound_ * math::clamp(0.55 * math::sqrt(math::sqrt(share)), 0.03, 0.3);
+  }
+  static constexpr double far_bend = 4;
+
   using Step = FlightStep;
   template <bool Plain>
   [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
