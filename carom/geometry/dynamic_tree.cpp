@@ -77,36 +77,90 @@ void DynamicTree<V>::enlarge(int leaf, const Box& box) {
 
 template <class V>
 void DynamicTree<V>::set_bounds(int leaf, const Box& box) {
-  ++version_;
   nodes_[std::size_t(leaf)].box = within_range(box);
 }
 
+/// All of `roots` lie so many levels below the root, but for leaves that stand higher.
 template <class V>
-bool DynamicTree<V>::refit(double worst) {
-  if (count_ < 2) return false;
-  Node* nodes = nodes_.data();
-  inner_.clear();
-  detail::TraversalStack stack;
-  stack.push(std::uint32_t(root_));
-  while (!stack.empty()) {
-    const std::uint32_t i = stack.pop();
-    inner_.push_back(std::int32_t(i));
-    const Node& node = nodes[i];
-    if (nodes[node.child_b].child_b >= 0) stack.push(std::uint32_t(node.child_b));
-    if (nodes[node.child_a].child_b >= 0) stack.push(std::uint32_t(node.child_a));
+int DynamicTree<V>::subtrees(std::span<std::int32_t> roots, int& levels) const {
+  levels = 0;
+  if (root_ < 0 || roots.empty()) return 0;
+  roots[0] = root_;
+  for (int count = 1;; ++levels) {
+    int more = 0;
+    for (int i = 0; i < count; ++i) more += nodes_[std::size_t(roots[std::size_t(i)])].child_b >= 0 ? 1 : 0;
+    if (more == 0 || count + more > int(roots.size())) return count;
+    std::size_t to = std::size_t(count + more);  // from behind: what is not yet read stays
+    for (std::size_t i = std::size_t(count); i-- > 0;) {
+      const Node& node = nodes_[std::size_t(roots[i])];
+      if (node.child_b < 0) {
+        roots[--to] = roots[i];
+      } else {
+        roots[--to] = node.child_b;
+        roots[--to] = node.child_a;
+      }
+    }
+    count += more;
   }
-  // Whatever stands above comes earlier in the list.
+}
+template <class V>
+int DynamicTree<V>::subtrees(std::span<std::int32_t> roots) const {
+  int levels;
+  return subtrees(roots, levels);
+}
+
+/// Tightens the inner nodes of so many levels from `top` on, the lower ones first. Returns their summed surface.
+template <class V>
+double DynamicTree<V>::refit_below(int top, int levels) {
+  Node* nodes = nodes_.data();
   double sum = 0;
-  for (std::size_t k = inner_.size(); k-- > 0;) {
-    Node& node = nodes[inner_[k]];
+  if (levels <= 0 || nodes[top].child_b < 0) return sum;
+  for (int at = top, from = nodes[top].parent, depth = 1;;) {
+    Node& node = nodes[at];
+    const auto goes_down = [&](int child) { return depth < levels && nodes[child].child_b >= 0; };
+    int next = -1;
+    if (from == node.parent && goes_down(node.child_a))
+      next = node.child_a;
+    else if (from != node.child_b && goes_down(node.child_b))
+      next = node.child_b;
+    from = at;
+    if (next >= 0) {
+      at = next;
+      ++depth;
+      continue;
+    }
     node.box = merge(nodes[node.child_a].box, nodes[node.child_b].box);
     node.enlarged = 0;
     sum += double(detail::surface(node.box));
+    if (at == top) return sum;
+    at = node.parent;
+    --depth;
   }
+}
+
+template <class V>
+bool DynamicTree<V>::refit(core::TaskScheduler& scheduler, double worst) {
+  ++version_;
+  if (count_ < 2) return false;
+  constexpr std::size_t most = 128;  // enough to share
+  std::int32_t roots[most];
+  double sums[most];
+  int levels;
+  const int count = subtrees(roots, levels);
+  scheduler.parallel_for(count, 2, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) sums[k] = refit_below(roots[k], count_);
+  });
+  double sum = refit_below(root_, levels);
+  for (int k = 0; k < count; ++k) sum += sums[k];
   if (!(least_cost_ > 0) || sum < least_cost_) least_cost_ = sum;
   if (!(sum > worst * least_cost_)) return false;
   rebuild();
   return true;
+}
+template <class V>
+bool DynamicTree<V>::refit(double worst) {
+  core::SerialScheduler here;
+  return refit(here, worst);
 }
 
 template <class V>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carom/core/column.h"
+#include "carom/core/scheduler.h"
 #include "carom/export.h"
 #include "carom/geometry/detail/tree_build.h"
 
@@ -32,11 +33,14 @@ class CAROM_API DynamicTree {
   void enlarge(int leaf, const Box& box);
   /// Rebuilds the parts above enlarged leaves. Returns how many subtrees were sorted into new places.
   int rebuild_enlarged();
-  /// Gives the leaf a new box and leaves everything else wrong until `refit`: for when most leaves move.
+  /// Gives the leaf a new box and leaves everything else wrong until `refit`: for when most leaves move. Different
+  /// leaves may be given theirs at once on several threads.
   void set_bounds(int leaf, const Box& box);
   /// Tightens all inner boxes to their leaves, and builds the whole tree anew once its summed surface has become so
   /// many times the least that it was. True if it did.
   bool refit(double worst = 1.2);
+  /// The same on several threads.
+  bool refit(core::TaskScheduler& scheduler, double worst);
   /// Builds the whole tree anew from its leaves (binned surface area heuristic); leaves keep their names.
   void rebuild();
   /// Inserts all boxes at once: leaves[i] (if not null) is the leaf of boxes[i], items[i] its item. Much faster, and a
@@ -74,11 +78,21 @@ class CAROM_API DynamicTree {
   /// Calls visit(item, box) for every leaf; neighbours in space mostly follow each other.
   template <class Visit>
   void visit_leaves(Visit&& visit) const {
+    visit_leaves_below(root_, visit);
+  }
+
+  /// Subtrees that together hold all leaves, in the order in which visit_leaves comes to them: for work on several
+  /// threads. Returns how many there are, at most roots.size().
+  int subtrees(std::span<std::int32_t> roots) const;
+  /// visit_leaves for one of them.
+  template <class Visit>
+  void visit_leaves_below(std::int32_t root, Visit&& visit) const {
     descend([](const Box&) { return true; },
             [&](std::uint32_t item, const Box& box) {
               visit(item, box);
               return true;
-            });
+            },
+            root);
   }
 
   /// The box of half extents `extents` (zero: a ray) travels from `origin` by `translation`. Calls
@@ -195,9 +209,13 @@ class CAROM_API DynamicTree {
   /// Calls visit(item, box) for the leaves whose boxes, and those above them, `wanted` says yes to.
   template <class Wanted, class Visit>
   void descend(Wanted&& wanted, Visit&& visit) const {
-    if (root_ < 0) return;
+    descend(wanted, visit, root_);
+  }
+  template <class Wanted, class Visit>
+  void descend(Wanted&& wanted, Visit&& visit, std::int32_t root) const {
+    if (root < 0) return;
     detail::TraversalStack stack;
-    std::int32_t index = root_;
+    std::int32_t index = root;
     if (!wanted(nodes_[std::size_t(index)].box)) return;
     while (true) {
       const Node& node = nodes_[std::size_t(index)];
@@ -229,6 +247,8 @@ class CAROM_API DynamicTree {
   void give_node(int node);
   void link(int leaf);
   void unlink(int leaf);
+  int subtrees(std::span<std::int32_t> roots, int& levels) const;
+  double refit_below(int top, int levels);
   void refit_and_rotate(int node);
   void rotate(int node);
   int build(std::span<detail::BuildItem<V>> items);

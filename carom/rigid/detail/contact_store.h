@@ -43,8 +43,9 @@ struct alignas(record_alignment<D>) ContactRecord {
   std::int32_t body[2] = {none, none};
   std::int32_t shape[2] = {none, none};
   std::uint16_t flags = 0;
-  std::uint16_t manifold_count : 15 = 0;
+  std::uint16_t manifold_count : 13 = 0;
   std::uint16_t rolls : 1 = 0;  ///< one of the shapes is round where it touches
+  std::uint16_t small : 2 = 0;  ///< bits by side: the record of its shape ends with one or two numbers (is_small)
   std::int32_t first_manifold = none;
   std::int32_t awake_index = none;  ///< place in ContactStore::awake
   typename D::Transform base{};     ///< B in A when the manifolds were last computed in full

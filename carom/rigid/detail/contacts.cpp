@@ -115,6 +115,9 @@ bool rolls(const ShapeRecord<Dim3>& s) {
       return false;
   }
 }
+/// Circles and capsules of the plane: two numbers are all there is to read.
+bool is_small(const geometry::Shape2& s) { return s.type <= geometry::ShapeType2::capsule; }
+bool is_small(const geometry::Shape3&) { return false; }
 bool has_round_base(const geometry::Shape2&) { return false; }
 bool has_round_base(const geometry::Shape3& s) {
   return s.type == geometry::ShapeType3::cylinder || s.type == geometry::ShapeType3::cone;
@@ -177,6 +180,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   if (flags & shape_hit_events) c.flags |= contact_hit_events;
   if (flags & shape_round) c.flags |= contact_round;
   c.rolls = (flags & shape_round) != 0 || rolls(*a) || rolls(*b);
+  c.small = std::uint16_t(is_small(a->geometry) ? 1 : 0) | std::uint16_t(is_small(b->geometry) ? 2 : 0);
   if (has_round_base(a->geometry) || has_round_base(b->geometry)) c.flags |= contact_on_disc;
   if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
   if (world.bodies.is_dynamic(a->body) && world.bodies.is_dynamic(b->body)) c.flags |= contact_dynamic;

@@ -14,6 +14,19 @@ inline typename D::Pose shape_pose(const WorldImplementation<D>& world, const Sh
   return shape.at_origin ? pose : pose * shape.local;
 }
 
+/// Calls for what the narrow phase reads of the shapes of a contact. Always inlined, as prefetch_lines.
+template <class D>
+[[gnu::always_inline]] inline void prefetch_shapes(const ShapeRecord<D>* shapes, const ContactRecord<D>& c) {
+  constexpr std::size_t small = sizeof(ShapeTraits<D>) + 16;
+  constexpr std::size_t whole = D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192;
+  for (int side = 0; side < 2; ++side) {
+    const char* const shape = reinterpret_cast<const char*>(shapes + c.shape[side]);
+    const std::size_t size = D::dimension == 2 && (c.small >> side & 1) != 0 ? small : whole;
+    prefetch_lines(shape, size);
+    if (D::dimension == 2) __builtin_prefetch(shape + size - 1);
+  }
+}
+
 /// m: what goes less far in a step hardly moves: by a quarter of the speed that a step of free fall gives.
 template <class D>
 inline float still_way(const WorldImplementation<D>& world, float dt) {
@@ -89,6 +102,12 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact);
 template <class D>
 inline void carry_impulses(const typename D::Manifold& from, const typename D::Manifold& to, float near,
                            ManifoldImpulses<D>& impulses) {
+  if (from.count == to.count) {  // mostly nothing was renamed, and what has one point keeps what that bore
+    bool same = true;
+    for (int i = 0; i < to.count && to.count > 1; ++i) same = same && to.points[i].feature == from.points[i].feature;
+    for (int i = to.count; i < D::max_points && same; ++i) impulses.normal[i] = impulses.total[i] = 0;
+    if (same) return;
+  }
   float normal[D::max_points] = {}, total[D::max_points] = {};
   bool matched[D::max_points] = {}, used[D::max_points] = {};
   for (int i = 0; i < to.count; ++i)

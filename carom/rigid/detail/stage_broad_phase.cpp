@@ -7,7 +7,7 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr int pair_grain = 64;
-constexpr int group_grain = 8;
+constexpr int most_subtrees = 128;  ///< that threads look through
 constexpr int most_in_group = BoxGroup<Dim2>::most_members;
 constexpr int bounds_grain = 128;
 constexpr double most_worse = 2;  ///< times its best: a tree of what flies
@@ -107,30 +107,28 @@ void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int
   look();
 }
 
-/// Orders the places of moved shapes of the dynamic tree as they lie in it, and cuts the order into groups that lie
-/// close together: group k ends before group_ends[k].
+/// The same for the moved shapes of a subtree, cut into groups that lie close together.
 template <class D>
-void group_moved(WorldImplementation<D>& world) {
+void find_pairs_below(WorldImplementation<D>& world, std::int32_t root, std::vector<FoundPair>& found) {
   using Bounds = typename D::Bounds;
-  StepScratch<D>& scratch = world.scratch;
-  scratch.group_places.clear();
-  scratch.group_ends.clear();
+  std::int32_t places[most_in_group];
   Bounds all{};
   int count = 0;
   const auto surface = [](const Bounds& b) { return geometry::detail::surface(b); };
-  world.shapes.trees[tree_dynamic].visit_leaves([&](std::uint32_t item, const Bounds& box) {
-    const std::int32_t place = scratch.moved_place[item];
+  const auto look = [&] {
+    if (count > 0) find_pairs_of_group(world, std::span(places, std::size_t(count)), found);
+    count = 0;
+  };
+  world.shapes.trees[tree_dynamic].visit_leaves_below(root, [&](std::uint32_t item, const Bounds& box) {
+    const std::int32_t place = world.scratch.moved_place[item];
     if (place < 0) return;
     const Bounds more = count > 0 ? merge(all, box) : box;
-    if (count == most_in_group || (count > 0 && surface(more) > 2 * (surface(all) + surface(box)))) {
-      scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
-      count = 0;
-    }
+    const bool apart = count > 0 && surface(more) > 2 * (surface(all) + surface(box));
+    if (count == most_in_group || apart) look();
     all = count > 0 ? more : box;
-    ++count;
-    scratch.group_places.push_back(place);
+    places[count++] = place;
   });
-  if (count > 0) scratch.group_ends.push_back(std::int32_t(scratch.group_places.size()));
+  look();
 }
 
 /// Did a box go on by an eighth of its size?
@@ -201,7 +199,6 @@ void find_pairs(WorldImplementation<D>& world) {
   // Where much of the tree moved, neighbours look together.
   const bool grouped = 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
   const bool swept = grouped && sweep_dynamic(world);
-  if (grouped && !swept) group_moved(world);
   world.scheduler->parallel_for(int(scratch.moved.size()), pair_grain, [&](int begin, int end, int worker) {
     for (int i = begin; i < end; ++i) {
       const bool dynamic = world.shapes.at(scratch.moved[std::size_t(i)]).tree == tree_dynamic;
@@ -210,16 +207,13 @@ void find_pairs(WorldImplementation<D>& world) {
                       swept && dynamic ? tree_kinematic : tree_dynamic);
     }
   });
-  if (grouped && !swept)
-    world.scheduler->parallel_for(int(scratch.group_ends.size()), group_grain, [&](int begin, int end, int worker) {
-      for (int k = begin; k < end; ++k) {
-        const std::size_t first = k == 0 ? 0 : std::size_t(scratch.group_ends[std::size_t(k) - 1]);
-        find_pairs_of_group(
-            world,
-            std::span(scratch.group_places).subspan(first, std::size_t(scratch.group_ends[std::size_t(k)]) - first),
-            scratch.found_pairs[std::size_t(worker)]);
-      }
+  if (grouped && !swept) {
+    std::int32_t roots[most_subtrees];
+    const int count = world.shapes.trees[tree_dynamic].subtrees(roots);
+    world.scheduler->parallel_for(count, 1, [&](int begin, int end, int worker) {
+      for (int k = begin; k < end; ++k) find_pairs_below(world, roots[k], scratch.found_pairs[std::size_t(worker)]);
     });
+  }
   level_room(scratch.found_pairs);
   scratch.pairs.clear();
   for (const std::vector<FoundPair>& list : scratch.found_pairs)
@@ -257,24 +251,35 @@ bool most_outgrew(const WorldImplementation<D>& world) {
   return outgrown > quarter;
 }
 
-/// The shapes that left their fat bounds, in the order of their bodies.
+/// The shapes that left their fat bounds, in the order of their bodies, and their places among those that moved.
 template <class D>
 void list_outgrown(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   const std::vector<std::int32_t>& awake = world.bodies.awake;
   const auto changes = [&](std::size_t i) { return i < awake.size() && scratch.body_changes[i] != 0; };
   scratch.outgrown.clear();
+  scratch.outgrown_places.clear();
   scratch.outgrown.reserve(scratch.moved.capacity());
+  scratch.outgrown_places.reserve(scratch.moved.capacity());
   for (std::size_t i = 0; i < awake.size(); ++i) {
     if (changes(i + 16)) __builtin_prefetch(&world.bodies.record[std::size_t(awake[i + 16])]);
     if (changes(i + 8))
       if (const std::int32_t s = world.bodies.record[std::size_t(awake[i + 8])].first_shape; s != none)
         prefetch_lines(&world.shapes.at(s), sizeof(ShapeTraits<D>));
     if (!changes(i)) continue;
-    for (std::int32_t s = world.bodies.record[std::size_t(awake[i])].first_shape; s != none;
-         s = world.shapes.at(s).next)
-      if ((world.shapes.at(s).flags & shape_outgrown) != 0) scratch.outgrown.push_back(s);
+    for (std::int32_t s = world.bodies.record[std::size_t(awake[i])].first_shape; s != none;) {
+      ShapeRecord<D>& shape = world.shapes.at(s);
+      if ((shape.flags & shape_outgrown) != 0) {
+        const bool known = (shape.flags & shape_moved) != 0;  // its old bounds are, or none need be
+        scratch.outgrown.push_back(s);
+        scratch.outgrown_places.push_back(known ? none : std::int32_t(scratch.moved.size()));
+        if (!known) scratch.moved.push_back(s);
+        shape.flags = std::uint8_t((shape.flags & ~shape_outgrown) | shape_moved);
+      }
+      s = shape.next;
+    }
   }
+  scratch.old_bounds.resize(scratch.moved.size());
 }
 
 template <class D>
@@ -292,36 +297,39 @@ void update_trees(WorldImplementation<D>& world) {
         const ShapeRecord<D>& soon = world.shapes.at(scratch.outgrown[std::size_t(k) + 6]);
         prefetch_lines(&soon, D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192);
         __builtin_prefetch(&world.bodies.pose[std::size_t(soon.body)]);
+        __builtin_prefetch(&world.bodies.solver[std::size_t(soon.body)]);
+        __builtin_prefetch(&world.bodies.record[std::size_t(soon.body)]);
         prefetch_lines(&world.bodies.motion[std::size_t(soon.body)], sizeof(BodyMotion<D>));
       }
-      scratch.new_bounds[std::size_t(k)] = fat_bounds(world, world.shapes.at(scratch.outgrown[std::size_t(k)]));
+      const ShapeRecord<D>& shape = world.shapes.at(scratch.outgrown[std::size_t(k)]);
+      auto& tree = world.shapes.trees[shape.tree];
+      const std::int32_t place = scratch.outgrown_places[std::size_t(k)];
+      if (place != none) scratch.old_bounds[std::size_t(place)] = tree.bounds(shape.leaf);
+      const typename D::Bounds box = fat_bounds(world, shape);
+      scratch.new_bounds[std::size_t(k)] = box;
+      if (refit && shape.tree == tree_dynamic) tree.set_bounds(shape.leaf, box);
     }
   });
   bool enlarged[3] = {};
   std::size_t far = 0;
-  for (std::size_t k = 0; k < scratch.outgrown.size(); ++k) {
-    const std::int32_t s = scratch.outgrown[k];
-    ShapeRecord<D>& shape = world.shapes.at(s);
-    shape.flags &= std::uint8_t(~shape_outgrown);
-    auto& tree = world.shapes.trees[shape.tree];
-    if ((shape.flags & shape_moved) == 0) {
-      shape.flags |= shape_moved;
-      scratch.moved.push_back(s);
-      scratch.old_bounds.push_back(tree.bounds(shape.leaf));
-    }
-    if (refit && shape.tree == tree_dynamic) {
-      if (D::dimension == 3 && goes_far(tree.bounds(shape.leaf), scratch.new_bounds[k])) ++far;
-      tree.set_bounds(shape.leaf, scratch.new_bounds[k]);
-    } else {
-      tree.enlarge(shape.leaf, scratch.new_bounds[k]);
-    }
+  // In the plane nothing is left to do for what forces move.
+  const bool done = refit && D::dimension == 2 && world.shapes.trees[tree_kinematic].empty();
+  if (done) enlarged[tree_dynamic] = true;
+  for (std::size_t k = 0; k < scratch.outgrown.size() && !done; ++k) {
+    const ShapeRecord<D>& shape = world.shapes.at(scratch.outgrown[k]);
+    const std::int32_t place = scratch.outgrown_places[k];
     enlarged[shape.tree] = true;
+    if (!refit || shape.tree != tree_dynamic)
+      world.shapes.trees[shape.tree].enlarge(shape.leaf, scratch.new_bounds[k]);
+    else if (D::dimension == 3 && place != none &&
+             goes_far(scratch.old_bounds[std::size_t(place)], scratch.new_bounds[k]))
+      ++far;
   }
   for (int tree = 0; tree < 3; ++tree)
     if (enlarged[tree]) {
       if (refit && tree == tree_dynamic)
         // What flies is soon elsewhere, and its pairs are found without the tree (sweep_dynamic).
-        world.shapes.trees[tree].refit(2 * far > scratch.outgrown.size() ? most_worse : 1.2);
+        world.shapes.trees[tree].refit(*world.scheduler, 2 * far > scratch.outgrown.size() ? most_worse : 1.2);
       else
         world.shapes.trees[tree].rebuild_enlarged();
     }

@@ -21,16 +21,20 @@ constexpr int block_grain = 8;
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
 /// of the one before it waits. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
 template <class D>
-CAROM_SIMD_INLINE void prefetch_manifold(const ContactSources<D>& from, std::span<const std::int32_t> list,
-                                         std::size_t i, bool velocities) {
+CAROM_SIMD_INLINE void prefetch_manifold(const ContactSources<D>& from, const ShapeRecord<D>* shapes,
+                                         std::span<const std::int32_t> list, std::size_t i, bool velocities) {
   constexpr std::size_t manifold_lanes = 64, contact_lanes = 40, body_lanes = 18;
   if (i + body_lanes >= list.size()) return;
   const ContactRecord<D>& c = from.contacts[from.manifolds[list[i + body_lanes]].contact];
   for (const std::int32_t body : c.body) {
     prefetch_lines(from.motion + body, sizeof(BodyMotion<D>));
     __builtin_prefetch(from.pose + body);
-    if (velocities) __builtin_prefetch(from.bodies + body);
+    if (velocities || c.rolls) __builtin_prefetch(from.bodies + body);
     if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(from.record + body);
+  }
+  if (D::dimension == 2 && c.rolls) {  // what put_middle asks for
+    __builtin_prefetch(reinterpret_cast<const char*>(&c) + 64);
+    prefetch_shapes(shapes, c);
   }
   if (i + contact_lanes >= list.size()) return;
   prefetch_lines(from.contacts + from.manifolds[list[i + contact_lanes]].contact,
@@ -107,7 +111,7 @@ void prepare_blocks(StepContext<D>& context) {
         const bool approaches = extra != nullptr || world.hit_event_shapes > 0;
         const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
         for (int lane = 0; lane < lanes; ++lane)
-          prefetch_manifold(sources, manifolds, first + std::size_t(lane), approaches);
+          prefetch_manifold(sources, world.shapes.record.data(), manifolds, first + std::size_t(lane), approaches);
         gather_block(context, sources, list, block, raw, extra, marks);
         for (int lane = 0; lane < lanes; ++lane)
           if (marks[lane] != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane])) marks[lane] = 0;

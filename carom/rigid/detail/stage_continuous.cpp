@@ -450,9 +450,10 @@ void stop_fast_bodies(StepContext<D>& context) {
   scratch.fast.clear();
   bool any_bullets = false;
   for (std::size_t i = 0; i < world.bodies.awake.size(); ++i) {
-    const std::uint16_t flags = world.bodies.record[std::size_t(world.bodies.awake[i])].flags;
-    if ((flags & body_fast) == 0) continue;
+    if (scratch.body_changes[i] != body_flew) continue;
+    scratch.body_changes[i] = 0;
     scratch.fast.push_back(std::int32_t(i));
+    const std::uint16_t flags = world.bodies.record[std::size_t(world.bodies.awake[i])].flags;
     any_bullets = any_bullets || (flags & body_bullet) != 0;
   }
   if (scratch.fast.empty()) return;

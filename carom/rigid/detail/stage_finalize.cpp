@@ -158,6 +158,7 @@ void finalize_bodies(StepContext<D>& context) {
       if (context.world.definition.continuous && record.type == BodyType::dynamic &&
           (record.flags & body_has_collider) != 0 && travel + surface_way > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
         record.flags |= body_fast;
+        scratch.body_changes[std::size_t(i)] = body_flew;
       }
       const float pace = world.bodies.pace(body);
       scratch.swept[std::size_t(i)] = {pose.rotation, m.center, whole, 1};

@@ -217,6 +217,29 @@ std::uint8_t pass_by(const WorldImplementation<D>& world, ContactRecord<D>& c, c
   return std::uint8_t(change | touch_change(c, 1e30f, false));
 }
 
+/// Contacts of one kind take the same ways through the code.
+template <class D>
+constexpr int contact_kinds = D::dimension == 2 ? 16 : 2;
+template <class D>
+int kind_of(const ContactRecord<D>& c) {
+  const int touched = c.first_manifold != none ? 1 : 0;
+  if constexpr (D::dimension == 3)
+    return touched;
+  else
+    return c.small * 4 + ((c.flags & contact_round) != 0 ? 2 : 0) + touched;
+}
+/// Puts those of a kind side by side, which the processor foresees better.
+template <class D>
+void sort_by_kind(std::int32_t* due, int number, const ContactRecord<D>* contacts, const std::int32_t* awake) {
+  std::int32_t sorted[contact_grain];
+  std::uint8_t kind[contact_grain];
+  int ends[contact_kinds<D>] = {};
+  for (int k = 0; k < number; ++k) ++ends[kind[k] = std::uint8_t(kind_of(contacts[awake[due[k]]]))];
+  for (int i = 1; i < contact_kinds<D>; ++i) ends[i] += ends[i - 1];
+  for (int k = number; k-- > 0;) sorted[--ends[kind[k]]] = due[k];
+  std::copy(sorted, sorted + number, due);
+}
+
 /// Recomputes one contact. Writes only to the contact, its manifolds and the worker's list.
 template <class D>
 std::uint8_t update_contact(WorldImplementation<D>& world, std::int32_t awake_index,
@@ -363,11 +386,14 @@ void update_contacts(WorldImplementation<D>& world) {
           due[number++] = i;
         }
       }
+      if (D::dimension == 2) sort_by_kind(due, number, contacts, awake);
       const auto look_at_soon = [&](int k) __attribute__((always_inline)) {  // as prefetch_lines
         const ContactRecord<D>& soon = contacts[awake[due[k]]];
-        for (const std::int32_t body : soon.body) __builtin_prefetch(poses + body);
-        for (const std::int32_t shape : soon.shape)
-          prefetch_lines(shapes + shape, D::dimension == 2 ? sizeof(ShapeRecord<D>) - 16 : 192);
+        for (const std::int32_t body : soon.body) {
+          __builtin_prefetch(poses + body);
+          __builtin_prefetch(sweeps + body);
+        }
+        prefetch_shapes(shapes, soon);
         if (soon.first_manifold != none) prefetch_lines(manifolds + soon.first_manifold, ManifoldRecord<D>::hot_bytes);
       };
       for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
@@ -382,8 +408,8 @@ void update_contacts(WorldImplementation<D>& world) {
   scratch.manifolds.clear();
   for (const std::vector<FoundManifold<D>>& list : scratch.found_manifolds)
     scratch.manifolds.insert(scratch.manifolds.end(), list.begin(), list.end());
-  // Workers take chunks as they come.
-  if (scratch.found_manifolds.size() > 1)
+  // Workers take chunks as they come, and those of a kind together.
+  if (D::dimension == 2 || scratch.found_manifolds.size() > 1)
     std::sort(scratch.manifolds.begin(), scratch.manifolds.end(), [](const auto& l, const auto& r) {
       return l.awake_index != r.awake_index ? l.awake_index < r.awake_index : l.ordinal < r.ordinal;
     });

@@ -120,13 +120,12 @@ void visit_graph(Graph& graph, Visit& visit) {
 template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, loads, hits, flights, impacts, impact_queue, solver_stages, solver_loops, sweeps, sweeping, watches,
-         old_bounds, moved_place, moved, group_places, group_ends, sweep, outgrown, new_bounds, found_pairs,
-         met_sensors, pairs, found_bullet_pairs, found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings,
-         first_bullet_pair, swept, fast, broken, body_changes, contact_changes, found_manifolds, manifolds,
-         island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches, island_restless,
-         island_substeps, whole_awake, whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end,
-         contact_hit, sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] =
-      scratch;
+         old_bounds, moved_place, moved, sweep, outgrown, outgrown_places, new_bounds, found_pairs, met_sensors, pairs,
+         found_bullet_pairs, found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings, first_bullet_pair,
+         swept, fast, broken, body_changes, contact_changes, found_manifolds, manifolds, island_parent, island_list,
+         island_bodies, island_ends, doomed_contacts, new_touches, island_restless, island_substeps, whole_awake,
+         whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin,
+         sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
   (void)blocks;
   visit.scratch(loads);
   visit.scratch(hits);
@@ -141,10 +140,9 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(old_bounds);
   visit.scratch(moved_place);
   visit.state(moved);
-  visit.scratch(group_places);
-  visit.scratch(group_ends);
   sweep.visit_lists([&](auto& list) { visit.scratch(list); });
   visit.scratch(outgrown);
+  visit.scratch(outgrown_places);
   visit.scratch(new_bounds);
   for (auto& list : found_pairs) visit.scratch(list);
   for (auto& list : met_sensors) visit.scratch(list);

@@ -71,7 +71,8 @@ inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) 
   return 1 + std::size_t(substeps) * std::size_t(8 + (3 + settling) * (color_count + 1));
 }
 
-enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2 };
+/// How a body came out of a step; body_flew only until continuous collision has looked at it.
+enum BodyChange : std::uint8_t { body_outgrew = 1, body_broke = 2, body_flew = 4 };
 
 /// Where a body was when the step began, and how it went on.
 template <class D>
@@ -126,14 +127,14 @@ struct StepScratch {
   std::vector<BodySweep<D>> sweeps;                      ///< by slot of the body
   std::vector<std::int32_t> sweeping;                    ///< bodies whose sweep is not zero
   std::vector<ContactWatch<D>> watches;                  ///< by place in ContactStore::awake, or empty: look at all
-  std::vector<typename D::Bounds> old_bounds;  ///< by place in `moved`: fat bounds when pairs were last looked for
-  std::vector<std::int32_t> moved_place;       ///< by slot of the shape: place in old_bounds, or −1
-  std::vector<std::int32_t> moved;             ///< shapes whose fat bounds changed
-  std::vector<std::int32_t> group_places, group_ends;   ///< places in `moved` by groups of neighbours
-  BoxSweep sweep;                                       ///< of what flies, where it is sparse
-  std::vector<std::int32_t> outgrown;                   ///< shapes that left their fat bounds,
-  std::vector<typename D::Bounds> new_bounds;           ///< and what these become
-  std::vector<std::vector<FoundPair>> found_pairs;      ///< by worker
+  std::vector<typename D::Bounds> old_bounds;       ///< by place in `moved`: fat bounds when pairs were last looked for
+  std::vector<std::int32_t> moved_place;            ///< by slot of the shape: place in old_bounds, or −1
+  std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
+  BoxSweep sweep;                                   ///< of what flies, where it is sparse
+  std::vector<std::int32_t> outgrown;               ///< shapes that left their fat bounds,
+  std::vector<std::int32_t> outgrown_places;        ///< their places in `moved`, or none: they were there before,
+  std::vector<typename D::Bounds> new_bounds;       ///< and what these become
+  std::vector<std::vector<FoundPair>> found_pairs;  ///< by worker
   std::vector<std::vector<SensorMeeting>> met_sensors;  ///< by worker
   std::vector<FoundPair> pairs;
   std::vector<std::vector<BulletPair>> found_bullet_pairs;  ///< by worker

@@ -99,9 +99,8 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.impacts.reserve(manifolds);
   s.impact_queue.resize(manifolds);
   s.moved.reserve(shapes);
-  s.group_places.reserve(shapes);
-  s.group_ends.reserve(shapes);
   s.outgrown.reserve(shapes);
+  s.outgrown_places.reserve(shapes);
   s.new_bounds.reserve(shapes);
   for (auto& list : s.found_pairs) list.reserve(contacts);
   s.pairs.reserve(contacts);
