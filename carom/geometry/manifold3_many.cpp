@@ -172,8 +172,8 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
-  const float same = 2e-3f * (detail::outer_size(b) + b.radius);
   const detail::TriangleReach reach(shape, b, corners, x, margin, approach, solid);
+  const float same = 2e-3f * length(reach.own.extents());  // hulls may lie far from the origin of their frame
   Patch patches[max_patches];
   int count = 0;
   detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "carom/geometry/hull.h"
+#include "carom/geometry/mesh_builders.h"
+#include "carom/geometry/triangle_mesh.h"
 #include "carom/math/rotation.h"
 #include "scene_pieces.h"
 
@@ -52,6 +54,30 @@ TEST(Rolling, WhatIsLongAndRollsSlowlyFallsAsleep) {
   world.set_velocity(pole, {0.01f, 0, 0}, {0, 0, -0.01f / 0.3f}).value();
   run(world, 120);
   EXPECT_FALSE(world.state(pole).value().awake);
+}
+
+// A log that rolls over its edges strikes with a face and rocks to rest. All four corners of the face hold it, and what
+// comes down next is met in time (it went 1.8 cm deep, and rocked from one diagonal to the other for ten seconds).
+TEST(Rolling, AHexagonalLogRocksToRestOnAMesh) {
+  for (const float cell : {1.0f, 0.5f, 0.25f})
+    for (const float spin : {2.0f, 4.0f}) {
+      World3 world(world_with<Dim3>());
+      const int cells = int(20 / cell);
+      const geometry::Triangles grid = geometry::make_grid_mesh(cells, cells, {cell, cell});
+      add_body<Dim3>(world, BodyType::fixed,
+                     geometry::Shape3(geometry::make_triangle_mesh(grid.positions, grid.indices).value()), {});
+      const double inner = 0.75 * math::cos(math::pi / 6);
+      const BodyId log = add_body<Dim3>(world, BodyType::dynamic, log_of(6, 0.75f, 1.5f), {5, inner, 10.3},
+                                        {.friction = 0.9f, .rolling_resistance = 0.05f});
+      world.set_velocity(log, {0.75f * spin, 0, 0}, {0, 0, -spin}).value();
+      float deepest = 0;
+      for (int i = 0; i < 300; ++i) {
+        run(world, 1);
+        deepest = math::max(deepest, world.worst_penetration());
+      }
+      EXPECT_LT(deepest, 0.01f) << "cells of " << cell << " m, " << spin << " rad/s";
+      EXPECT_FALSE(world.state(log).value().awake) << "cells of " << cell << " m, " << spin << " rad/s";
+    }
 }
 
 }  // namespace

@@ -51,7 +51,9 @@ void write_points(const ContactPoints& c, Vec3f normal, Manifold3& out) {
     for (int i = 0; i < c.count; ++i) out.points[out.count++] = c.point[i];
     return;
   }
-  float most = 0, fewest = 0;
+  // What lies on the first line, to rounding, spans nothing beside it.
+  const float none = 0.01f * width * length(p1 - p0);
+  float most = none, fewest = -none;
   int third = -1, fourth = -1;
   for (int i = 0; i < c.count; ++i) {
     if (i == chosen[0] || i == chosen[1]) continue;

@@ -1,12 +1,10 @@
 #include "carom/geometry/detail/placed_corners.h"
 
-#include "carom/math/mat.h"
-
 namespace carom::geometry::detail {
 
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): what the shape has not is not read
-PlacedCorners::PlacedCorners(const Convex& core, const Transform3f& x) : origin_(x.p), hull_(core.hull) {
-  const Mat3f turn = to_matrix(x.q);
+PlacedCorners::PlacedCorners(const Convex& core, const Transform3f& x)
+    : origin_(x.p), hull_(core.hull), turn_(to_matrix(x.q)) {
   if (core.kind == CoreKind::hull) {
     if (core.hull->vertices.size() > capacity) return;
     blocks_ = int(core.hull->vertex_lanes.size() / 12);
@@ -14,37 +12,42 @@ PlacedCorners::PlacedCorners(const Convex& core, const Transform3f& x) : origin_
       const float* p = core.hull->vertex_lanes.data() + 12 * i;
       const Four u = Four::load(p), v = Four::load(p + 4), w = Four::load(p + 8);
       for (int k = 0; k < 3; ++k) {
-        const Four at = u * Four::splat(turn.cx[k]) + v * Four::splat(turn.cy[k]) + w * Four::splat(turn.cz[k]);
+        const Four at = u * Four::splat(turn_.cx[k]) + v * Four::splat(turn_.cy[k]) + w * Four::splat(turn_.cz[k]);
         at.store(lanes_ + 12 * i + 4 * k);
       }
     }
-    const std::vector<HullPlane>& planes = core.hull->planes;
-    if (planes.size() > capacity) return;
-    face_blocks_ = int(planes.size() + 3) / 4;
-    for (int i = 0; i < 4 * face_blocks_; ++i) {
-      const HullPlane& plane = planes[min(std::size_t(i), planes.size() - 1)];
-      const Vec3f n = turn * plane.normal;
-      float* lane = planes_ + 16 * (i / 4) + i % 4;
-      lane[0] = n.x, lane[4] = n.y, lane[8] = n.z, lane[12] = plane.offset;
-    }
+    if (core.hull->planes.size() <= capacity) face_blocks_ = int(core.hull->planes.size() + 3) / 4;
   } else if (core.kind == CoreKind::box) {
     blocks_ = 2;
     for (int i = 0; i < 8; ++i) {
-      const Vec3f p = turn * Vec3f{i & 1 ? core.half.x : -core.half.x, i & 2 ? core.half.y : -core.half.y,
-                                   i & 4 ? core.half.z : -core.half.z};
+      const Vec3f p = turn_ * Vec3f{i & 1 ? core.half.x : -core.half.x, i & 2 ? core.half.y : -core.half.y,
+                                    i & 4 ? core.half.z : -core.half.z};
       for (int k = 0; k < 3; ++k) lanes_[12 * (i / 4) + 4 * k + i % 4] = p[k];
     }
     face_blocks_ = 2;
-    for (int i = 0; i < 8; ++i) {
-      const int axis = min(i, 5) >> 1;
-      const Vec3f n = (i & 1 ? -1.0f : 1.0f) * (axis == 0 ? turn.cx : axis == 1 ? turn.cy : turn.cz);
-      float* lane = planes_ + 16 * (i / 4) + i % 4;
-      lane[0] = n.x, lane[4] = n.y, lane[8] = n.z, lane[12] = core.half[axis];
+    half_ = core.half;
+  }
+}
+
+void PlacedCorners::place_planes() const {
+  planes_placed_ = true;
+  const int count = hull_ != nullptr ? int(hull_->planes.size()) : 6;
+  for (int i = 0; i < 4 * face_blocks_; ++i) {
+    const int face = min(i, count - 1), axis = face >> 1;
+    float* lane = planes_ + 16 * (i / 4) + i % 4;
+    Vec3f n;
+    if (hull_ != nullptr) {
+      const HullPlane& plane = hull_->planes[std::size_t(face)];
+      n = turn_ * plane.normal, lane[12] = plane.offset;
+    } else {
+      n = (i & 1 ? -1.0f : 1.0f) * (axis == 0 ? turn_.cx : axis == 1 ? turn_.cy : turn_.cz), lane[12] = half_[axis];
     }
+    lane[0] = n.x, lane[4] = n.y, lane[8] = n.z;
   }
 }
 
 PlacedCorners::Before PlacedCorners::face_before(Vec3f p, Vec3f q, Vec3f r) const {
+  if (!planes_placed_) place_planes();
   Four most = Four::splat(-3.4e38f);
   math::WideInt<4> where = math::WideInt<4>::zero();
   for (int i = 0; i < face_blocks_; ++i) {
@@ -65,6 +68,7 @@ PlacedCorners::Before PlacedCorners::face_before(Vec3f p, Vec3f q, Vec3f r) cons
   return {most[best], {lane[0], lane[4], lane[8]}};
 }
 bool PlacedCorners::meets_segment(Vec3f start, Vec3f way) const {
+  if (!planes_placed_) place_planes();
   const Four zero = Four::zero(), one = Four::splat(1);
   Four enter = zero, leave = one;
   for (int i = 0; i < face_blocks_; ++i) {

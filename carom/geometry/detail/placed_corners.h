@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/geometry/detail/contact_points.h"
+#include "carom/math/mat.h"
 #include "carom/math/simd.h"
 
 namespace carom::geometry::detail {
@@ -56,15 +57,20 @@ class PlacedCorners {
     return min(min(low[0], low[1]), min(low[2], low[3]));
   }
 
+  void place_planes() const;
   void place_edges() const;
 
   static constexpr int capacity = 64, most_edges = 32;
   Vec3f origin_;
   const Hull* hull_ = nullptr;
+  Mat3f turn_;
+  Vec3f half_{};  ///< of a box
   int blocks_ = 0, face_blocks_ = 0;
+  mutable bool planes_placed_ = false;
   mutable int edge_blocks_ = -1;  ///< −1: not placed yet
   mutable float edges_[6 * most_edges];
-  float lanes_[3 * capacity], then_[3 * capacity], planes_[4 * capacity];
+  mutable float planes_[4 * capacity];
+  float lanes_[3 * capacity], then_[3 * capacity];
 };
 
 }  // namespace carom::geometry::detail
