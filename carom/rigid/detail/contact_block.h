@@ -60,6 +60,7 @@ struct alignas(64) ContactBlock<Dim3, W> {
   float tangent_target[2][W], tangent_impulse[2][W], tangent_total[2][W];
   float twist_mass[W], twist_radius[W], twist_impulse[W];
   float settles[W];
+  float struck[W];  ///< 1: a hard blow fell on it in this step
 };
 
 /// What the preparation of a block starts from, as the records hold it; the points, the normal (both in A's shape

@@ -113,6 +113,7 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 #include "carom/rigid/detail/contact_watch2.inl"
 #include "carom/rigid/detail/contact_watch3.inl"
 // The passes use what the preparation left.
+#include "carom/rigid/detail/contact_blow.inl"
 #include "carom/rigid/detail/contact_kernel2.inl"
 #include "carom/rigid/detail/contact_kernel3.inl"
 // And bodies go on with the velocities that these leave.

@@ -74,10 +74,11 @@ CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], con
 }
 
 template <int W, bool UseBias>
-CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
-                                      Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
-                                      const WideSymmetric<W>& ib, WideFloat<W> inverse_h, WideFloat<W> push_speed,
-                                      WideFloat<W> counted, WideFloat<W> share, int order) {
+CAROM_SIMD_INLINE PassBlow<W> solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
+                                             Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
+                                             const WideSymmetric<W>& ib, WideFloat<W> inverse_h,
+                                             WideFloat<W> push_speed, WideFloat<W> counted, WideFloat<W> share,
+                                             int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -87,6 +88,7 @@ CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlo
   gather<W>(bodies, c.read_b, 8, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
   const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+  PassBlow<W> blow = {zero, zero, zero};
   for (int k = 0; k < 4; ++k) {
     const int i = k ^ order;
     auto& point = c.point[i];
@@ -112,7 +114,61 @@ CAROM_SIMD_INLINE void solve_normals3(const SolverBody<Dim3>* bodies, ContactBlo
     const WideVec3<W> p = multiply(n, delta);
     push_back(a, ma, ia, p, multiply(turn_a, delta));
     push(b, mb, ib, p, multiply(turn_b, delta));
+    blow.before += old;
+    blow.change += delta;
+    blow.power -= vn * delta;
   }
+  return blow;
+}
+
+template <int W>
+struct VelocityPair3 {
+  Velocity3<W> a, b;
+};
+/// Solves the normals of the lanes in `struck` again, all points of a manifold at once.
+template <int W, bool UseBias>
+[[gnu::noinline]] VelocityPair3<W> share_blow3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W> a,
+                                               Velocity3<W> b, WideMask<W> struck, float inverse_h, float push_speed,
+                                               float counted) {
+  using F = WideFloat<W>;
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
+  const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
+  F pa[8], pb[8];
+  gather<W>(bodies, c.read_a, 8, pa);
+  gather<W>(bodies, c.read_b, 8, pb);
+  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
+  const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+  TogetherRows<W, 4> rows;
+  WideVec3<W> turn_a[4], turn_b[4];
+  for (int i = 0; i < 4; ++i) {
+    const auto& point = c.point[i];
+    const WideVec3<W> ra = load3<W>(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    turn_a[i] = cross(ra, n), turn_b[i] = add(turn_a[i], offset_turn);
+    const WideVec3<W> ita = multiply(ia, turn_a[i]), itb = multiply(ib, turn_b[i]);
+    for (int j = 0; j <= i; ++j) rows.k[i][j] = ma + mb + dot(ita, turn_a[j]) + dot(itb, turn_b[j]);
+    const BlowRow<W> row = blow_row<W, UseBias>(c, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
+    rows.velocity[i] = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b[i]) - dot(a.w, turn_a[i]) + row.bias;
+    rows.yield[i] = row.yield;
+    rows.impulse[i] = F::load(point.impulse);
+    rows.present[i] = F::load(point.normal_mass) > F::splat(0);
+  }
+  solve_together<W, 4>(rows);
+  F sum = F::splat(0);
+  WideVec3<W> on_a = {sum, sum, sum}, on_b = on_a;
+  for (int i = 0; i < 4; ++i) {
+    auto& point = c.point[i];
+    const F old = F::load(point.impulse), delta = keep(struck, rows.impulse[i] - old);
+    (old + delta).store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + delta * F::splat(counted)).store(point.total);
+    sum += delta;
+    on_a = add(on_a, multiply(turn_a[i], delta));
+    on_b = add(on_b, multiply(turn_b[i], delta));
+  }
+  push_back(a, ma, ia, multiply(n, sum), on_a);
+  push(b, mb, ib, multiply(n, sum), on_b);
+  return {a, b};
 }
 
 template <int W>
@@ -121,9 +177,15 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
-                            load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed),
-                            F::splat(1), F::splat(1), order);
+    const PassBlow<W> normals =
+        solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
+                                load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed),
+                                F::splat(1), F::splat(1), order);
+    const auto struck = find_struck<W>(c, normals, WideMask<W>::all());
+    if (any(struck)) [[unlikely]] {
+      const auto shared = share_blow3<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
+      a = shared.a, b = shared.b;
+    }
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -207,8 +269,13 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, rubs, ia, ib);
       solve_friction3<W>(c, a, b, load, rubs, n, ia, ib);
       if (struck) break;
-      solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), F::splat(counted), share,
-                               0);
+      const PassBlow<W> normals = solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0),
+                                                           F::splat(counted), share, 0);
+      const auto hard = find_struck<W>(c, normals, takes_part);
+      if (any(hard)) [[unlikely]] {
+        const auto shared = share_blow3<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
+        a = shared.a, b = shared.b;
+      }
       const F before = load;
       load = load_of<W>(c);
       const F blow = (load - before) * (F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b));

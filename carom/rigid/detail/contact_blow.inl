@@ -1,0 +1,122 @@
+// Hard blows: part of contact_kernel.inl. One round over the points of a manifold leaves some hundredths of a blow
+// between them, with which a body comes back from a wall though nothing of it bounces. Where a pass takes off much
+// speed at once, the points are therefore solved together.
+
+namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
+
+/// m/s: what meets faster, and loses at least `least_change` of it in a pass, strikes hard.
+inline constexpr float hard_blow = 1, least_change = 0.05f;
+
+/// What a pass over the normals of a manifold did, over its points: Σ λ before it, Σ Δλ, and the power that it took
+/// off, −Σ v Δλ.
+template <int W>
+struct PassBlow {
+  WideFloat<W> before, change, power;
+};
+
+/// The lanes of `among` on which a hard blow fell, in this pass or earlier in the step: the next warm start gives it
+/// again. A blow is hard only where nothing pressed before, and more than one point has to share it: in a pile, where
+/// much presses already, contacts disagree more than the points of one.
+template <int W, class Block>
+CAROM_SIMD_INLINE WideMask<W> find_struck(Block& c, const PassBlow<W>& blow, WideMask<W> among) {
+  using F = WideFloat<W>;
+  const F zero = F::splat(0), mobility = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
+  const auto now = (blow.power * mobility > F::splat(hard_blow) * max(blow.change * mobility, F::splat(least_change))) &
+                   (blow.before == zero) & (F::load(c.point[1].normal_mass) > zero);
+  const F earlier = F::load(c.struck);
+  const auto struck = among & (now | (earlier > zero));
+  if (any(struck)) select(struck, F::splat(1), earlier).store(c.struck);
+  return struck;
+}
+
+/// The points of a manifold together: find λ ≥ 0 so that velocity + K (λ − impulse) + yield λ ≥ 0, and 0 where λ > 0.
+/// By principal pivoting (Murty 1974): the rows that press are solved, the first that pulls or gives way changes sides.
+template <int W, int N>
+struct TogetherRows {
+  WideFloat<W> k[N][N];  ///< the mobility, K_ij = K_ji; filled for j ≤ i
+  WideFloat<W> velocity[N], impulse[N], yield[N];
+  WideMask<W> present[N];
+};
+
+/// x of A x = rhs by A = L D Lᵀ; of A only j ≤ i is read, and lost.
+template <int W, int N>
+CAROM_SIMD_INLINE void solve_symmetric(WideFloat<W> (&a)[N][N], WideFloat<W> (&x)[N]) {
+  using F = WideFloat<W>;
+  F inverse[N];
+  for (int j = 0; j < N; ++j) {
+    F d = a[j][j];
+    for (int k = 0; k < j; ++k) d -= a[j][k] * a[j][k] * a[k][k];
+    a[j][j] = d;
+    inverse[j] = F::splat(1) / d;
+    for (int i = j + 1; i < N; ++i) {
+      F l = a[i][j];
+      for (int k = 0; k < j; ++k) l -= a[i][k] * a[j][k] * a[k][k];
+      a[i][j] = l * inverse[j];
+    }
+  }
+  for (int i = 1; i < N; ++i)
+    for (int k = 0; k < i; ++k) x[i] -= a[i][k] * x[k];
+  for (int i = N - 1; i >= 0; --i) {
+    x[i] = x[i] * inverse[i];
+    for (int k = i + 1; k < N; ++k) x[i] -= a[k][i] * x[k];
+  }
+}
+
+/// The rows' impulses, in place. Four points of a face hang on three motions: a thousandth of the diagonal tells how
+/// they share, toward what they had, and is taken out again by repeating.
+template <int W, int N>
+CAROM_SIMD_INLINE void solve_together(TogetherRows<W, N>& rows) {
+  using F = WideFloat<W>;
+  constexpr int repeats = 2, most_pivots = 2 * N;
+  const F zero = F::splat(0), one = F::splat(1);
+  F free_velocity[N];  // with no impulse at all
+  WideMask<W> presses[N];
+  for (int i = 0; i < N; ++i) {
+    free_velocity[i] = rows.velocity[i];
+    for (int j = 0; j < N; ++j) free_velocity[i] -= rows.k[i > j ? i : j][i > j ? j : i] * rows.impulse[j];
+    presses[i] = rows.present[i] & (rows.impulse[i] > zero);
+  }
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    F keep_share[N], x[N];
+    for (int i = 0; i < N; ++i) keep_share[i] = F::splat(1e-3f) * rows.k[i][i];
+    for (int pivot = 0; pivot < most_pivots; ++pivot) {
+      F a[N][N];
+      for (int i = 0; i < N; ++i) {
+        for (int j = 0; j < i; ++j) a[i][j] = keep(presses[i] & presses[j], rows.k[i][j]);
+        a[i][i] = select(presses[i], rows.k[i][i] + rows.yield[i] + keep_share[i], one);
+        x[i] = keep(presses[i], keep_share[i] * rows.impulse[i] - free_velocity[i]);
+      }
+      solve_symmetric<W, N>(a, x);
+      WideMask<W> changed = WideMask<W>::none();
+      for (int i = 0; i < N; ++i) {
+        F v = free_velocity[i] - keep_share[i] * rows.impulse[i];
+        for (int j = 0; j < N; ++j) v += rows.k[i > j ? i : j][i > j ? j : i] * x[j];
+        const auto wrong = select(presses[i], x[i], v) < zero;
+        const auto changes = rows.present[i] & wrong & !changed;
+        presses[i] = presses[i] ^ changes;
+        changed = changed | changes;
+      }
+      if (!any(changed)) break;
+    }
+    for (int i = 0; i < N; ++i) rows.impulse[i] = max(x[i], zero);
+  }
+}
+
+/// How a row of a solving or relaxing pass stands: the velocity that is still to be taken off, and how much it yields
+/// per impulse where it is soft: i_s λ + m_s m_eff (v + bias) = 0.
+template <int W>
+struct BlowRow {
+  WideFloat<W> bias, yield;
+};
+template <int W, bool UseBias, class Block>
+CAROM_SIMD_INLINE BlowRow<W> blow_row(const Block& c, WideFloat<W> s, WideFloat<W> mobility, WideFloat<W> inverse_h,
+                                      WideFloat<W> push_speed) {
+  using F = WideFloat<W>;
+  const F zero = F::splat(0);
+  const auto apart = s > zero;
+  if constexpr (!UseBias) return {keep(apart, s * inverse_h), zero};
+  return {select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed)),
+          select(apart, zero, mobility * F::load(c.impulse_scale) / F::load(c.mass_scale))};
+}
+
+}  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE
