@@ -13,8 +13,7 @@ constexpr float rolling_share = 0.01f;  ///< and where something rolls
 /// what rocks on it is lifted by as much at every new one.
 template <class D>
 float longest_way(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
-  // A corner that was farther off than contacts were looked for (twice the margin) may come down meanwhile.
-  const float most = min(recycle_share * c.inner, D::dimension == 3 ? 1.5f * c.margin() : 1e30f);
+  const float most = recycle_share * c.inner;
   return c.rolls ? min(most, max(rolling_share * c.inner, still_way(world, world.last_dt))) : most;
 }
 
@@ -169,8 +168,6 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
   // What moves fast is looked at again in the next step anyway.
   const float margin = c.margin(), ahead = reach - 2 * margin;
   approach.margin = margin + clamp(margin - ahead, 0.0f, margin);
-  // What is kept while it hardly moves must hold whatever may come down meanwhile.
-  if ((c.flags & contact_touching) != 0) approach.margin = max(approach.margin, longest_way(world, c));
   approach.worth = margin + 3 * ahead;  // two steps
   return approach;
 }

@@ -42,7 +42,7 @@ class Solid final : public Repeatable<Solid, Demo3> {
         {"pieces", "Cells", "", "", "", 5, 150, 1, vase_ ? 70.0 : 60.0, false},
         {"seed", "Seed", "", "", "", 1, 100, 1, 3, false},
         {"height", "Height of fall", "m", "m", "", 0.01, 3, 0.01, vase_ ? 0.9 : 0.3, false},
-        {"tension", "Strength", "Pa", "MPa", "of the bonds in tension", 1e4, 2e7, 0, vase_ ? 6e5 : 1.5e5, false},
+        {"tension", "Strength", "Pa", "MPa", "of the bonds in tension", 1e4, 2e7, 0, vase_ ? 6e5 : 1e5, false},
     };
     if (vase_) {
       d.parameters.push_back({"belly", "Belly", "m", "cm", "widest radius", 0.08, 0.3, 0.01, 0.17, false});
