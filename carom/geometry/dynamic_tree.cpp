@@ -90,7 +90,7 @@ int DynamicTree<V>::subtrees(std::span<std::int32_t> roots, int& levels) const {
     int more = 0;
     for (int i = 0; i < count; ++i) more += nodes_[std::size_t(roots[std::size_t(i)])].child_b >= 0 ? 1 : 0;
     if (more == 0 || count + more > int(roots.size())) return count;
-    std::size_t to = std::size_t(count + more);  // from behind: what is not yet read stays
+    std::size_t to = std::size_t(count) + std::size_t(more);  // from behind: what is not yet read stays
     for (std::size_t i = std::size_t(count); i-- > 0;) {
       const Node& node = nodes_[std::size_t(roots[i])];
       if (node.child_b < 0) {
