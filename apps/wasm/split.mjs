@@ -292,7 +292,7 @@ export async function split(modulePath, files, out) {
     const {demos} = makeHost(module, files), sets = [];
     for (const {id, group, dimension} of demos) {
       const stress = group.startsWith('Stress');
-      sets.push({group, demos: [id], frames: stress ? 24 : 60, patience: 15, threads: 1});
+      sets.push({group, demos: [id], frames: stress ? 24 : 160, patience: 15, threads: 1});
       // What more than one thread calls: the first demo of every kind tells.
       if (!stress && !sets.some((s) => s.group === group && s.dimension === dimension)) sets.push({group, dimension, demos: [id], frames: 20, patience: 15, threads: 2});
     }
