@@ -10,6 +10,22 @@ namespace {
 using namespace carom;
 using namespace carom::particles;
 
+/// From the state.range(1)-th step on; after every `again` of them it starts there anew.
+template <class Matter>
+void time_steps(benchmark::State& state, Matter& matter, int again) {
+  for (int i = 0; i < int(state.range(1)); ++i) matter.step(1.0f / 60).value();
+  const Matter start = matter;
+  int steps = 0;
+  for (auto _ : state) {
+    if (++steps % again == 0) {
+      state.PauseTiming();
+      matter = start;
+      state.ResumeTiming();
+    }
+    matter.step(1.0f / 60).value();
+  }
+}
+
 /// A third of a tank of 2 m × 1 m (× 1 m), full of about `range` particles, after `range(1)` steps.
 template <class D>
 void fluid_step(benchmark::State& state) {
@@ -21,17 +37,7 @@ void fluid_step(benchmark::State& state) {
   const float spacing = D::dimension == 2 ? math::sqrt(float(0.497 / count)) : float(math::pow(0.497 / count, 1.0 / 3));
   auto fluid = Fluid<D>::create({.upper = tank, .spacing = spacing, .max_particles = 1 << 18}).value();
   fluid.add_box({}, column).value();
-  for (int i = 0; i < int(state.range(1)); ++i) fluid.step(1.0f / 60).value();
-  const Fluid<D> start = fluid;
-  int steps = 0;
-  for (auto _ : state) {
-    if (++steps % 30 == 0) {
-      state.PauseTiming();
-      fluid = start;
-      state.ResumeTiming();
-    }
-    fluid.step(1.0f / 60).value();
-  }
+  time_steps(state, fluid, 30);
   state.counters["particles"] = fluid.size();
   state.counters["iterations"] = fluid.statistics().iterations;
 }
@@ -44,17 +50,7 @@ void grain_step(benchmark::State& state) {
                                          : 0.5f * float(math::pow(0.5 / double(state.range(0)), 1.0 / 3));
   auto grains = Granular<D>::create({.radius = radius, .max_grains = 1 << 17}).value();
   grains.add_box({}, column).value();
-  for (int i = 0; i < int(state.range(1)); ++i) grains.step(1.0f / 60).value();
-  const Granular<D> start = grains;
-  int steps = 0;
-  for (auto _ : state) {
-    if (++steps % 20 == 0) {
-      state.PauseTiming();
-      grains = start;
-      state.ResumeTiming();
-    }
-    grains.step(1.0f / 60).value();
-  }
+  time_steps(state, grains, 20);
   state.counters["grains"] = grains.size();
   state.counters["contacts"] = grains.statistics().contacts;
 }
