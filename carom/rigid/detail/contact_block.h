@@ -115,7 +115,8 @@ struct ContactSources {
 struct GatheredLanes {
   std::uint32_t placed =
       0;  ///< a shape stands elsewhere than its body: ContactRaw::shape_a and shape_b are not right yet
-  std::uint32_t pushed = 0;  ///< so deep that it is pushed out with the push speed
+  std::uint32_t pushed = 0;              ///< so deep that it is pushed out with the push speed
+  std::uint32_t anchored = 0, open = 0;  ///< mark_anchored, mark_open
 };
 
 /// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.
@@ -133,9 +134,11 @@ struct ContactKernels {
   GatheredLanes (*gather)(const ContactSources<D>& from, const std::int32_t* list, int lanes, void* block,
                           void* raw) = nullptr;
   /// Rolling resistance and restitution of a prepared block. Bits by lane: may bounce in this step. Not for worlds
-  /// where bodies have clocks of their own, or hits are told.
+  /// where bodies have clocks of their own.
   std::uint32_t (*approach)(const ContactSources<D>& from, const std::int32_t* list, int lanes, const void* block,
                             void* extra) = nullptr;
+  /// Which lanes of a prepared block close at `least` m/s or more. Bits by lane. Null in space.
+  std::uint32_t (*closing)(const ContactSources<D>& from, int lanes, const void* block, float least) = nullptr;
   /// The impulses of a block to the records and to the loads of its bodies. Bits by lane: friction is at its limit.
   std::uint32_t (*store)(const ContactSources<D>& to, const std::int32_t* list, int lanes, const void* block) = nullptr;
   /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back.

@@ -108,6 +108,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   ContactRaw<Dim2, W>& raw = *static_cast<ContactRaw<Dim2, W>*>(out);
   LaneRecords2 lane[W];
   std::int32_t flags[W], anchor[W];
+  std::uint32_t waits = 0;
   float share_a[W], share_b[W];
   alignas(16) float offset[W][4];
   for (int i = 0; i < W; ++i) {
@@ -127,6 +128,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
     offset[i][1] = float(ma.center.y - mb.center.y);
     flags[i] = k.flags;
     anchor[i] = std::int32_t(m.anchor);
+    waits |= std::uint32_t(m.waits) << i;
     const bool both = (k.flags & contact_dynamic) != 0;
     c.read_a[i] = a;
     c.read_b[i] = b;
@@ -160,6 +162,9 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   F::zero().store(c.tangent_total);
   F::zero().store(c.settles);
   GatheredLanes result;
+  const I anchored = I::load(anchor);
+  result.anchored = bitmask(anchored != I::splat(int(Anchor::none)));
+  result.open = waits | bitmask(anchored == I::splat(int(Anchor::settles)));
   result.pushed = gather_points2<W>(from, lane, c, raw, anchor, has(contact_round));
   result.placed = bitmask(!has(contact_at_origin));
   return result;
@@ -179,6 +184,13 @@ CAROM_SIMD_INLINE WideVec2<W> acceleration2(const ContactSources<Dim2>& from, co
   const auto moves = WideInt<W>::load(moved) > WideInt<W>::splat(-1);
   return {keep(moves, F::splat(from.gravity.x) * scale[0] + force[0] * center[2]),
           keep(moves, F::splat(from.gravity.y) * scale[0] + force[1] * center[2])};
+}
+
+/// m/s, of B's point against A's, by the rows of the velocities of their bodies.
+template <int W>
+CAROM_SIMD_INLINE WideVec2<W> velocity_between(const WideFloat<W> (&va)[4], const WideFloat<W> (&vb)[4],
+                                               const WideVec2<W>& ra, const WideVec2<W>& rb) {
+  return {vb[0] - vb[2] * rb.y - va[0] + va[2] * ra.y, vb[1] + vb[2] * rb.x - va[1] - va[2] * ra.x};
 }
 
 template <int W>
@@ -215,8 +227,7 @@ std::uint32_t approach2(const ContactSources<Dim2>& from, const std::int32_t* li
   WideMask<W> bounces = WideMask<W>::none();
   for (int i = 0; i < 2; ++i) {
     const WideVec2<W> ra = load2<W>(c.point[i].r_a), rb = add(ra, offset);
-    const WideVec2<W> v = {vb[0] - vb[2] * rb.y - va[0] + va[2] * ra.y, vb[1] + vb[2] * rb.x - va[1] - va[2] * ra.x};
-    const F vn = dot(n, v);
+    const F vn = dot(n, velocity_between<W>(va, vb, ra, rb));
     // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
     const F impact = sqrt(vn * vn + F::splat(2) * closing * max(F::load(c.point[i].separation), zero));
     const auto strikes =
@@ -225,6 +236,23 @@ std::uint32_t approach2(const ContactSources<Dim2>& from, const std::int32_t* li
     bounces = bounces | strikes;
   }
   return bitmask(bounces);
+}
+
+template <int W>
+std::uint32_t closing2(const ContactSources<Dim2>& from, int lanes, const void* block, float least) {
+  using F = WideFloat<W>;
+  const ContactBlock<Dim2, W>& c = *static_cast<const ContactBlock<Dim2, W>*>(block);
+  const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
+  F va[4], vb[4];
+  gather<W>(from.bodies, c.read_a, 0, va);
+  gather<W>(from.bodies, c.read_b, 0, vb);
+  WideMask<W> fast = WideMask<W>::none();
+  for (int i = 0; i < 2; ++i) {
+    const WideVec2<W> ra = load2<W>(c.point[i].r_a), rb = add(ra, offset);
+    const F vn = dot(n, velocity_between<W>(va, vb, ra, rb));
+    fast = fast | ((F::load(c.point[i].normal_mass) > F::zero()) & (F::zero() - vn >= F::splat(least)));
+  }
+  return bitmask(fast) & ((1u << lanes) - 1);
 }
 
 /// Adds the load of each lane to its bodies. Bodies of a colour's contacts differ, and those of the overflow come one

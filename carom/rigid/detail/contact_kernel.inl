@@ -130,6 +130,7 @@ ContactKernels<Dim2> kernels2() {
   k.gather = gather2<W>;
   k.prepare = prepare2<W>;
   k.approach = approach2<W>;
+  k.closing = closing2<W>;
   k.store = store2<W>;
   k.warm_start = warm_start2<W>;
   k.solve = solve2<W>;

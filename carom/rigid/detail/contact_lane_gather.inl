@@ -169,7 +169,9 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
     const WorldImplementation<D>& world = context.world;
     const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
     for (int lane = 0; lane < lanes; ++lane) {
-      marks[lane] = (found.pushed >> lane & 1u) != 0 ? mark_pushed : 0;
+      marks[lane] = std::uint8_t(((found.pushed >> lane & 1u) != 0 ? mark_pushed : 0) |
+                                 ((found.anchored >> lane & 1u) != 0 ? mark_anchored : 0) |
+                                 ((found.open >> lane & 1u) != 0 ? mark_open : 0));
       if ((found.placed >> lane & 1u) == 0) continue;
       const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);
       put_shape<D, W>(world, c.shape[0], world.bodies.motion[std::size_t(c.body[0])].local_center, false, raw.shape_a,

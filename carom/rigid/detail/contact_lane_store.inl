@@ -96,14 +96,16 @@ void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources
   for (int lane = 0; lane < lanes; ++lane) {
     ManifoldRecord<Dim2>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
     if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
+    const bool limit = (at_limit >> lane & 1u) != 0, anew = (marks[lane] & mark_anew) != 0;
+    const bool open = (marks[lane] & mark_open) != 0, anchored = (marks[lane] & mark_anchored) != 0;
+    if (!anew && !open && !(limit && anchored)) continue;  // most keep theirs: the front of the record is let be
     const float load = block.point[0].impulse[lane] + block.point[1].impulse[lane];
-    const bool anew = (marks[lane] & mark_anew) != 0;
     if (anew && !(load > 0)) continue;
     if (anew) {
       m.anchor = Anchor::settles;
       put_anchor(context, m, block, lane, Vec2f{});
     } else if (m.anchor != Anchor::none) {
-      let_go(context, m, block, lane, load, (at_limit >> lane & 1u) != 0);
+      let_go(context, m, block, lane, load, limit);
     }
     if (m.waits && load > 0) stop_watching(context.world, m.contact);
   }

@@ -35,8 +35,11 @@ bool pressed(const ManifoldRecord<D>& m) {
 
 template <class D>
 bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
-  for (std::int32_t m = c.first_manifold; m != none; m = store.manifold(m).next)
+  int left = c.manifold_count;  // the links lie farther back than what a step reads
+  for (std::int32_t m = c.first_manifold; left > 0; m = store.manifold(m).next) {
     if (pressed(store.manifold(m))) return true;
+    if (--left == 0) break;
+  }
   return false;
 }
 

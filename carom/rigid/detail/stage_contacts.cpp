@@ -99,8 +99,8 @@ void prepare_blocks(StepContext<D>& context) {
     blocks.marks = context.arena.template allocate_zeroed<std::uint8_t>((c.manifolds.size() + 7) / 8 * 8).data();
   }
   const ContactSources<D> sources = sources_of(context);
-  const bool any_special = !world.shapes.extras.empty() || world.hit_event_shapes > 0;
-  // Where nothing rare is asked for, lanes find by themselves how their contacts roll and bounce.
+  const bool any_special = !world.shapes.extras.empty(), any_hits = world.hit_event_shapes > 0;
+  // Where nothing rare is asked for, lanes find by themselves how their contacts roll and bounce, and who may hit.
   const bool by_kernel = world.kernels.approach != nullptr && !any_special && world.bodies.time_scale.empty();
   const bool may_wait = D::dimension == 2 && !any_special;
   for_blocks<D, W>(
@@ -108,18 +108,30 @@ void prepare_blocks(StepContext<D>& context) {
       [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
           ContactExtra<D, W>* extra, std::uint8_t* marks) {
         ContactRaw<D, W> raw;
-        const bool approaches = extra != nullptr || world.hit_event_shapes > 0;
+        const bool approaches = extra != nullptr || any_hits;
         const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
         for (int lane = 0; lane < lanes; ++lane)
           prefetch_manifold(sources, world.shapes.record.data(), manifolds, first + std::size_t(lane), approaches);
         gather_block(context, sources, list, block, raw, extra, marks);
         for (int lane = 0; lane < lanes; ++lane)
-          if (marks[lane] != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane])) marks[lane] = 0;
+          if ((marks[lane] & mark_pushed) != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane]))
+            marks[lane] &= std::uint8_t(~mark_pushed);
         world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
         for (int lane = 0; lane < lanes; ++lane)
-          if (raw.anchor_state[lane] > 0 && !set_anchor(context, list[std::size_t(lane)], block, lane, may_wait))
-            marks[lane] |= mark_anew;
+          if (raw.anchor_state[lane] > 0) {
+            const bool set = set_anchor(context, list[std::size_t(lane)], block, lane, may_wait);
+            marks[lane] |= set ? mark_anchored | mark_open : mark_anew;
+          }
         if (by_kernel) {
+          if (any_hits) {
+            const float least = world.definition.restitution_threshold;
+            std::uint32_t hits = world.kernels.closing(sources, lanes, &block, least);
+            for (; hits != 0; hits &= hits - 1) {
+              const int lane = std::countr_zero(hits);
+              marks[lane] |= find_approach<D, W>(context, list[std::size_t(lane)], block, nullptr, lane);
+              prepare_special<D, W>(context, list[std::size_t(lane)], block, nullptr, lane);
+            }
+          }
           if (extra == nullptr) return;
           std::uint32_t bounces = world.kernels.approach(sources, list.data(), lanes, &block, extra);
           for (; bounces != 0; bounces &= bounces - 1)
@@ -130,7 +142,7 @@ void prepare_blocks(StepContext<D>& context) {
           const std::int32_t m = list[std::size_t(lane)];
           if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
           if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
-          if (any_special) prepare_special(context, m, block, extra, lane);
+          if (any_special || any_hits) prepare_special(context, m, block, extra, lane);
           if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
         }
       });
@@ -194,7 +206,8 @@ void store_blocks(StepContext<D>& context) {
                        const std::size_t i = first + std::size_t(lane);
                        if (i + 12 < manifolds.size()) {
                          const char* record = reinterpret_cast<const char*>(sources.manifolds + manifolds[i + 12]);
-                         for (std::size_t k = 0; k < ManifoldRecord<D>::hot_bytes; k += 64)
+                         // In the plane the impulses lie in the second line alone.
+                         for (std::size_t k = D::dimension == 2 ? 64 : 0; k < ManifoldRecord<D>::hot_bytes; k += 64)
                            __builtin_prefetch(record + k, 1);
                        }
                      }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
@@ -234,11 +235,12 @@ void gather_hit_events(StepContext<D>& context) {
     const ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(hit)]);
     ContactHitEvent<D> event{};
     for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
-      const ManifoldRecord<D>& record = world.contacts.manifold(m);
+      ManifoldRecord<D>& record = world.contacts.manifold(m);
+      const float approach_speed = std::exchange(record.approach_speed, 0.0f);  // not every step finds it anew
       float impulse = 0;
       for (int i = 0; i < record.manifold.count; ++i) impulse += record.impulses.total[i];
-      if (record.approach_speed < bounce_threshold(world, c.body[0], c.body[1]) || impulse <= 0) continue;
-      if (record.approach_speed > event.approach_speed) {
+      if (approach_speed < bounce_threshold(world, c.body[0], c.body[1]) || impulse <= 0) continue;
+      if (approach_speed > event.approach_speed) {
         typename D::Position points[D::max_points];
         float separations[D::max_points];
         contact_points_now(world, record, points, separations, event.normal);
@@ -246,7 +248,7 @@ void gather_hit_events(StepContext<D>& context) {
         for (int i = 1; i < record.manifold.count; ++i)
           if (record.impulses.total[i] > record.impulses.total[strongest]) strongest = i;
         event.point = points[strongest];
-        event.approach_speed = record.approach_speed;
+        event.approach_speed = approach_speed;
         event.slip_speed = record.slip_speed;
         event.material_a = material_at(world, c.shape[0], record.manifold.material).user_id;
         event.material_b = material_at(world, c.shape[1], record.manifold.material).user_id;

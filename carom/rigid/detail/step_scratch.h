@@ -27,11 +27,13 @@ struct FoundPair {
 };
 
 enum ContactMark : std::uint8_t {
-  mark_bounces = 1,  ///< may bounce in this step
-  mark_pushed = 2,   ///< so deep that it is pushed out with the push speed
-  mark_settles = 4,  ///< that, or beside it: a body of both is the same
-  mark_hits = 8,     ///< closes so fast that a hit may have to be told
-  mark_anew = 16,    ///< takes an anchor once it bears a load
+  mark_bounces = 1,    ///< may bounce in this step
+  mark_pushed = 2,     ///< so deep that it is pushed out with the push speed
+  mark_settles = 4,    ///< that, or beside it: a body of both is the same
+  mark_hits = 8,       ///< closes so fast that a hit may have to be told
+  mark_anew = 16,      ///< takes an anchor once it bears a load
+  mark_anchored = 32,  ///< has one
+  mark_open = 64,      ///< that settles, or is watched until it bears a load: asked again once it is solved
 };
 /// Where a colour's contacts are in the arena of the step.
 struct ColorBlocks {
