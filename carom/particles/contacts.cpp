@@ -188,23 +188,26 @@ void ContactSolver::add_surface(int index, int surface, float gap, Vec3f normal,
                        .approach = math::dot(toward, u - g.v)});
 }
 
-float ContactSolver::gap_of(const Contact& c, float t, Vec3f& normal) const {
-  const Grain& a = grains_[std::size_t(c.a)];
-  if (c.b < 0) {
-    normal = c.normal;
-    return c.offset - math::dot(c.normal, a.x - t * c.u);
+/// Normals and gaps where the grains are at time t of the step.
+void ContactSolver::measure(float t) {
+  for (Contact& c : contacts_) {
+    const Grain& a = grains_[std::size_t(c.a)];
+    if (c.b < 0) {
+      c.gap = c.offset - math::dot(c.normal, a.x - t * c.u);
+      continue;
+    }
+    const Grain& b = grains_[std::size_t(c.b)];
+    const Vec3f d = b.x - a.x;
+    const float distance = math::sqrt(math::dot(d, d));
+    if (distance > 0) c.normal = d / distance;
+    c.gap = distance - (a.radius + b.radius);
   }
-  const Grain& b = grains_[std::size_t(c.b)];
-  const Vec3f d = b.x - a.x;
-  const float distance = math::sqrt(math::dot(d, d));
-  normal = distance > 0 ? d / distance : c.normal;
-  return distance - (a.radius + b.radius);
 }
 
-void ContactSolver::solve_contact(std::size_t i, float h, float t, bool push_out) {
+void ContactSolver::solve_contact(std::size_t i, float h, bool push_out) {
   Contact& c = contacts_[i];
-  Vec3f n{};
-  const float gap = gap_of(c, t, n);
+  const Vec3f n = c.normal;
+  const float gap = c.gap;
   const Grain& a = grains_[std::size_t(c.a)];
   const Grain* const b = c.b >= 0 ? &grains_[std::size_t(c.b)] : nullptr;
   const Vec3f apart = (b != nullptr ? b->v : c.u) - a.v;
@@ -240,12 +243,12 @@ void ContactSolver::solve_contact(std::size_t i, float h, float t, bool push_out
     c.grip = {};
     c.roll = {};
   }
-  give(c, n, (c.push - before) * n, c.grip - grip_before, c.roll - roll_before, i);
+  give(c, (c.push - before) * n, c.grip - grip_before, c.roll - roll_before, i);
 }
 
-void ContactSolver::give(const Contact& c, Vec3f n, Vec3f push, Vec3f grip, Vec3f roll, std::size_t i) {
+void ContactSolver::give(const Contact& c, Vec3f push, Vec3f grip, Vec3f roll, std::size_t i) {
   Grain& a = grains_[std::size_t(c.a)];
-  const Vec3f impulse = push + grip, about = math::cross(n, grip);
+  const Vec3f impulse = push + grip, about = math::cross(c.normal, grip);
   a.v -= a.inverse_mass * impulse;
   a.w -= a.inverse_inertia * (a.radius * about + roll);
   if (c.b < 0) {
@@ -257,13 +260,13 @@ void ContactSolver::give(const Contact& c, Vec3f n, Vec3f push, Vec3f grip, Vec3
   b.w -= b.inverse_inertia * (b.radius * about - roll);
 }
 
-void ContactSolver::solve_up(float h, float t, bool push_out) {
-  for (std::size_t i = pairs_; i < contacts_.size(); ++i) solve_contact(i, h, t, push_out);
-  for (std::size_t i = 0; i < pairs_; ++i) solve_contact(i, h, t, push_out);
+void ContactSolver::solve_up(float h, bool push_out) {
+  for (std::size_t i = pairs_; i < contacts_.size(); ++i) solve_contact(i, h, push_out);
+  for (std::size_t i = 0; i < pairs_; ++i) solve_contact(i, h, push_out);
 }
-void ContactSolver::solve_down(float h, float t, bool push_out) {
-  for (std::size_t i = pairs_; i-- > 0;) solve_contact(i, h, t, push_out);
-  for (std::size_t i = pairs_; i < contacts_.size(); ++i) solve_contact(i, h, t, push_out);
+void ContactSolver::solve_down(float h, bool push_out) {
+  for (std::size_t i = pairs_; i-- > 0;) solve_contact(i, h, push_out);
+  for (std::size_t i = pairs_; i < contacts_.size(); ++i) solve_contact(i, h, push_out);
 }
 
 void ContactSolver::restitute() {
@@ -272,8 +275,7 @@ void ContactSolver::restitute() {
     if (!(c.most > 0) || c.approach > -bouncing || c.restitution == 0) continue;
     Grain& a = grains_[std::size_t(c.a)];
     Grain* const b = c.b >= 0 ? &grains_[std::size_t(c.b)] : nullptr;
-    Vec3f n{};
-    gap_of(c, 0, n);
+    const Vec3f n = c.normal;
     const float along = math::dot(n, (b != nullptr ? b->v : c.u) - a.v);
     const float before = c.push;
     c.push = math::max(c.push - (along + c.restitution * c.approach) * c.inverse, 0.0f);
@@ -296,24 +298,24 @@ void ContactSolver::solve(const ContactDef& definition, std::span<const Vec3f> g
   soft_ = {turn / (h * a1), a2 / (1 + a2), 1 / (1 + a2)};
   rolling_ = definition.rolling;
   float t = 0;
+  measure(t);
   for (int sub = 0; sub < definition.substeps; ++sub) {
     for (std::size_t s = 0; s < grains_.size(); ++s) grains_[s].v += part * gained[std::size_t(index_of_slot_[s])];
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       Contact& c = contacts_[i];
       if (!(c.push > 0)) continue;
-      Vec3f n{};
-      gap_of(c, t, n);
-      c.grip -= math::dot(c.grip, n) * n;
-      give(c, n, c.push * n, c.grip, c.roll, i);
+      c.grip -= math::dot(c.grip, c.normal) * c.normal;
+      give(c, c.push * c.normal, c.grip, c.roll, i);
     }
     for (int k = 0; k < definition.iterations; ++k) {
-      solve_down(h, t, true);
-      solve_up(h, t, true);
+      solve_down(h, true);
+      solve_up(h, true);
     }
     for (Grain& g : grains_) g.x += h * g.v;
     t += h;
-    solve_down(h, t, false);
-    solve_up(h, t, false);
+    measure(t);
+    solve_down(h, false);
+    solve_up(h, false);
   }
   restitute();
 }
@@ -382,10 +384,8 @@ double ContactSolver::worst_overlap() const {
   double worst = 0;
   for (const Contact& c : contacts_) {
     if (c.b < 0) continue;
-    Vec3f n{};
-    const float gap = gap_of(c, 0, n);
     const float radius = math::min(grains_[std::size_t(c.a)].radius, grains_[std::size_t(c.b)].radius);
-    worst = math::max(worst, double(-gap / radius));
+    worst = math::max(worst, double(-c.gap / radius));
   }
   return worst;
 }

@@ -34,7 +34,7 @@ class ContactSolver {
   };
   struct Contact {
     std::int32_t a, b;   ///< slots; b < 0: surface −1 − b
-    math::Vec3f normal;  ///< from a to b; of a surface: toward it
+    math::Vec3f normal;  ///< from a to b, where they are; of a surface: toward it
     float offset;        ///< surface: the gap is this − normal · (x − u t)
     math::Vec3f u;       ///< m/s, of the surface
     math::Vec3f turn;    ///< rad/s, of the surface
@@ -43,6 +43,7 @@ class ContactSolver {
     float push = 0, most = 0;  ///< N·s: of this substep, and the greatest of the step
     math::Vec3f grip{};        ///< N·s, on b
     math::Vec3f roll{};        ///< N·m·s, on b
+    float gap = 0;             ///< m, where they are
   };
   struct Pile {
     std::span<const float> x[3], v[3], w[3], scale;
@@ -80,11 +81,11 @@ class ContactSolver {
   void sort_into_cells(const Pile& pile);
   void find_pairs(const Pile& pile, const ContactDef& definition);
   void recall();
-  float gap_of(const Contact& c, float t, math::Vec3f& normal) const;
-  void give(const Contact& c, math::Vec3f n, math::Vec3f push, math::Vec3f grip, math::Vec3f roll, std::size_t i);
-  void solve_contact(std::size_t i, float h, float t, bool push_out);
-  void solve_up(float h, float t, bool push_out);
-  void solve_down(float h, float t, bool push_out);
+  void measure(float t);
+  void give(const Contact& c, math::Vec3f push, math::Vec3f grip, math::Vec3f roll, std::size_t i);
+  void solve_contact(std::size_t i, float h, bool push_out);
+  void solve_up(float h, bool push_out);
+  void solve_down(float h, bool push_out);
   void restitute();
 
   std::vector<Grain> grains_;

@@ -33,6 +33,10 @@ struct alignas(64) GrainBlock : GrainCurves<N> {
   float push[grain_lanes] = {};                            ///< N·s along the normal, ≥ 0
   float grip[turns][grain_lanes] = {};  ///< N·s on b across it; in the plane along the normal turned left
   float roll[turns][grain_lanes] = {};  ///< N·m·s on b
+  // Of a pair, as long as it is watched.
+  float ease[grain_lanes] = {};      ///< kg, that resist a push
+  float give_way[grain_lanes] = {};  ///< kg·m, that resist rolling, times `turning` over 1/r_a + 1/r_b
+  float lever[grain_lanes] = {};     ///< m, half of what rolling friction goes with
 };
 
 struct GrainPass {
@@ -61,15 +65,16 @@ struct GrainKernels {
   /// Neighbours nearer than the sum of radii and `reach`: their numbers go to found[at …], for each grain where they
   /// begin to first[grain]. Returns where they end.
   int (*find)(const GrainColumns<N>& grains, const GrainRuns& runs, float reach, int* first, int* found, int at);
-  /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1.
-  void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale);
+  /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1. And
+  /// what their masses and radii come to.
+  void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale, float* motion);
   void (*keep)(const Block* blocks, int first, int last, const int* pair, float* held);
-  /// Normals and gaps where the grains are; and the impulses that the contacts hold are given.
-  void (*press)(Block* blocks, int first, int last, float* place, float* motion);
+  /// Takes a part of overlaps out of the places alone, so that no speed comes of them; normals and gaps there; and
+  /// gives the impulses that the contacts hold.
+  void (*press)(Block* blocks, int first, int last, float* place, float* motion, const GrainPass& pass);
   void (*sweep)(Block* blocks, int first, int last, bool back, float* motion, const GrainPass& pass);
-  void (*separate)(const Block* blocks, int first, int last, float* place, const GrainPass& pass);
   /// The same with a surface, its normals and gaps being given.
-  void (*press_surface)(Block* blocks, int first, int last, float* place, float* motion);
+  void (*press_surface)(Block* blocks, int first, int last, float* place, float* motion, const GrainPass& pass);
   void (*sweep_surface)(Block* blocks, int first, int last, bool back, float* motion, const GrainPass& pass);
   float (*deepest)(const Block* blocks, int first, int last, float* place);  ///< m, overlap, ≥ 0
 };

@@ -59,7 +59,7 @@ Status check_granular(const GranularDef<D>& d) {
     if (!(d.upper[a] - d.lower[a] >= 2 * double(d.radius)))
       return core::Error{core::text("Granular::create: upper is ", d.upper[a] - d.lower[a],
                                     " m above lower in component ", a, ", expected two radii or more")};
-    cells *= (d.upper[a] - d.lower[a]) / (3 * double(d.radius)) + 1;
+    cells *= (d.upper[a] - d.lower[a]) / (double(detail::GranularState<D>::cell_radii) * double(d.radius)) + 1;
   }
   if (!(cells <= double(1 << 24)))
     return core::Error{
@@ -69,7 +69,7 @@ Status check_granular(const GranularDef<D>& d) {
 
 template <class D>
 void GranularState<D>::make_grid() {
-  inverse_cell = 1 / (3 * definition.radius);
+  inverse_cell = 1 / (cell_radii * definition.radius);
   for (int a = 0; a < N; ++a) {
     extent[a] = float(definition.upper[a] - definition.lower[a]);
     cells[a] = math::max(1, int(extent[a] * inverse_cell) + 1);
@@ -79,6 +79,7 @@ void GranularState<D>::make_grid() {
   slabs = (across + slab_cells - 1) / slab_cells;
   size = slabs * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
   cell_start.assign(std::size_t(size) + 1, 0);
+  haste.assign(std::size_t(size), {});
 }
 
 template <class D>

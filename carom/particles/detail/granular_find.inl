@@ -9,8 +9,8 @@
 
 namespace carom::particles::detail {
 
-/// Cells are as wide as three of the largest radii. In memory they lie slab by slab (slabs stand side by side: so many
-/// cells across, and what one thread solves), in a slab layer by layer upward, in a layer row by row.
+/// In memory cells lie slab by slab (slabs stand side by side: so many cells across, and what one thread solves), in a
+/// slab layer by layer upward, in a layer row by row.
 template <class D>
 int GranularState<D>::cell_at(int x, int y, int z) const {
   if constexpr (N == 2)
@@ -25,6 +25,7 @@ void GranularState<D>::sort() {
   const int count = int(grains.size());
   cell_of.resize(count);
   std::fill(cell_start.begin(), cell_start.end(), 0);
+  std::fill(haste.begin(), haste.end(), Haste<D>{});
   for (int i = 0; i < count; ++i) {
     int at[3] = {};
     bool inside = true;
@@ -34,7 +35,11 @@ void GranularState<D>::sort() {
       at[b] = inside ? int(x) : 0;
     }
     cell_of[i] = inside ? cell_at(at[0], at[1], at[2]) : -1;
-    if (inside) ++cell_start[cell_of[i] + 1];
+    if (!inside) continue;
+    ++cell_start[cell_of[i] + 1];
+    Haste<D>& h = haste[cell_of[i]];
+    h.least = min(h.least, grains[i].v);
+    h.most = max(h.most, grains[i].v);
   }
   for (int c = 0; c < size; ++c) cell_start[c + 1] += cell_start[c];
   sorted.resize(cell_start[size]);
@@ -55,12 +60,27 @@ void GranularState<D>::sort() {
   }
 }
 
+/// m/s, how fast grains near a cell may close, by axis: what moves there does it with what it has, or is stopped.
+template <class D>
+typename D::Vector GranularState<D>::fastest_near(int x, int y, int z) const {
+  Haste<D> all;
+  for (int k = math::max(z - 1, 0); k <= math::min(z + 1, cells[2] - 1); ++k)
+    for (int j = math::max(y - 1, 0); j <= math::min(y + 1, cells[1] - 1); ++j)
+      for (int i = math::max(x - 1, 0); i <= math::min(x + 1, cells[0] - 1); ++i) {
+        const Haste<D>& h = haste[cell_at(i, j, k)];
+        all.least = min(all.least, h.least);
+        all.most = max(all.most, h.most);
+      }
+  return all.most - all.least;
+}
+
 /// Lists the neighbours of a cell's grains, each pair once: those that come later along x, up or across to the next
 /// slab, so that a slab's pairs have grains of this slab and the next alone.
 template <class D>
-void GranularState<D>::find_neighbours(int x, int y, int z, float reach) {
+void GranularState<D>::find_neighbours(int x, int y, int z, float dt, float slack) {
   const int c = cell_at(x, y, z), begin = cell_start[c], end = cell_start[c + 1];
   if (begin == end) return;
+  const float reach = math::min(dt * length(fastest_near(x, y, z)) + slack, (cell_radii - 2) * definition.radius);
   GrainRuns runs;
   runs.begin = begin;
   runs.end = end;
@@ -96,14 +116,14 @@ void GranularState<D>::find_neighbours(int x, int y, int z, float reach) {
 template <class D>
 int GranularState<D>::place_pair(int a, int b, int first, int none) {
   int block = math::max(first, math::max(last_block[a], last_block[b]) + 1);
-  while (block < int(blocks.size()) && open_block[block] != block) {
+  while (block < block_count && open_block[block] != block) {
     const int next = open_block[block];
-    if (next < int(blocks.size())) open_block[block] = open_block[next];
+    if (next < block_count) open_block[block] = open_block[next];
     block = next;
   }
-  if (block >= int(blocks.size())) {
-    block = int(blocks.size());
-    blocks.emplace_back();
+  if (block >= block_count) {
+    block = block_count++;
+    if (block == int(blocks.size())) blocks.emplace_back();
     open_block.push_back(block);
     filled.push_back(0);
     pair_of.resize(pair_of.size() + grain_lanes, -1);
@@ -158,14 +178,13 @@ void GranularState<D>::place_pairs(int grain, int first, int none) {
   }
 }
 
-/// `scale`: of the impulses of the last substep, for those of the next.
 template <class D>
-void GranularState<D>::find_pairs(float dt, float scale) {
+void GranularState<D>::find_pairs(float dt) {
   const int count = int(grains.size());
   old_pairs.swap(pairs);
   old_first_pair.swap(first_pair);
   pair_count = 0;
-  blocks.clear();
+  block_count = 0;
   pair_of.clear();
   was.clear();
   open_block.clear();
@@ -173,25 +192,25 @@ void GranularState<D>::find_pairs(float dt, float scale) {
   slab_start.clear();
   first_pair.resize(std::size_t(count) + 1);
   last_block.assign(std::size_t(count), -1);
-  // Pairs that may meet before the next search: what pulls one of the two pulls the other alike unless it is borne. The
-  // cells are that much wider than two grains.
-  const float reach = math::min(closing_speed * dt + 0.02f * definition.radius, definition.radius);
+  // Pairs that may meet before the next search: what pulls one of the two pulls the other alike unless it is borne, and
+  // it then falls by half of g dt², in parts a little more.
+  const float slack = 0.55f * length(definition.gravity) * dt * dt + 0.02f * definition.radius;
   const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
   for (int slab = 0; slab < slabs; ++slab) {
-    const int first = int(blocks.size()), low = slab * slab_cells, high = math::min(low + slab_cells, across);
+    const int first = block_count, low = slab * slab_cells, high = math::min(low + slab_cells, across);
     slab_start.push_back(first);
     for (int y = 0; y < cells[1]; ++y)
       for (int k = low; k < high; ++k)
-        for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, reach);
+        for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, dt, slack);
     const int slab_size = size / slabs, end = cell_start[(slab + 1) * slab_size];
     first_pair[end] = pair_count;
     for (int i = cell_start[slab * slab_size]; i < end; ++i) place_pairs(i, first, count + slab);
   }
-  slab_start.push_back(int(blocks.size()));
-  kernels->recall(blocks.data(), 0, int(blocks.size()), was.data(), held.data(), scale);
+  slab_start.push_back(block_count);
 }
 
-/// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.
+/// Surface (`scale`: of the impulses of the last substep, for those of the next): a side of the domain, or 2 N + the
+/// index of a solid. Each has blocks of its own: a grain is in one once.
 template <class D>
 void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float scale) {
   const GrainTouch* old = nullptr;

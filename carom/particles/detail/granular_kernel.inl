@@ -74,6 +74,10 @@ CAROM_SIMD_INLINE Lanes<K> limited(const Lanes<K>& v, F limit) {
   return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * v;
 }
 
+CAROM_SIMD_INLINE Lanes<1> limited(const Lanes<1>& v, F limit) {
+  return {{math::min(math::max(v.k[0], splat(0) - limit), limit)}};
+}
+
 /// Where the grains' records begin, of Size floats each.
 template <int Size>
 struct Records {
@@ -160,7 +164,7 @@ int find(const GrainColumns<N>& grains, const GrainRuns& runs, float reach, int*
 }
 
 template <int N>
-void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const float* held, float scale) {
+void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const float* held, float scale, float* motion) {
   constexpr int K = GrainBlock<N>::turns;
   static const float nothing[grain_held<N>] = {};
   for (int i = first; i < last; ++i)
@@ -178,6 +182,14 @@ void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const fl
         ((N == 2 ? splat(scale) : side) * row[1 + k]).store(blocks[i].grip[k] + lane);
         (side * row[1 + K + k]).store(blocks[i].roll[k] + lane);
       }
+      Side<N> a, b;
+      a.read({motion, blocks[i].a + lane}, blocks[i], 0, lane);
+      b.read({motion, blocks[i].b + lane}, blocks[i], 1, lane);
+      const F curves = a.curve + b.curve;
+      const F lightness = a.inverse_mass * (a.curve * a.curve) + b.inverse_mass * (b.curve * b.curve);
+      (splat(1) / (a.inverse_mass + b.inverse_mass)).store(blocks[i].ease + lane);
+      (splat(1 / turning<N>) / lightness).store(blocks[i].give_way + lane);
+      (splat(1) / curves).store(blocks[i].lever + lane);
     }
 }
 
@@ -198,10 +210,11 @@ void keep(const GrainBlock<N>* blocks, int first, int last, const int* pair, flo
 }
 
 template <int N>
-CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place) {
+CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place, const GrainPass& pass) {
   F a[grain_place], b[grain_place];
-  math::gather_records<width>(Records<grain_place>(place, c.a + lane).row, a);
-  math::gather_records<width>(Records<grain_place>(place, c.b + lane).row, b);
+  const Records<grain_place> ra(place, c.a + lane), rb(place, c.b + lane);
+  math::gather_records<width>(ra.row, a);
+  math::gather_records<width>(rb.row, b);
   Lanes<N> d;
   for (int i = 0; i < N; ++i) d.k[i] = b[i] - a[i];
   const F distance = math::sqrt(dot(d, d));
@@ -209,15 +222,30 @@ CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place) {
   const F over = splat(1) / math::select(apart, distance, splat(1));
   for (int i = 0; i < N; ++i) d.k[i] = math::select(apart, over * d.k[i], splat(i == 1 ? 1 : 0));
   store(d, c.normal, lane);
-  (distance - a[3] - b[3]).store(c.gap + lane);
+  F gap = distance - a[3] - b[3];
+  const F deep = splat(-pass.slop) - gap;
+  if (math::any(deep > F::zero())) {
+    const F out = splat(pass.part) * math::max(deep, F::zero());
+    // Masses of one density go with r² and r³; a grain that is none has no radius.
+    const F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
+    const F masses = ma + mb, each = out / math::select(masses > F::zero(), masses, splat(1));
+    for (int k = 0; k < N; ++k) {
+      a[k] = a[k] - (mb * each) * d.k[k];
+      b[k] = b[k] + (ma * each) * d.k[k];
+    }
+    gap = gap + out;
+    math::scatter_records<width>(ra.row, a);
+    math::scatter_records<width>(rb.row, b);
+  }
+  gap.store(c.gap + lane);
 }
 
 template <int N, bool pair>
-void press(GrainBlock<N>* blocks, int first, int last, float* place, float* motion) {
+void press(GrainBlock<N>* blocks, int first, int last, float* place, float* motion, const GrainPass& pass) {
   for (int i = first; i < last; ++i) {
     GrainBlock<N>& c = blocks[i];
     for (int lane = 0; lane < grain_lanes; lane += width) {
-      if constexpr (pair) measure_lanes(c, lane, place);
+      if constexpr (pair) measure_lanes(c, lane, place, pass);
       const F push = F::load(c.push + lane);
       if (math::none(push > F::zero())) continue;
       const auto n = load(c.normal, lane);
@@ -236,6 +264,7 @@ void press(GrainBlock<N>* blocks, int first, int last, float* place, float* moti
     }
   }
   static_cast<void>(place);
+  static_cast<void>(pass);
 }
 
 template <int N, bool pair>
@@ -245,7 +274,7 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
   a.read(ra, c, 0, lane);
   if constexpr (pair) b.read(rb, c, 1, lane);
   const auto n = load(c.normal, lane);
-  const F masses = pair ? a.inverse_mass + b.inverse_mass : a.inverse_mass, easy = splat(1) / masses;
+  const F easy = pair ? F::load(c.ease + lane) : splat(1) / a.inverse_mass;
   const F before = F::load(c.push + lane);
   const F bias = math::max(F::load(c.gap + lane), F::zero()) * splat(pass.inverse_h);
   auto across = splat(-1) * a.v;
@@ -266,15 +295,11 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
   Lanes<GrainBlock<N>::turns> more_roll{};
   if (pass.rolling > 0) {
     auto rolling = a.curve * a.u;
-    F lightness = a.inverse_mass * (a.curve * a.curve), curves = a.curve + a.curve;
-    if constexpr (pair) {
-      rolling = rolling - b.curve * b.u;
-      lightness = lightness + b.inverse_mass * (b.curve * b.curve);
-      curves = a.curve + b.curve;
-    }
-    const F over = splat(1) / (lightness * curves);
-    const auto rolled = limited(roll + (splat(1 / turning<N>) * (curves * over)) * rolling,
-                                splat(2 * pass.rolling) * push * (lightness * over));
+    if constexpr (pair) rolling = rolling - b.curve * b.u;
+    const F lever = pair ? F::load(c.lever + lane) : splat(0.5f) / a.curve;
+    const F inertia =
+        pair ? F::load(c.give_way + lane) : splat(1 / turning<N>) / (a.inverse_mass * (a.curve * a.curve));
+    const auto rolled = limited(roll + inertia * rolling, splat(2 * pass.rolling) * push * lever);
     store(rolled, c.roll, lane);
     more_roll = rolled - roll;
   }
@@ -288,33 +313,6 @@ void sweep(GrainBlock<N>* blocks, int first, int last, bool back, float* motion,
   for (int i = 0; i < last - first; ++i)
     for (int lane = 0; lane < grain_lanes; lane += width)
       sweep_lanes<N, pair>(blocks[back ? last - 1 - i : first + i], lane, motion, pass);
-}
-
-template <int N>
-void separate(const GrainBlock<N>* blocks, int first, int last, float* place, const GrainPass& pass) {
-  for (int i = first; i < last; ++i)
-    for (int lane = 0; lane < grain_lanes; lane += width) {
-      const Records<grain_place> ra(place, blocks[i].a + lane), rb(place, blocks[i].b + lane);
-      F a[grain_place], b[grain_place];
-      math::gather_records<width>(ra.row, a);
-      math::gather_records<width>(rb.row, b);
-      Lanes<N> d;
-      for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
-      const F square = dot(d, d), touch = a[3] + b[3] - splat(pass.slop);
-      const M deep = (square < touch * touch) & (square > F::zero());
-      if (math::none(deep)) continue;
-      // Masses of one density go with r² and r³.
-      const F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
-      const F distance = math::select(deep, math::sqrt(square), splat(1));
-      const F masses = math::select(deep, ma + mb, splat(1));
-      const auto way = math::keep(deep, splat(pass.part) * (touch - distance) / (distance * masses)) * d;
-      for (int k = 0; k < N; ++k) {
-        a[k] = a[k] - mb * way.k[k];
-        b[k] = b[k] + ma * way.k[k];
-      }
-      math::scatter_records<width>(ra.row, a);
-      math::scatter_records<width>(rb.row, b);
-    }
 }
 
 template <int N>
@@ -334,9 +332,9 @@ float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
   return result;
 }
 
-const GrainKernels<2> kernels2 = {find<2>,     recall<2>,       keep<2>,         press<2, true>, sweep<2, true>,
-                                  separate<2>, press<2, false>, sweep<2, false>, deepest<2>};
-const GrainKernels<3> kernels3 = {find<3>,     recall<3>,       keep<3>,         press<3, true>, sweep<3, true>,
-                                  separate<3>, press<3, false>, sweep<3, false>, deepest<3>};
+const GrainKernels<2> kernels2 = {find<2>,        recall<2>,       keep<2>,         press<2, true>,
+                                  sweep<2, true>, press<2, false>, sweep<2, false>, deepest<2>};
+const GrainKernels<3> kernels3 = {find<3>,        recall<3>,       keep<3>,         press<3, true>,
+                                  sweep<3, true>, press<3, false>, sweep<3, false>, deepest<3>};
 
 }  // namespace carom::particles::detail::CAROM_GRAIN_NAMESPACE

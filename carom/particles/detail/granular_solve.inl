@@ -7,6 +7,8 @@
 
 namespace carom::particles::detail {
 
+constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
+
 /// Of a lane of a surface's block; −1: none, nor in those behind it.
 template <class D>
 int GranularState<D>::grain_in(const Block& block, int lane) const {
@@ -75,9 +77,17 @@ bool GranularState<D>::measure_solid(const GrainSolid<D>& solid, const Vector& a
   return true;
 }
 
+/// A part of an overlap with a surface is taken out of the place; returns the gap that is left.
+template <class D>
+float GranularState<D>::push_out(int grain, const Vector& normal, float gap, const GrainPass& pass) {
+  const float out = pass.part * math::max(-pass.slop - gap, 0.0f);
+  for (int k = 0; k < N; ++k) place[std::size_t(grain) * grain_place + std::size_t(k)] -= out * normal[k];
+  return gap + out;
+}
+
 /// Where the grains are now.
 template <class D>
-void GranularState<D>::measure_surfaces() {
+void GranularState<D>::measure_surfaces(const GrainPass& pass) {
   const auto where = [&](int grain) {
     Vector x{};
     for (int k = 0; k < N; ++k) x[k] = place[std::size_t(grain) * grain_place + std::size_t(k)];
@@ -87,27 +97,33 @@ void GranularState<D>::measure_surfaces() {
     Block& block = wall_blocks[i];
     const int surface = wall_of[i], axis = surface / 2;
     for (int lane = 0; lane < grain_lanes && grain_in(block, lane) >= 0; ++lane) {
-      const Vector x = where(grain_in(block, lane));
-      const float radius = grains[grain_in(block, lane)].radius;
+      const int grain = grain_in(block, lane);
+      const Vector x = where(grain);
+      const float radius = grains[grain].radius;
+      Vector normal{};
+      float gap = 0;
       if (surface < 2 * N) {
-        block.gap[lane] = (surface % 2 ? extent[axis] - x[axis] : x[axis]) - radius;
-        block.normal[axis][lane] = surface % 2 ? 1.0f : -1.0f;
+        gap = (surface % 2 ? extent[axis] - x[axis] : x[axis]) - radius;
+        normal[axis] = surface % 2 ? 1.0f : -1.0f;
+      } else if (float distance = 0; measure_solid(solids[surface - 2 * N], x, normal, distance)) {
+        gap = distance - radius;
+      } else {
+        block.gap[lane] = definition.radius;
         continue;
       }
-      Vector normal{};
-      float distance = 0;
-      const bool known = measure_solid(solids[surface - 2 * N], x, normal, distance);
-      block.gap[lane] = known ? distance - radius : definition.radius;
-      if (known)
-        for (int k = 0; k < N; ++k) block.normal[k][lane] = normal[k];
+      block.gap[lane] = push_out(grain, normal, gap, pass);
+      for (int k = 0; k < N; ++k) block.normal[k][lane] = normal[k];
     }
   }
   for (Contact& c : body_contacts) {
     const Vector x = where(c.a);
     float distance = 0;
-    const bool known = measure_solid(solids[c.solid], x, c.normal, distance);
-    c.gap = known ? distance - grains[c.a].radius : definition.radius;
-    if (known) c.arm = x + distance * c.normal - bodies[solids[c.solid].body].center;
+    if (!measure_solid(solids[c.solid], x, c.normal, distance)) {
+      c.gap = definition.radius;
+      continue;
+    }
+    c.arm = x + distance * c.normal - bodies[solids[c.solid].body].center;
+    c.gap = push_out(c.a, c.normal, distance - grains[c.a].radius, pass);
   }
 }
 
@@ -135,7 +151,6 @@ void GranularState<D>::apply_body(const Contact& c, float normal, Vector frictio
 }
 
 namespace {
-constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
 
 /// The change of a limited impulse: `wanted` added to `held`, cut off at `limit`.
 template <class V>
@@ -206,13 +221,16 @@ void GranularState<D>::for_slabs(bool back, F&& f) {
   }
 }
 
-/// Normals and gaps where the grains are now; and the impulses of the last substep, to begin with.
+/// Overlaps are taken out of the places alone, so that no speed comes of them; normals and gaps where the grains then
+/// are; and the impulses of the last substep, to begin with.
 template <class D>
 void GranularState<D>::press() {
-  for_slabs(false,
-            [&](int first, int last) { kernels->press(blocks.data(), first, last, place.data(), motion.data()); });
-  measure_surfaces();
-  kernels->press_surface(wall_blocks.data(), 0, int(wall_blocks.size()), place.data(), motion.data());
+  const GrainPass pass{.slop = grain_slop * definition.radius, .part = grain_part};
+  measure_surfaces(pass);
+  for_slabs(false, [&](int first, int last) {
+    kernels->press(blocks.data(), first, last, place.data(), motion.data(), pass);
+  });
+  kernels->press_surface(wall_blocks.data(), 0, int(wall_blocks.size()), place.data(), motion.data(), pass);
   for (Contact& c : body_contacts) {
     c.friction -= dot(c.friction, c.normal) * c.normal;
     apply_body(c, c.normal_impulse, c.friction, c.rolling);
@@ -236,37 +254,6 @@ void GranularState<D>::sweep(float h, bool back) {
   if (back) surfaces();
 }
 
-/// Overlaps are taken out of the places alone, so that no speed comes of them.
-template <class D>
-void GranularState<D>::separate() {
-  const GrainPass pass{.slop = grain_slop * definition.radius, .part = grain_part};
-  for_slabs(false, [&](int first, int last) { kernels->separate(blocks.data(), first, last, place.data(), pass); });
-  const auto push_out = [&](int grain, int surface, const Vector& normal) {
-    float* const p = &place[std::size_t(grain) * grain_place];
-    float gap = 0;
-    if (surface < 2 * N) {
-      const int axis = surface / 2;
-      gap = (surface % 2 ? extent[axis] - p[axis] : p[axis]) - grains[grain].radius;
-    } else {
-      const GrainSolid<D>& solid = solids[surface - 2 * N];
-      Vector x{};
-      for (int k = 0; k < N; ++k) x[k] = p[k];
-      gap = signed_distance(solid.shape, inverse_transform_point(solid.at, x), solid.sheet) - grains[grain].radius;
-    }
-    if (gap < -pass.slop)
-      for (int k = 0; k < N; ++k) p[k] += grain_part * (gap + pass.slop) * normal[k];
-  };
-  for (std::size_t i = 0; i < wall_blocks.size(); ++i) {
-    const Block& block = wall_blocks[i];
-    for (int lane = 0; lane < grain_lanes && grain_in(block, lane) >= 0; ++lane) {
-      Vector normal{};
-      for (int k = 0; k < N; ++k) normal[k] = block.normal[k][lane];
-      push_out(grain_in(block, lane), wall_of[i], normal);
-    }
-  }
-  for (const Contact& c : body_contacts) push_out(c.a, 2 * N + c.solid, c.normal);
-}
-
 /// What walls and fixed bodies took in a substep.
 template <class D>
 void GranularState<D>::sum_walls() {
@@ -283,14 +270,15 @@ void GranularState<D>::sum_walls() {
 }
 
 template <class D>
-void GranularState<D>::round(float dt, int parts) {
-  const float h = dt / float(parts);
+void GranularState<D>::round(float h, int parts) {
+  const float dt = h * float(parts);
   const float scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with the substep
   last_h = h;
   sort();
-  find_pairs(dt, scale);
+  find_pairs(dt);
   find_surfaces(dt, scale);
   to_rows();
+  kernels->recall(blocks.data(), 0, block_count, was.data(), held.data(), scale, motion.data());
   const int count = int(grains.size());
   for (int part = 0; part < parts; ++part) {
     const Vector gained = h * definition.gravity;
@@ -305,11 +293,10 @@ void GranularState<D>::round(float dt, int parts) {
       for (int k = 0; k < N; ++k)
         place[std::size_t(i) * grain_place + std::size_t(k)] +=
             h * motion[std::size_t(i) * grain_motion<N> + std::size_t(k)];
-    separate();
   }
   from_rows();
   held.resize(std::size_t(pair_count) * grain_held<N>);
-  kernels->keep(blocks.data(), 0, int(blocks.size()), pair_of.data(), held.data());
+  kernels->keep(blocks.data(), 0, block_count, pair_of.data(), held.data());
   statistics.contacts = pair_count;
   statistics.wall_contacts = int(touches.size());
 }
@@ -325,18 +312,18 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
     const core::Status gathered = gather(*world);
     if (!gathered.ok()) return gathered;
   }
-  // Contacts are looked for as often as the fastest grain moves by half a radius.
+  // No grain moves by more than half a radius in a substep, and contacts are looked for every `search_way` radii.
   float fastest = 0;
   for (const Grain<D>& g : grains) fastest = math::max(fastest, dot(g.v, g.v));
-  const float gained = dt * length(definition.gravity);
-  closing_speed = 2 * math::sqrt(fastest) + gained;
-  fastest = math::sqrt(fastest) + gained;
+  fastest = math::sqrt(fastest) + dt * length(definition.gravity);
   statistics.max_speed = fastest;
-  const float ways = 2 * fastest * dt / definition.radius;
-  const int rounds = ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;
-  const int parts = math::max(1, (definition.substeps + rounds - 1) / rounds);
-  for (int k = 0; k < rounds; ++k) round(dt / float(rounds), parts);
-  statistics.max_overlap = kernels->deepest(blocks.data(), 0, int(blocks.size()), place.data());
+  const auto times = [&](float radii) {
+    const float ways = fastest * dt / (radii * definition.radius);
+    return ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;
+  };
+  const int parts = math::max(definition.substeps, times(0.5f)), rounds = math::min(times(search_way), parts);
+  for (int k = 0; k < rounds; ++k) round(dt / float(parts), (k + 1) * parts / rounds - k * parts / rounds);
+  statistics.max_overlap = kernels->deepest(blocks.data(), 0, block_count, place.data());
   statistics.grains = int(grains.size());
   for (const GrainBody<D>& b : bodies) {
     if (!b.moves || (dot(b.impulse, b.impulse) == 0 && grain_size(b.turn) == 0)) continue;

@@ -69,9 +69,18 @@ struct GrainSolid {
   std::uint32_t key = 0;
 };
 
+/// m/s: between what velocities the grains of a cell lie, and nought.
+template <class D>
+struct Haste {
+  typename D::Vector least{}, most{};
+};
+
 template <class D>
 struct GranularState {
   static constexpr int N = D::dimension;
+  static constexpr float cell_radii = N == 2 ? 4 : 3;  ///< width of a cell in the largest radii
+  /// Largest radii that the fastest grain moves from search to search: no more than cells have room for.
+  static constexpr float search_way = N == 2 ? 1.5f : 1;
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   using Position = typename D::Position;
@@ -87,6 +96,7 @@ struct GranularState {
   std::vector<Grain<D>> grains, sorted;
   std::uint64_t added = 0;  ///< in all, the stream of the next one's radius
   std::vector<int> cell_of, cell_start;
+  std::vector<Haste<D>> haste;        ///< by cell
   std::vector<int> old_place;         ///< of a grain when contacts were last looked for
   std::vector<float> near_by[N + 1];  ///< places, then radii, in the order of the cells
   // While contacts are solved grains are rows of floats (granular_block.h); behind them one for each slab that is none.
@@ -96,7 +106,8 @@ struct GranularState {
   int pair_count = 0;
   std::vector<float> held;
   // Where they are solved: block by block, those of a slab together, in the order of its layers.
-  std::vector<Block> blocks;
+  std::vector<Block> blocks;  ///< room for more than block_count, which is not made anew
+  int block_count = 0;
   std::vector<int> slab_start;              ///< first block of each slab
   std::vector<int> pair_of, was;            ///< by block and lane: the pair's number, and its old one (GrainKernels)
   std::vector<std::uint8_t> filled;         ///< lanes by block
@@ -113,7 +124,6 @@ struct GranularState {
   std::vector<rigid::ShapeId> found;
   Position wall_impulse{};
   float last_h = 0;
-  float closing_speed = 0;  ///< m/s, of two grains in the step, at most
   GranularStatistics statistics{};
   core::TaskScheduler* scheduler = nullptr;
 
@@ -127,24 +137,25 @@ struct GranularState {
   int grain_in(const Block& block, int lane) const;
   void to_rows();
   void from_rows();
-  void find_pairs(float dt, float scale);
-  void find_neighbours(int x, int y, int z, float reach);
+  void find_pairs(float dt);
+  Vector fastest_near(int x, int y, int z) const;
+  void find_neighbours(int x, int y, int z, float dt, float slack);
   int place_pair(int a, int b, int first, int none);
   void place_pairs(int grain, int first, int none);
   void find_surfaces(float dt, float scale);
   void touch(int grain, int surface, std::uint32_t key, float scale);
   void touch_solid(int grain, int index, float reach, float scale);
-  void measure_surfaces();
+  float push_out(int grain, const Vector& normal, float gap, const GrainPass& pass);
+  void measure_surfaces(const GrainPass& pass);
   bool measure_solid(const GrainSolid<D>& solid, const Vector& at, Vector& normal, float& distance) const;
   void press();
   template <class F>
   void for_slabs(bool back, F&& f);
   void sweep(float h, bool back);
-  void separate();
   void solve_body(Contact& contact, float h);
   void apply_body(const Contact& contact, float normal, Vector friction, Angular rolling);
   void sum_walls();
-  void round(float dt, int parts);
+  void round(float h, int parts);
   core::Status step(rigid::World<D>* world, float dt);
 };
 
