@@ -11,9 +11,9 @@ struct Branch {
   using T = typename detail::Axes<V>::Scalar;
   static constexpr int width = WideTree<V>::width;
   Bounds<V> box{};
-  std::size_t first = 0, count = 0;
+  std::uint32_t first = 0, count = 0;
   std::uint32_t child = 0;  ///< the first of its two, which stand side by side; 0: a leaf
-  int depth = 0;
+  std::int32_t depth = 0;
   /// The least cost of its wide nodes where it has at most so many places in the node above: of one on.
   T cost[width - 1]{};
 };
@@ -29,13 +29,16 @@ Bounds<V> box_of(std::span<const detail::BuildItem<V>> items) {
 template <class V>
 std::vector<Branch<V>> split_all(std::span<detail::BuildItem<V>> items, std::size_t most) {
   std::vector<Branch<V>> branches;
-  branches.reserve(2 * (items.size() / most) + 2);
-  branches.push_back({box_of<V>(items), 0, items.size()});
+  // Leaves are at least half full on the whole. Room that is not used costs no memory; a list that grows takes twice
+  // it.
+  branches.reserve(most == 1 ? 2 * items.size() : 2 * (2 * items.size() / most) + 2);
+  branches.push_back({box_of<V>(items), 0, std::uint32_t(items.size())});
   for (std::size_t i = 0; i < branches.size(); ++i) {
     Branch<V> from = branches[i];
     if (from.count <= most) continue;
     branches[i].child = std::uint32_t(branches.size());
-    const std::size_t all = from.count, cut = detail::binned_split<V>(items.subspan(from.first, all), from.depth);
+    const std::uint32_t all = from.count,
+                        cut = std::uint32_t(detail::binned_split<V>(items.subspan(from.first, all), from.depth));
     ++from.depth;
     from.count = cut, from.box = box_of<V>(items.subspan(from.first, cut));
     branches.push_back(from);
@@ -171,15 +174,20 @@ template void build_wide_tree<Vec2d>(std::span<BuildItem<Vec2d>>, int, WideTree<
 
 }  // namespace detail
 
-StaticTree build_static_tree(std::span<const Bounds3f> boxes, int leaf_size) {
+StaticTree detail::build_static_tree(std::vector<BuildItem<Vec3f>> items, int leaf_size) {
   StaticTree tree;
-  std::vector<detail::BuildItem<Vec3f>> items(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) items[i] = {boxes[i], std::uint32_t(i)};
-  detail::build_wide_tree<Vec3f>(items, leaf_size, tree);
+  build_wide_tree<Vec3f>(items, leaf_size, tree);
+  std::vector<BuildItem<Vec3f>>().swap(items);
   // Copies, because shrink_to_fit does nothing where there are no exceptions.
   tree.nodes = std::vector<StaticTree::Node>(tree.nodes);
   tree.items = std::vector<std::uint32_t>(tree.items);
   return tree;
+}
+
+StaticTree build_static_tree(std::span<const Bounds3f> boxes, int leaf_size) {
+  std::vector<detail::BuildItem<Vec3f>> items(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) items[i] = {boxes[i], std::uint32_t(i)};
+  return detail::build_static_tree(std::move(items), leaf_size);
 }
 
 }  // namespace carom::geometry

@@ -47,6 +47,9 @@ namespace detail {
 template <class V>
 void build_wide_tree(std::span<BuildItem<V>> items, int leaf_size, WideTree<V>& tree);
 
+/// The same of items, which take memory no longer than they are needed.
+StaticTree build_static_tree(std::vector<BuildItem<Vec3f>> items, int leaf_size = 4);
+
 /// Seven a level remain; no tree is deeper than the 36 levels of its splits and 29 of halving.
 inline constexpr int wide_stack_size = 7 * 65 + 1;
 

@@ -1,6 +1,8 @@
 // Walks through static trees: boxes that overlap, boxes on the way of a ray or a moving box, nearest boxes.
 #pragma once
 
+#include <algorithm>
+
 #include "carom/geometry/static_tree.h"
 #include "carom/math/simd.h"
 
@@ -162,6 +164,41 @@ auto look_at_leaf(const WideTree<V>& tree, std::uint32_t leaf, Look&& look) {
 }
 
 }  // namespace detail
+
+/// Writes the leaves that overlap `box` (and some near it), in the order of query_leaves. All nodes of a level are
+/// called for before the first of them is met: for the small boxes of those who ask so often that they wait for memory.
+/// Returns how many, or −1 where there are more than `room`.
+template <int room, class V>
+int list_leaves(const WideTree<V>& tree, const Bounds<V>& box, std::uint32_t (&leaves)[room]) {
+  if (tree.nodes.empty()) return 0;
+  std::uint32_t lists[2][room];
+  std::uint32_t *level = lists[0], *below = lists[1];
+  int count = 1;
+  level[0] = 0;
+  for (bool nodes = true; nodes;) {
+    nodes = false;
+    int next = 0;
+    for (int i = 0; i < count; ++i) {
+      if ((level[i] & WideTree<V>::leaf_bit) != 0) {
+        if (next == room) return -1;
+        below[next++] = level[i];
+        continue;
+      }
+      const auto& node = tree.nodes[level[i]];
+      for (std::uint32_t met = detail::meet_children<V>(node, box); met != 0; met &= met - 1) {
+        if (next == room) return -1;
+        const std::uint32_t child = node.child[__builtin_ctz(met)];
+        below[next++] = child;
+        nodes = nodes || (child & WideTree<V>::leaf_bit) == 0;
+        detail::call_for(tree, child, detail::NotSoon{});
+      }
+    }
+    std::swap(level, below);
+    count = next;
+  }
+  std::copy(level, level + count, leaves);
+  return count;
+}
 
 /// Calls visit(items, count) for every leaf (1 to 4 items) that overlaps `box` (and some near it); visit returns false
 /// to stop.

@@ -77,6 +77,13 @@ bool degenerate(Vec3f a, Vec3f b, Vec3f c) {
 
 }  // namespace mesh_edges
 
+/// The first `count` of a list, in no more memory than they need.
+template <class T>
+std::vector<T> exactly(std::vector<T> list, std::size_t count) {
+  if (list.size() == count && list.capacity() == count) return list;
+  return {list.begin(), list.begin() + std::ptrdiff_t(count)};
+}
+
 }  // namespace
 
 core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(std::vector<Vec3f> vertices,
@@ -98,22 +105,29 @@ core::Result<std::shared_ptr<const TriangleMesh>> make_triangle_mesh(std::vector
                          indices.size() / 3);
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->vertices = std::move(vertices);
-  mesh->indices.reserve(indices.size());
-  std::vector<Bounds3f> boxes;
-  boxes.reserve(indices.size() / 3);
-  for (std::size_t i = 0; i < indices.size(); i += 3) {
-    const Vec3f a = mesh->vertices[indices[i]], b = mesh->vertices[indices[i + 1]], c = mesh->vertices[indices[i + 2]];
-    if (mesh_edges::degenerate(a, b, c)) continue;
-    mesh->indices.insert(mesh->indices.end(), {indices[i], indices[i + 1], indices[i + 2]});
-    boxes.push_back({min(a, min(b, c)), max(a, max(b, c))});
-    if (!materials.empty()) mesh->materials.push_back(materials[i / 3]);
+  const std::size_t all = indices.size() / 3;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all; ++i) {
+    const std::uint32_t corner[3] = {indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]};
+    if (mesh_edges::degenerate(mesh->vertices[corner[0]], mesh->vertices[corner[1]], mesh->vertices[corner[2]]))
+      continue;
+    for (std::size_t k = 0; k < 3; ++k) indices[3 * kept + k] = corner[k];
+    if (!materials.empty()) materials[kept] = materials[i];
+    ++kept;
   }
-  if (mesh->indices.empty())
-    return detail::error("make_triangle_mesh: none of the %zu triangles has an area", indices.size() / 3);
-  mesh->bounds = boxes[0];
-  for (const Bounds3f& box : boxes) mesh->bounds = merge(mesh->bounds, box);
+  if (kept == 0) return detail::error("make_triangle_mesh: none of the %zu triangles has an area", all);
+  mesh->indices = exactly(std::move(indices), 3 * kept);
+  if (!materials.empty()) mesh->materials = exactly(std::move(materials), kept);
   mesh_edges::set_flags(*mesh);
-  mesh->tree = build_static_tree(boxes);
+  std::vector<detail::BuildItem<Vec3f>> items(kept);  // only now: a large mesh needs the most memory while it is built
+  for (std::size_t i = 0; i < kept; ++i) {
+    const Vec3f a = mesh->vertices[mesh->indices[3 * i]], b = mesh->vertices[mesh->indices[3 * i + 1]],
+                c = mesh->vertices[mesh->indices[3 * i + 2]];
+    items[i] = {{min(a, min(b, c)), max(a, max(b, c))}, std::uint32_t(i)};
+  }
+  mesh->bounds = items[0].box;
+  for (const auto& item : items) mesh->bounds = merge(mesh->bounds, item.box);
+  mesh->tree = detail::build_static_tree(std::move(items));
   return std::shared_ptr<const TriangleMesh>(std::move(mesh));
 }
 

@@ -4,33 +4,63 @@ namespace carom::geometry::detail {
 
 using VisitTriangle = core::FunctionRef<bool(const SurfaceTriangle&)>;
 
+namespace {
+
+/// In three of four lanes.
+Four lanes_of(Vec3f p) { return {Four::Vector{p.x, p.y, p.z, 0}}; }
+
 /// Triangles of a mesh lie anywhere in memory: some are called for before the first of them is met.
-static void visit_mesh(const TriangleMesh& mesh, const Bounds3f& box, VisitTriangle visit) {
-  constexpr int room = 32;
-  std::uint32_t list[room];
-  int count = 0;
-  bool more = true;
-  const auto meet = [&] {
-    for (int k = 0; k < count; ++k)
-      for (std::uint32_t corner = 0; corner < 3; ++corner)
-        __builtin_prefetch(&mesh.vertices[mesh.indices[3 * list[k] + corner]]);
-    for (int k = 0; k < count && more; ++k) {
-      const SurfaceTriangle t = triangle_of(mesh, list[k]);
-      const Bounds3f b{min(t.corner[0], min(t.corner[1], t.corner[2])),
-                       max(t.corner[0], max(t.corner[1], t.corner[2]))};
-      if (boxes_meet(b, box)) more = visit(t);
+class MeshVisit {
+ public:
+  MeshVisit(const TriangleMesh& mesh, const Bounds3f& box, VisitTriangle visit)
+      : mesh_(mesh), low_(lanes_of(box.low)), high_(lanes_of(box.high)), visit_(visit) {}
+
+  bool add(const std::uint32_t* items, int count) {
+    for (int i = 0; i < count; ++i) {
+      __builtin_prefetch(&mesh_.indices[3 * items[i]]);
+      __builtin_prefetch(&mesh_.edge_flags[items[i]]);
+      list_[count_++] = items[i];
     }
-    count = 0;
-    return more;
-  };
-  query(mesh.tree, box, [&](std::uint32_t i) {
-    __builtin_prefetch(&mesh.indices[3 * i]);
-    __builtin_prefetch(&mesh.edge_flags[i]);
-    list[count++] = i;
-    return count < room || meet();
-  });
-  if (more) meet();
+    return count_ <= room - 4 || meet();
+  }
+  bool meet() {
+    for (int k = 0; k < count_; ++k)
+      for (std::uint32_t corner = 0; corner < 3; ++corner) __builtin_prefetch(&vertex(list_[k], corner));
+    const int count = count_;
+    count_ = 0;
+    for (int k = 0; k < count; ++k) {
+      const Four p = lanes_of(vertex(list_[k], 0)), q = lanes_of(vertex(list_[k], 1)),
+                 r = lanes_of(vertex(list_[k], 2));
+      const auto meets = (min(p, min(q, r)) <= high_) & (max(p, max(q, r)) >= low_);
+      if (bitmask(meets) == 0xf && !visit_(triangle_of(mesh_, list_[k]))) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int room = 64;
+  const Vec3f& vertex(std::uint32_t triangle, std::uint32_t corner) const {
+    return mesh_.vertices[mesh_.indices[3 * triangle + corner]];
+  }
+  const TriangleMesh& mesh_;
+  Four low_, high_;
+  VisitTriangle visit_;
+  int count_ = 0;
+  std::uint32_t list_[room];
+};
+
+void visit_mesh(const TriangleMesh& mesh, const Bounds3f& box, VisitTriangle visit) {
+  MeshVisit all(mesh, box, visit);
+  const auto add = [&](const std::uint32_t* items, int count) { return all.add(items, count); };
+  std::uint32_t leaves[64];
+  const int count = list_leaves(mesh.tree, box, leaves);
+  bool more = true;
+  if (count < 0) query_leaves(mesh.tree, box, [&](const std::uint32_t* items, int n) { return more = add(items, n); });
+  for (int i = 0; i < count && more; ++i) more = look_at_leaf(mesh.tree, leaves[i], add);
+  if (more) all.meet();
 }
+
+}  // namespace
 
 void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges, VisitTriangle visit) {
   if (surface.type == ShapeType3::mesh) return visit_mesh(*surface.mesh, box, visit);

@@ -167,7 +167,8 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
   approach.way = inverse_rotate(frame, approach.way), approach.turn = inverse_rotate(frame, approach.turn);
   // What moves fast is looked at again in the next step anyway.
   const float margin = c.margin(), ahead = reach - 2 * margin;
-  approach.margin = margin + clamp(margin - ahead, 0.0f, margin);
+  const float more = 0.5f * margin;
+  approach.margin = margin + clamp(more - ahead, 0.0f, more);
   approach.worth = margin + 3 * ahead;  // two steps
   return approach;
 }
