@@ -93,6 +93,8 @@ core::Result<Cloth> Cloth::make(const ClothDef& def) {
                                        core::text("below ", def.points.size()))};
   if (!all_finite(def.warp) || !(length(def.warp) > 1e-9))
     return core::Error{"ClothDef::warp has no direction, expected a finite vector that is not zero"};
+  if (def.lanes != 0 && def.lanes != 4 && def.lanes != 8 && def.lanes != 16)
+    return core::Error{core::refused("ClothDef::lanes", def.lanes, "0, 4, 8 or 16")};
   if (!all_finite(def.velocity)) return core::Error{"ClothDef::velocity is not finite, expected m/s"};
   Cloth cloth;
   detail::ClothState& s = *cloth.state_;
@@ -101,6 +103,7 @@ core::Result<Cloth> Cloth::make(const ClothDef& def) {
   s.self_collide = def.self_collide;
   s.filter = def.filter;
   s.scheduler = def.scheduler;
+  s.solver.set_lanes(def.lanes);
   s.position.assign(def.points.begin(), def.points.end());
   s.velocity.assign(def.points.size(), Vec3f(def.velocity));
   s.corners.assign(def.triangles.begin(), def.triangles.end());
@@ -211,10 +214,13 @@ double Cloth::elastic_energy() const {
   detail::ClothState now = *state_;
   now.stretch();
   double sum = 0;
-  for (const detail::ClothTriangle& t : now.triangles) {
-    const double e1 = 0.5 * (double(dot(t.along, t.along)) - 1), e2 = 0.5 * (double(dot(t.across, t.across)) - 1),
-                 e3 = double(dot(t.along, t.across));
-    sum += 0.5 * double(t.area) * (e1 * double(t.stress[0]) + e2 * double(t.stress[1]) + e3 * double(t.stress[2]));
+  for (std::size_t t = 0; t < now.triangles.size(); ++t) {
+    const detail::ClothStrain& strain = now.strains[t];
+    const math::Vec3f along = strain.image_of_warp(), across = strain.image_of_weft();
+    const double e1 = 0.5 * (double(dot(along, along)) - 1), e2 = 0.5 * (double(dot(across, across)) - 1),
+                 e3 = double(dot(along, across));
+    sum += 0.5 * double(now.triangles[t].area) *
+           (e1 * double(strain.warp) + e2 * double(strain.weft) + e3 * double(strain.shear));
   }
   for (const detail::ClothPatch& patch : now.patches)
     for (const auto& weight : patch.weight) {

@@ -46,6 +46,7 @@ struct ClothDef {
   bool self_collide = true;
   rigid::Filter filter{};
   core::TaskScheduler* scheduler = nullptr;  ///< the caller's; outlives the cloth. Any gives the same bits.
+  int lanes = 0;                             ///< 0: as many as the machine has; 4, 8, 16. The same bits too.
 };
 
 /// A rectangle of columns × rows vertices from `corner` along two edges, for ClothDef.

@@ -86,7 +86,7 @@ Status SoftState::set_mesh() {
   load.assign(n, Vec3f{});
   pin_of.assign(n, -1);
   touches.assign(n, SoftTouch{});
-  solver.resize(n);
+  solver.resize(matrix);
   return {};
 }
 
@@ -186,6 +186,8 @@ core::Result<SoftBody> SoftBody::make(const SoftBodyDef& def) {
     if (def.tetrahedra[k] >= def.points.size())
       return core::Error{core::refused(core::text("SoftBodyDef::tetrahedra[", k, "]"), def.tetrahedra[k],
                                        core::text("below ", def.points.size()))};
+  if (def.lanes != 0 && def.lanes != 4 && def.lanes != 8 && def.lanes != 16)
+    return core::Error{core::refused("SoftBodyDef::lanes", def.lanes, "0, 4, 8 or 16")};
   if (!soft_finite(def.velocity)) return core::Error{"SoftBodyDef::velocity is not finite, expected m/s"};
   SoftBody body;
   detail::SoftState& s = *body.state_;
@@ -193,6 +195,7 @@ core::Result<SoftBody> SoftBody::make(const SoftBodyDef& def) {
   s.collide = def.collide;
   s.filter = def.filter;
   s.scheduler = def.scheduler;
+  s.solver.set_lanes(def.lanes);
   s.position.assign(def.points.begin(), def.points.end());
   s.velocity.assign(def.points.size(), Vec3f(def.velocity));
   s.corners.assign(def.tetrahedra.begin(), def.tetrahedra.end());

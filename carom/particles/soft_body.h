@@ -31,6 +31,7 @@ struct SoftBodyDef {
   bool collide = true;
   rigid::Filter filter{};
   core::TaskScheduler* scheduler = nullptr;  ///< the caller's; outlives the body. Any gives the same bits.
+  int lanes = 0;                             ///< 0: as many as the machine has; 4, 8, 16. The same bits too.
 };
 
 struct SoftMesh {

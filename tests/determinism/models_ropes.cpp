@@ -7,7 +7,7 @@
 
 namespace carom::determinism {
 
-void rope_models(int) {
+void rope_models(int width) {
   using math::Vec3d;
   constexpr double dt = 1.0 / 60;
   rigid::World3 world;
@@ -35,10 +35,11 @@ void rope_models(int) {
   print_model("rope", hash);
 
   const auto sheet = particles::make_cloth_sheet({-0.5, 0.5, -0.5}, {1, 0, 0}, {0, 0.01, 1}, 17, 17);
-  auto cloth =
-      particles::Cloth::make(
-          {.fabric = {.thickness = 0.01, .tear_tension = 200}, .points = sheet.points, .triangles = sheet.triangles})
-          .value();
+  auto cloth = particles::Cloth::make({.fabric = {.thickness = 0.01, .tear_tension = 200},
+                                       .points = sheet.points,
+                                       .triangles = sheet.triangles,
+                                       .lanes = width})
+                   .value();
   cloth.pin(0).value();
   cloth.set_air(1.225, {.velocity = {3, 0, 1}}).value();
   for (int i = 0; i < 60; ++i) {
@@ -50,7 +51,7 @@ void rope_models(int) {
   print_model("cloth", hash);
 
   const auto mesh = particles::make_soft_ball({0.05, 0.9, 0}, 0.3, 4);
-  auto ball = particles::SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
+  auto ball = particles::SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra, .lanes = width}).value();
   for (int i = 0; i < 60; ++i) {
     ball.step(world, dt).value();
     world.step(float(dt)).value();

@@ -119,11 +119,11 @@ TEST(SoftBody, ExchangesMomentumWithABodyAndItself) {
   EXPECT_LT(length(after - before), 5e-3 * length(before));
 }
 
-TEST(SoftBody, ThreadsGiveTheSameBitsAndCrushedOnesComeBack) {
+TEST(SoftBody, ThreadsAndLanesGiveTheSameBitsAndCrushedOnesComeBack) {
   const auto pool = core::make_thread_pool(3);
   const SoftMesh mesh = make_soft_box({0, 0, 0}, {1, 1, 1}, 4, 4, 4);
   World3 world = weightless();
-  SoftBody a = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
+  SoftBody a = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra, .lanes = 4}).value();
   SoftBody b = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra, .scheduler = pool.get()}).value();
   for (SoftBody* body : {&a, &b})
     for (int i = 0; i < body->vertex_count(); ++i)
@@ -154,6 +154,8 @@ TEST(SoftBody, RefusesBadInput) {
   const std::uint32_t beyond[] = {0, 1, 2, 99}, flat[] = {0, 1, 2, 3};
   EXPECT_NE(message({.points = mesh.points, .tetrahedra = beyond}).find("tetrahedra[3]"), std::string::npos);
   EXPECT_NE(message({.points = mesh.points, .tetrahedra = flat}).find("volume"), std::string::npos);
+  EXPECT_NE(message({.points = mesh.points, .tetrahedra = mesh.tetrahedra, .lanes = 3}).find("lanes"),
+            std::string::npos);
   EXPECT_FALSE(SoftBody::make({}).ok());
   SoftBody body = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
   EXPECT_FALSE(body.pin(8).ok());

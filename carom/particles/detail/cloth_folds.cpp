@@ -1,8 +1,7 @@
 // Folds of a cloth that meet: impulses between vertices and triangles.
-#include <bit>
+#include <algorithm>
 
 #include "carom/math/elementary.h"
-#include "carom/math/simd.h"
 #include "carom/particles/detail/cloth_state.h"
 
 namespace carom::particles::detail {
@@ -11,137 +10,121 @@ using math::Vec3d;
 
 namespace {
 
-/// Vertices by the cells of a box round them, along x first: what is near a triangle are a few runs of the list.
-struct FoldGrid {
-  Vec3d low{};
-  double inverse = 1;  // 1/m
-  int cells[3] = {1, 1, 1};
-
-  int along(double x, int axis) const {
-    const double c = (x - low[axis]) * inverse;
-    return c > 0 ? (c < cells[axis] ? int(c) : cells[axis] - 1) : 0;
-  }
-  std::size_t place(Vec3d p) const {
-    const auto x = std::size_t(along(p.x, 0)), y = std::size_t(along(p.y, 1)), z = std::size_t(along(p.z, 2));
-    return x + std::size_t(cells[0]) * (y + std::size_t(cells[1]) * z);
-  }
-  std::size_t count() const { return std::size_t(cells[0]) * std::size_t(cells[1]) * std::size_t(cells[2]); }
-};
-/// Cells of this size, or of a coarser one where there would be more than `most` of them.
-FoldGrid make_fold_grid(const std::vector<Vec3d>& position, double size, double most) {
-  FoldGrid grid;
-  Vec3d high = grid.low = position[0];
-  for (const Vec3d& p : position) {
-    grid.low = min(grid.low, p);
-    high = max(high, p);
-  }
-  const Vec3d extent = high - grid.low;
-  const auto cells = [&] { return (extent.x / size + 1) * (extent.y / size + 1) * (extent.z / size + 1); };
-  while (cells() > most && size < 1e9) size *= 1.3;
-  if (!(cells() <= most)) return grid;  // flown apart without measure: one cell
-  grid.inverse = 1 / size;
-  for (int k = 0; k < 3; ++k) grid.cells[k] = int(extent[k] / size) + 1;
-  return grid;
+/// Bits of a number of ten, each followed by two zeros.
+std::uint32_t spread_bits(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000ffu;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
 }
 
-/// The shares of a triangle's corners at the foot of the perpendicular from a point, linear in where the point is.
-struct FoldPlane {
-  Vec3f origin{}, normal{}, second{}, third{};  // shares of the second and the third corner, 1/m
-
-  static FoldPlane of(Vec3f origin, Vec3f a, Vec3f b) {
-    const Vec3f n = cross(a, b);
-    const float square = dot(n, n);
-    if (!(square > 1e-24f)) return {origin, {}, {}, {}};
-    return {origin, n * (1 / math::sqrt(square)), cross(b, n) * (1 / square), cross(n, a) * (1 / square)};
+/// Numbers of points, in the order of a Morton curve: what follows each other
+/// lies near each other.
+std::vector<int> order_by_place(const std::vector<Vec3d>& points) {
+  Vec3d low = points[0], high = points[0];
+  for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
+  const double extent = math::max(high.x - low.x, math::max(high.y - low.y, high.z - low.z));
+  const double scale = extent > 0 ? 1023 / extent : 0;
+  std::vector<std::uint32_t> key(points.size());
+  std::vector<int> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3d p = scale * (points[i] - low);
+    key[i] =
+        spread_bits(std::uint32_t(p.x)) | spread_bits(std::uint32_t(p.y)) << 1 | spread_bits(std::uint32_t(p.z)) << 2;
+    order[i] = int(i);
   }
-};
-
-/// Which of four points stand above or below a triangle, within `margin` of it.
-std::uint32_t above(const FoldPlane& plane, float margin, const float* const (&at)[3]) {
-  using F = math::WideFloat<4>;
-  const F x = F::load(at[0]) - F::splat(plane.origin.x), y = F::load(at[1]) - F::splat(plane.origin.y),
-          z = F::load(at[2]) - F::splat(plane.origin.z);
-  const auto along = [&](Vec3f n) { return F::splat(n.x) * x + F::splat(n.y) * y + F::splat(n.z) * z; };
-  const F height = along(plane.normal), beta = along(plane.second), gamma = along(plane.third);
-  const F low = F::splat(-0.02f);
-  return math::bitmask((math::abs(height) < F::splat(margin)) & (low <= beta) & (low <= gamma) &
-                       (beta + gamma <= F::splat(1.02f)));
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const std::uint32_t x = key[std::size_t(a)], y = key[std::size_t(b)];
+    return x != y ? x < y : a < b;
+  });
+  return order;
 }
 
 }  // namespace
 
+void ClothState::tile_folds() {
+  const std::vector<int> vertices = order_by_place(position);
+  constexpr std::size_t group = fold_lanes * fold_lanes;
+  fold_vertices.assign((vertices.size() + group - 1) / group, FoldVertices{});
+  for (FoldVertices& g : fold_vertices)
+    for (auto& tile : g.vertex)
+      for (int& vertex : tile) vertex = -1;
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    fold_vertices[k / group].vertex[k % group / fold_lanes][k % fold_lanes] = vertices[k];
+
+  std::vector<Vec3d> middle;
+  for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
+    middle.push_back((position[corners[k]] + position[corners[k + 1]] + position[corners[k + 2]]) / 3.0);
+  const std::vector<int> order = order_by_place(middle);
+  fold_triangles.assign((order.size() + fold_lanes - 1) / fold_lanes, FoldTriangles{});
+  for (std::size_t k = 0; k < fold_triangles.size() * fold_lanes; ++k) {
+    FoldTriangles& tile = fold_triangles[k / fold_lanes];
+    const std::size_t lane = k % fold_lanes;
+    tile.triangle[lane] = k < order.size() ? order[k] : -1;
+    for (std::size_t c = 0; c < 3 && k < order.size(); ++c)
+      tile.corner[c][lane] = int(corners[3 * std::size_t(order[k]) + c]);
+  }
+}
+
 void ClothState::find_fold_pairs(float h, float apart) {
-  const std::size_t n = position.size(), most = 8 * n + 1024;
-  const double size = 1.2 * double(mean_edge);
-  const FoldGrid grid = make_fold_grid(position, size, double(most));
-  cell_first.reserve(most + 1);
-  cell_first.assign(grid.count() + 1, 0);
-  cell_list.resize(n);
-  cell_of.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    cell_of[i] = int(grid.place(position[i]));
-    ++cell_first[std::size_t(cell_of[i]) + 1];
+  constexpr float none = 1e30f;
+  fold_records.resize(2 * position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    fold_records[2 * i] = Vec3f(position[i] - position[0]);
+    fold_records[2 * i + 1] = velocity[i];
   }
-  for (std::size_t k = 0; k < grid.count(); ++k) cell_first[k + 1] += cell_first[k];
-  for (auto& list : cell_place) list.resize(n + 3);  // read by fours
-  local.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = std::size_t(cell_first[std::size_t(cell_of[i])]++);
-    cell_list[k] = int(i);
-    local[i] = Vec3f(position[i] - grid.low);
-    for (int axis = 0; axis < 3; ++axis) cell_place[axis][k] = local[i][axis];
-  }
-  for (std::size_t k = grid.count(); k > 0; --k) cell_first[k] = cell_first[k - 1];
-  cell_first[0] = 0;
-  pairs.clear();
-  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
-  const float inverse = float(grid.inverse), step = 1 / h;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::uint32_t* c = &corners[3 * t];
-    const float speed = math::sqrt(
-        math::max(length_squared(velocity[c[1]] - velocity[c[0]]), length_squared(velocity[c[2]] - velocity[c[0]])));
-    const float margin = apart + math::min(2 * h * speed + apart, 0.5f * float(size));
-    const Vec3f a = local[c[0]], b = local[c[1]], d = local[c[2]];
-    int from[3], to[3];
-    bool huge = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float low = math::min(a[axis], math::min(b[axis], d[axis])) - margin;
-      const float high = math::max(a[axis], math::max(b[axis], d[axis])) + margin;
-      const float last = float(grid.cells[axis] - 1);
-      from[axis] = int(math::clamp(low * inverse, 0.0f, last));
-      to[axis] = int(math::clamp(high * inverse, 0.0f, last));
-      huge |= to[axis] - from[axis] > 8;
-    }
-    if (huge) continue;  // stretched out of all measure
-    const FoldPlane plane = FoldPlane::of(a, b - a, d - a);
-    if (plane.normal == Vec3f{}) continue;
-    for (int z = from[2]; z <= to[2]; ++z)
-      for (int y = from[1]; y <= to[1]; ++y) {
-        const std::size_t row = std::size_t(grid.cells[0]) * std::size_t(y + grid.cells[1] * z);
-        const int end = cell_first[row + std::size_t(to[0]) + 1];
-        for (int k = cell_first[row + std::size_t(from[0])]; k < end; k += 4) {
-          const float* const at[3] = {&cell_place[0][std::size_t(k)], &cell_place[1][std::size_t(k)],
-                                      &cell_place[2][std::size_t(k)]};
-          std::uint32_t hits = above(plane, margin, at);
-          if (end - k < 4) hits &= (1u << (end - k)) - 1;
-          for (; hits != 0; hits &= hits - 1) {
-            const std::uint32_t v = std::uint32_t(cell_list[std::size_t(k) + std::size_t(std::countr_zero(hits))]);
-            if (v == c[0] || v == c[1] || v == c[2]) continue;
-            const Vec3f way = local[v] - a;
-            const float beta = dot(way, plane.second), gamma = dot(way, plane.third), height = dot(way, plane.normal);
-            const float side = height >= 0 ? 1.0f : -1.0f, gap = side * height - apart;
-            ClothPair pair{v, std::uint32_t(t), {1 - beta - gamma, beta, gamma}, side * plane.normal};
-            pair.wanted = gap >= 0 ? -gap * step : math::min(-0.2f * gap * step, 0.5f);
-            const float weight = lightness(v) + math::square(pair.share.x) * lightness(c[0]) +
-                                 math::square(pair.share.y) * lightness(c[1]) +
-                                 math::square(pair.share.z) * lightness(c[2]);
-            if (!(weight > 0)) continue;
-            pair.mass = 1 / weight;
-            pairs.push_back(pair);
-          }
-        }
+  for (FoldVertices& group : fold_vertices) {
+    Vec3f all_low{none, none, none}, all_high = -all_low;
+    for (std::size_t k = 0; k < fold_lanes; ++k) {
+      Vec3f low{none, none, none}, high = -low;
+      for (std::size_t i = 0; i < fold_lanes; ++i) {
+        const int vertex = group.vertex[k][i];
+        const Vec3f p = vertex < 0 ? Vec3f{2 * none, 0, 0} : fold_records[2 * std::size_t(vertex)].vector();
+        if (vertex >= 0) low = min(low, p), high = max(high, p);
+        for (int axis = 0; axis < 3; ++axis) group.at[k][axis][i] = p[axis];
       }
+      for (int axis = 0; axis < 3; ++axis) group.low[axis][k] = low[axis], group.high[axis][k] = high[axis];
+      all_low = min(all_low, low);
+      all_high = max(all_high, high);
+    }
+    for (int axis = 0; axis < 3; ++axis) group.all_low[axis] = all_low[axis], group.all_high[axis] = all_high[axis];
   }
+  const float size = 1.2f * mean_edge;
+  const SoftKernels& kernels = solver.kernels();
+  kernels.lay_folds(fold_triangles.data(), int(fold_triangles.size()),
+                    reinterpret_cast<const float*>(fold_records.data()), {apart, 2 * h, 0.5f * size, 8 * size});
+  pairs.clear();
+  fold_hits.resize(fold_lanes * fold_lanes * fold_lanes);
+  const auto lightness = [&](int i) { return pin_of[std::size_t(i)] >= 0 ? 0.0f : 1 / mass[std::size_t(i)]; };
+  const float step = 1 / h;
+  for (const FoldTriangles& tile : fold_triangles)
+    for (const FoldVertices& group : fold_vertices) {
+      bool apart_from = false;
+      for (int axis = 0; axis < 3; ++axis)
+        apart_from |= group.all_high[axis] < tile.low[axis] || tile.high[axis] < group.all_low[axis];
+      if (apart_from) continue;
+      const int count = kernels.meet_folds(tile, group, fold_hits.data());
+      for (int k = 0; k < count; ++k) {
+        const FoldHit hit = fold_hits[std::size_t(k)];
+        const std::uint32_t* c = &corners[3 * std::size_t(hit.triangle)];
+        const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
+        const Vec3f a = place(c[0]), u = place(c[1]) - a, v = place(c[2]) - a, n = cross(u, v);
+        const Vec3f way = place(std::uint32_t(hit.vertex)) - a;
+        const float inverse = 1 / dot(n, n), beta = inverse * dot(way, cross(v, n)),
+                    gamma = inverse * dot(way, cross(n, u));
+        const Vec3f normal = math::sqrt(inverse) * n;
+        const float height = dot(way, normal), side = height >= 0 ? 1.0f : -1.0f, gap = side * height - apart;
+        ClothPair pair{
+            std::uint32_t(hit.vertex), std::uint32_t(hit.triangle), {1 - beta - gamma, beta, gamma}, side * normal};
+        pair.wanted = gap >= 0 ? -gap * step : math::min(-0.2f * gap * step, 0.5f);
+        const float weight = lightness(hit.vertex) + math::square(pair.share.x) * lightness(int(c[0])) +
+                             math::square(pair.share.y) * lightness(int(c[1])) +
+                             math::square(pair.share.z) * lightness(int(c[2]));
+        if (!(weight > 0)) continue;
+        pair.mass = 1 / weight;
+        pairs.push_back(pair);
+      }
+    }
 }
 
 void ClothState::keep_apart(float h) {

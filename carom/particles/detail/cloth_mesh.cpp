@@ -171,10 +171,8 @@ void ClothState::connect() {
       }
   matrix.build(n, corners, 3, links);
   list_incidences(n, corners, triangle_first, triangle_list);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        triangles[t].slots[3 * a + b] = matrix.slot(corners[3 * t + std::size_t(a)], corners[3 * t + std::size_t(b)]);
+  tile_triangles();
+  tile_sides();
   mass.assign(std::size_t(n), 0.0f);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int a = 0; a < 3; ++a)
@@ -185,7 +183,8 @@ void ClothState::connect() {
   velocity.resize(std::size_t(n));
   touches.resize(std::size_t(n));
   pin_of.resize(std::size_t(n), -1);
-  solver.resize(std::size_t(n));
+  solver.resize(matrix);
+  if (self_collide) tile_folds();
 }
 
 // The vertex of a triangle above the strength is split along the line across the greatest tension, where that leaves
@@ -199,19 +198,14 @@ void ClothState::tear() {
     int worst = -1;
     float most = strength;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const float* s = triangles[t].stress;
-      const float mean = 0.5f * (s[0] + s[1]), spread = math::sqrt(0.25f * (s[0] - s[1]) * (s[0] - s[1]) + s[2] * s[2]);
-      if (mean + spread > most) most = mean + spread, worst = int(t);
+      if (const float tension = strains[t].tension(); tension > most) most = tension, worst = int(t);
     }
     if (worst < 0) return;
-    const ClothTriangle& triangle = triangles[std::size_t(worst)];
-    const float* s = triangle.stress;
+    ClothStrain& strain = strains[std::size_t(worst)];
     // Direction of the greatest tension in warp and weft, and as it lies in space.
-    const float spread = math::sqrt(0.25f * (s[0] - s[1]) * (s[0] - s[1]) + s[2] * s[2]);
-    const float lambda = 0.5f * (s[0] + s[1]) + spread;
-    float du = s[2], dv = lambda - s[0];
-    if (du * du + dv * dv < 1e-20f) du = s[0] >= s[1] ? 1.0f : 0.0f, dv = 1 - du;
-    const Vec3f way = normalize(du * triangle.along + dv * triangle.across);
+    float du = strain.shear, dv = strain.tension() - strain.warp;
+    if (du * du + dv * dv < 1e-20f) du = strain.warp >= strain.weft ? 1.0f : 0.0f, dv = 1 - du;
+    const Vec3f way = normalize(du * strain.image_of_warp() + dv * strain.image_of_weft());
     bool split = false;
     for (int a = 0; a < 3 && !split; ++a) {
       const std::uint32_t vertex = corners[3 * std::size_t(worst) + std::size_t(a)];
@@ -237,8 +231,7 @@ void ClothState::tear() {
     }
     if (!split) return;
     // It does not tear on within the step: its stress is told anew by the next.
-    triangles[std::size_t(worst)].stress[0] = triangles[std::size_t(worst)].stress[1] =
-        triangles[std::size_t(worst)].stress[2] = 0;
+    strain.warp = strain.weft = strain.shear = 0;
   }
 }
 

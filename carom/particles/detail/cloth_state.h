@@ -10,13 +10,6 @@ struct ClothTriangle {
   float area = 0;              ///< m², at rest
   float x[3] = {}, y[3] = {};  ///< m, corners at rest along warp and weft
   float u[3] = {}, v[3] = {};  ///< gradients of the three corners' shares along warp and weft, 1/m
-  int slots[9] = {};
-  // Of this substep:
-  Vec3f along{}, across{};      ///< images of the unit warp and weft
-  float stress[3] = {};         ///< N/m: warp, weft, shear
-  float pull[3] = {};           ///< its part that pulls
-  Vec3f wind{};                 ///< N on each corner
-  Mat3f brake = Mat3f::zero();  ///< N·s/m on each corner
 };
 
 /// A triangle with the corners across its edges: a quadratic through the six gives its curvature (the patch of Oñate
@@ -58,17 +51,25 @@ struct ClothState {
 
   // What follows from the mesh.
   SoftMatrix matrix;
-  std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
+  std::vector<ClothTile> tiles;  ///< of triangles, in their order
+  std::vector<ClothEdges> edges;
+  std::vector<ClothCorners> vertices;  ///< in their order
+  std::vector<ClothSide> edge_sides, vertex_sides;
   float smallest_edge = 0, mean_edge = 0;
   float far_share = 0;  ///< 1/s²: greatest sum of a vertex's links to those beyond its triangles, by its mass
+
+  std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
+  std::vector<FoldVertices> fold_vertices;
+  std::vector<FoldTriangles> fold_triangles;
 
   // Of a step.
   SoftSolver solver;
   SoftObstacles obstacles;
+  AlignedFloats records, rows;       ///< by vertex: cloth_record and cloth_row floats
+  std::vector<ClothStrain> strains;  ///< by triangle, those that fill the last tile, and one that is none
   std::vector<ClothPair> pairs;
-  std::vector<int> cell_first, cell_list, cell_of;
-  std::vector<float> cell_place[3];  ///< m, of the vertices in the order of their cells
-  std::vector<Vec3f> local;          ///< m, by vertex, from the cells' corner
+  std::vector<SoftVector> fold_records;  ///< by vertex: place from the first, velocity
+  std::vector<FoldHit> fold_hits;
   math::Vec3d wind_force{}, wind_impulse{};
   double greatest_tension = 0;
   int iterations = 0;
@@ -76,14 +77,18 @@ struct ClothState {
 
   core::Status set_mesh(std::span<const math::Vec3d> rest, math::Vec3d warp);
   void find_patches();
+  void tile_triangles();
+  void tile_sides();
   void connect();  ///< matrix and incidences, after the mesh changed
 
   void step(rigid::World3& world, double dt);
+  ClothLaw law() const;                   ///< without the weight
   void stretch();                         ///< triangles: strains, stresses, wind
   void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
   void hold(float h);
   SoftTouching touching() { return {touches, pins, pinned, position, velocity}; }
   void keep_apart(float h);  ///< folds
+  void tile_folds();
   void find_fold_pairs(float h, float apart);
   void tear();
 };

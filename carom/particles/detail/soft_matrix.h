@@ -10,6 +10,8 @@
 
 #include "carom/core/scheduler.h"
 #include "carom/math/mat.h"
+#include "carom/particles/detail/aligned.h"
+#include "carom/particles/detail/soft_tiles.h"
 
 namespace carom::particles::detail {
 
@@ -33,31 +35,14 @@ struct SoftBlock {
   }
   Lanes times(Lanes v) const { return x * v[0] + y * v[1] + z * v[2]; }
   SoftBlock times(const SoftBlock& b) const { return {times(b.x), times(b.y), times(b.z)}; }
-  SoftBlock transposed() const {
-    return {Lanes{x[0], y[0], z[0], 0}, Lanes{x[1], y[1], z[1], 0}, Lanes{x[2], y[2], z[2], 0}};
+  Lanes transposed_times(Lanes v) const {
+    const Lanes a = x * v, b = y * v, c = z * v;
+    return Lanes{a[0] + a[1] + a[2], b[0] + b[1] + b[2], c[0] + c[1] + c[2], 0};
   }
   Mat3f matrix() const { return {{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}; }
 };
 
-/// A 3×3 block by columns without padding: what a sweep reads again and again must stay in the cache. It lies in a list
-/// with room for one more; fourth lanes hold what is next in memory and mean nothing.
-struct SoftPacked {
-  typedef float Loose __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
-  using Lanes = SoftBlock::Lanes;
-  float value[9];
-
-  Lanes column(int k) const { return *reinterpret_cast<const Loose*>(value + 3 * k); }
-  Lanes times(Lanes v) const { return column(0) * v[0] + column(1) * v[1] + column(2) * v[2]; }
-  Lanes transposed_times(Lanes v) const {
-    const Lanes a = column(0) * v, b = column(1) * v, c = column(2) * v;
-    const Lanes ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), last = __builtin_shufflevector(a, b, 2, 6, 2, 6);
-    return __builtin_shufflevector(ab, c, 0, 1, 4, 4) + __builtin_shufflevector(ab, c, 2, 3, 5, 5) +
-           __builtin_shufflevector(last, c, 0, 1, 6, 6);
-  }
-  void set(const SoftBlock& b) {
-    for (int k = 0; k < 3; ++k) value[k] = b.x[k], value[3 + k] = b.y[k], value[6 + k] = b.z[k];
-  }
-};
+inline SoftBlock::Lanes lanes_of(Vec3f v) { return SoftBlock::Lanes{v.x, v.y, v.z, 0}; }
 
 /// Three numbers of a vertex in four lanes: one load.
 struct SoftVector {
@@ -109,6 +94,7 @@ class SoftMatrix {
   /// Place of block (i, j); the pair must share an element.
   int slot(std::uint32_t i, std::uint32_t j) const;
   int first(int row) const { return first_[std::size_t(row)]; }
+  std::uint32_t column(int slot) const { return column_[std::size_t(slot)]; }
   int diagonal(int row) const { return diagonal_[std::size_t(row)]; }
   std::vector<SoftBlock> blocks;
   std::vector<float> near;  ///< the links' numbers, by slot; whoever fills the blocks adds them
@@ -141,18 +127,10 @@ class SoftMatrix {
   SoftBlock::Lanes whole_row(std::size_t i, const SoftVector* x) const {
     return side(first_[i], first_[i + 1], far_first_[i], far_first_[i + 1], x);
   }
-  void find_order();
-  /// What lies below the diagonal, by places in the order of a sweep: blocks of a row, then its links.
-  struct Side {
-    std::vector<int> first, far;        ///< by place: first entry; first link. One more than places.
-    std::vector<std::uint32_t> column;  ///< place
-    std::vector<int> source;            ///< slot of the block, or number of the link
-    int last(std::size_t place, bool all) const { return all ? first[place + 1] : far[place]; }
-  };
+  void find_tiles();
   std::vector<int> first_, diagonal_;
   std::vector<std::uint32_t> column_;
-  std::vector<int> order_;  ///< of a sweep: rows after what they hang on, and beside each other where they are apart
-  Side lower_;
+  SoftTiles tiles_;
   std::vector<int> far_first_, far_middle_;  ///< links of a row; the first of them above the diagonal
   std::vector<std::uint32_t> far_column_;
   std::vector<float> far_value_, far_sum_;
@@ -210,7 +188,9 @@ class SoftSolver {
   std::vector<SoftMover> movers;
   std::vector<SoftTie> ties;  ///< by body, then by particle
 
-  void resize(std::size_t n);
+  void set_lanes(int lanes);  ///< 4, 8 or 16, of those that the machine has; 0: as many as it has
+  const SoftKernels& kernels() const { return *kernels_; }
+  void resize(const SoftMatrix& matrix);
   /// Takes the forces at the end of the step, −K v, to the right-hand side, and starts from the last solution, nothing
   /// held. What is common to all velocities drops out of K v exactly.
   void begin(const SoftMatrix& matrix, const std::vector<Vec3f>& velocity, core::TaskScheduler& scheduler);
@@ -219,6 +199,7 @@ class SoftSolver {
   int solve(const SoftMatrix& matrix, double tolerance, float least, int most, core::TaskScheduler& scheduler);
 
  private:
+  SoftSweep sweep(const SoftMatrix& matrix);
   void prepare(const SoftMatrix& matrix);
   // soft_movers.cpp
   Vec3f carried(const SoftTie& tie, const SoftTwist& motion) const;  ///< of the tie's particle, where it is held
@@ -227,22 +208,25 @@ class SoftSolver {
   void answer(const SoftMatrix& matrix, const SoftTie& tie, const SoftVector* x, SoftTwist& out) const;
   void right_of_movers(std::vector<SoftTwist>& out) const;
   void residual_of_movers(std::vector<SoftTwist>& out);
-  void sweep_down(const SoftMatrix& matrix, const std::vector<SoftVector>& x, std::vector<SoftTwist>& motions);
+  void sweep_down(const SoftMatrix& matrix, std::vector<SoftTwist>& motions);
   void sweep_up(const SoftMatrix& matrix, const std::vector<SoftTwist>& from, std::vector<SoftTwist>& to);
   static SoftTwist times(const double (&m)[6][6], const SoftTwist& x);
   double finish_movers(const SoftMatrix& matrix);  ///< images; their share of the curvature
-  double start_movers(const SoftMatrix& matrix, const std::vector<SoftVector>& x);
+  double start_movers(const SoftMatrix& matrix);
   void scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
   double start_sweep(const SoftMatrix& matrix, const std::vector<SoftVector>& from);
-  void unscale(const SoftMatrix& matrix, const std::vector<SoftVector>& x, std::vector<SoftVector>& out) const;
+  void unscale(const SoftMatrix& matrix, std::vector<SoftVector>& out) const;
   void settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
 
-  std::vector<SoftVector> residual_, free_, held_, image_;            // by vertex
-  std::vector<SoftVector> swept_, direction_, back_, forward_, sum_;  // scaled, in the order of the sweep
-  std::vector<SoftVector> field_, pull_;                              ///< of the particles, by the bodies' motion
+  const SoftKernels* kernels_ = &soft_kernels(4);
+  std::vector<SoftVector> residual_, free_, held_, image_;  // by vertex
+  std::vector<SoftVector> forward_, from_;                  ///< scaled, by place; what no one hangs on after the last
+  AlignedFloats swept_, direction_, back_, sum_;            ///< scaled, by tile
+  std::vector<SoftVector> field_, pull_;                    ///< of the particles, by the bodies' motion
   std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_;
-  std::vector<SoftBlock> scale_, scale_transposed_;  ///< W with W Wᵀ the inverse of the diagonal within what is free
-  std::vector<SoftPacked> lower_;                    ///< Wᵀ K W below the diagonal, by the matrix's entries
+  std::vector<SoftBlock> scale_;  ///< W by place, with W Wᵀ the inverse of the diagonal within what is free
+  AlignedFloats scale_tiles_;     ///< the same by tile
+  AlignedFloats lower_;           ///< Wᵀ K W below the diagonal, by the tiles' entries
 };
 
 }  // namespace carom::particles::detail

@@ -151,10 +151,9 @@ void SoftSolver::residual_of_movers(std::vector<SoftTwist>& out) {
   }
 }
 
-/// motions ← (D + L)⁻¹ motions for the bodies, after the particles' x (scaled).
-void SoftSolver::sweep_down(const SoftMatrix& matrix, const std::vector<SoftVector>& x,
-                            std::vector<SoftTwist>& motions) {
-  unscale(matrix, x, field_);
+/// motions ← (D + L)⁻¹ motions for the bodies, after the particles' in `forward_`.
+void SoftSolver::sweep_down(const SoftMatrix& matrix, std::vector<SoftTwist>& motions) {
+  unscale(matrix, field_);
   for (std::size_t b = 0; b < movers.size(); ++b) {
     const SoftMover& mover = movers[b];
     if (mover.from == mover.to) {
@@ -208,8 +207,8 @@ void SoftSolver::sweep_up(const SoftMatrix& matrix, const std::vector<SoftTwist>
   }
 }
 
-double SoftSolver::start_movers(const SoftMatrix& matrix, const std::vector<SoftVector>& x) {
-  sweep_down(matrix, x, mover_residual_);
+double SoftSolver::start_movers(const SoftMatrix& matrix) {
+  sweep_down(matrix, mover_residual_);
   double size = 0;
   for (std::size_t b = 0; b < movers.size(); ++b)
     size += dot(mover_residual_[b], times(movers[b].full, mover_residual_[b]));
@@ -218,7 +217,7 @@ double SoftSolver::start_movers(const SoftMatrix& matrix, const std::vector<Soft
 
 double SoftSolver::finish_movers(const SoftMatrix& matrix) {
   // u = (D + L)⁻¹ D (q − t): D's product is undone by the sweep's division but for what lies below.
-  unscale(matrix, forward_, field_);
+  unscale(matrix, field_);
   double curvature = 0;
   for (std::size_t b = 0; b < movers.size(); ++b) {
     const SoftMover& mover = movers[b];

@@ -1,0 +1,19 @@
+// The kernels of the solver of cloth and soft bodies for 8 lanes.
+#include "carom/math/simd_double.h"
+#include "carom/math/simd_rows.h"
+#include "carom/particles/detail/soft_tiles.h"
+
+#define CAROM_SOFT_NAMESPACE soft_avx2
+#define CAROM_SOFT_WIDTH 8
+#include "carom/particles/detail/soft_kernel.inl"
+// What stands on these:
+#include "carom/particles/detail/cloth_kernel.inl"
+#include "carom/particles/detail/fold_kernel.inl"
+
+namespace carom::particles::detail::CAROM_SOFT_NAMESPACE {
+extern const SoftKernels kernels;
+const SoftKernels kernels = {fill, start, up, down, go, strain, join_edges, join_corners, lay_folds, meet_folds};
+}  // namespace carom::particles::detail::CAROM_SOFT_NAMESPACE
+
+#undef CAROM_SOFT_NAMESPACE
+#undef CAROM_SOFT_WIDTH
