@@ -1,6 +1,6 @@
 // Every demo and scene leads to the same bits natively and as WebAssembly in Chromium, with one thread and several. WEB names the folder that
 // `./play --web` builds, MODULE the whole engine before it is cut; HASH_STEPS and HASH_DEMOS (names with commas between them)
-// ask for other runs. Scenes run in Node too; there tools/check_determinism.sh runs the demos.
+// ask for other runs. Scenes run in Node too; there tools/check_determinism.sh runs the demos, for 600 steps.
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
@@ -13,7 +13,7 @@ import {carom, ISOLATED, root, serveFolder, visit} from './harness.mjs';
 
 const web = process.env.WEB ?? join(dirname(fileURLToPath(import.meta.url)), '../../../out/web');
 const whole = process.env.MODULE ?? join(root, 'build/wasm/apps/wasm/carom.wasm');
-const steps = Number(process.env.HASH_STEPS ?? 600);
+const steps = Number(process.env.HASH_STEPS ?? 300);
 // One scene would take as long as two thirds of the others together.
 const stepsOf = (name) => (name === 'scene:soft_bodies' ? Math.min(steps, 150) : steps);
 const scratch = mkdtempSync(join(tmpdir(), 'carom-hashes-'));
