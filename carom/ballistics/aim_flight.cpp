@@ -44,17 +44,19 @@ AimSolver::Arrival AimSolver::propagate_in(Vec3d u, double time, double allowed)
 }
 
 template <bool Plain>
-AimSolver::Arrival AimSolver::follow_in(Vec3d u, double time, const Path& path) const {
+AimSolver::Arrival AimSolver::follow_in(Vec3d u, double time, Path& path) const {
   Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v);
   const double scale = time / path.node[path.count].t;
   double t = 0;
+  path.node[0].put(0, x, v, k);
   for (int i = 1; i <= path.count; ++i) {
     const double next = path.node[i].t * scale;
     const Step end = step<Plain>(x, v, k, next - t);
-    x = end.x;
-    v = end.v;
-    k = end.k;
+    x = end.x + path.correction[i - 1].x;
+    v = end.v + path.correction[i - 1].v;
+    k = rough_.at<Plain>(x, v);
     t = next;
+    path.node[i].put(t, x, v, k);
   }
   return {x, v};
 }
@@ -118,8 +120,8 @@ AimSolver::Pass AimSolver::pass_in(double elevation, double azimuth) const {
 
 template AimSolver::Arrival AimSolver::propagate_in<true>(Vec3d, double, double) const;
 template AimSolver::Arrival AimSolver::propagate_in<false>(Vec3d, double, double) const;
-template AimSolver::Arrival AimSolver::follow_in<true>(Vec3d, double, const Path&) const;
-template AimSolver::Arrival AimSolver::follow_in<false>(Vec3d, double, const Path&) const;
+template AimSolver::Arrival AimSolver::follow_in<true>(Vec3d, double, Path&) const;
+template AimSolver::Arrival AimSolver::follow_in<false>(Vec3d, double, Path&) const;
 template AimSolver::Pass AimSolver::pass_in<true>(double, double) const;
 template AimSolver::Pass AimSolver::pass_in<false>(double, double) const;
 

@@ -1,4 +1,6 @@
 // Recorded paths of the aim solver: how the arrival depends on the start, and by how much it is off.
+#include <utility>
+
 #include "carom/ballistics/detail/aim_solver.h"
 
 namespace carom::ballistics::detail {
@@ -17,19 +19,9 @@ constexpr float tableau[6][5] = {
 constexpr float weight[6] = {float(35.0 / 384), 0, float(500.0 / 1113), float(125.0 / 192), -float(2187.0 / 6784),
                              float(11.0 / 84)};
 
-void put(double* p, Vec3d v) {
-  p[0] = v.x;
-  p[1] = v.y;
-  p[2] = v.z;
-}
-
 using Four = math::WideFloat<4>;
 
-/// What the arrival owes to a change of the velocity and of the height: columns of ∂x(T)/∂(v, y), the fourth lane idle.
-/// Seven digits are plenty.
-struct Debt {
-  Four v[3], y;
-};
+using Debt = FlightPath::Debt;
 [[gnu::always_inline]] inline void add(Debt& to, float s, const Debt& from) {
   const Four scale = Four::splat(s);
   for (int i = 0; i < 3; ++i) to.v[i] = to.v[i] + scale * from.v[i];
@@ -37,11 +29,6 @@ struct Debt {
 }
 [[gnu::always_inline]] inline Four times(const Debt& m, const float* v) {
   return Four::splat(v[0]) * m.v[0] + Four::splat(v[1]) * m.v[1] + Four::splat(v[2]) * m.v[2];
-}
-Vec3d times(const Debt& m, Vec3d v) {
-  const float f[3] = {float(v.x), float(v.y), float(v.z)};
-  const Four r = times(m, f);
-  return {r.v[0], r.v[1], r.v[2]};
 }
 /// What is owed by the velocity and the height of a stage, where `k` is owed by its acceleration: k ∂a/∂v, k ∂a/∂y;
 /// places owe themselves, `own`, to the arrival, but for what the height does.
@@ -104,12 +91,35 @@ constexpr Pair third[gauss_pairs] = {{{-0.62824992464368901, 0.26911576974459905
                                      {{0.32396186535393517, -0.32396186535393534}},
                                      {{-0.26911576974459905, 0.62824992464368901}}};
 
+/// ∫ H d of the defect d over a step, H Hermite's cubics: what is weighted by a cubic in s takes its values (0, 1) and
+/// slopes at both ends of them.
+struct Moments {
+  Pairs start{}, start_slope{}, end{}, end_slope{};
+};
+
+/// What a push within a step does at its end, along the velocity through the air or across it: e' = −rate e.
+struct Push {
+  double at_start, slope_at_start, slope_at_end;  // of the velocity at the end: 1 for a push there
+  double way, way_slope;                          // of the place: 0 and −1 for a push at the end
+
+  /// `z`: −rate times the length of the step, at its beginning, .3, .8 and the end of it.
+  explicit Push(const double (&z)[4]) {
+    const double mean = 1.0 / 12 * z[0] + 10.0 / 21 * z[1] + 5.0 / 12 * z[2] + 1.0 / 42 * z[3];
+    const double even = 1 + mean * mean / 12, odd = 0.5 * mean;
+    at_start = (even + odd) / (even - odd);
+    slope_at_start = -z[0] * at_start;
+    slope_at_end = -z[3];
+    way = 0.5 * (1 + at_start) + (z[0] - z[3] * at_start) / 12;
+    way_slope = -1 - z[0] * way;
+  }
+};
+
 /// Gauss's six points from `from` to `to`, halved where the fifth and third Legendre coefficients of the defect say
 /// that they are too few: at bends of drag curves and of the wind. (The defect of a smooth motion is even.)
 template <bool Plain>
-void gather(const PointMassPull& pull, const Interpolant& flown, double from, double to, double budget, Pairs* moment) {
+void gather(const PointMassPull& pull, const Interpolant& flown, double from, double to, double budget,
+            Moments& moments) {
   const double width = to - from;
-
   Pairs defect[gauss_pairs], rest{}, less{};
   Pair at[gauss_pairs];
   for (int q = 0; q < gauss_pairs; ++q) {
@@ -130,19 +140,90 @@ void gather(const PointMassPull& pull, const Interpolant& flown, double from, do
     add(less, third[q], defect[q]);
   }
   const auto size = [](Vec3d v) { return math::abs(v.x) + math::abs(v.y) + math::abs(v.z); };
-  if (width > 0.2 && size(sum(rest)) + 0.1 * size(sum(less)) > budget) {
-    gather<Plain>(pull, flown, from, 0.5 * (from + to), budget, moment);
-    gather<Plain>(pull, flown, 0.5 * (from + to), to, budget, moment);
+  if (width > 0.05 && size(sum(rest)) + 0.1 * size(sum(less)) > budget) {
+    gather<Plain>(pull, flown, from, 0.5 * (from + to), budget, moments);
+    gather<Plain>(pull, flown, 0.5 * (from + to), to, budget, moments);
     return;
   }
   for (int q = 0; q < gauss_pairs; ++q) {
     const Pair s = at[q], s2 = s * s, s3 = s2 * s, end = Pair::splat(3) * s2 - Pair::splat(2) * s3;
-    add(moment[0], Pair::splat(1) - end, defect[q]);
-    add(moment[1], s3 - Pair::splat(2) * s2 + s, defect[q]);
-    add(moment[2], end, defect[q]);
-    add(moment[3], s3 - s2, defect[q]);
+    add(moments.start, Pair::splat(1) - end, defect[q]);
+    add(moments.start_slope, s3 - Pair::splat(2) * s2 + s, defect[q]);
+    add(moments.end, end, defect[q]);
+    add(moments.end_slope, s3 - s2, defect[q]);
   }
 }
+
+/// Where in a step its heights pass the bends of the wind and its Mach numbers those of the drag curve, in rising order
+/// of s.
+struct Cuts {
+  static constexpr int most = 40;
+  int count = 0;
+  double s[most + 1];
+
+  Cuts(const Projectile& projectile, const Conditions& conditions, const Interpolant& flown, const FlightPath::Node& a,
+       const FlightPath::Node& b) {
+    const auto height = [&](double at) { return value(flown.position[1], at); };
+    s[count++] = 0;
+    if (conditions.wind.levels().size() > 1) {
+      double turn = 1;  // up to there heights only rise or only fall
+      if ((a.v[1] > 0) != (b.v[1] > 0)) turn = root([&](double at) { return value(flown.velocity[1], at); }, 0, 1);
+      const auto levels = [&](double low, double high, auto&& keep) {
+        conditions.wind.for_each_bend(low, high, least, keep);
+      };
+      between(levels, height, 0, turn);
+      if (turn < 1) between(levels, height, turn, 1);
+    }
+    if (projectile.drag.has_bends()) {
+      const auto mach = [&](double at) {
+        const double y = height(at);
+        const Vec3d v{value(flown.velocity[0], at), value(flown.velocity[1], at), value(flown.velocity[2], at)};
+        return math::length(v - conditions.wind.at(y)) / conditions.air.at(y).speed_of_sound;
+      };
+      const auto nodes = [&](double low, double high, auto&& keep) { projectile.drag.for_each_bend(low, high, keep); };
+      between(nodes, mach, 0, 0.5);  // speed may have its least or its most within
+      between(nodes, mach, 0.5, 1);
+    }
+    for (int i = 1; i < count; ++i)
+      for (int j = i; j > 1 && s[j] < s[j - 1]; --j) std::swap(s[j], s[j - 1]);
+    s[count] = 1;
+  }
+
+ private:
+  static constexpr double least = 0.2;  // m/s
+  template <int N>
+  static double value(const Pair (&c)[N], double s) {
+    double r = c[N - 1].v[0];
+    for (int i = N - 2; i >= 0; --i) r = c[i].v[0] + s * r;
+    return r;
+  }
+  /// To a thousandth: secants, with every third step a bisection.
+  template <class F>
+  static double root(F&& f, double low, double high) {
+    double at_low = f(low), at_high = f(high);
+    for (int i = 0; i < 12 && high - low > 1e-3; ++i) {
+      const double chord = low - at_low * (high - low) / (at_high - at_low);
+      const double s = i % 3 == 2 || !(chord > low && chord < high) ? 0.5 * (low + high) : chord;
+      const double at = f(s);
+      if (math::abs(at) < 1e-3 * math::abs(at_high - at_low)) return s;
+      if ((at > 0) == (at_low > 0)) {
+        low = s;
+        at_low = at;
+      } else {
+        high = s;
+        at_high = at;
+      }
+    }
+    return 0.5 * (low + high);
+  }
+  template <class Bends, class F>
+  void between(Bends&& bends, F&& f, double from, double to) {
+    const double begin = f(from), end = f(to);
+    bends(math::min(begin, end), math::max(begin, end), [&](double level) {
+      if (count < most) s[count++] = root([&](double at) { return f(at) - level; }, from, to);
+    });
+  }
+};
 
 /// Where in a step a height > 0 falls to 0: Hermite's cubic, halved to a thousandth.
 double fall_within(double from, double from_slope, double to, double to_slope) {
@@ -166,13 +247,7 @@ bool AimSolver::record_in(Vec3d u, double time, double allowed, Path& path, bool
   Path::Stage first;
   Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v, first);
   double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
-  const auto keep_node = [&] {
-    Path::Node& n = path.node[path.count];
-    n.t = t;
-    put(n.x, x);
-    put(n.v, v);
-    put(n.k, k);
-  };
+  const auto keep_node = [&] { path.node[path.count].put(t, x, v, k); };
   path.count = 0;
   keep_node();
   for (int i = 0; i < 400 && path.count < Path::most; ++i) {
@@ -225,49 +300,77 @@ bool AimSolver::record_in(Vec3d u, double time, double allowed, Path& path, bool
   return false;
 }
 
-template <bool Plain>
-void AimSolver::sensitivities_in(Path& path, double fine) const {
-  Debt debt{}, slope_after{};
+void AimSolver::sensitivities(Path& path) {
+  Debt debt{};
   debt.y = Four{{0, 1, 0, 0}};
-  Vec3d off{};
-  for (int n = path.count; n >= 0; --n) {
-    const Path::Node& a = path.node[n];
+  path.debt[path.count] = debt;
+  for (int n = path.count - 1; n >= 0; --n) {
     const Debt after = debt;
-    double h = 0;
-    if (n < path.count) {
-      h = path.node[n + 1].t - a.t;
-      const float step = float(h);
-      Debt of[6];  // by the stages
-      for (int j = 5; j >= 0; --j) {
-        Debt k{};
-        if (j != 1) add(k, step * weight[j], after);
-        for (int m = j + 1; m < 6; ++m) add(k, step * tableau[m][j], of[m]);
-        of[j] = through(k, path.stage[n][j], step * weight[j]);
-        for (int i = 0; i < 3; ++i) debt.v[i] = debt.v[i] + of[j].v[i];
-        debt.y = debt.y + of[j].y;
-      }
+    const float step = float(path.node[n + 1].t - path.node[n].t);
+    Debt of[6];  // by the stages
+    for (int j = 5; j >= 0; --j) {
+      Debt k{};
+      if (j != 1) add(k, step * weight[j], after);
+      for (int m = j + 1; m < 6; ++m) add(k, step * tableau[m][j], of[m]);
+      of[j] = through(k, path.stage[n][j], step * weight[j]);
+      for (int i = 0; i < 3; ++i) debt.v[i] = debt.v[i] + of[j].v[i];
+      debt.y = debt.y + of[j].y;
     }
-    if (fine > 0) {
-      const Path::Stage& stage = path.stage[math::min(n, path.count - 1)][n < path.count ? 0 : 5];
-      const Debt slope = through(debt, stage, 1);  // −d(debt)/dt
-      if (n < path.count) {
-        // The defect of the interpolant, weighted as a cubic in s makes what is owed.
-        Pairs moment[4]{};
-        const double owed = math::abs(debt.v[0].v[0]) + math::abs(debt.v[1].v[1]) + math::abs(debt.v[2].v[2]);
-        gather<Plain>(pull_, Interpolant(a, path.node[n + 1]), 0, 1, fine / (h * owed), moment);
-        off += h * (times(debt, sum(moment[0])) + times(after, sum(moment[2])) -
-                    h * (times(slope, sum(moment[1])) + times(slope_after, sum(moment[3]))));
-      }
-      slope_after = slope;
-    }
+    path.debt[n] = debt;
   }
   for (int i = 0; i < 3; ++i) path.by_velocity[i] = {debt.v[0].v[i], debt.v[1].v[i], debt.v[2].v[i]};
-  path.off = off;
+}
+
+template <bool Plain>
+Vec3d AimSolver::measure_in(Path& path, double fine) const {
+  Vec3d off{};
+  path.bends = false;
+  for (int n = 0; n < path.count; ++n) {
+    const Path::Node &a = path.node[n], &b = path.node[n + 1];
+    const Debt &owed = path.debt[n], &after = path.debt[n + 1];
+    const double h = b.t - a.t,
+                 most = math::abs(owed.v[0].v[0]) + math::abs(owed.v[1].v[1]) + math::abs(owed.v[2].v[2]);
+    const Interpolant flown(a, b);
+    const Cuts cuts(projectile_, conditions_, flown, a, b);
+    path.bends = path.bends || cuts.count > 1;
+    Moments moments;
+    for (int i = 0; i < cuts.count; ++i)
+      gather<Plain>(pull_, flown, cuts.s[i], cuts.s[i + 1], fine / (h * most), moments);
+    const Path::Stage* s = path.stage[n];
+    const Path::Stage* of[4] = {s, s + 2, s + 3, n + 1 < path.count ? path.stage[n + 1] : s + 5};
+    double across[4], along[4];
+    for (int i = 0; i < 4; ++i) {
+      const double w2 =
+          double(of[i]->w[0]) * of[i]->w[0] + double(of[i]->w[1]) * of[i]->w[1] + double(of[i]->w[2]) * of[i]->w[2];
+      across[i] = -h * of[i]->drag;
+      along[i] = across[i] - h * of[i]->bend * w2;
+    }
+    const Push aside(across), ahead(along);
+    const Vec3d start = sum(moments.start), start_slope = sum(moments.start_slope), end = sum(moments.end),
+                end_slope = sum(moments.end_slope);
+    const auto velocity = [&](const Push& push) {
+      return h * (end + push.at_start * start + push.slope_at_start * start_slope + push.slope_at_end * end_slope);
+    };
+    const auto place = [&](const Push& push) {
+      return (h * h) * (push.way * start + push.way_slope * start_slope - end_slope);
+    };
+    const Vec3d w{s[3].w[0], s[3].w[1], s[3].w[2]}, e = w / math::max(math::length(w), 1e-9);
+    const auto both = [&](Vec3d sideways, Vec3d forward) { return sideways + math::dot(e, forward - sideways) * e; };
+    const Path::Correction more{both(place(aside), place(ahead)), both(velocity(aside), velocity(ahead))};
+    path.correction[n].x += more.x;
+    path.correction[n].v += more.v;
+    off += more.x;
+    off.y -= more.x.y;
+    for (int i = 0; i < 3; ++i)
+      off[i] += after.v[0].v[i] * more.v.x + after.v[1].v[i] * more.v.y + after.v[2].v[i] * more.v.z +
+                after.y.v[i] * more.x.y;
+  }
+  return off;
 }
 
 template bool AimSolver::record_in<true>(Vec3d, double, double, Path&, bool) const;
 template bool AimSolver::record_in<false>(Vec3d, double, double, Path&, bool) const;
-template void AimSolver::sensitivities_in<true>(Path&, double) const;
-template void AimSolver::sensitivities_in<false>(Path&, double) const;
+template Vec3d AimSolver::measure_in<true>(Path&, double) const;
+template Vec3d AimSolver::measure_in<false>(Path&, double) const;
 
 }  // namespace carom::ballistics::detail

@@ -8,22 +8,27 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
   Path path;
   Inverse inverse;
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
-  // Rough paths as long as Newton's method has far to go. Then one whose own error is known by quadrature; what little
-  // is left from there on is found by flying the same steps again, at a target that is off by that.
+  // Rough paths as long as Newton's method has far to go. Then one whose own error is measured, step by step; what
+  // little is left from there on is found by flying the same steps again, each corrected by what it was found to miss.
   double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
-  Vec3d off{};
+  double off = 0, last_off = 0;  // m, what the last measured paths erred
   Vec3d last_u{}, last_x{};
   double last_time = 0;
   // secant: Broyden's updates, from the closed form; recorded: with the derivatives; plain: Broyden's updates of those;
-  // measured: with what it errs; again: by the steps of that one, which err alike.
-  enum class Way { secant, recorded, plain, measured, again };
+  // measured: with what it errs; again: by the corrected steps of that one; checked: and measured once more.
+  enum class Way { secant, recorded, plain, measured, again, checked };
   Way way = start == Start::near ? Way::measured : eager ? Way::secant : Way::recorded;
   for (int i = 0; i < most; ++i) {
     Arrival end;
-    if (way == Way::again) {
+    if (way == Way::again || way == Way::checked) {
       end = follow(guess.u, guess.time, path);
-      end.position += off;
+      if (way == Way::checked) {
+        const Vec3d more = measure(path, 0.8 * allowed);
+        last_off = off;
+        end.position += more;
+        off = math::length(more);
+      }
     } else if (way == Way::plain || way == Way::secant) {  // as good as recorded on flat paths, and half the work
       end = propagate(guess.u, guess.time, accuracy);
       if (i == 0)
@@ -38,11 +43,16 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
         continue;
       }
       guess.time = path.node[path.count].t;
-      sensitivities(path, way == Way::measured ? 0.8 * allowed : 0);
+      sensitivities(path);
       inverse = inverse_of(path.by_velocity);
-      off = path.off;
       end = path.arrival;
-      end.position += off;
+      if (way == Way::measured) {
+        for (int n = 0; n < path.count; ++n) path.correction[n] = {};
+        const Vec3d more = measure(path, 0.8 * allowed);
+        last_off = off;
+        end.position += more;
+        off = math::length(more);
+      }
     }
     last_u = guess.u;
     last_x = end.position;
@@ -66,9 +76,11 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     const double moved = math::length(du) * guess.time + math::length(end.velocity) * math::abs(dt);
     // Derivatives are known to a few thousandths, and the next miss is as the square of this one.
     const double share = way == Way::measured ? 3e-3 + 3 * moved / scale : math::clamp(both / last_both, 0.01, 1.0);
-    const bool known = way == Way::measured || way == Way::again;
-    const bool trusted = math::length(off) < 0.5 * math::sqrt(allowed * scale);  // it errs as its square
-    if (known && trusted && share * moved < 0.5 * allowed) {
+    const bool again = way == Way::again || way == Way::checked, known = way == Way::measured || again;
+    // What is measured is known to a hundredth or better, less well where the wind bends; and it errs as its square.
+    const bool trusted = off < 0.5 * math::sqrt(allowed * scale);
+    const double doubt = way == Way::again ? 0 : (path.bends ? 0.05 : 0.005) * off;
+    if (known && trusted && share * moved < 0.5 * allowed && doubt < 0.5 * allowed) {
       const double* pull = path.node[path.count].k;
       const Vec3d aimed = guess.u - shooter_.velocity;
       root = {true, slope, guess, {target_(guess.time), end.velocity + dt * Vec3d{pull[0], pull[1], pull[2]}}};
@@ -80,9 +92,10 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     if (known && !trusted) rough *= 0.25;
     // What a path errs hangs on where its steps lie in the bends of drag and wind: most of all where it is flat.
     const double alike = start == Start::falling ? 600 * allowed : 150 * allowed;
-    if (known && trusted && moved < math::min(alike, 1e-3 * scale) &&
-        moved * math::length(off) < 1e-4 * alike * scale && (way == Way::measured || both < 0.3 * last_both))
-      way = Way::again;
+    const bool near_by = moved < math::min(alike, 1e-3 * scale) && moved * off < 1e-4 * alike * scale;
+    if (known && trusted && moved < 5e-3 * scale &&
+        (way == Way::measured || both < 0.3 * last_both || (way == Way::checked && off < 0.5 * last_off)))
+      way = near_by && !path.bends ? Way::again : Way::checked;
     else if (known || way == Way::plain || moved < 0.01 * scale)
       way = Way::measured;
     else if (way == Way::recorded && moved < 0.15 * scale)

@@ -261,41 +261,73 @@ bool AimSolver::by_peak(Aims& aims) const {
   return climb(aims, {vacuum(best), best}, false);
 }
 
+AimSolver::Footing AimSolver::footing(Guess guess) const {
+  Path path;
+  for (int i = 0; i < 12; ++i) {
+    const double away = math::length(target_(guess.time) - shooter_.muzzle);
+    if (!record(guess.u, guess.time, 2e-4 * away + 1e-3, path)) return {};
+    sensitivities(path);
+    const Inverse inverse = inverse_of(path.by_velocity);
+    const Vec3d miss = target_(guess.time) - path.arrival.position;
+    const double missed = math::length(miss), speed = math::length(guess.u - shooter_.velocity);
+    Vec3d du = inverse.apply(miss);
+    if (!math::is_finite(math::length(du)) || speed > 8 * shooter_.muzzle_speed) return {};
+    const double most = 0.5 * (speed + shooter_.muzzle_speed);
+    if (math::length(du) > most) du *= most / math::length(du);
+    guess.u += du;
+    if (missed > 0.01 * away) continue;  // what is left is as its square
+    const Vec3d barrel = guess.u - shooter_.velocity;
+    const Vec3d drift = inverse.apply(velocity_of_target(guess.time) - path.arrival.velocity);
+    const double need = math::length(barrel);
+    return {true, guess, shooter_.muzzle_speed - need, -math::dot(barrel, drift) / need, drift};
+  }
+  return {};
+}
+
 bool AimSolver::climb(Aims& aims, Guess top, bool sure) const {
-  // With drag the peak lies elsewhere, but the way up to it can be felt, in shrinking strides of ln T.
-  const double latest = math::log(options_.longest_time);
-  Need at_top = need(top);
-  if (!at_top.known) return false;
-  double stride = 0.4;
-  for (int i = 0; i < 60 && at_top.lack < 0 && stride > 2e-3; ++i) {
-    const double x = math::min(math::log(top.time) + stride, latest);
-    Guess next{top.u, math::exp(x)};
-    const Need at_next = need(next);
-    if (at_next.known && at_next.lack > at_top.lack && next.time > top.time) {
-      top = next;
-      at_top = at_next;
+  Footing at = footing(top), rises, falls;  // before the peak and after it
+  const double longest = options_.longest_time;
+  for (int i = 0; i < 16 && at.known && at.lack < 0; ++i) {
+    (at.slope > 0 ? rises : falls) = at;
+    const double time = at.guess.time;
+    if (at.slope > 0 && time >= longest) break;
+    double next = at.slope > 0 ? math::min(1.4 * time, longest) : time / 1.4;
+    if (rises.known && falls.known) {
+      const double first = rises.guess.time, last = falls.guess.time;
+      if (last < 1.002 * first) break;
+      // Where the chord of the slopes is level; every third time the middle.
+      const double level = first + (last - first) * rises.slope / (rises.slope - falls.slope);
+      next = i % 3 == 2 ? 0.5 * (first + last)
+                        : math::clamp(level, first + 0.05 * (last - first), last - 0.05 * (last - first));
+    }
+    at = footing({at.guess.u + (next - time) * at.drift, next});
+  }
+  if (!at.known) return false;
+  if (at.lack < 0) {
+    // Below zero at the peak: no solution. But what it lacks is known to a few ten-thousandths: where a shot that
+    // touches the target is found there all the same, the scan must tell.
+    return sure && (at.lack < -1e-3 * shooter_.muzzle_speed || !refine(at.guess).found);
+  }
+  // A parabola through what is known leads to a root on either side; where Newton's method does not, step by step.
+  const Footing& other = rises.known ? rises : falls;
+  const double bend = other.known ? (at.slope - other.slope) / (at.guess.time - other.guess.time)
+                                  : -2 * shooter_.muzzle_speed / math::square(at.guess.time);
+  for (const double side : {-1.0, 1.0}) {
+    const double curve = math::min(bend, -0.1 * shooter_.muzzle_speed / math::square(at.guess.time));
+    const double root = math::sqrt(at.slope * at.slope - 2 * curve * at.lack);
+    const double way = (at.slope + side * root) / -curve;
+    const double dt = math::clamp(way, -0.6 * at.guess.time, at.guess.time);
+    const Root there = refine({at.guess.u + dt * at.drift, at.guess.time + dt});
+    if (there.found && side * (there.guess.time - at.guess.time) > 0 && side * there.slope > 0) {
+      keep(aims, there);
       continue;
     }
-    Guess back{top.u, top.time * math::exp(-stride)};
-    const Need at_back = need(back);
-    if (at_back.known && at_back.lack > at_top.lack) {
-      top = back;
-      at_top = at_back;
-    } else {
-      stride *= 0.4;
-    }
-  }
-  // Below zero at the peak of a smooth hill whose sides are strides of .002 away: no solution. But what it lacks is
-  // known to a few ten-thousandths: where a shot that touches the target is found there all the same, the scan must
-  // tell.
-  if (at_top.lack < 0) return sure && (at_top.lack < -1e-3 * shooter_.muzzle_speed || !refine(top).found);
-  for (const double step : {1 / 1.3, 1.3}) {
-    Guess inside = top, outside = top;
-    Need at_outside = at_top;
+    Guess inside = at.guess, outside = at.guess;
+    Need at_outside{true, at.lack};
     for (int i = 0; i < 60 && at_outside.lack >= 0; ++i) {
       inside = outside;
-      outside.time *= step;
-      if (outside.time > options_.longest_time * 1.3 || outside.time < 1e-5) break;
+      outside.time *= side > 0 ? 1.3 : 1 / 1.3;
+      if (outside.time > longest * 1.3 || outside.time < 1e-5) break;
       at_outside = need(outside);
       if (!at_outside.known) return false;
     }

@@ -53,14 +53,25 @@ void DragCurve::prepare(Interpolation interpolation) {
   const std::size_t intervals = points_.size() - 1;
   pieces_.assign(intervals + 3, {});
   pieces_.front().constant = points_.front().coefficient;
-  pieces_[intervals + 1] = {last, points_.back().coefficient, 0, 0, 0};
+  pieces_[intervals + 1] = {last, points_.back().coefficient};
   pieces_.back().start = 1e308;
   Piece* between = pieces_.data() + 1;
+  const auto find_bends = [&] {
+    constexpr double least = 1e-3;  // of C_D, over the interval beside the node
+    bends_ = false;
+    for (std::size_t i = 0; i <= intervals && intervals > 0; ++i) {
+      const Piece &before = pieces_[i], &after = pieces_[i + 1];
+      const double x = i > 0 ? after.start - before.start : 0;
+      const double jump = after.slope - (before.slope + x * (2 * before.square + x * (3 * before.cube)));
+      const double beside = i < intervals ? pieces_[i + 2].start - after.start : x;
+      pieces_[i + 1].bends = after.start > 0 && math::abs(jump) * beside > least * after.constant;
+      bends_ = bends_ || pieces_[i + 1].bends;
+    }
+  };
   for (std::size_t i = 0; i < intervals; ++i)
     between[i] = {points_[i].mach, points_[i].coefficient,
-                  (points_[i + 1].coefficient - points_[i].coefficient) / (points_[i + 1].mach - points_[i].mach), 0,
-                  0};
-  if (interpolation == Interpolation::linear || intervals < 2) return;
+                  (points_[i + 1].coefficient - points_[i].coefficient) / (points_[i + 1].mach - points_[i].mach)};
+  if (interpolation == Interpolation::linear || intervals < 2) return find_bends();
   // Slopes at the nodes: zero at peaks, else the harmonic mean of both sides, weighted by their lengths; at the ends
   // that of the line.
   std::vector<double> slope(points_.size());
@@ -78,13 +89,14 @@ void DragCurve::prepare(Interpolation interpolation) {
     between[i].square = (3 * line - 2 * slope[i] - slope[i + 1]) / h;
     between[i].cube = (slope[i] + slope[i + 1] - 2 * line) / (h * h);
   }
+  find_bends();
 }
 
 DragCurve DragCurve::scaled(double factor) const {
   DragCurve curve = *this;
   for (DragPoint& point : curve.points_) point.coefficient *= factor;
   for (Piece& p : curve.pieces_)
-    p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube};
+    p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube, p.bends};
   return curve;
 }
 

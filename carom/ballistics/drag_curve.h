@@ -58,6 +58,16 @@ class CAROM_API DragCurve {
             p.slope + x * (2 * p.square + x * (3 * p.cube))};
   }
 
+  /// Has it nodes at which its slope jumps, by more than a smooth curve's?
+  bool has_bends() const { return bends_; }
+  /// Calls `f` with the Mach numbers of those between `low` and `high`, in rising order.
+  template <class F>
+  void for_each_bend(double low, double high, F&& f) const {
+    const Piece* end = pieces_.data() + pieces_.size() - 1;
+    for (const Piece* p = &piece(low) + 1; p < end && p->start < high; ++p)
+      if (p->bends) f(p->start);
+  }
+
   std::span<const DragPoint> points() const { return points_; }
   /// The curve times a form factor.
   DragCurve scaled(double factor) const;
@@ -66,6 +76,7 @@ class CAROM_API DragCurve {
   static constexpr std::size_t cells = 128;
   struct Piece {
     double start = 0, constant = 0, slope = 0, square = 0, cube = 0;
+    bool bends = false;  // at its start
   };
   const Piece& piece(double mach) const {
     // One cell of a uniform grid tells the first piece that can hold it: a step or two from there.
@@ -79,6 +90,7 @@ class CAROM_API DragCurve {
   std::vector<Piece> pieces_;  // before the first node, from each to the next, after the last, and one beyond all
   std::array<std::uint16_t, cells> first_{};
   double cells_per_mach_ = 0;
+  bool bends_ = false;
 };
 
 /// A ballistic coefficient that holds from a Mach number upward.

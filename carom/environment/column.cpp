@@ -49,11 +49,14 @@ void WindColumn::prepare() {
   lowest_ = levels_.front().velocity;
   if (levels_.size() < 2) return;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    legs_.push_back({levels_[i].height, levels_[i].velocity, {}});
+    legs_.push_back({levels_[i].height, levels_[i].velocity, {}, 0});
     const double span = i + 1 < levels_.size() ? levels_[i + 1].height - levels_[i].height : 0;
     if (span > 0) legs_.back().shear = (levels_[i + 1].velocity - levels_[i].velocity) / span;
+    const math::Vec3d below = i > 0 ? legs_[i - 1].shear : math::Vec3d{};
+    const double beside = span + (i > 0 ? levels_[i].height - levels_[i - 1].height : 0);
+    legs_.back().bend = beside * math::length(legs_.back().shear - below);
   }
-  legs_.push_back({1e308, {}, {}});
+  legs_.push_back({1e308, {}, {}, 0});
   const double whole = levels_.back().height - levels_.front().height;
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x) >> 48; };
   first_cell_ = bits(math::max(whole, 0.0) * math::exp2(-octaves));

@@ -80,11 +80,22 @@ class CAROM_API WindColumn {
     return leg.velocity + (height - leg.height) * leg.shear;
   }
   std::span<const Level> levels() const { return levels_; }
+  /// Calls `f` with the heights of the levels between `low` and `high` m, in rising order, at which the wind leaves the
+  /// line of the leg below by more than `least` m/s within the two legs beside it.
+  template <class F>
+  void for_each_bend(double low, double high, double least, F&& f) const {
+    if (legs_.empty() || !(high > legs_.front().height)) return;
+    const double above = low - legs_.front().height;
+    const Leg* leg = above > 0 ? &leg_of(above, low) + 1 : legs_.data();
+    for (const Leg* end = legs_.data() + legs_.size() - 1; leg != end && leg->height < high; ++leg)
+      if (leg->height > low && leg->bend > least) f(leg->height);
+  }
 
  private:
   struct Leg {
     double height = 0;
     math::Vec3d velocity{}, shear{};  // at that height, and by the metre above it
+    double bend = 0;                  // m/s, what a change of the shear there makes over both legs
   };
   const Leg& leg_of(double above, double height) const {
     const std::uint64_t cell = math::clamp(std::bit_cast<std::uint64_t>(above) >> 48, first_cell_, last_cell_);

@@ -73,6 +73,14 @@ class AimSolver {
   /// more than the muzzle speed, or less.
   enum class Reach { never, near, unknown };
   Reach falls_short(Guess& guess) const;
+  /// What the gun lacks at a flight time, how that changes with the time, and how the initial velocity does.
+  struct Footing {
+    bool known = false;
+    Guess guess{};
+    double lack = 0, slope = 0;  // m/s, m/s²
+    Vec3d drift{};               // m/s²
+  };
+  Footing footing(Guess guess) const;
   /// From `top` up to the peak of the speed to spare, then down both sides of it. `sure`: the top is near the peak, so
   /// that a peak below zero is the end of the matter.
   bool climb(Aims& aims, Guess top, bool sure) const;
@@ -104,13 +112,15 @@ class AimSolver {
   }
   template <bool Plain>
   bool record_in(Vec3d u, double time, double allowed, Path& path, bool falling) const;
-  /// Backward along a recorded path: how the arrival depends on the start; `fine` > 0: also what the path errs, by
-  /// quadrature of how far its interpolant is from the equation of motion, to about that (m).
-  void sensitivities(Path& path, double fine = 0) const {
-    return pull_.plain() ? sensitivities_in<true>(path, fine) : sensitivities_in<false>(path, fine);
+  /// Backward along a recorded path: how the arrival depends on its nodes and on the start.
+  static void sensitivities(Path& path);
+  /// What the steps of a path miss, by quadrature of how far its interpolant is from the equation of motion, to about
+  /// `fine` m at the arrival; added to their corrections. Returns what that moves the arrival by.
+  Vec3d measure(Path& path, double fine) const {
+    return pull_.plain() ? measure_in<true>(path, fine) : measure_in<false>(path, fine);
   }
   template <bool Plain>
-  void sensitivities_in(Path& path, double fine) const;
+  Vec3d measure_in(Path& path, double fine) const;
 
   /// Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
   /// error: no longer steps there than it takes to lose so much speed (m/s; above the barrier `far_bend` times that),
@@ -129,12 +139,13 @@ class AimSolver {
   }
   template <bool Plain>
   Arrival propagate_in(Vec3d u, double time, double allowed) const;
-  /// The steps of a recorded path again, as shares of the time: both err alike.
-  Arrival follow(Vec3d u, double time, const Path& path) const {
+  /// The steps of a recorded path again, as shares of the time, with their corrections; its nodes are those of the new
+  /// flight then.
+  Arrival follow(Vec3d u, double time, Path& path) const {
     return pull_.plain() ? follow_in<true>(u, time, path) : follow_in<false>(u, time, path);
   }
   template <bool Plain>
-  Arrival follow_in(Vec3d u, double time, const Path& path) const;
+  Arrival follow_in(Vec3d u, double time, Path& path) const;
   /// How a shot passes the target's distance, or falls through its height before.
   struct Pass {
     bool plain = false;  // once and at a slant, or never

@@ -3,6 +3,7 @@
 
 #include "carom/ballistics/detail/flight_step.h"
 #include "carom/ballistics/detail/rough_pull.h"
+#include "carom/math/simd.h"
 
 namespace carom::ballistics::detail {
 
@@ -10,8 +11,25 @@ struct FlightPath {
   static constexpr int most = 160;  // steps
   struct Node {
     double t, x[3], v[3], k[3];
+    [[gnu::always_inline]] void put(double time, math::Vec3d place, math::Vec3d velocity, math::Vec3d pull) {
+      t = time;
+      for (int i = 0; i < 3; ++i) {
+        x[i] = place[i];
+        v[i] = velocity[i];
+        k[i] = pull[i];
+      }
+    }
   };
   using Stage = RoughPull::Slope;
+  /// What the arrival owes to a change of the velocity and of the height: columns of ∂x(T)/∂(v, y), the fourth lane
+  /// idle. Seven digits are plenty.
+  struct Debt {
+    math::WideFloat<4> v[3], y;
+  };
+  /// What a step of rough flight misses, measured: added at its end.
+  struct Correction {
+    math::Vec3d x{}, v{};
+  };
   struct Arrival {
     math::Vec3d position{}, velocity{};
   };
@@ -19,9 +37,11 @@ struct FlightPath {
   int count = 0;
   Node node[most + 1];
   Stage stage[most][6];
+  Debt debt[most + 1];
+  Correction correction[most];
+  bool bends = false;  ///< wind bends sharply within a step
   Arrival arrival{};
   math::Vec3d by_velocity[3];  ///< rows of ∂x(T)/∂v(0), s
-  math::Vec3d off{};           ///< m, to be added to the arrival
 };
 
 }  // namespace carom::ballistics::detail
