@@ -14,7 +14,7 @@ void put_side(std::vector<ClothSide>& sides, int first, int& last, int index, st
     std::fill_n(sides.back().triangle, cloth_lanes, -1);
     ++last;
   }
-  ClothSide& to = sides[std::size_t(first + index)];
+  ClothSide& to = sides[std::size_t(first) + std::size_t(index)];
   to.triangle[lane] = side.triangle[0];
   to.area[lane] = side.area[0];
   to.ua[lane] = side.ua[0], to.va[lane] = side.va[0];

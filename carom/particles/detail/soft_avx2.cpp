@@ -11,7 +11,6 @@
 #include "carom/particles/detail/fold_kernel.inl"
 
 namespace carom::particles::detail::CAROM_SOFT_NAMESPACE {
-extern const SoftKernels kernels;
 const SoftKernels kernels = {fill, start, up, down, go, strain, join_edges, join_corners, lay_folds, meet_folds};
 }  // namespace carom::particles::detail::CAROM_SOFT_NAMESPACE
 

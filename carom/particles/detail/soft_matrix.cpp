@@ -113,7 +113,7 @@ void SoftMatrix::find_tiles() {
         for (int lane = 0; any && lane < soft_lanes; ++lane) {
           const std::size_t i = std::size_t(math::max(rows[lane], 0));
           const bool is = rows[lane] >= 0 && from[i] + k < to[i];
-          tiles_.column.push_back(is ? place[columns[std::size_t(from[i] + k)]] : beyond + lane);
+          tiles_.column.push_back(is ? place[columns[std::size_t(from[i]) + std::size_t(k)]] : beyond + lane);
           tiles_.source.push_back(is ? from[i] + k : none);
         }
       }
