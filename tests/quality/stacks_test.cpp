@@ -112,7 +112,7 @@ TYPED_TEST(QualityStacks, TallPyramidIsStill) {
   const BodyId top = add_pyramid(world, 100).back();
   run(world, 600);
   Gate(17, "pyramid of base 100 after 10 s: fastest body", D::dimension, "m/s")
-      .not_yet(1)
+      .not_yet(0.3)
       .at_most(fastest(world), 1e-4);
   Gate(17, "pyramid of base 100 after 10 s: still awake", D::dimension)
       .not_yet(5050)
