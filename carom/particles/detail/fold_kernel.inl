@@ -1,4 +1,5 @@
-// Vertices of a cloth above and below its triangles, a tile at a time.
+// Vertices of a cloth above and below its triangles, a tile at a time; and the table of all kernels, for this is the
+// last of the three files that make them.
 
 namespace carom::particles::detail::CAROM_SOFT_NAMESPACE {
 namespace {
@@ -104,4 +105,7 @@ int meet_folds(const FoldTriangles& tile, const FoldVertices& group, FoldHit* hi
 }
 
 }  // namespace
+
+const SoftKernels kernels = {fill, start, up, down, go, strain, join_edges, join_corners, lay_folds, meet_folds};
+
 }  // namespace carom::particles::detail::CAROM_SOFT_NAMESPACE

@@ -9,10 +9,5 @@
 // What stands on these:
 #include "carom/particles/detail/cloth_kernel.inl"
 #include "carom/particles/detail/fold_kernel.inl"
-
-namespace carom::particles::detail::CAROM_SOFT_NAMESPACE {
-const SoftKernels kernels = {fill, start, up, down, go, strain, join_edges, join_corners, lay_folds, meet_folds};
-}  // namespace carom::particles::detail::CAROM_SOFT_NAMESPACE
-
 #undef CAROM_SOFT_NAMESPACE
 #undef CAROM_SOFT_WIDTH
