@@ -40,6 +40,21 @@ std::vector<int> order_by_place(const std::vector<Vec3d>& points) {
   return order;
 }
 
+/// A triangle's plane, and what goes through it.
+struct FoldFace {
+  Vec3f origin, u, v, normal;
+
+  FoldFace(Vec3f a, Vec3f b, Vec3f c) : origin(a), u(b - a), v(c - a), normal(cross(u, v)) {}
+  float height(Vec3f p) const { return dot(p - origin, normal); }  ///< times twice the area
+  /// Whether p q goes through the triangle. `hp`, `hq`: heights of p and q.
+  bool pierced(Vec3f p, float hp, Vec3f q, float hq) const {
+    if ((hp > 0) == (hq > 0)) return false;
+    const Vec3f x = p + (hp / (hp - hq)) * (q - p) - origin;
+    const float beta = dot(x, cross(v, normal)), gamma = dot(x, cross(normal, u));
+    return beta >= 0 && gamma >= 0 && beta + gamma <= dot(normal, normal);
+  }
+};
+
 }  // namespace
 
 void ClothState::tile_folds() {
@@ -64,6 +79,38 @@ void ClothState::tile_folds() {
     for (std::size_t c = 0; c < 3 && k < order.size(); ++c)
       tile.corner[c][lane] = int(corners[3 * std::size_t(order[k]) + c]);
   }
+}
+
+bool ClothState::tangle(std::uint32_t vertex, std::uint32_t triangle) {
+  const std::uint32_t* t = &corners[3 * std::size_t(triangle)];
+  const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
+  const auto mark = [&](std::uint32_t p, std::uint32_t q, const std::uint32_t* through) {
+    for (const std::uint32_t i : {p, q, through[0], through[1], through[2]}) tangled[i] = 1;
+  };
+  const Vec3f at = place(vertex), corner[3] = {place(t[0]), place(t[1]), place(t[2])};
+  const FoldFace face(corner[0], corner[1], corner[2]);
+  const float height = face.height(at);
+  bool any = false;
+  for (int k = triangle_first[vertex]; k < triangle_first[vertex + 1]; ++k) {
+    const std::uint32_t own = std::uint32_t(triangle_list[std::size_t(k)]), first = own / 3 * 3;
+    const std::uint32_t ends[2] = {corners[first + (own + 1 - first) % 3], corners[first + (own + 2 - first) % 3]};
+    for (const std::uint32_t end : ends) {
+      if (end == t[0] || end == t[1] || end == t[2]) continue;
+      if (!face.pierced(at, height, place(end), face.height(place(end)))) continue;
+      mark(vertex, end, t);
+      any = true;
+    }
+    const FoldFace beside(at, place(ends[0]), place(ends[1]));
+    const float heights[3] = {beside.height(corner[0]), beside.height(corner[1]), beside.height(corner[2])};
+    for (int e = 0; e < 3; ++e) {
+      const int f = (e + 1) % 3;
+      if (t[e] == ends[0] || t[e] == ends[1] || t[f] == ends[0] || t[f] == ends[1]) continue;
+      if (!beside.pierced(corner[e], heights[e], corner[f], heights[f])) continue;
+      mark(t[e], t[f], &corners[first]);
+      any = true;
+    }
+  }
+  return any;
 }
 
 void ClothState::find_fold_pairs(float h, float apart) {
@@ -94,6 +141,7 @@ void ClothState::find_fold_pairs(float h, float apart) {
   kernels.lay_folds(fold_triangles.data(), int(fold_triangles.size()),
                     reinterpret_cast<const float*>(fold_records.data()), {apart, 2 * h, 0.5f * size, 8 * size});
   pairs.clear();
+  tangled.assign(position.size(), 0);
   fold_hits.resize(fold_lanes * fold_lanes * fold_lanes);
   const auto lightness = [&](int i) { return pin_of[std::size_t(i)] >= 0 ? 0.0f : 1 / mass[std::size_t(i)]; };
   const float step = 1 / h;
@@ -106,6 +154,7 @@ void ClothState::find_fold_pairs(float h, float apart) {
       const int count = kernels.meet_folds(tile, group, fold_hits.data());
       for (int k = 0; k < count; ++k) {
         const FoldHit hit = fold_hits[std::size_t(k)];
+        if (tangle(std::uint32_t(hit.vertex), std::uint32_t(hit.triangle))) continue;
         const std::uint32_t* c = &corners[3 * std::size_t(hit.triangle)];
         const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
         const Vec3f a = place(c[0]), u = place(c[1]) - a, v = place(c[2]) - a, n = cross(u, v);
@@ -125,6 +174,12 @@ void ClothState::find_fold_pairs(float h, float apart) {
         pairs.push_back(pair);
       }
     }
+  // Of folds that cross nothing tells which side each belongs on: those that push each other apart where they are now
+  // draw the cloth through itself and stretch it without end. They are let go, and slip out by themselves or stay.
+  std::erase_if(pairs, [&](const ClothPair& pair) {
+    const std::uint32_t* c = &corners[3 * std::size_t(pair.triangle)];
+    return (tangled[pair.vertex] & tangled[c[0]] & tangled[c[1]] & tangled[c[2]]) != 0;
+  });
 }
 
 void ClothState::keep_apart(float h) {

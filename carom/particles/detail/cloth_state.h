@@ -70,6 +70,7 @@ struct ClothState {
   std::vector<ClothPair> pairs;
   std::vector<SoftVector> fold_records;  ///< by vertex: place from the first, velocity
   std::vector<FoldHit> fold_hits;
+  std::vector<std::uint8_t> tangled;  ///< by vertex: where folds cross
   math::Vec3d wind_force{}, wind_impulse{};
   double greatest_tension = 0;
   int iterations = 0;
@@ -90,6 +91,9 @@ struct ClothState {
   void keep_apart(float h);  ///< folds
   void tile_folds();
   void find_fold_pairs(float h, float apart);
+  /// Whether an edge of the vertex goes through the triangle, or one of the triangle through one of the vertex's; marks
+  /// the vertices of both as tangled.
+  bool tangle(std::uint32_t vertex, std::uint32_t triangle);
   void tear();
 };
 
