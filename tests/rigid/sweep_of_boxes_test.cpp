@@ -61,6 +61,40 @@ TEST(BoxSweep, FindsWhatComparingAllWithAllFinds) {
     }
 }
 
+TEST(BoxSweep, FindsWhatMeetsABox) {
+  for (const Vec3d origin : {Vec3d{}, Vec3d{-4e6, 1e5, 3e7}}) {
+    std::vector<geometry::Bounds3d> boxes = boxes_of(1500, 40, {}, 11);
+    for (geometry::Bounds3d& box : boxes) box = {box.low + origin, box.high + origin};
+    const geometry::DynamicTree3 tree = tree_of(boxes);
+    BoxSweep sweep;
+    EXPECT_FALSE(sweep.holds(tree));
+    ASSERT_TRUE(sweep.take(tree));
+    EXPECT_TRUE(sweep.holds(tree));
+    math::Random random(13);
+    std::size_t met = 0;
+    for (int i = 0; i < 300; ++i) {
+      geometry::Bounds3d box{origin, origin};
+      for (int k = 0; k < 3; ++k) {
+        box.low[k] += random.uniform(-20.0, 60.0);
+        box.high[k] = box.low[k] + (i % 7 == k ? 1e15 : random.uniform(0.0, 6.0));  // a wall without end, or small
+      }
+      std::multiset<std::uint32_t> found, by_strips;
+      sweep.query(box, [&](std::uint32_t item) { found.insert(item); });
+      for (int s = 0; s < sweep.strip_count(); ++s)
+        sweep.query_strip(s, box, [&](std::uint32_t item) { by_strips.insert(item); });
+      EXPECT_EQ(found, by_strips);
+      for (std::uint32_t k = 0; k < boxes.size(); ++k) {
+        const bool near = overlaps(geometry::grow(boxes[k], 0.003), box);
+        EXPECT_LE(found.count(k), near ? 1u : 0u);
+        if (!overlaps(boxes[k], box)) continue;
+        EXPECT_EQ(found.count(k), 1u);
+        ++met;
+      }
+    }
+    EXPECT_GT(met, 200u);
+  }
+}
+
 TEST(BoxSweep, LeavesCrowdsAndWideWorldsToTheTree) {
   BoxSweep sweep;
   EXPECT_FALSE(sweep.take(tree_of(boxes_of(3000, 6, {}, 3)))) << "a heap";

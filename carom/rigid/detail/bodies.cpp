@@ -325,7 +325,7 @@ static typename D::Vector way_of_middle(const WorldImplementation<D>& world, con
   using V = typename D::Vector;
   const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
   if (!has_several_shapes(world, shape.body)) return s.linear_velocity * world.last_dt;
-  const V middle = transform_point(shape.local, ball_about(shape).middle),
+  const V own = ball_about(shape).middle, middle = shape.at_origin ? own : transform_point(shape.local, own),
           arm = rotate(world.bodies.pose[std::size_t(shape.body)].rotation,
                        middle - world.bodies.motion[std::size_t(shape.body)].local_center);
   return (s.linear_velocity + cross(s.angular_velocity, arm)) * world.last_dt;

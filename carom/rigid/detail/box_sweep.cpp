@@ -5,6 +5,7 @@
 namespace carom::rigid::detail {
 
 bool BoxSweep::take(const geometry::DynamicTree3& tree) {
+  version_ = 0;
   const std::size_t count = std::size_t(tree.size());
   const geometry::Bounds3d whole = tree.root_bounds();
   const math::Vec3d extent = whole.high - whole.low;
@@ -18,7 +19,9 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
     boxes_.push_back({{float(low.x), float(low.y), float(low.z)}, {float(high.x), float(high.y), float(high.z)}, item});
     sum += box.high - box.low;
   });
-  int axes[3] = {0, 1, 2};  // the one first along which boxes overlap least
+  origin_ = whole.low, extent_ = extent;
+  int(&axes)[3] = axes_;  // the one first along which boxes overlap least
+  axes[0] = 0, axes[1] = 1, axes[2] = 2;
   const auto share = [&](int axis) { return sum[axis] / (extent[axis] + 1e-9); };
   if (share(axes[1]) < share(axes[0])) std::swap(axes[0], axes[1]);
   if (share(axes[2]) < share(axes[1])) std::swap(axes[1], axes[2]);
@@ -26,11 +29,12 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
 
   // Sorted by bins along the first axis. Bins rise with the coordinate, so that what begins in a later one than that
   // in which a box ends does not meet it.
-  const float bins_per_metre = float(bins) / (float(extent[axes[0]]) + 1e-6f);
-  const auto bin_of = [&](float x) { return std::uint16_t(math::clamp(int(x * bins_per_metre), 0, bins - 1)); };
+  bins_per_metre_ = float(bins) / (float(extent[axes[0]]) + 1e-6f);
   std::uint32_t place[bins] = {};
+  longest_ = 0;
   for (Box& box : boxes_) {
-    box.key = bin_of(box.low[axes[0]]), box.last = bin_of(box.high[axes[0]]);
+    box.key = std::uint16_t(bin_of(box.low[axes[0]])), box.last = std::uint16_t(bin_of(box.high[axes[0]]));
+    longest_ = math::max(longest_, box.last - box.key);
     ++place[box.key];
   }
   std::uint32_t before = 0;
@@ -83,6 +87,7 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   if (compared > most * std::uint64_t(count)) return false;  // where boxes crowd, the tree is faster
   for (int s = 0; s < strips; ++s)
     for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(at[s]) + k] = 1e30f;
+  version_ = tree.version();
   return true;
 }
 

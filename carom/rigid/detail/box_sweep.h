@@ -2,6 +2,7 @@
 // sorted along another, four at a time. A tree is better where many lie together.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -36,6 +37,22 @@ class BoxSweep {
       }
     }
   }
+  /// Is it still what it took from the tree?
+  bool holds(const geometry::DynamicTree3& tree) const { return version_ == tree.version(); }
+  /// Calls visit(item) for those of a strip whose boxes meet a box, and maybe for some that pass it by 2 mm; each in
+  /// one strip only.
+  template <class Visit>
+  void query_strip(int strip, const geometry::Bounds3d& box, Visit&& visit) const {
+    const Range range(*this, box);
+    if (!range.empty) query_strip(strip, range, visit);
+  }
+  /// The same of all strips.
+  template <class Visit>
+  void query(const geometry::Bounds3d& box, Visit&& visit) const {
+    const Range range(*this, box);
+    if (range.empty) return;
+    for (int strip = range.first_strip; strip <= range.last_strip; ++strip) query_strip(strip, range, visit);
+  }
   /// Calls visit(vector) for all that it holds between steps, of no meaning then.
   template <class Visit>
   void visit_lists(Visit&& visit) {
@@ -58,9 +75,50 @@ class BoxSweep {
     std::uint32_t item;
     std::uint16_t key, last;
   };
+  /// A box as the strips see it.
+  struct Range {
+    float low[3] = {}, high[3] = {};
+    int first_key = 0, last_key = 0, first_strip = 0, last_strip = 0;
+    bool empty = true;
+
+    Range(const BoxSweep& sweep, const geometry::Bounds3d& box) {
+      constexpr double rounding = 1e-3;  // m, of floats at the farthest
+      for (int k = 0; k < 3; ++k) {
+        const int axis = sweep.axes_[k];
+        const double from = math::max(box.low[axis] - sweep.origin_[axis], 0.0) - rounding,
+                     to = math::min(box.high[axis] - sweep.origin_[axis], sweep.extent_[axis]) + rounding;
+        if (!(from <= to)) return;
+        low[k] = float(from), high[k] = float(to);
+      }
+      first_key = math::max(sweep.bin_of(low[0]) - sweep.longest_, 0), last_key = sweep.bin_of(high[0]);
+      first_strip = sweep.strip_of(low[1]), last_strip = sweep.strip_of(high[1]);
+      empty = false;
+    }
+  };
+  template <class Visit>
+  void query_strip(int strip, const Range& range, Visit&& visit) const {
+    using F = math::WideFloat<4>;
+    if (strip < range.first_strip || strip > range.last_strip) return;
+    const F low[3] = {F::splat(range.low[0]), F::splat(range.low[1]), F::splat(range.low[2])},
+            high[3] = {F::splat(range.high[0]), F::splat(range.high[1]), F::splat(range.high[2])};
+    const std::uint16_t *begin = &key_[std::size_t(first_[std::size_t(strip)])],
+                        *end = &key_[std::size_t(first_[std::size_t(strip) + 1]) - padding];
+    if (range.first_key > 0) begin = std::lower_bound(begin, end, range.first_key);
+    const std::size_t stop = std::size_t(end - key_.data());
+    for (std::size_t k = std::size_t(begin - key_.data()); k < stop && key_[k] <= range.last_key; k += 4) {
+      std::uint32_t meets = bitmask((F::load(&low_[0][k]) <= high[0]) & (low[0] <= F::load(&high_[0][k])) &
+                                    (F::load(&low_[1][k]) <= high[1]) & (low[1] <= F::load(&high_[1][k])) &
+                                    (F::load(&low_[2][k]) <= high[2]) & (low[2] <= F::load(&high_[2][k])));
+      for (; meets != 0; meets &= meets - 1) {
+        const std::size_t j = k + std::size_t(__builtin_ctz(meets));
+        if (math::max(strip_of(low_[1][j]), range.first_strip) == strip) visit(item_[j]);
+      }
+    }
+  }
   static constexpr int most_strips = 128, bins = 1024;
   static constexpr std::size_t padding = 4;  ///< boxes that meet none, after each strip
 
+  int bin_of(float x) const { return math::clamp(int(x * bins_per_metre_), 0, bins - 1); }
   int strip_of(float y) const { return math::clamp(int(y * strips_per_metre_), 0, strip_count() - 1); }
 
   std::vector<Box> boxes_;
@@ -70,7 +128,11 @@ class BoxSweep {
   std::vector<float> low_[3], high_[3];
   std::vector<std::uint32_t> item_;
   std::vector<std::uint16_t> key_, last_;  ///< bins in which a box begins and ends along the sweep
-  float strips_per_metre_ = 0;
+  math::Vec3d origin_{}, extent_{};        ///< m, of all boxes
+  int axes_[3] = {0, 1, 2};                ///< in the order sweep, strips, the other
+  int longest_ = 0;                        ///< bins from where a box begins to where it ends, at most
+  float bins_per_metre_ = 0, strips_per_metre_ = 0;
+  std::uint64_t version_ = 0;  ///< of the tree
 };
 
 }  // namespace carom::rigid::detail

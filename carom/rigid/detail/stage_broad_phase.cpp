@@ -10,7 +10,7 @@ constexpr int pair_grain = 64;
 constexpr int most_subtrees = 128;  ///< that threads look through
 constexpr int most_in_group = BoxGroup<Dim2>::most_members;
 constexpr int bounds_grain = 128;
-constexpr double most_worse = 2;  ///< times its best: a tree of what flies
+constexpr double most_worse = 4;  ///< times its best: a tree of what flies
 
 /// Remembers two shapes whose bounds overlap, if they are a pair without a contact.
 template <class D>
@@ -156,23 +156,46 @@ bool most_fly(const WorldImplementation<Dim3>& world) {
 }
 
 /// Where most of what forces move flies and is sparse: all of its boxes against each other in one sweep. False where
-/// that would take longer.
-bool sweep_dynamic(WorldImplementation<Dim2>&) { return false; }
-bool sweep_dynamic(WorldImplementation<Dim3>& world) {
+/// that would take longer. `still_too`: and against what forces do not move, where that is little.
+bool sweep_dynamic(WorldImplementation<Dim2>&, bool&) { return false; }
+bool sweep_dynamic(WorldImplementation<Dim3>& world, bool& still_too) {
+  using Bounds = geometry::Bounds3d;
   StepScratch<Dim3>& scratch = world.scratch;
   if (!most_fly(world) || !scratch.sweep.take(world.shapes.trees[tree_dynamic])) return false;
+  constexpr int most_still = 32;
+  const Bounds* still_box[most_still];
+  std::uint32_t still[most_still];
+  int count = 0;
+  still_too = world.shapes.trees[tree_fixed].size() + world.shapes.trees[tree_kinematic].size() <= most_still;
+  for (int tree = tree_fixed; tree <= tree_kinematic && still_too; ++tree)
+    world.shapes.trees[tree].visit_leaves([&](std::uint32_t item, const Bounds& box) {
+      still_box[count] = &box;
+      still[count++] = item;
+    });
   world.scheduler->parallel_for(scratch.sweep.strip_count(), 2, [&](int begin, int end, int worker) {
-    const auto old_of = [&](std::uint32_t item) {
-      const std::int32_t place = scratch.moved_place[item];
-      return place >= 0 ? scratch.old_bounds[std::size_t(place)]
-                        : world.shapes.trees[tree_dynamic].bounds(world.shapes.at(std::int32_t(item)).leaf);
+    std::vector<FoundPair>& found = scratch.found_pairs[std::size_t(worker)];
+    const auto box_of = [&](std::uint32_t item) -> const Bounds& {
+      return world.shapes.trees[tree_dynamic].bounds(world.shapes.at(std::int32_t(item)).leaf);
     };
-    for (int strip = begin; strip < end; ++strip)
+    const auto old_of = [&](std::uint32_t item) -> const Bounds& {
+      const std::int32_t place = scratch.moved_place[item];
+      return place >= 0 ? scratch.old_bounds[std::size_t(place)] : box_of(item);
+    };
+    for (int strip = begin; strip < end; ++strip) {
       scratch.sweep.visit_strip(strip, [&](std::uint32_t a, std::uint32_t b) {
         if (!world.contact_filter && overlaps(old_of(a), old_of(b))) return;
         if (scratch.moved_place[a] < 0 && scratch.moved_place[b] < 0) return;
-        consider_pair(world, std::int32_t(a), std::int32_t(b), scratch.found_pairs[std::size_t(worker)]);
+        consider_pair(world, std::int32_t(a), std::int32_t(b), found);
       });
+      for (int k = 0; k < count; ++k) {
+        const std::int32_t place = scratch.moved_place[still[k]];
+        const Bounds &box = *still_box[k], &old = place >= 0 ? scratch.old_bounds[std::size_t(place)] : box;
+        scratch.sweep.query_strip(strip, box, [&](std::uint32_t a) {
+          if (scratch.moved_place[a] < 0 || (!world.contact_filter && overlaps(old_of(a), old))) return;
+          if (overlaps(box_of(a), box)) consider_pair(world, std::int32_t(a), std::int32_t(still[k]), found);
+        });
+      }
+    }
   });
   return true;
 }
@@ -198,11 +221,12 @@ void find_pairs(WorldImplementation<D>& world) {
     scratch.moved_place[std::size_t(scratch.moved[k])] = std::int32_t(k);
   // Where much of the tree moved, neighbours look together.
   const bool grouped = 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
-  const bool swept = grouped && sweep_dynamic(world);
+  bool still_too = false;
+  const bool swept = grouped && sweep_dynamic(world, still_too);
   world.scheduler->parallel_for(int(scratch.moved.size()), pair_grain, [&](int begin, int end, int worker) {
     for (int i = begin; i < end; ++i) {
       const bool dynamic = world.shapes.at(scratch.moved[std::size_t(i)]).tree == tree_dynamic;
-      if (!grouped || swept || !dynamic)
+      if (!grouped || (swept && !still_too) || !dynamic)
         find_pairs_of(world, i, scratch.found_pairs[std::size_t(worker)],
                       swept && dynamic ? tree_kinematic : tree_dynamic);
     }

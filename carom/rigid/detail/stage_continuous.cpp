@@ -33,14 +33,14 @@ bool may_meet(const WorldImplementation<D>& world, std::int32_t s, std::int32_t 
 /// Calls visit(other shape) for what a shape may meet whose places of this step all lie in `box`. Where its fat bounds
 /// foresaw them, the pairs that the broad phase made of these are all there are.
 template <class D, class Visit>
-void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const typename D::Bounds& box, unsigned kinds,
-                    Visit&& visit) {
+void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const typename D::Bounds& box, bool foreseen,
+                    unsigned kinds, Visit&& visit) {
   const ShapeRecord<D>& shape = world.shapes.at(s);
   const BodyRecord& record = world.bodies.record[std::size_t(shape.body)];
   // A filter or a one-way surface has left its answer with the contact.
   const bool plain = !world.contact_filter && world.shapes.extras.empty();
   const int most = plain && (kinds & with_dynamic) == 0 ? most_listed_for_still : most_listed;
-  if (record.contact_count <= most && geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box)) {
+  if (record.contact_count <= most && foreseen) {
     for (std::int32_t key = record.first_contact; key != none;) {
       const ContactRecord<D>& c = world.contacts.at(key >> 1);
       const int side = key & 1;
@@ -55,6 +55,15 @@ void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const t
   }
   for (int tree = 0; tree < 3; ++tree) {
     if ((kinds >> tree & 1u) == 0) continue;
+    if constexpr (D::dimension == 3)
+      if (tree == tree_dynamic && world.scratch.sweep.holds(world.shapes.trees[tree])) {
+        world.scratch.sweep.query(box, [&](std::uint32_t item) {
+          const std::int32_t o = std::int32_t(item);
+          if (overlaps(world.shapes.trees[tree].bounds(world.shapes.at(o).leaf), box) && may_meet(world, s, o))
+            visit(o);
+        });
+        continue;
+      }
     world.shapes.trees[tree].query(box, [&](std::uint32_t item) {
       if (may_meet(world, s, std::int32_t(item))) visit(std::int32_t(item));
       return true;
@@ -240,11 +249,12 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     }
     // Bullets look for all that moves where its bounds foresaw its way; what left them looks for bullets, and what of
     // both left them is looked through once more.
-    const bool stray = any_bullets && !geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box);
+    const bool foreseen = geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box);
+    const bool stray = any_bullets && !foreseen;
     const bool looks = bullet || stray || world.shapes.moving_surfaces > 0;
     if (stray && (shape.flags & shape_sensor) == 0) strays.push_back({box, s});
     const unsigned kinds = with_fixed | with_kinematic | (looks ? unsigned(with_dynamic) : 0u);
-    for_candidates(world, s, box, kinds, [&](std::int32_t o) {
+    for_candidates(world, s, box, foreseen, kinds, [&](std::int32_t o) {
       const ShapeRecord<D>& other = world.shapes.at(o);
       if (((shape.flags | other.flags) & shape_sensor) != 0) {
         sensors.push_back({s, o});
@@ -320,13 +330,11 @@ void meet_in_order(StepContext<D>& context) {
   std::vector<BulletPair>& pairs = scratch.bullet_pairs;
   std::vector<BulletMeeting>& heap = scratch.bullet_meetings;
   const auto later = [](const BulletMeeting& l, const BulletMeeting& r) { return r < l; };
-  std::sort(pairs.begin(), pairs.end(), [](const BulletPair& l, const BulletPair& r) {
-    return l.own != r.own ? l.own < r.own : l.other < r.other;
-  });
-  pairs.erase(
-      std::unique(pairs.begin(), pairs.end(),
-                  [](const BulletPair& l, const BulletPair& r) { return l.own == r.own && l.other == r.other; }),
-      pairs.end());
+  const auto name = [](const BulletPair& p) { return std::uint64_t(p.own) << 32 | std::uint32_t(p.other); };
+  std::sort(pairs.begin(), pairs.end(), [&](const BulletPair& l, const BulletPair& r) { return name(l) < name(r); });
+  pairs.erase(std::unique(pairs.begin(), pairs.end(),
+                          [&](const BulletPair& l, const BulletPair& r) { return name(l) == name(r); }),
+              pairs.end());
   scratch.first_bullet_pair.assign(world.bodies.awake.size(), none);
   heap.clear();
   // Nobody has been stopped yet: when each pair meets by itself is asked side by side.
