@@ -87,7 +87,7 @@ struct ClothState {
   void stretch();                         ///< triangles: strains, stresses, wind
   void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
   void hold(float h);
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity}; }
+  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
   void keep_apart(float h);  ///< folds
   void tile_folds();
   void find_fold_pairs(float h, float apart);

@@ -196,7 +196,11 @@ class SoftSolver {
   void begin(const SoftMatrix& matrix, const std::vector<Vec3f>& velocity, core::TaskScheduler& scheduler);
   /// Iterations used. `tolerance` is relative to the right-hand side, or to that of changes of `least` m/s if it is
   /// less.
-  int solve(const SoftMatrix& matrix, double tolerance, float least, int most, core::TaskScheduler& scheduler);
+  /// `again`: of the same system with other holds.
+  int solve(const SoftMatrix& matrix, double tolerance, float least, int most, bool again,
+            core::TaskScheduler& scheduler);
+  /// After the last solve of a substep: what it left undone gives no momentum.
+  void finish(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
 
  private:
   SoftSweep sweep(const SoftMatrix& matrix);
@@ -216,7 +220,7 @@ class SoftSolver {
   void scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
   double start_sweep(const SoftMatrix& matrix, const std::vector<SoftVector>& from);
   void unscale(const SoftMatrix& matrix, std::vector<SoftVector>& out) const;
-  void settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
+  void find_reactions(const SoftMatrix& matrix);
 
   const SoftKernels* kernels_ = &soft_kernels(4);
   std::vector<SoftVector> residual_, free_, held_, image_;  // by vertex

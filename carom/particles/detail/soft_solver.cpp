@@ -155,7 +155,7 @@ void SoftSolver::unscale(const SoftMatrix& matrix, std::vector<SoftVector>& out)
     if (row[p] >= 0) out[std::size_t(row[p])] = scale_[p].times(forward_[p].v);
 }
 
-int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, int most,
+int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, int most, bool again,
                       core::TaskScheduler& scheduler) {
   const std::size_t bodies = ties.empty() ? 0 : movers.size();
   const std::vector<int>& row = matrix.tiles_.row;
@@ -177,7 +177,13 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
   }
   scale = math::max(scale, small);
 
-  scale_guess(matrix, scheduler);
+  if (again) {
+    matrix.multiply(change.data(), image_.data(), scheduler);
+    for (std::size_t i = 0; i < right.size(); ++i)
+      residual_[i].v = right[i].v - image_[i].v - lanes_of(diagonal[i] * change[i].vector());
+  } else {
+    scale_guess(matrix, scheduler);
+  }
   if (bodies > 0) residual_of_movers(mover_residual_);
   double size = start_sweep(matrix, residual_);
   if (bodies > 0) size += start_movers(matrix);
@@ -222,14 +228,24 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
     for (const SoftTie& tie : ties)
       change[std::size_t(tie.node)] +=
           carried(tie, movers[std::size_t(tie.body)].change - mover_start_[std::size_t(tie.body)]);
-  settle_momentum(matrix, scheduler);
-  guess = change;
+  find_reactions(matrix);
   return iterations;
 }
 
+/// What the holds had to give.
+void SoftSolver::find_reactions(const SoftMatrix& matrix) {
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    reaction[i] = {};
+    if (holds[i].rank == 0) continue;
+    const Vec3f given =
+        SoftVector(matrix.whole_row(i, change.data())).vector() + diagonal[i] * change[i].vector() - right[i].vector();
+    reaction[i] = holds[i].rank == 1 ? dot(holds[i].normal, given) * holds[i].normal : given;
+  }
+}
+
 /// What is left of the residual would be momentum out of nothing: where nothing is pinned, all that is free takes it as
-/// a shift of the whole, which the elements do not feel. And what the holds had to give.
-void SoftSolver::settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& scheduler) {
+/// a shift of the whole, which the elements do not feel.
+void SoftSolver::finish(const SoftMatrix& matrix, core::TaskScheduler& scheduler) {
   const std::size_t bodies = ties.empty() ? 0 : movers.size();
   bool pinned = false;
   for (std::size_t i = 0; i < right.size(); ++i) pinned |= holds[i].rank == 3;
@@ -255,13 +271,8 @@ void SoftSolver::settle_momentum(const SoftMatrix& matrix, core::TaskScheduler& 
     for (std::size_t b = 0; b < bodies; ++b)
       if (movers[b].from != movers[b].to) movers[b].change.linear += Vec3d(shift);
   }
-  for (std::size_t i = 0; i < right.size(); ++i) {
-    reaction[i] = {};
-    if (holds[i].rank == 0) continue;
-    const Vec3f given =
-        SoftVector(matrix.whole_row(i, change.data())).vector() + diagonal[i] * change[i].vector() - right[i].vector();
-    reaction[i] = holds[i].rank == 1 ? dot(holds[i].normal, given) * holds[i].normal : given;
-  }
+  if (!pinned) find_reactions(matrix);
+  guess = change;
 }
 
 }  // namespace carom::particles::detail

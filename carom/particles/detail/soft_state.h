@@ -44,7 +44,7 @@ struct SoftState {
   void strain();
   void assemble(float h, Vec3f gravity);
   void hold(float h);
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity}; }
+  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
 };
 
 }  // namespace carom::particles::detail

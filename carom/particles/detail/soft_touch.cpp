@@ -37,7 +37,6 @@ void hold_touch(SoftTouch& touch, std::size_t i, Vec3d position, Vec3f velocity,
   const float deep = float(touch.plane.separation);
   touch.active = touch.active || deep < 0;
   if (!touch.active) return;
-  solver.holds[i] = {1, n};
   // What moves is not thrown: the world moves it through a blow a little otherwise than the substeps here foresee.
   const float fastest = obstacles.bodies[std::size_t(touch.plane.body)].moves ? 0.1f : 1.0f;
   const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, fastest);
@@ -49,6 +48,7 @@ void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSo
   for (std::size_t i = 0; i < all.touches.size(); ++i) {
     const SoftTouch& touch = all.touches[i];
     if (!touch.near) continue;
+    solver.holds[i] = touch.active ? SoftHold{1, Vec3f(touch.plane.normal)} : SoftHold{};
     if (touch.active)
       solver.change[i] = solver.holds[i].filter(solver.change[i]) + touch.given * Vec3f(touch.plane.normal);
     const SoftObstacles::Body& body = obstacles.bodies[std::size_t(touch.plane.body)];
@@ -75,22 +75,23 @@ void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSo
 
 bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obstacles, SoftSolver& solver) {
   bool again = false;
+  // What hardly pulls where nothing that moves hangs on it is let go for the next substep, not for this one.
+  const float slight = solver.ties.empty() ? soft_pull * h : 0;
   for (std::size_t i = 0; i < all.position.size(); ++i) {
     SoftTouch& touch = all.touches[i];
     if (!touch.near) continue;
     const Vec3f n(touch.plane.normal);
     if (touch.active) {
-      if (dot(n, solver.reaction[i]) >= 0) continue;
+      const float pull = -dot(n, solver.reaction[i]);
+      if (pull <= 0) continue;
       touch.active = false;
-      solver.holds[i] = {};
-      again = true;
+      again |= pull > slight * all.mass[i];
       continue;
     }
     const Vec3f before = all.velocity[i] - surface_velocity(touch, all.position[i], obstacles);
     const Vec3f change = solver.change[i] - surface_change(touch, all.position[i], obstacles, solver);
     if (float(touch.plane.separation) + h * dot(n, before + change) >= -1e-6f) continue;
     touch.active = again = true;
-    solver.holds[i] = {1, n};
     touch.given = -math::max(float(touch.plane.separation), 0.0f) / h - dot(n, before);
   }
   return again;
@@ -103,9 +104,10 @@ int solve_touches(const SoftTouching& all, const SoftMatrix& matrix, float h, co
     tie_touches(all, obstacles, solver);
     // What a solve leaves undone of a stiff solid's forces would throw a light body that lies on it.
     const bool bears = !solver.ties.empty();
-    iterations += solver.solve(matrix, bears ? 5e-5 : 2e-3, h * (bears ? 0.1f : 2.0f), 200, scheduler);
+    iterations += solver.solve(matrix, bears ? 5e-5 : 2e-3, h * (bears ? 0.1f : 2.0f), 200, round > 0, scheduler);
     if (round == 2 || !revise_touches(all, h, obstacles, solver)) break;
   }
+  solver.finish(matrix, scheduler);
   return iterations;
 }
 

@@ -10,6 +10,7 @@
 namespace carom::particles::detail {
 
 inline constexpr float soft_slip = 0.002f;  ///< m/s: friction grows up to here
+inline constexpr float soft_pull = 1;  ///< m/s² times its mass: what a contact may pull a particle back for a substep
 
 struct SoftTouch {
   bool near = false, active = false;
@@ -27,13 +28,14 @@ struct SoftTouching {
   const std::vector<int>& pinned;
   const std::vector<math::Vec3d>& position;
   const std::vector<Vec3f>& velocity;
+  const std::vector<float>& mass;
 };
 
 /// Enters the touch of particle i, which is near, into the system. `friction`: of the particles' material.
 void hold_touch(SoftTouch& touch, std::size_t i, math::Vec3d position, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver);
 
-/// Enters the bodies of what is held or rubbed into the system. Before every solve.
+/// Enters what is held, and the bodies of what is held or rubbed, into the system. Before every solve.
 void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSolver& solver);
 /// After a solve: lets go of what is pulled, holds what would pass through. True: solve again.
 bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obstacles, SoftSolver& solver);
