@@ -98,9 +98,15 @@ struct Search {
         shallow(min(0.25 * inner, 0.005 + 0.01 * inner)),
         sagitta(a.sagitta * (math::length(swept_core.arm) + swept_core.reach)),
         limit(most) {
-    if (b.turns())
-      sagitta += b.sagitta * (max(math::length(start.p - b.local_center), math::length(end.p - b.local_center)) +
-                              math::length(swept_core.arm) + swept_core.reach);
+    if (!b.turns()) return;
+    // Seen from what turns, the turns of both add, and a straight way bends: at a part t of a turn θ by t (1 − t) θ of
+    // the way, so by a quarter of θ at most, and a little more as the turn is not even.
+    const double size = a.turns() ? math::length(swept_core.arm) + swept_core.reach
+                                  : math::length(a.local_center) + double(outer_size(core));
+    const Vec3d from = transform_point(start, a.local_center) - b.local_center,
+                to = transform_point(end, a.local_center) - b.local_center;
+    sagitta = square(math::sqrt(a.sagitta) + math::sqrt(b.sagitta)) * size +
+              b.sagitta * max(math::length(from), math::length(to)) + 0.3 * b.most_rate * math::length(to - from);
   }
 
   /// The height of the lowest point of a core of `a` over a plane of b.
@@ -122,6 +128,31 @@ struct Search {
       if (about.low[k] - to.high[k] >= at_end && about.low[k] - from.high[k] >= at_start) return true;
     }
     return false;
+  }
+
+  /// Does a keep beside b along the direction, the same all the time, in which their middles fly past each other? For
+  /// what turns, where planes of b see a bent way.
+  bool flies_past(const Convex& part) const {
+    const Transform3d at_a[2] = {a.at(0), a.at(1)}, at_b[2] = {b.at(0), b.at(1)};
+    const Vec3d inside_a(inner_point(core)), inside_b(inner_point(part));
+    const Vec3d from = transform_point(at_a[0], inside_a) - transform_point(at_b[0], inside_b),
+                way = transform_point(at_a[1], inside_a) - transform_point(at_b[1], inside_b) - from;
+    const double square_of_way = length_squared(way);
+    const double t = square_of_way > 0 ? clamp(-dot(from, way) / square_of_way, 0.0, 1.0) : 0.0;
+    const Vec3d between = from + way * t;
+    const double apart = math::length(between);
+    if (!(apart > 1e-3)) return false;
+    const Vec3d n = between * (1 / apart);
+    double height[2];
+    for (int k = 0; k < 2; ++k) {
+      const Vec3d top = transform_point(at_b[k], support(part, inverse_rotate(at_b[k].q, n)));
+      height[k] = lowest(core, at_a[k], n, dot(n, top) + double(part.radius));
+    }
+    const Swept<Vec3d> swept_part = swept(part, b);
+    const double stray = a.sagitta * (math::length(swept_core.arm) + swept_core.reach) +
+                         b.sagitta * (math::length(swept_part.arm) + swept_part.reach),
+                 most = 0.5 * inner;
+    return height[1] >= max(-shallow, stray - most) && height[0] >= stray - most;
   }
 
   void keep(const TimeOfImpact& t) {
@@ -216,7 +247,9 @@ float free_fraction(const Passage3& a, const Shape3& b, const Sweep3& b_sweep, f
   } else {
     const Bounds3f from = bounds(a.shape, in_float(search.start)), to = bounds(a.shape, in_float(search.end));
     if (is_convex(b)) {
-      if (!search.clears(from, to, bounds(b, {}))) search.meet(convex_of(b));
+      if (search.clears(from, to, bounds(b, {}))) return limit;
+      const Convex part = convex_of(b);
+      if (!search.b.turns() || !search.flies_past(part)) search.meet(part);
     } else if (is_surface(b)) {
       const Bounds3f all = merge(from, to);
       const Vec3f most = max(abs(all.low), abs(all.high));
