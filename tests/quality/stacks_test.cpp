@@ -103,20 +103,16 @@ TYPED_TEST(QualityStacks, PyramidIsStill) {
   Gate(17, "pyramid of base 12 after 10 s, sleep off: fastest body", D::dimension, "m/s").at_most(fastest(world), 1e-4);
 }
 
-// Five thousand boxes in a hundred rows: they agree on their loads by some rows a step and start with none, so the top
-// sinks, is thrown up again, and sways.
+// Five thousand boxes in a hundred rows. They agree on their loads by some rows a step: without the first loads, which
+// are handed down before it, the top would sink by a quarter of a metre and be thrown up again.
 TYPED_TEST(QualityStacks, TallPyramidIsStill) {
   using D = TypeParam;
   World<D> world(world_with<D>());
   add_ground(world);
   const BodyId top = add_pyramid(world, 100).back();
   run(world, 600);
-  Gate(17, "pyramid of base 100 after 10 s: fastest body", D::dimension, "m/s")
-      .not_yet(0.3)
-      .at_most(fastest(world), 1e-4);
-  Gate(17, "pyramid of base 100 after 10 s: still awake", D::dimension)
-      .not_yet(5050)
-      .exactly(world.counters().awake_bodies, 0);
+  Gate(17, "pyramid of base 100 after 10 s: fastest body", D::dimension, "m/s").at_most(fastest(world), 1e-4);
+  Gate(17, "pyramid of base 100 after 10 s: still awake", D::dimension).exactly(world.counters().awake_bodies, 0);
   Gate(17, "pyramid of base 100 after 10 s: sag of the top", D::dimension, "m")
       .at_most(99.5 - world.state(top).value().pose.position.y, 0.1);
 }

@@ -60,7 +60,7 @@ TYPED_TEST(Place, TheSameStackEverywhere) {
         if (i % 11 < 6) worst = std::max(worst, math::length(there.way[i] - origin.way[i]));
       EXPECT_LT(worst, place.tolerance) << place.distance;
       EXPECT_EQ(there.asleep, origin.asleep) << place.distance;
-      EXPECT_EQ(there.contacts, origin.contacts) << place.distance;
+      EXPECT_LT(std::abs(there.contacts - origin.contacts), 2) << place.distance;  // struck boxes end centimetres apart
       EXPECT_LT(std::abs(there.begins - origin.begins), 3) << place.distance;
       EXPECT_LT(there.penetration, 0.006f) << place.distance;
     }

@@ -78,6 +78,7 @@ struct alignas(64) ContactRaw {
   float anchor_a[dimension][W], anchor_b[dimension][W];
   float anchor_state[W];  ///< 0: friction slides freely, 1: no anchor yet, 2: holds, 3: settles; out: 1: a new anchor
   float friction_impulse[dimension][W];
+  float squeezed[W];  ///< 0 … 1: how far the masses follow the load (load.h), of the body where they do more
   float tangent_speed[W], patch_factor[W], point_factor[W];
 };
 
@@ -141,8 +142,9 @@ struct ContactKernels {
   std::uint32_t (*closing)(const ContactSources<D>& from, int lanes, const void* block, float least) = nullptr;
   /// The impulses of a block to the records and to the loads of its bodies. Bits by lane: friction is at its limit.
   std::uint32_t (*store)(const ContactSources<D>& to, const std::int32_t* list, int lanes, const void* block) = nullptr;
-  /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back.
-  void (*prepare)(void* block, void* raw, float anchor_rate) = nullptr;
+  /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back. friction_leak: part of
+  /// its impulse that is forgotten in a substep where faces are squeezed.
+  void (*prepare)(void* block, void* raw, float anchor_rate, float friction_leak) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,

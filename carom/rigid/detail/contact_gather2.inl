@@ -139,6 +139,8 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
                                                                c.inverse_mass_a, c.inverse_inertia_a);
   gather_side2<&LaneRecords2::motion_b, &LaneRecords2::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
                                                                c.inverse_mass_b, c.inverse_inertia_b);
+  const F share = min(F::load(share_a), F::load(share_b));
+  (F::splat(1) - share).store(raw.squeezed);
   F base[4];
   gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim2>, base))>(lane, base);
   for (int i = 0; i < 2; ++i) {

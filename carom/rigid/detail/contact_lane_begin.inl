@@ -6,6 +6,9 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr float anchor_rate = 0.05f;  ///< part of the slip that sticking friction takes back in a step
+/// Part of its impulse that sticking friction forgets in a step where bodies are squeezed. What takes slip back pushes
+/// late where many rows agree slowly, and a tall wall would sway for ever: it has to forget faster than it takes back.
+constexpr float friction_leak = 0.15f;
 
 template <class D>
 typename D::Vector acceleration_of(const StepContext<D>& context, std::int32_t body) {

@@ -60,6 +60,7 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   const bool slides = m.tangent_speed != 0 || (c.flags & contact_round) != 0;
   raw.anchor_state[lane] = slides ? 0 : 1 + float(m.anchor);
   put(raw.friction_impulse, lane, m.impulses.friction);
+  raw.squeezed[lane] = 1 - min(load_share(ma), load_share(mb));
   raw.tangent_speed[lane] = m.tangent_speed;
   // Radius of the patch for the twist over the mean distance of its points, under uniform pressure: a disc turns on 2/3
   // of its radius, rectangles from square to thin line on .54 … .5 of the distance of their corners.

@@ -93,11 +93,12 @@ CAROM_SIMD_INLINE void prepare_friction2(ContactBlock<Dim2, W>& c, ContactRaw<Di
   select(holds, zero, min(state, one)).store(raw.anchor_state);
   rate = select(state > F::splat(2), rate + rate, rate);
   dot(load2<W>(raw.friction_impulse), t).store(c.tangent_impulse);
+  keep(holds & (state == F::splat(2)) & (count == F::splat(2)), F::load(raw.squeezed)).store(raw.squeezed);
   (F::load(raw.tangent_speed) - rate * dot(slip, t)).store(c.tangent_target);
 }
 
 template <int W>
-CAROM_SIMD_INLINE void prepare_masses2(ContactBlock<Dim2, W>& c) {
+CAROM_SIMD_INLINE void prepare_masses2(ContactBlock<Dim2, W>& c, const ContactRaw<Dim2, W>& raw, WideFloat<W> leak) {
   using F = WideFloat<W>;
   const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
   const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
@@ -109,16 +110,19 @@ CAROM_SIMD_INLINE void prepare_masses2(ContactBlock<Dim2, W>& c) {
   }
   const WideVec2<W> ra = load2<W>(c.patch_r_a);
   const F ta = cross(ra, t), tb = cross(add(ra, offset), t);
-  inverse_or_zero(F::splat(1), mass + ia * ta * ta + ib * tb * tb).store(c.tangent_mass);
+  const F response = mass + ia * ta * ta + ib * tb * tb;
+  inverse_or_zero(F::splat(1), response).store(c.tangent_mass);
+  const F forgotten = leak * F::load(raw.squeezed) * F::load(c.tangent_impulse);
+  (F::load(c.tangent_target) - response * forgotten).store(c.tangent_target);
 }
 
 template <int W>
-void prepare2(void* block, void* raw, float anchor_rate) {
+void prepare2(void* block, void* raw, float anchor_rate, float friction_leak) {
   ContactBlock<Dim2, W>& c = *static_cast<ContactBlock<Dim2, W>*>(block);
   ContactRaw<Dim2, W>& from = *static_cast<ContactRaw<Dim2, W>*>(raw);
   prepare_points2(c, from);
   prepare_friction2(c, from, WideFloat<W>::splat(anchor_rate));
-  prepare_masses2(c);
+  prepare_masses2(c, from, WideFloat<W>::splat(friction_leak));
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

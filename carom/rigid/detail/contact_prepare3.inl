@@ -130,6 +130,7 @@ CAROM_SIMD_INLINE void prepare_friction3(ContactBlock<Dim3, W>& c, ContactRaw<Di
   const WideVec3<W> none = {zero, zero, zero}, slip = select(holds, subtract(b, a), none);
   select(holds, zero, min(state, one)).store(raw.anchor_state);
   rate = select(state > F::splat(2), rate + rate, rate);
+  keep(holds & (state == F::splat(2)) & (count == F::splat(4)), F::load(raw.squeezed)).store(raw.squeezed);
   const WideVec3<W> impulse = load3<W>(raw.friction_impulse);
   dot(impulse, t).store(c.tangent_impulse[0]);
   dot(impulse, u).store(c.tangent_impulse[1]);
@@ -138,7 +139,7 @@ CAROM_SIMD_INLINE void prepare_friction3(ContactBlock<Dim3, W>& c, ContactRaw<Di
 }
 
 template <int W>
-CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c) {
+CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c, const ContactRaw<Dim3, W>& raw, WideFloat<W> leak) {
   using F = WideFloat<W>;
   const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
   const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
@@ -157,17 +158,21 @@ CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c) {
   (k22 * s).store(c.tangent_mass[0]);
   (k11 * s).store(c.tangent_mass[1]);
   (F::splat(0) - k12 * s).store(c.tangent_mass[2]);
+  const F forgotten = leak * F::load(raw.squeezed);
+  const F l1 = forgotten * F::load(c.tangent_impulse[0]), l2 = forgotten * F::load(c.tangent_impulse[1]);
+  (F::load(c.tangent_target[0]) - (k11 * l1 + k12 * l2)).store(c.tangent_target[0]);
+  (F::load(c.tangent_target[1]) - (k12 * l1 + k22 * l2)).store(c.tangent_target[1]);
   const WideVec3<W> spin = add(multiply(ia, n), multiply(ib, n));
   inverse_or_zero(F::splat(1), dot(n, spin)).store(c.twist_mass);
 }
 
 template <int W>
-void prepare3(void* block, void* raw, float anchor_rate) {
+void prepare3(void* block, void* raw, float anchor_rate, float friction_leak) {
   ContactBlock<Dim3, W>& c = *static_cast<ContactBlock<Dim3, W>*>(block);
   ContactRaw<Dim3, W>& from = *static_cast<ContactRaw<Dim3, W>*>(raw);
   prepare_points3(c, from);
   prepare_friction3(c, from, WideFloat<W>::splat(anchor_rate));
-  prepare_masses3(c);
+  prepare_masses3(c, from, WideFloat<W>::splat(friction_leak));
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -57,21 +57,37 @@ float rest_speed(const WorldDef<D>& definition, float dt) {
   return rest_falls * math::length(definition.gravity) * dt;
 }
 
-/// The next level. gravity: m/s², of what acts on the body from afar.
+/// What a body bears as it is over what presses it together, at most 1: at the least level that has this share or less,
+/// it bears the load. gravity: m/s², of what acts on the body from afar.
+template <class D>
+float borne_share(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load, float gravity) {
+  const float squeeze = 0.5f * (load.size - math::length(load.sum)) * m.inverse_mass * context.inverse_h;  // m/s²
+  const float borne = min(load_weights * gravity, load_yield * m.inner_extent * context.contact_stiffness);
+  return borne > 0 && squeeze > borne ? borne / squeeze : 1;
+}
+
+/// The level for a load that is there from the start.
+template <class D>
+std::uint16_t level_of_load(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load,
+                            float gravity) {
+  const float share = borne_share(context, m, load, gravity);
+  const float* const shares = load_shares.share;
+  return std::uint16_t(std::lower_bound(shares, shares + LoadShares::count - 1, share, std::greater<>()) - shares);
+}
+
+/// The next level.
 template <class D>
 std::uint16_t follow_load(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load,
                           float gravity) {
   if (load.size < 0) return 0;
   if (m.load_level == 0 && load.size == 0) return 0;
-  const float squeeze = 0.5f * (load.size - math::length(load.sum)) * m.inverse_mass * context.inverse_h;  // m/s²
-  const float borne = min(load_weights * gravity, load_yield * m.inner_extent * context.contact_stiffness);
+  const float share = borne_share(context, m, load, gravity);
   const int level = m.load_level;
   const float* const shares = load_shares.share;
-  const float share = borne / squeeze;  // at the least level that has it or less, the body bears the load
   const int last = LoadShares::count - 1;
-  if (!(borne > 0 && squeeze > borne) || level == last || !(shares[level] > share)) {
+  if (share == 1 || level == last || !(shares[level] > share)) {
     const int low = level - load_play;
-    const bool stays = low < 0 || (borne > 0 && squeeze > borne && shares[low] > share);
+    const bool stays = low < 0 || (share < 1 && shares[low] > share);
     return std::uint16_t(stays ? level : level - load_fall);
   }
   // Compared with where it is: most change little, and a search costs more than all the rest here.

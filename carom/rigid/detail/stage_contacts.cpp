@@ -116,7 +116,7 @@ void prepare_blocks(StepContext<D>& context) {
         for (int lane = 0; lane < lanes; ++lane)
           if ((marks[lane] & mark_pushed) != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane]))
             marks[lane] &= std::uint8_t(~mark_pushed);
-        world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt);
+        world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt, friction_leak / float(context.substeps));
         for (int lane = 0; lane < lanes; ++lane)
           if (raw.anchor_state[lane] > 0) {
             const bool set = set_anchor(context, list[std::size_t(lane)], block, lane, may_wait);

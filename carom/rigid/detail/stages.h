@@ -17,6 +17,9 @@ void modify_contacts(WorldImplementation<D>& world);
 /// May the moving shape pass the one-way surface `other` on its way by `travel` (world)?
 template <class D>
 bool passes_one_way(const WorldImplementation<D>& world, std::int32_t other, const typename D::Vector& travel);
+/// First impulses and masses of what was set down at rest in contact.
+template <class D>
+void hand_down_loads(StepContext<D>& context);
 /// Contact blocks from manifolds, and back.
 template <class D>
 void prepare_contacts(StepContext<D>& context);

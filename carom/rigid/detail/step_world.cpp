@@ -258,6 +258,10 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   modify_contacts(world);
   profile.narrow_phase = watch.lap("narrow phase");
 
+  if (!world.scratch.new_touches.empty()) {
+    StepContext<D> all = make_context(world, dt, world.definition.substeps);
+    hand_down_loads(all);
+  }
   for_each_substep_group<D>(world, [&](int substeps) {
     StepContext<D> group = make_context(world, dt, substeps);
     prepare_joints(group);
