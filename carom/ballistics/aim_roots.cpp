@@ -13,22 +13,24 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
   double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
   double off = 0, last_off = 0;  // m, what the last measured paths erred
+  const double finest = rough / 64;
   Vec3d last_u{}, last_x{};
   double last_time = 0;
   // secant: Broyden's updates, from the closed form; recorded: with the derivatives; plain: Broyden's updates of those;
   // measured: with what it errs; again: by the corrected steps of that one; checked: and measured once more.
   enum class Way { secant, recorded, plain, measured, again, checked };
   Way way = start == Start::near ? Way::measured : eager ? Way::secant : Way::recorded;
+  const auto correct = [&](Arrival& end) {
+    const Vec3d more = measure(path, 0.8 * allowed);
+    last_off = off;
+    end.position += more;
+    off = math::length(more);
+  };
   for (int i = 0; i < most; ++i) {
     Arrival end;
     if (way == Way::again || way == Way::checked) {
       end = follow(guess.u, guess.time, path);
-      if (way == Way::checked) {
-        const Vec3d more = measure(path, 0.8 * allowed);
-        last_off = off;
-        end.position += more;
-        off = math::length(more);
-      }
+      if (way == Way::checked) correct(end);
     } else if (way == Way::plain || way == Way::secant) {  // as good as recorded on flat paths, and half the work
       end = propagate(guess.u, guess.time, accuracy);
       if (i == 0)
@@ -48,10 +50,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
       end = path.arrival;
       if (way == Way::measured) {
         for (int n = 0; n < path.count; ++n) path.correction[n] = {};
-        const Vec3d more = measure(path, 0.8 * allowed);
-        last_off = off;
-        end.position += more;
-        off = math::length(more);
+        correct(end);
       }
     }
     last_u = guess.u;
@@ -77,10 +76,15 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
     // Derivatives are known to a few thousandths, and the next miss is as the square of this one.
     const double share = way == Way::measured ? 3e-3 + 3 * moved / scale : math::clamp(both / last_both, 0.01, 1.0);
     const bool again = way == Way::again || way == Way::checked, known = way == Way::measured || again;
-    // What is measured is known to a hundredth or better, less well where the wind bends; and it errs as its square.
-    const bool trusted = off < 0.5 * math::sqrt(allowed * scale);
-    const double doubt = way == Way::again ? 0 : (path.bends ? 0.05 : 0.005) * off;
-    if (known && trusted && share * moved < 0.5 * allowed && doubt < 0.5 * allowed) {
+    // What is measured is known to a hundredth or better, and it errs as its square. Less well where wind or drag
+    // bends, by every step's share of it: those of opposite sign are none the less in doubt. Shorter steps where wind
+    // that changes steeply with height would feel what the heights within them are off.
+    const double enough = path.layers ? finest : 16 * finest;  // flown roughly, drag tables of lines stay as rough
+    const bool fine =
+        rough <= finest || (path.steep < allowed && (!path.bends || path.total < 50 * allowed || rough <= enough));
+    const bool trusted = fine && off < 0.5 * math::sqrt(allowed * scale);
+    const double doubt = way == Way::again ? 0 : path.bends ? 0.05 * path.total : 0.005 * off;
+    if (known && trusted && share * moved < allowed && doubt < 0.5 * allowed) {
       const double* pull = path.node[path.count].k;
       const Vec3d aimed = guess.u - shooter_.velocity;
       root = {true, slope, guess, {target_(guess.time), end.velocity + dt * Vec3d{pull[0], pull[1], pull[2]}}};

@@ -74,7 +74,8 @@ bool AimSolver::two_arcs(Aims& aims, bool steady) const {
   if (peaks + (rises ? 1 : 0) > 1) return false;
   const bool far = steady && looks_far();
   if (far && out_of_reach()) return true;
-  return by_guesses(aims) || (steady && !far && out_of_reach()) || by_peak(aims);
+  Root late;
+  return by_guesses(aims, late) || (steady && !far && !late.found && out_of_reach()) || by_peak(aims, late);
 }
 
 /// Straight at the target, by the time of flight of quadratic drag.
@@ -95,7 +96,7 @@ bool AimSolver::looks_far() const {
   return 0.5 * conditions_.gravity * time * time > 0.65 * math::length(target_(time) - shooter_.muzzle);
 }
 
-bool AimSolver::by_guesses(Aims& aims) const {
+bool AimSolver::by_guesses(Aims& aims, Root& late) const {
   const double speed = shooter_.muzzle_speed, g = conditions_.gravity;
   const double fall_speed = math::sqrt(g * decay_ * speed);
   const double time = flat_time();
@@ -103,6 +104,10 @@ bool AimSolver::by_guesses(Aims& aims) const {
   const Vec3d flat = target_(time) - shooter_.muzzle + Vec3d{0, 0.5 * g * time * time, 0} - time * shooter_.velocity;
   const Root low = refine({shooter_.velocity + (speed / math::length(flat)) * flat, time}, 14, true);
   if (!low.found) return false;
+  if (low.slope * low.guess.time > 0.02 * speed) {
+    late = low;
+    return false;
+  }
   if (!options_.high_arc) {
     // It is the earliest where a little less time would need more speed; the slope tells, unless it is near the peak.
     if (low.slope * low.guess.time < -0.1 * speed) {
@@ -196,6 +201,8 @@ AimSolver::Reach AimSolver::falls_short(Guess& guess) const {
   Vec3d last_u{}, last_x{};
   double last_time = 0;
   bool anew = true;
+  double least = 1e300;  // m/s, of what was found to be needed, there:
+  Guess nearest;
   for (int i = 0; i < 24; ++i) {
     const double away = math::length(target_(guess.time) - shooter_.muzzle);
     const Arrival end = propagate(guess.u, guess.time, 1e-3 * away);
@@ -227,6 +234,10 @@ AimSolver::Reach AimSolver::falls_short(Guess& guess) const {
     const Vec3d to_drift = inverse.apply(velocity_of_target(guess.time) - end.velocity);
     const Tangent here{guess.time, math::length(barrel), math::dot(barrel, to_drift) / math::length(barrel)};
     if (here.need < enough) return Reach::near;
+    if (here.need < least) {
+      least = here.need;
+      nearest = {guess.u + to_miss, guess.time};
+    }
     if (!(math::abs(here.slope) > 0)) return Reach::unknown;
     // Slopes are known to about a tenth: as if they were a quarter steeper.
     const double reached = here.time - (here.need - enough) / (1.25 * here.slope);
@@ -242,6 +253,10 @@ AimSolver::Reach AimSolver::falls_short(Guess& guess) const {
       const double mean = (rises.need - falls.need) / (rises.time - falls.time);
       if (rises.time < 1.02 * falls.time || mean < falls.slope || mean > rises.slope) return Reach::unknown;
     }
+    if (first >= last && least < 1.5 * speed) {  // where drag falls with speed the curve need not be convex: look there
+      guess = nearest;
+      return Reach::near;
+    }
     if (first >= last) return Reach::never;
     double next = 0.5 * (first + last);
     if (rises.time == 0) next = math::min(math::max(first, 1.4 * here.time), 0.5 * (first + last));
@@ -252,13 +267,13 @@ AimSolver::Reach AimSolver::falls_short(Guess& guess) const {
   return Reach::unknown;
 }
 
-bool AimSolver::by_peak(Aims& aims) const {
+bool AimSolver::by_peak(Aims& aims, const Root& late) const {
   Guess guess;
   const Reach reach = falls_short(guess);
   if (reach == Reach::never) return true;
-  if (reach == Reach::near) return climb(aims, guess, true);
+  if (reach == Reach::near) return climb(aims, guess, true, late);
   const double best = best_in_vacuum();
-  return climb(aims, {vacuum(best), best}, false);
+  return climb(aims, {vacuum(best), best}, false, late);
 }
 
 AimSolver::Footing AimSolver::footing(Guess guess) const {
@@ -284,7 +299,7 @@ AimSolver::Footing AimSolver::footing(Guess guess) const {
   return {};
 }
 
-bool AimSolver::climb(Aims& aims, Guess top, bool sure) const {
+bool AimSolver::climb(Aims& aims, Guess top, bool sure, const Root& late) const {
   Footing at = footing(top), rises, falls;  // before the peak and after it
   const double longest = options_.longest_time;
   for (int i = 0; i < 16 && at.known && at.lack < 0; ++i) {
@@ -313,6 +328,10 @@ bool AimSolver::climb(Aims& aims, Guess top, bool sure) const {
   const double bend = other.known ? (at.slope - other.slope) / (at.guess.time - other.guess.time)
                                   : -2 * shooter_.muzzle_speed / math::square(at.guess.time);
   for (const double side : {-1.0, 1.0}) {
+    if (side > 0 && late.found && late.guess.time > at.guess.time) {
+      keep(aims, late);
+      continue;
+    }
     const double curve = math::min(bend, -0.1 * shooter_.muzzle_speed / math::square(at.guess.time));
     const double root = math::sqrt(at.slope * at.slope - 2 * curve * at.lack);
     const double way = (at.slope + side * root) / -curve;

@@ -47,6 +47,16 @@ Case draw(math::Random& random) {
   return c;
 }
 
+/// Of the random cases: CAROM_AIM_CASES (10 000 have been run) and CAROM_AIM_SEED ask for others.
+int cases_asked(int usual) {
+  const char* asked = std::getenv("CAROM_AIM_CASES");
+  return asked != nullptr ? std::atoi(asked) : usual;
+}
+math::Random random_asked(std::uint64_t usual) {
+  const char* asked = std::getenv("CAROM_AIM_SEED");
+  return math::Random(asked != nullptr ? std::uint64_t(std::atoi(asked)) : usual);
+}
+
 /// How far the shot passes the target, by the exact integration.
 double miss(const Case& c, const Shot& shot) {
   const Vec3d u = c.shooter.velocity + c.shooter.muzzle_speed * shot.direction;
@@ -58,11 +68,9 @@ double miss(const Case& c, const Shot& shot) {
 // Every shot that is told passes within 1 cm; the callback's scan, which walks through the flight times, finds none
 // where none is told, and none earlier or later. (It may step over two hits close together, which the solver finds.)
 TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
-  const char* seed = std::getenv("CAROM_AIM_SEED");
-  math::Random random(seed != nullptr ? std::uint64_t(std::atoi(seed)) : 2026);
-  int hits = 0, none = 0, two = 0, stepped_over = 0;   // two: with a high arc of its own
-  const char* asked = std::getenv("CAROM_AIM_CASES");  // 10 000 have been run
-  const int cases = asked != nullptr ? std::atoi(asked) : 200;
+  math::Random random = random_asked(2026);
+  int hits = 0, none = 0, two = 0, stepped_over = 0;  // two: with a high arc of its own
+  const int cases = cases_asked(200);
   double worst = 0;
   for (int i = 0; i < cases; ++i) {
     const Case c = draw(random);
@@ -89,7 +97,7 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
     for (const Shot& shot : {*aims->low, *aims->high}) {
       const double off = miss(c, shot);
       worst = math::max(worst, off);
-      if (asked != nullptr && off > .004)
+      if (cases > 200 && off > .004)
         std::printf("case %d: %.4f m, T %.2f s, A/m %.2e m2/kg, C_D(2) %.2f, %.0f m/s\n", i, off, shot.time,
                     c.projectile.area_per_mass, c.projectile.drag(2), c.shooter.muzzle_speed);
       EXPECT_LT(off, .01) << i;
@@ -285,9 +293,8 @@ Case draw_outdoors(math::Random& random, Rough rough) {
 
 /// Every shot told passes within 1 cm. `seed` is not one that the solver was tuned by.
 void expect_hits(Rough rough, std::uint64_t seed, int cases) {
-  math::Random random(seed);
-  if (const char* asked = std::getenv("CAROM_AIM_CASES"); asked != nullptr)
-    cases = std::atoi(asked);  // 3 000 have been
+  math::Random random = random_asked(seed);
+  cases = cases_asked(cases);
   int found = 0, none = 0;
   double worst = 0;
   for (int i = 0; i < cases; ++i) {

@@ -1,5 +1,6 @@
 // How AimSolver and its parts are divided: aim_flight.cpp flies, aim_path.cpp knows what a flight owes to its start,
-// aim_roots.cpp finds the shot near a guess, aim_search.cpp finds guesses, or that there are none.
+// aim_measure.cpp by how much it is off, aim_roots.cpp finds the shot near a guess, aim_search.cpp finds guesses, or
+// that there are none.
 #pragma once
 
 #include "carom/ballistics/aim.h"
@@ -62,7 +63,8 @@ class AimSolver {
   double flat_time() const;
   bool looks_far() const;
   void keep(Aims& aims, const Root& root) const;
-  bool by_guesses(Aims& aims) const;
+  /// `late`: the root on the high side, where the search for the low one led there.
+  bool by_guesses(Aims& aims, Root& late) const;
   /// True: certainly no solution. Shots at five elevations pass the target's distance below it, or fall through its
   /// height before they get there, and so does the best one between them, by a good margin.
   bool out_of_reach() const;
@@ -82,9 +84,9 @@ class AimSolver {
   };
   Footing footing(Guess guess) const;
   /// From `top` up to the peak of the speed to spare, then down both sides of it. `sure`: the top is near the peak, so
-  /// that a peak below zero is the end of the matter.
-  bool climb(Aims& aims, Guess top, bool sure) const;
-  bool by_peak(Aims& aims) const;
+  /// that a peak below zero is the end of the matter. `late` may be known, the root after the peak.
+  bool climb(Aims& aims, Guess top, bool sure, const Root& late) const;
+  bool by_peak(Aims& aims, const Root& late) const;
   /// The root between a and b, where the lack has different signs: halved until Newton's method finds one there.
   bool bisect(Guess a, const Need& at_a, Guess b, Aims& aims) const;
   /// A peak of the lack between a and b, below zero in the samples: where it reaches zero there are two roots.

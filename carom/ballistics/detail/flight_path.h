@@ -36,10 +36,13 @@ struct FlightPath {
   FlightPath() {}  // NOLINT(modernize-use-equals-default): what is not recorded stays as it is, tens of kilobytes
   int count = 0;
   Node node[most + 1];
-  Stage stage[most][6];
+  Stage stage[most + 1][3];  ///< at the beginning, .3 and .8 of each step; last the beginning of none
   Debt debt[most + 1];
   Correction correction[most];
-  bool bends = false;  ///< wind bends sharply within a step
+  bool bends = false;   ///< wind or drag bends sharply within a step
+  bool layers = false;  ///< wind does
+  double total = 0;     ///< m, of what every step's correction moves the arrival by
+  double steep = 0;     ///< m, the same weighted by how wind that changes with height feeds on errors of the height
   Arrival arrival{};
   math::Vec3d by_velocity[3];  ///< rows of ∂x(T)/∂v(0), s
 };
