@@ -58,13 +58,21 @@ struct GrainRuns {
   int from[8], to[8];
 };
 
+/// m: how far two grains may close by axis, what is added in any direction, and no more than `most` in all.
+template <int N>
+struct GrainReach {
+  float way[N] = {};
+  float slack = 0, most = 0;
+};
+
 /// All but `find` go through the blocks first … last − 1 in turn, or back from the last.
 template <int N>
 struct GrainKernels {
   using Block = GrainBlock<N>;
-  /// Neighbours nearer than the sum of radii and `reach`: their numbers go to found[at …], for each grain where they
-  /// begin to first[grain]. Returns where they end.
-  int (*find)(const GrainColumns<N>& grains, const GrainRuns& runs, float reach, int* first, int* found, int at);
+  /// Neighbours that may come to touch: their numbers go to found[at …], for each grain where they begin to
+  /// first[grain]. Returns where they end.
+  int (*find)(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<N>& reach, int* first, int* found,
+              int at);
   /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1. And
   /// what their masses and radii come to.
   void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale, float* motion);

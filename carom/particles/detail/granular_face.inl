@@ -75,7 +75,7 @@ void GranularState<D>::make_grid() {
     cells[a] = math::max(1, int(extent[a] * inverse_cell) + 1);
   }
   const int across = N == 2 ? cells[0] : cells[2];
-  slab_cells = math::min(across, N == 2 ? 16 : 4);
+  slab_cells = math::min(across, N == 2 ? 24 : 4);
   slabs = (across + slab_cells - 1) / slab_cells;
   size = slabs * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
   cell_start.assign(std::size_t(size) + 1, 0);

@@ -77,10 +77,14 @@ typename D::Vector GranularState<D>::fastest_near(int x, int y, int z) const {
 /// Lists the neighbours of a cell's grains, each pair once: those that come later along x, up or across to the next
 /// slab, so that a slab's pairs have grains of this slab and the next alone.
 template <class D>
-void GranularState<D>::find_neighbours(int x, int y, int z, float dt, float slack) {
+void GranularState<D>::find_neighbours(int x, int y, int z, float dt) {
   const int c = cell_at(x, y, z), begin = cell_start[c], end = cell_start[c + 1];
   if (begin == end) return;
-  const float reach = math::min(dt * length(fastest_near(x, y, z)) + slack, (cell_radii - 2) * definition.radius);
+  // What pulls one of the two pulls the other alike unless it is borne, and it then falls by half of g dt², in parts a
+  // little more.
+  const Vector closing = fastest_near(x, y, z);
+  GrainReach<N> reach{.slack = 0.02f * definition.radius, .most = (cell_radii - 2) * definition.radius};
+  for (int k = 0; k < N; ++k) reach.way[k] = dt * closing[k] + 0.55f * dt * dt * math::abs(definition.gravity[k]);
   GrainRuns runs;
   runs.begin = begin;
   runs.end = end;
@@ -192,16 +196,13 @@ void GranularState<D>::find_pairs(float dt) {
   slab_start.clear();
   first_pair.resize(std::size_t(count) + 1);
   last_block.assign(std::size_t(count), -1);
-  // Pairs that may meet before the next search: what pulls one of the two pulls the other alike unless it is borne, and
-  // it then falls by half of g dt², in parts a little more.
-  const float slack = 0.55f * length(definition.gravity) * dt * dt + 0.02f * definition.radius;
   const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
   for (int slab = 0; slab < slabs; ++slab) {
     const int first = block_count, low = slab * slab_cells, high = math::min(low + slab_cells, across);
     slab_start.push_back(first);
     for (int y = 0; y < cells[1]; ++y)
       for (int k = low; k < high; ++k)
-        for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, dt, slack);
+        for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, dt);
     const int slab_size = size / slabs, end = cell_start[(slab + 1) * slab_size];
     first_pair[end] = pair_count;
     for (int i = cell_start[slab * slab_size]; i < end; ++i) place_pairs(i, first, count + slab);

@@ -141,21 +141,26 @@ CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lan
 }
 
 template <int N>
-int find(const GrainColumns<N>& grains, const GrainRuns& runs, float reach, int* first, int* found, int at) {
+int find(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<N>& reach, int* first, int* found,
+         int at) {
   for (int i = runs.begin; i < runs.end; ++i) {
     first[i] = at;
     F x[N];
     for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
-    const F own = splat(grains.column[N][i] + reach);
+    const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
     for (int run = 0; run < runs.count; ++run)
       for (int j = run == 0 ? i + 1 : runs.from[run]; j < runs.to[run]; j += width) {
-        F square = F::zero();
+        // They close by no more than s = Σ |d| way / |d|. Few are left of those that d² < u² + 2 |d| s leaves, with u
+        // the sum of radii and slack: it holds wherever |d| < u + s does, and asks for no root.
+        F square = F::zero(), way = F::zero();
         for (int k = 0; k < N; ++k) {
           const F d = F::load(grains.column[k] + j) - x[k];
           square = square + d * d;
+          way = way + math::abs(d) * splat(reach.way[k]);
         }
-        const F touch = own + F::load(grains.column[N] + j);
-        std::uint32_t hits = math::bitmask(square < touch * touch);
+        const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
+        std::uint32_t hits = math::bitmask(square < math::min(touch * touch + (way + way), farthest * farthest));
+        if (hits != 0) hits &= math::bitmask(square <= touch * math::sqrt(square) + way);
         if (runs.to[run] - j < width) hits &= (1u << (runs.to[run] - j)) - 1;
         for (; hits != 0; hits &= hits - 1) found[at++] = j + __builtin_ctz(hits);
       }

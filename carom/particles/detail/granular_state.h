@@ -139,7 +139,7 @@ struct GranularState {
   void from_rows();
   void find_pairs(float dt);
   Vector fastest_near(int x, int y, int z) const;
-  void find_neighbours(int x, int y, int z, float dt, float slack);
+  void find_neighbours(int x, int y, int z, float dt);
   int place_pair(int a, int b, int first, int none);
   void place_pairs(int grain, int first, int none);
   void find_surfaces(float dt, float scale);
