@@ -14,11 +14,12 @@ start() {  # NAME KIND THREADS COMMAND…: the lines of this kind (demo, scene, 
   names+=("$1") kinds+=("$2")
 }
 # V8 of Node 20 now and then crashes in its optimising compiler on the largest functions; its other one does not, and
-# takes the longest of all: it goes first, what needs two processors last.
+# takes the longest of all: it goes first, and half as far, what needs two processors last.
 node=(node --no-warnings --liftoff-only "$here/tests/determinism/run_wasm.mjs")
-start "WebAssembly under Node" all 1 "${node[@]}" "$wasm"
+start "WebAssembly under Node, demos" "demo [^ ]+ 300 " 1 "${node[@]}" "$wasm" --demos --demo-steps 300
+start "WebAssembly under Node, scenes and models" "scene|model" 1 "${node[@]}" "$wasm" --scenes --models
 start "gcc, 1 thread" all 1 "$gcc"
-reference=$scratch/1
+reference=$scratch/2
 start "clang, 1 thread" all 1 "$clang"
 start "gcc, SIMD width 4" "scene|model" 1 "$gcc" --scenes --models --width 4
 grep -qw avx2 /proc/cpuinfo && start "gcc, SIMD width 8 (AVX2)" "scene|model" 1 "$gcc" --scenes --models --width 8

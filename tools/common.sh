@@ -101,7 +101,10 @@ build_page() {
 # build_web: the page with the engine in it, in out/web, for any web server. The native command draws the demos' pictures.
 build_web() {
   [ -x build/release/apps/command/carom ] || build_native -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF
+  # Linking the module takes one processor for a minute: bundling the page and drawing its pictures takes the other.
+  build_page &
+  local page=$!
   build_wasm carom_module
-  build_page
+  wait $page || exit 1
   quietly web node apps/playground/build.mjs --web out/web
 }

@@ -172,7 +172,7 @@ class SceneDemo final : public DemoOf<D> {
       std::snprintf(text, sizeof text, "the vehicle is drawn %.0f times as large", scale);
       stage.say(text);
       const math::Vec3d middle = 0.5 * (low + high) - start_;
-      stage.set_camera({middle + math::Vec3d{0.55, 0.25, 1.35} * extent_, middle, 0.75});
+      stage.set_camera({middle + math::Vec3d{0.65, 0.3, 1.65} * extent_, middle, 0.75});
       trails_.push_back({mark_, 0xe8833a, Trail(0.005 * extent_)});
       fly(stage, *world_.flight_place());
     }

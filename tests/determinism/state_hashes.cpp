@@ -1,6 +1,6 @@
 // Prints the state hashes of scenes that every build of Carom must agree on: compilers, SIMD widths, thread counts and
 // WebAssembly (tools/check_determinism.sh compares the printed lines).
-//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--scenes] [--models]
+//   state_hashes [--threads N] [--width 4|8|16] [--demos] [--scenes] [--models] [--demo-steps 300|600]
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -24,7 +24,8 @@ void print_models(int width) {
   fluid_models(width);
 }
 
-bool print_demos(int threads) {
+/// A line of each demo after every 300 steps.
+bool print_demos(int threads, int steps) {
   carom::host::SimulationOptions options;
   options.threads = threads;
   for (const carom::host::DemoEntry& entry : carom::host::demos()) {
@@ -36,13 +37,15 @@ bool print_demos(int threads) {
       return false;
     }
     carom::host::Simulation& simulation = **opened;
-    for (int step = 0; step < 600; ++step)
+    for (int step = 1; step <= steps; ++step) {
       if (const auto status = simulation.step(); !status) {
         std::fprintf(stderr, "state_hashes: %s\n", status.error().message.c_str());
         return false;
       }
-    std::printf("demo %s 600 %016llx\n", simulation.declaration().id.c_str(),
-                static_cast<unsigned long long>(simulation.state_hash()));
+      if (step % 300 == 0)
+        std::printf("demo %s %d %016llx\n", simulation.declaration().id.c_str(), step,
+                    static_cast<unsigned long long>(simulation.state_hash()));
+    }
   }
   return true;
 }
@@ -63,13 +66,15 @@ void print_scenes(int threads, int width) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int threads = 1, width = 0;
+  int threads = 1, width = 0, demo_steps = 600;
   bool demos = false, scenes = false, models = false;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--threads") && i + 1 < argc)
       threads = std::atoi(argv[++i]);
     else if (!std::strcmp(argv[i], "--width") && i + 1 < argc)
       width = std::atoi(argv[++i]);
+    else if (!std::strcmp(argv[i], "--demo-steps") && i + 1 < argc)
+      demo_steps = std::atoi(argv[++i]);
     else if (!std::strcmp(argv[i], "--demos"))
       demos = true;
     else if (!std::strcmp(argv[i], "--scenes"))
@@ -82,7 +87,7 @@ int main(int argc, char** argv) {
     }
   }
   const bool all = !demos && !scenes && !models;
-  if ((all || demos) && !print_demos(threads)) return 1;
+  if ((all || demos) && !print_demos(threads, demo_steps)) return 1;
   if (all || models) print_models(width);
   if (all || scenes) print_scenes(threads, width);
 }

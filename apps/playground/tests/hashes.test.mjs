@@ -1,6 +1,6 @@
 // Every demo and scene leads to the same bits natively and as WebAssembly in Chromium, with one thread and several. WEB names the folder that
 // `./play --web` builds, MODULE the whole engine before it is cut; HASH_STEPS and HASH_DEMOS (names with commas between them)
-// ask for other runs. Scenes run in Node too; there tools/check_determinism.sh runs the demos, for 600 steps.
+// ask for other runs. Scenes run in Node too; there tools/check_determinism.sh runs the demos.
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';

@@ -63,6 +63,7 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
     axle.body_b = arm_;
     axle.frame_a.p = {0, 3, 0};
     stage.keep(stage.world().create_joint(axle));
+    add_frame(stage);
 
     const Vec3d tip = world_point(stage.at(arm_).pose, math::Vec3f{-4, 0, 0});
     const double radius = 0.2, sling = stage.value("sling");
@@ -132,6 +133,26 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
   std::uint64_t state_hash(std::uint64_t world) const override { return world ^ ropes_.state_hash(); }
 
  private:
+  /// Two legs on each side carry the axle; nothing touches them.
+  void add_frame(Stage3& stage) {
+    rigid::BodyDef<Dim3> def;
+    def.type = rigid::BodyType::fixed;
+    def.name = "frame";
+    const BodyId frame = stage.add(def, {}, 0x7a5c3a);
+    const auto bar = [&](math::Vec3f middle, math::Vec3f half, double turn) {
+      rigid::ShapeDef<Dim3> shape;
+      shape.filter.mask = 0;
+      shape.local = {middle, {float(math::cos(turn / 2)), 0, 0, float(math::sin(turn / 2))}};
+      stage.keep(stage.world().add_shape(frame, geometry::Box{half}, shape));
+    };
+    const double lean = math::atan2(1.3, 3);
+    for (const float z : {-0.65f, 0.65f}) {
+      for (const float side : {-1.0f, 1.0f}) bar({0.65f * side, 1.5f, z}, {0.08f, 1.63f, 0.08f}, double(side) * lean);
+      bar({0, 0.1f, z}, {1.7f, 0.1f, 0.1f}, 0);
+    }
+    bar({0, 3, 0}, {0.06f, 0.06f, 0.75f}, 0);
+    stage.redraw(frame);
+  }
   double weight_height(Stage3& stage) { return world_point(stage.at(arm_).pose, math::Vec3f{1, 0, 0}).y; }
 
   RopeSet ropes_;
