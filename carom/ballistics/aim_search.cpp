@@ -257,7 +257,14 @@ AimSolver::Reach AimSolver::falls_short(Guess& guess) const {
       guess = nearest;
       return Reach::near;
     }
-    if (first >= last) return Reach::never;
+    if (first >= last) {
+      // Secants may mistake even the sign of a slope where paths bend much: the nearest one by its derivatives.
+      const double slope = nearest.time == falls.time ? falls.slope : rises.slope;
+      const Footing at = footing(nearest);
+      if (!at.known) return Reach::unknown;
+      guess = at.guess;
+      return -at.slope / slope > 0 && -at.slope / slope < 1.25 ? Reach::never : Reach::near;
+    }
     double next = 0.5 * (first + last);
     if (rises.time == 0) next = math::min(math::max(first, 1.4 * here.time), 0.5 * (first + last));
     if (falls.time == 0) next = math::max(last, 0.4 * here.time);

@@ -113,6 +113,24 @@ TEST(Aim, RandomCasesHitAndAgreeWithTheScan) {
   EXPECT_GT(none, cases / 50);
 }
 
+// Spent shots that the wind carries back: secants mistake how the speed that is needed changes with the flight time.
+TEST(Aim, ATargetIsMetThoughSecantsMistakeTheSlope) {
+  Projectile shot = projectile_from_terminal_speed(40);
+  shot.area_per_mass = 0.01301089406211511;
+  Conditions conditions;
+  conditions.air = environment::AirColumn::uniform(1.225);
+  conditions.wind = environment::WindColumn(Vec3d{-9.6547861693455914, 0, -4.0696976673194554});
+  const Shooter shooter{.muzzle_speed = 885.35282555257368,
+                        .muzzle = {42.643012079601093, 4.283536908949781, -19.857361133239969},
+                        .velocity = {16.398360503900175, -14.805192230098168, -4.00349836493967}};
+  const Target target{{-174.78571472050169, 8.002837972127681, 315.08565861889423},
+                      {-55.948587517450058, -14.528154164101464, -89.93871773911043}};
+  const auto aims = aim(shot, conditions, shooter, target, {.longest_time = 60});
+  ASSERT_TRUE(aims && aims->low && aims->high);
+  EXPECT_NEAR(aims->low->time, 2.2671, 2e-3);
+  EXPECT_NEAR(aims->high->time, 4.5862, 4e-3);
+}
+
 // Targets as fast as the shot, most of them beyond its reach: what is said to have no solution has none.
 TEST(Aim, FastTargetsAgreeWithTheScan) {
   math::Random random(77);

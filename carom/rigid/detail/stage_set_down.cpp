@@ -41,7 +41,7 @@ struct Support {
 };
 
 template <class D>
-bool rests(const WorldImplementation<D>& world, std::int32_t body) {
+bool lies_still(const WorldImplementation<D>& world, std::int32_t body) {
   const SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
   return s.linear_velocity == typename D::Vector{} && s.angular_velocity == typename D::Angular{};
 }
@@ -148,7 +148,7 @@ class SetDown {
     const std::vector<std::int32_t>& touches = world_.scratch.new_touches;
     const auto both_rest = [&](std::int32_t contact) {
       const ContactRecord<D>& c = world_.contacts.at(contact);
-      return rests(world_, c.body[0]) && rests(world_, c.body[1]);
+      return lies_still(world_, c.body[0]) && lies_still(world_, c.body[1]);
     };
     const std::size_t count = std::size_t(std::count_if(touches.begin(), touches.end(), both_rest));
     if (count == 0) return;
