@@ -16,7 +16,8 @@ constexpr float least_support = 0.1f;  ///< cosine of a normal with the vertical
 constexpr float closed_gap = 0.5f;     ///< of the way that a body falls in a substep: it has closed such a gap then
 constexpr double compliance = 1e-6;    ///< of the mean of rows: a face has more points than a body has motions
 constexpr double unborne = 0.02;       ///< part of its load that a body's supports may leave to friction
-constexpr int most_supports = 32;      ///< points under one body that share its load
+constexpr float crushing = 50 * most_load_factor;  ///< of its weight, on a point: it would be shot out from below
+constexpr int most_supports = 32;                  ///< points under one body that share its load
 
 template <class D>
 struct LoadedBody {
@@ -220,6 +221,12 @@ class SetDown {
     }
   }
 
+  /// Is the impulse on what bears it far more than its mass can follow (load.h)?
+  bool crushes(const Support<D>& s) const {
+    const float inverse_mass = world_.bodies.motion[std::size_t(s.other)].inverse_mass;
+    return float(s.share) * inverse_mass > crushing * math::length(acceleration(s.other)) * context_.h;
+  }
+
   void hand_down(LoadedBody<D>& loaded) {
     const BodyMotion<D>& motion = world_.bodies.motion[std::size_t(loaded.body)];
     const V own = acceleration(loaded.body);
@@ -232,6 +239,7 @@ class SetDown {
     fill(load, loaded.force + own * (context_.h / motion.inverse_mass), loaded.moment,
          max(double(motion.outer_extent), 1e-9));
     if (!share_load<D>(supports, load)) return;
+    if (std::any_of(supports.begin(), supports.end(), [&](const Support<D>& s) { return crushes(s); })) return;
     for (const Support<D>& s : supports) {
       const float impulse = float(s.share);
       if (!(impulse > 0)) continue;
