@@ -89,6 +89,24 @@ TYPED_TEST(Stack, HeavyBoxOnALightOneStays) {
   EXPECT_NEAR(world.state(heavy).value().pose.position.y, 1.5, 0.05);
 }
 
+// First loads (docs/computation.md) are handed down as far as masses can follow them, and no farther.
+TYPED_TEST(Stack, WhatIsFarTooHeavySinksWithoutAShot) {
+  using D = TypeParam;
+  for (const float ratio : {1e6f, 1e9f}) {
+    World<D> world(world_with<D>());
+    add_ground(world);
+    const BodyId light = add_box<D>(world, at<D>(0, 0.5), 0.5f, {0.6f, 0, 1, 0});
+    const BodyId heavy = add_box<D>(world, at<D>(0, 1.5), 0.5f, {0.6f, 0, ratio, 0});
+    double fastest = 0;
+    for (int i = 0; i < 120; ++i) {
+      run(world, 1);
+      fastest = std::max(fastest, double(math::length(world.state(light).value().linear_velocity)));
+    }
+    EXPECT_LT(fastest, ratio > 1e6f ? 200 : 1) << ratio;
+    if (ratio == 1e6f) EXPECT_NEAR(world.state(heavy).value().pose.position.y, 1.5, 0.05);
+  }
+}
+
 TYPED_TEST(Stack, OverlappingBodiesSeparateGently) {
   using D = TypeParam;
   WorldDef<D> d = world_with<D>();
