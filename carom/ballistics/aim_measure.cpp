@@ -244,7 +244,8 @@ Vec3d AimSolver::measure_in(Path& path, double fine) const {
     const auto place = [&](const Push& push) {
       return (h * h) * (push.way * start + push.way_slope * start_slope - end_slope);
     };
-    const Vec3d w{s[3].w[0], s[3].w[1], s[3].w[2]}, e = w / math::max(math::length(w), 1e-9);
+    const float* const last = of[3]->w;
+    const Vec3d w{last[0], last[1], last[2]}, e = w / math::max(math::length(w), 1e-9);
     const auto both = [&](Vec3d sideways, Vec3d forward) { return sideways + math::dot(e, forward - sideways) * e; };
     const Path::Correction more{both(place(aside), place(ahead)), both(velocity(aside), velocity(ahead))};
     path.correction[n].x += more.x;
