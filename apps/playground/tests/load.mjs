@@ -16,6 +16,7 @@ test('the first picture comes within 2 s of the page\'s load', async () => {
     await page.waitForFunction(() => window.caromPage.firstPicture > 0);
     best = Math.min(best, await page.evaluate(() => window.caromPage.firstPicture));
     await page.done();
+    await page.context().close();  // a page left open goes on drawing and slows the next try
   }
   assert.ok(best > 0 && best <= 2000, `${best} ms`);
   console.log(`first picture after ${best.toFixed(0)} ms`);
