@@ -48,7 +48,7 @@ void grain_step(benchmark::State& state) {
   column[0] = 0.5;
   const float radius = D::dimension == 2 ? 0.5f * math::sqrt(float(0.5 / double(state.range(0))))
                                          : 0.5f * float(math::pow(0.5 / double(state.range(0)), 1.0 / 3));
-  auto grains = Granular<D>::create({.radius = radius, .max_grains = 1 << 17}).value();
+  auto grains = Granular<D>::create({.radius = radius, .max_grains = 1 << 17, .threads = int(state.range(2))}).value();
   grains.add_box({}, column).value();
   time_steps(state, grains, 20);
   state.counters["grains"] = grains.size();
@@ -65,12 +65,24 @@ BENCHMARK(fluid_step<rigid::Dim3>)
     ->Args({30'000, 10})
     ->Args({100'000, 10})
     ->Unit(benchmark::kMillisecond);
-// Half a box of grains, after `range(1)` steps: 10, it falls; 150, it is at rest.
-BENCHMARK(grain_step<rigid::Dim2>)->Args({10'000, 10})->Args({10'000, 150})->Unit(benchmark::kMillisecond);
+// Half a box of grains, after `range(1)` steps: 10, it falls; 150, it is at rest; on `range(2)` threads.
+BENCHMARK(grain_step<rigid::Dim2>)
+    ->Args({10'000, 10, 1})
+    ->Args({10'000, 150, 1})
+    ->Args({20'000, 150, 1})
+    ->Args({20'000, 150, 2})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(grain_step<rigid::Dim3>)
-    ->Args({10'000, 10})
-    ->Args({10'000, 150})
-    ->Args({100'000, 100})
+    ->Args({10'000, 10, 1})
+    ->Args({10'000, 150, 1})
+    ->Args({20'000, 10, 1})
+    ->Args({20'000, 10, 2})
+    ->Args({20'000, 150, 1})
+    ->Args({20'000, 150, 2})
+    ->Args({100'000, 100, 1})
+    ->Args({100'000, 100, 2})
+    ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

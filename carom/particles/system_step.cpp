@@ -186,6 +186,7 @@ core::Status ParticleSystem::step(double dt, core::TaskScheduler* scheduler) {
   const detail::Kernels kernels = kernels_of(lanes_);
   core::SerialScheduler serial;
   core::TaskScheduler& tasks = scheduler != nullptr ? *scheduler : serial;
+  const core::ParallelRegion region(tasks);
   if (definition_.contacts.enabled) step_contacts(dt, tasks, kernels);
   tasks.parallel_for(count_, chunk_size, [&](int begin, int end, int) { run_chunk(begin, end, kernels); });
   collect_events();

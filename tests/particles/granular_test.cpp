@@ -174,8 +174,9 @@ TEST(Granular, SameBitsForAnyWidthAnyThreadsAndInACopy) {
   const auto hash = [](int lanes, int threads) {
     Granular3 g = Granular3::create({.radius = 0.03f, .lanes = lanes, .threads = threads}).value();
     g.add_box({0.2, 0, 0.2}, {0.6, 0.8, 0.6}).value();
-    Granular2 flat = Granular2::create({.radius = 0.01f, .lanes = lanes, .threads = threads}).value();
-    flat.add_box({0.2, 0}, {0.6, 0.8}).value();
+    // Wide enough for four slabs, and full across where they meet.
+    Granular2 flat = Granular2::create({.upper = {4, 1}, .radius = 0.01f, .lanes = lanes, .threads = threads}).value();
+    flat.add_box({0.3, 0}, {3.7, 0.2}, {1, 0}).value();
     World3 world({.simd_width = 4});
     BodyDef<Dim3> body;
     body.position = {0.4, 0.9, 0.4};

@@ -121,6 +121,7 @@ void ClothState::step(rigid::World3& world, double dt) {
   last_step = dt;
   const Vec3f gravity = world.definition().gravity;
   core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
+  const core::ParallelRegion region(tasks);
   obstacles.clear();
   place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
   pin_impulse.assign(pins.size(), Vec3d{});

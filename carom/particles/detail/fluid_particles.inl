@@ -343,6 +343,7 @@ core::Status FluidState<D>::step(rigid::World<D>* world, float dt) {
     fixed_known = true;
     paint_fixed();
   }
+  const core::ParallelRegion region(*scheduler);
   emit(dt);
   float fastest = 0;
   for (const Particle& p : particles) {

@@ -75,9 +75,12 @@ void GranularState<D>::make_grid() {
     cells[a] = math::max(1, int(extent[a] * inverse_cell) + 1);
   }
   const int across = N == 2 ? cells[0] : cells[2];
-  slab_cells = math::min(across, N == 2 ? 24 : 4);
-  slabs = (across + slab_cells - 1) / slab_cells;
-  size = slabs * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
+  // Narrow ones leave lanes empty. Four or a multiple of it share evenly between two threads, every second at a time.
+  const int wanted = (across + 2) / (N == 2 ? 24 : 4);
+  const int count = wanted < 3 ? math::max(wanted, 1) : 4 * ((wanted + 2) / 4);
+  slab_cells = (across + count - 1) / count;
+  slabs.resize(std::size_t((across + slab_cells - 1) / slab_cells));
+  size = int(slabs.size()) * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
   cell_start.assign(std::size_t(size) + 1, 0);
   haste.assign(std::size_t(size), {});
 }
@@ -86,21 +89,24 @@ template <class D>
 void GranularState<D>::reserve() {
   const std::size_t n = std::size_t(definition.max_grains), contacts = n * (N == 2 ? 4 : 8);
   for (auto* list : {&grains, &sorted}) list->reserve(n);
-  for (auto* list : {&cell_of, &old_place, &last_block}) list->reserve(n);
+  for (auto* list : {&cell_of, &old_place, &last_block, &last_across}) list->reserve(n);
   for (auto* list : {&first_pair, &old_first_pair, &first_touch, &old_first_touch}) list->reserve(n + 1);
   for (auto& list : near_by) list.reserve(n + grain_lanes);
   for (auto* list : {&pairs, &old_pairs}) list->resize(contacts);
   held.reserve(contacts * grain_held<N>);
-  for (auto* list : {&pair_of, &was}) list->reserve(contacts);
-  blocks.reserve(contacts / grain_lanes + std::size_t(slabs));
-  open_block.reserve(contacts / grain_lanes + std::size_t(slabs));
-  filled.reserve(contacts / grain_lanes + std::size_t(slabs));
+  for (GrainSlab<N>& slab : slabs) {
+    const std::size_t share = contacts / slabs.size() + 1, share_of_blocks = share / grain_lanes + 1;
+    slab.pairs.resize(share);
+    slab.blocks.reserve(share_of_blocks);
+    slab.open_block.reserve(share_of_blocks);
+    slab.filled.reserve(share_of_blocks);
+    for (auto* list : {&slab.pair_of, &slab.was}) list->reserve(share_of_blocks * grain_lanes);
+  }
   for (auto* list : {&touches, &old_touches}) list->reserve(n + 16);
   for (auto* list : {&wall_blocks, &old_wall_blocks}) list->reserve(n / grain_lanes + 64);
   wall_of.reserve(n / grain_lanes + 64);
-  place = AlignedFloats((n + std::size_t(slabs)) * grain_place);
-  motion = AlignedFloats((n + std::size_t(slabs)) * grain_motion<N>);
-  slab_start.reserve(std::size_t(slabs) + 1);
+  place = AlignedFloats((n + slabs.size()) * grain_place);
+  motion = AlignedFloats((n + slabs.size()) * grain_motion<N>);
   solids.reserve(64);
   bodies.reserve(64);
   found.reserve(64);

@@ -77,7 +77,7 @@ typename D::Vector GranularState<D>::fastest_near(int x, int y, int z) const {
 /// Lists the neighbours of a cell's grains, each pair once: those that come later along x, up or across to the next
 /// slab, so that a slab's pairs have grains of this slab and the next alone.
 template <class D>
-void GranularState<D>::find_neighbours(int x, int y, int z, float dt) {
+void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt) {
   const int c = cell_at(x, y, z), begin = cell_start[c], end = cell_start[c + 1];
   if (begin == end) return;
   // What pulls one of the two pulls the other alike unless it is borne, and it then falls by half of g dt², in parts a
@@ -108,64 +108,68 @@ void GranularState<D>::find_neighbours(int x, int y, int z, float dt) {
     for (int row = -1; row <= 1; ++row) add(x - 1, x + 1, y + row, z + 1);
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
-  most = most * std::size_t(end - begin) + std::size_t(pair_count);
-  if (most > pairs.size()) pairs.resize(2 * most);
+  most = most * std::size_t(end - begin) + std::size_t(slab.pair_count);
+  if (most > slab.pairs.size()) slab.pairs.resize(2 * most);
   GrainColumns<N> columns;
   for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
-  pair_count = kernels->find(columns, runs, reach, first_pair.data(), pairs.data(), pair_count);
+  slab.pair_count = kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.pair_count);
 }
 
-/// The first block from `first` on that has room and comes after all in which one of the two is: solved block by block
-/// the pairs give what they would one after the other.
+/// Of a pair of the slab's grain `a`; `end`: of its grains; `none`: a grain that is none. The first block that has room
+/// and comes after all in which one of the two is: solved block by block the pairs give what they would one after the
+/// other.
 template <class D>
-int GranularState<D>::place_pair(int a, int b, int first, int none) {
-  int block = math::max(first, math::max(last_block[a], last_block[b]) + 1);
-  while (block < block_count && open_block[block] != block) {
+int GranularState<D>::place_pair(GrainSlab<N>& slab, int a, int b, int end, int none) {
+  int& last_of_b = b < end ? last_block[b] : last_across[b];
+  int block = math::max(last_block[a], last_of_b) + 1;
+  std::vector<int>& open_block = slab.open_block;
+  while (block < slab.block_count && open_block[block] != block) {
     const int next = open_block[block];
-    if (next < block_count) open_block[block] = open_block[next];
+    if (next < slab.block_count) open_block[block] = open_block[next];
     block = next;
   }
-  if (block >= block_count) {
-    block = block_count++;
-    if (block == int(blocks.size())) blocks.emplace_back();
+  if (block >= slab.block_count) {
+    block = slab.block_count++;
+    if (block == int(slab.blocks.size())) slab.blocks.emplace_back();
     open_block.push_back(block);
-    filled.push_back(0);
-    pair_of.resize(pair_of.size() + grain_lanes, -1);
-    was.resize(was.size() + grain_lanes, -1);
+    slab.filled.push_back(0);
+    slab.pair_of.resize(slab.pair_of.size() + grain_lanes, -1);
+    slab.was.resize(slab.was.size() + grain_lanes, -1);
     for (int lane = 0; lane < grain_lanes; ++lane)
-      blocks[block].a[lane] = blocks[block].b[lane] = std::uint32_t(none * grain_place);
+      slab.blocks[block].a[lane] = slab.blocks[block].b[lane] = std::uint32_t(none * grain_place);
   }
-  last_block[a] = last_block[b] = block;
-  const int lane = filled[block]++;
+  last_block[a] = last_of_b = block;
+  const int lane = slab.filled[block]++;
   if (lane == grain_lanes - 1) open_block[block] = block + 1;
-  blocks[block].a[lane] = std::uint32_t(a * grain_place);
-  blocks[block].b[lane] = std::uint32_t(b * grain_place);
+  Block& to = slab.blocks[block];
+  to.a[lane] = std::uint32_t(a * grain_place);
+  to.b[lane] = std::uint32_t(b * grain_place);
   if constexpr (N == 2) {
-    blocks[block].curve[0][lane] = grains[a].curve;
-    blocks[block].curve[1][lane] = grains[b].curve;
+    to.curve[0][lane] = grains[a].curve;
+    to.curve[1][lane] = grains[b].curve;
   }
   return block * grain_lanes + lane;
 }
 
 /// Gives a grain's pairs their blocks, and finds which they were when last looked for: mostly the same in turn.
 template <class D>
-void GranularState<D>::place_pairs(int grain, int first, int none) {
+void GranularState<D>::place_pairs(GrainSlab<N>& slab, int grain, int end, int none) {
   const auto range = [&](int place) {
     const bool known = place + 1 < int(old_first_pair.size());
     return std::pair{known ? old_first_pair[place] : 0, known ? old_first_pair[place + 1] : 0};
   };
   const int own = old_place[grain];
-  const auto [begin, end] = range(own);
-  int next = begin;
+  const auto [old_begin, old_end] = range(own);
+  int next = old_begin;
   for (int k = first_pair[grain]; k < first_pair[grain + 1]; ++k) {
     const int other = old_place[pairs[k]];
     int old = next;
-    if (old >= end || old_pairs[old] != other) {
-      old = begin;
-      while (old < end && old_pairs[old] != other) ++old;
+    if (old >= old_end || old_pairs[old] != other) {
+      old = old_begin;
+      while (old < old_end && old_pairs[old] != other) ++old;
     }
     bool swapped = false;
-    if (old < end) {
+    if (old < old_end) {
       next = old + 1;
     } else {
       const auto [from, to] = range(other);
@@ -176,9 +180,9 @@ void GranularState<D>::place_pairs(int grain, int first, int none) {
       else
         swapped = true;
     }
-    const int at = place_pair(grain, pairs[k], first, none);
-    pair_of[at] = k;
-    was[at] = old < 0 ? -1 : 2 * old + int(swapped);
+    const int at = place_pair(slab, grain, pairs[k], end, none);
+    slab.pair_of[at] = k;
+    slab.was[at] = old < 0 ? -1 : 2 * old + int(swapped);
   }
 }
 
@@ -187,27 +191,35 @@ void GranularState<D>::find_pairs(float dt) {
   const int count = int(grains.size());
   old_pairs.swap(pairs);
   old_first_pair.swap(first_pair);
-  pair_count = 0;
-  block_count = 0;
-  pair_of.clear();
-  was.clear();
-  open_block.clear();
-  filled.clear();
-  slab_start.clear();
   first_pair.resize(std::size_t(count) + 1);
   last_block.assign(std::size_t(count), -1);
+  last_across.assign(std::size_t(count), -1);
   const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
-  for (int slab = 0; slab < slabs; ++slab) {
-    const int first = block_count, low = slab * slab_cells, high = math::min(low + slab_cells, across);
-    slab_start.push_back(first);
+  for_slabs([&](GrainSlab<N>& slab, int index) {
+    slab.pair_count = slab.block_count = 0;
+    const int low = index * slab_cells, high = math::min(low + slab_cells, across);
     for (int y = 0; y < cells[1]; ++y)
       for (int k = low; k < high; ++k)
-        for (int x = 0; x < layer; ++x) find_neighbours(N == 2 ? k : x, y, N == 2 ? 0 : k, dt);
-    const int slab_size = size / slabs, end = cell_start[(slab + 1) * slab_size];
-    first_pair[end] = pair_count;
-    for (int i = cell_start[slab * slab_size]; i < end; ++i) place_pairs(i, first, count + slab);
+        for (int x = 0; x < layer; ++x) find_neighbours(slab, N == 2 ? k : x, y, N == 2 ? 0 : k, dt);
+  });
+  pair_count = 0;
+  for (const GrainSlab<N>& slab : slabs) pair_count += slab.pair_count;
+  if (std::size_t(pair_count) > pairs.size()) pairs.resize(2 * std::size_t(pair_count));
+  first_pair[count] = pair_count;
+  for (int k = 0, before = 0; k < int(slabs.size()); ++k) {
+    const GrainSlab<N>& slab = slabs[k];
+    std::copy_n(slab.pairs.begin(), slab.pair_count, pairs.begin() + before);
+    for (int i = slab_begin(k); i < slab_begin(k + 1); ++i) first_pair[i] += before;
+    before += slab.pair_count;
   }
-  slab_start.push_back(block_count);
+  for_slabs([&](GrainSlab<N>& slab, int index) {
+    slab.pair_of.clear();
+    slab.was.clear();
+    slab.open_block.clear();
+    slab.filled.clear();
+    const int end = slab_begin(index + 1);
+    for (int i = slab_begin(index); i < end; ++i) place_pairs(slab, i, end, count + index);
+  });
 }
 
 /// Surface (`scale`: of the impulses of the last substep, for those of the next): a side of the domain, or 2 N + the

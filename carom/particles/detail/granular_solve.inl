@@ -19,7 +19,7 @@ int GranularState<D>::grain_in(const Block& block, int lane) const {
 template <class D>
 void GranularState<D>::to_rows() {
   const int count = int(grains.size());
-  for (int i = 0; i < count + slabs; ++i) {
+  for_grains(count + int(slabs.size()), [&](int i) {
     float* const p = &place[std::size_t(i) * grain_place];
     float* const m = &motion[std::size_t(i) * grain_motion<N>];
     const Grain<D> none{.curve = 1, .inverse_mass = 1};
@@ -38,12 +38,12 @@ void GranularState<D>::to_rows() {
       for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
       m[7] = g.curve;
     }
-  }
+  });
 }
 
 template <class D>
 void GranularState<D>::from_rows() {
-  for (int i = 0; i < int(grains.size()); ++i) {
+  for_grains(int(grains.size()), [&](int i) {
     const float* const p = &place[std::size_t(i) * grain_place];
     const float* const m = &motion[std::size_t(i) * grain_motion<N>];
     Grain<D>& g = grains[i];
@@ -55,7 +55,7 @@ void GranularState<D>::from_rows() {
       g.spin = m[2] * g.curve;
     else
       for (int k = 0; k < 3; ++k) g.spin[k] = m[4 + k] * g.curve;
-  }
+  });
 }
 
 template <class D>
@@ -209,16 +209,33 @@ void GranularState<D>::solve_body(Contact& c, float h) {
   apply_body(c, 0, friction, rolling);
 }
 
+/// All slabs, each by one thread.
+template <class D>
+template <class F>
+void GranularState<D>::for_slabs(F&& f) {
+  scheduler->parallel_for(int(slabs.size()), 1, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) f(slabs[k], k);
+  });
+}
+
 /// Every second slab at a time: no two threads then touch the same grain, and the order is always the same.
 template <class D>
 template <class F>
-void GranularState<D>::for_slabs(bool back, F&& f) {
+void GranularState<D>::for_slabs_in_turn(bool back, F&& f) {
   for (int color = 0; color < 2; ++color) {
     const int odd = back ? 1 - color : color;
-    scheduler->parallel_for((slabs + 1 - odd) / 2, 1, [&](int begin, int end, int) {
-      for (int k = begin; k < end; ++k) f(slab_start[2 * k + odd], slab_start[2 * k + odd + 1]);
+    scheduler->parallel_for((int(slabs.size()) + 1 - odd) / 2, 1, [&](int begin, int end, int) {
+      for (int k = begin; k < end; ++k) f(slabs[2 * k + odd]);
     });
   }
+}
+
+template <class D>
+template <class F>
+void GranularState<D>::for_grains(int count, F&& f) {
+  scheduler->parallel_for(count, 2048, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) f(i);
+  });
 }
 
 /// Overlaps are taken out of the places alone, so that no speed comes of them; normals and gaps where the grains then
@@ -227,8 +244,8 @@ template <class D>
 void GranularState<D>::press() {
   const GrainPass pass{.slop = grain_slop * definition.radius, .part = grain_part};
   measure_surfaces(pass);
-  for_slabs(false, [&](int first, int last) {
-    kernels->press(blocks.data(), first, last, place.data(), motion.data(), pass);
+  for_slabs_in_turn(false, [&](GrainSlab<N>& slab) {
+    kernels->press(slab.blocks.data(), 0, slab.block_count, place.data(), motion.data(), pass);
   });
   kernels->press_surface(wall_blocks.data(), 0, int(wall_blocks.size()), place.data(), motion.data(), pass);
   for (Contact& c : body_contacts) {
@@ -250,7 +267,9 @@ void GranularState<D>::sweep(float h, bool back) {
   };
   if (!back) surfaces();
   pass.friction = definition.friction;
-  for_slabs(back, [&](int first, int last) { kernels->sweep(blocks.data(), first, last, back, motion.data(), pass); });
+  for_slabs_in_turn(back, [&](GrainSlab<N>& slab) {
+    kernels->sweep(slab.blocks.data(), 0, slab.block_count, back, motion.data(), pass);
+  });
   if (back) surfaces();
 }
 
@@ -278,25 +297,31 @@ void GranularState<D>::round(float h, int parts) {
   find_pairs(dt);
   find_surfaces(dt, scale);
   to_rows();
-  kernels->recall(blocks.data(), 0, block_count, was.data(), held.data(), scale, motion.data());
+  for_slabs([&](GrainSlab<N>& slab, int) {
+    kernels->recall(slab.blocks.data(), 0, slab.block_count, slab.was.data(), held.data(), scale, motion.data());
+  });
   const int count = int(grains.size());
   for (int part = 0; part < parts; ++part) {
     const Vector gained = h * definition.gravity;
-    for (int i = 0; i < count; ++i)
+    for_grains(count, [&](int i) {
       for (int k = 0; k < N; ++k) motion[std::size_t(i) * grain_motion<N> + std::size_t(k)] += gained[k];
+    });
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
     press();
     for (int k = 0; k < definition.iterations; ++k) sweep(h, k % 2 == 0);
     sum_walls();
-    for (int i = 0; i < count; ++i)
+    for_grains(count, [&](int i) {
       for (int k = 0; k < N; ++k)
         place[std::size_t(i) * grain_place + std::size_t(k)] +=
             h * motion[std::size_t(i) * grain_motion<N> + std::size_t(k)];
+    });
   }
   from_rows();
   held.resize(std::size_t(pair_count) * grain_held<N>);
-  kernels->keep(blocks.data(), 0, block_count, pair_of.data(), held.data());
+  for_slabs([&](GrainSlab<N>& slab, int) {
+    kernels->keep(slab.blocks.data(), 0, slab.block_count, slab.pair_of.data(), held.data());
+  });
   statistics.contacts = pair_count;
   statistics.wall_contacts = int(touches.size());
 }
@@ -312,6 +337,7 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
     const core::Status gathered = gather(*world);
     if (!gathered.ok()) return gathered;
   }
+  const core::ParallelRegion region(*scheduler);
   // No grain moves by more than half a radius in a substep, and contacts are looked for every `search_way` radii.
   float fastest = 0;
   for (const Grain<D>& g : grains) fastest = math::max(fastest, dot(g.v, g.v));
@@ -323,7 +349,9 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
   };
   const int parts = math::max(definition.substeps, times(0.5f)), rounds = math::min(times(search_way), parts);
   for (int k = 0; k < rounds; ++k) round(dt / float(parts), (k + 1) * parts / rounds - k * parts / rounds);
-  statistics.max_overlap = kernels->deepest(blocks.data(), 0, block_count, place.data());
+  for (const GrainSlab<N>& slab : slabs)
+    statistics.max_overlap =
+        math::max(statistics.max_overlap, kernels->deepest(slab.blocks.data(), 0, slab.block_count, place.data()));
   statistics.grains = int(grains.size());
   for (const GrainBody<D>& b : bodies) {
     if (!b.moves || (dot(b.impulse, b.impulse) == 0 && grain_size(b.turn) == 0)) continue;

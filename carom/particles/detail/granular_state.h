@@ -75,6 +75,19 @@ struct Haste {
   typename D::Vector least{}, most{};
 };
 
+/// Neighbouring columns of cells: their pairs are found and placed by one thread, without a look at other slabs'.
+template <int N>
+struct GrainSlab {
+  std::vector<int> pairs;  ///< the others of its grains' pairs, as found: room for more than pair_count
+  int pair_count = 0;
+  // Where they are solved, in the order of the slab's layers.
+  std::vector<GrainBlock<N>> blocks;  ///< room for more than block_count, which is not made anew
+  int block_count = 0;
+  std::vector<int> pair_of, was;     ///< by block and lane: the pair's number, and its old one (GrainKernels)
+  std::vector<std::uint8_t> filled;  ///< lanes by block
+  std::vector<int> open_block;       ///< the next that has room, by block
+};
+
 template <class D>
 struct GranularState {
   static constexpr int N = D::dimension;
@@ -91,7 +104,7 @@ struct GranularState {
   GranularDef<D> definition{};
   const GrainKernels<N>* kernels = nullptr;
   float inverse_cell = 0;
-  int cells[3] = {1, 1, 1}, slab_cells = 1, slabs = 1, size = 0;
+  int cells[3] = {1, 1, 1}, slab_cells = 1, size = 0;
   Vector extent{};
   std::vector<Grain<D>> grains, sorted;
   std::uint64_t added = 0;  ///< in all, the stream of the next one's radius
@@ -105,13 +118,8 @@ struct GranularState {
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
   int pair_count = 0;
   std::vector<float> held;
-  // Where they are solved: block by block, those of a slab together, in the order of its layers.
-  std::vector<Block> blocks;  ///< room for more than block_count, which is not made anew
-  int block_count = 0;
-  std::vector<int> slab_start;              ///< first block of each slab
-  std::vector<int> pair_of, was;            ///< by block and lane: the pair's number, and its old one (GrainKernels)
-  std::vector<std::uint8_t> filled;         ///< lanes by block
-  std::vector<int> open_block, last_block;  ///< the next that has room, by block; the last that a grain is in
+  std::vector<GrainSlab<N>> slabs;
+  std::vector<int> last_block, last_across;  ///< the last block that a grain is in: of its slab, of the one before
   // Surfaces.
   std::vector<GrainTouch> touches, old_touches;
   std::vector<int> first_touch, old_first_touch;
@@ -139,9 +147,10 @@ struct GranularState {
   void from_rows();
   void find_pairs(float dt);
   Vector fastest_near(int x, int y, int z) const;
-  void find_neighbours(int x, int y, int z, float dt);
-  int place_pair(int a, int b, int first, int none);
-  void place_pairs(int grain, int first, int none);
+  void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
+  int place_pair(GrainSlab<N>& slab, int a, int b, int end, int none);
+  void place_pairs(GrainSlab<N>& slab, int grain, int end, int none);
+  int slab_begin(int slab) const { return cell_start[std::size_t(slab) * (std::size_t(size) / slabs.size())]; }
   void find_surfaces(float dt, float scale);
   void touch(int grain, int surface, std::uint32_t key, float scale);
   void touch_solid(int grain, int index, float reach, float scale);
@@ -150,7 +159,11 @@ struct GranularState {
   bool measure_solid(const GrainSolid<D>& solid, const Vector& at, Vector& normal, float& distance) const;
   void press();
   template <class F>
-  void for_slabs(bool back, F&& f);
+  void for_slabs(F&& f);
+  template <class F>
+  void for_slabs_in_turn(bool back, F&& f);
+  template <class F>
+  void for_grains(int count, F&& f);
   void sweep(float h, bool back);
   void solve_body(Contact& contact, float h);
   void apply_body(const Contact& contact, float normal, Vector friction, Angular rolling);

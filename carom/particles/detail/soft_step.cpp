@@ -118,6 +118,7 @@ void SoftState::step(rigid::World3& world, double dt) {
   const float h = float(dt / substeps);
   const Vec3f gravity = world.definition().gravity;
   core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
+  const core::ParallelRegion region(tasks);
   obstacles.clear();
   place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
   if (collide) gather_near(material.skin, dt, world, filter, pins, position, velocity, obstacles);
