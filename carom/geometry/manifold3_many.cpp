@@ -231,7 +231,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
 }
 
 int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
-                   const detail::ShapeWay& approach, std::span<Manifold3> out) {
+                   const detail::ShapeWay& approach, PairCache& cache, std::span<Manifold3> out) {
   const detail::Convex b = detail::convex_of(shape);
   const Bounds3f tight = bounds(shape, x);
   detail::PlacedCorners corners(b, x);
@@ -245,8 +245,10 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
   }
   const bool solid = surface.type == ShapeType3::height_field;
   detail::OffDirections off(corners, approach, b.radius, margin, solid);
+  off.begin_with(cache);
   bool near = false;
   const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, off, near, out);
+  off.keep(cache);
   if (count >= 0) return count;
   out[0] = {};
   if (near && approach.worth >= margin) return 0;  // the distance is hardly worth knowing
@@ -344,8 +346,8 @@ int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transf
   return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, off, near, out), 0);
 }
 int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
-                                const ShapeWay& approach, std::span<Manifold3> out) {
-  return many3::surface_convex(surface, b, b_in_a, margin, approach, out);
+                                const ShapeWay& approach, PairCache& cache, std::span<Manifold3> out) {
+  return many3::surface_convex(surface, b, b_in_a, margin, approach, cache, out);
 }
 
 int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, float margin, std::span<Manifold3> out) {
@@ -356,7 +358,10 @@ int collide_many(const Shape3& a, const Shape3& b, const Transform3f& b_in_a, fl
     return out[0].count > 0 ? 1 : 0;
   }
   if (a.type == ShapeType3::compound) return many3::compound_any(a, b, b_in_a, margin, out);
-  if (is_surface(a) && is_convex(b)) return many3::surface_convex(a, b, b_in_a, margin, {}, out);
+  if (is_surface(a) && is_convex(b)) {
+    PairCache cache;
+    return many3::surface_convex(a, b, b_in_a, margin, {}, cache, out);
+  }
   if (a.type == ShapeType3::mesh && b.type == ShapeType3::plane)
     return many3::mesh_plane(*a.mesh, b.plane, b_in_a, margin, out);
   const bool plane_mesh = a.type == ShapeType3::plane && b.type == ShapeType3::mesh;

@@ -65,9 +65,15 @@ struct ShapeWay {
   float margin = 1e30f;  ///< m: what the shape stays farther from than so does not count
   float worth = 0;       ///< m: to be less far from all is not worth knowing
 };
-/// `collide_many` of a surface and a convex shape, for triangles that the shape may come near.
+/// `collide_many` of a surface and a convex shape, for triangles that the shape may come near. The cache keeps
+/// directions along which the shape was off most of them.
 int collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
-                        const ShapeWay& approach, std::span<Manifold3> out);
+                        const ShapeWay& approach, PairCache& cache, std::span<Manifold3> out);
+
+/// What a PairCache keeps when it is a direction, in 32 bits (octahedral): exact enough for a first guess.
+inline constexpr std::uint8_t cached_direction = 3;
+std::uint32_t pack_direction(Vec3f n);
+Vec3f unpack_direction(std::uint32_t p);
 
 /// `collide_many` of a surface and a convex shape, without the distance where they do not meet, for the triangles that
 /// meet `box` (in A's frame) alone.

@@ -5,12 +5,7 @@
 #include "carom/geometry/triangle_mesh.h"
 
 namespace carom::geometry::detail {
-namespace core_pair {
-
-constexpr std::uint8_t face_of_a = 1, face_of_b = 2, direction = 3;
-
-// A direction in 32 bits (octahedral), exact enough for a first guess.
-std::uint32_t pack(Vec3f n) {
+std::uint32_t pack_direction(Vec3f n) {
   const float k = 1 / (abs(n.x) + abs(n.y) + abs(n.z));
   float u = n.x * k, v = n.y * k;
   if (n.z < 0) {
@@ -20,7 +15,7 @@ std::uint32_t pack(Vec3f n) {
   }
   return std::uint32_t(int((u + 1) * 32767.0f)) << 16 | std::uint32_t(int((v + 1) * 32767.0f));
 }
-Vec3f unpack(std::uint32_t p) {
+Vec3f unpack_direction(std::uint32_t p) {
   float u = float(p >> 16) / 32767.0f - 1, v = float(p & 0xffff) / 32767.0f - 1;
   const float z = 1 - abs(u) - abs(v);
   if (z < 0) {
@@ -30,6 +25,10 @@ Vec3f unpack(std::uint32_t p) {
   }
   return normalize(Vec3f{u, v, z});
 }
+
+namespace core_pair {
+
+constexpr std::uint8_t face_of_a = 1, face_of_b = 2, direction = cached_direction;
 
 void place(Feature& f, const Transform3f& t) {
   for (int i = 0; i < f.count; ++i) f.point[i] = transform_point(t, f.point[i]);
@@ -161,7 +160,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
     if (d > -graze && (grazes(pair.a, pair.b, pair.x, n, graze) ||
                        grazes(pair.b, pair.a, inverse(pair.x), inverse_rotate(pair.x.q, n), graze))) {
       cache.kind = direction;
-      cache.d = pack(n);
+      cache.d = pack_direction(n);
       return;
     }
   }
@@ -194,7 +193,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
     return;
   }
   cache.kind = direction;
-  cache.d = pack(n);
+  cache.d = pack_direction(n);
   // Over the border of a face: see border_tolerance.
   const auto roundness = [](const Convex& c) {
     return c.kind == CoreKind::ellipsoid ? inner_size(c) : is_round(c) ? c.half.x : c.radius;
@@ -273,7 +272,7 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   }
   Vec3f guess{};
   if (cache.kind == direction) {
-    guess = unpack(cache.d);
+    guess = unpack_direction(cache.d);
     const float s = pair.along(guess) - pair.radius();
     if (s > margin) {
       out.points[0].separation = s;
@@ -286,7 +285,7 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   core_distance(pa, pb, double(pair.radius()) + double(margin), Vec3d(guess), found);
   if (!found.overlap && found.distance > double(pair.radius()) + double(margin)) {
     cache.kind = direction;
-    cache.d = pack(Vec3f(found.normal));
+    cache.d = pack_direction(Vec3f(found.normal));
     out.points[0].separation = float(found.distance) - pair.radius();
     out.normal = normalize(Vec3f(found.normal));
     return;

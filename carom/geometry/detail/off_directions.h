@@ -1,6 +1,8 @@
 // Directions along which a shape keeps off the triangles that it passes.
 #pragma once
 
+#include <bit>
+
 #include "carom/geometry/detail/contact_points.h"
 #include "carom/geometry/detail/placed_corners.h"
 
@@ -18,10 +20,33 @@ class OffDirections {
     for (float& x : now_) x = -3.4e38f;
     for (float& x : floor_) x = -3.4e38f;
   }
+  /// Begins with the two that were kept when the pair was looked at last; the second is the coarser, in 12 bits each.
+  void begin_with(const PairCache& cache) {
+    if (!used_ || cache.kind != cached_direction) return;
+    begin_with(unpack_direction(cache.d));
+    const std::uint32_t a = cache.a, b = cache.b, c = cache.c;
+    if ((a | b | c) != 0) begin_with(unpack_direction(a << 24 | (b & 0xf0) << 16 | (b & 0xf) << 12 | c << 4));
+  }
+  /// Keeps the two that were of most use.
+  void keep(PairCache& cache) const {
+    const int first = most_useful(-1);
+    if (first < 0) return;
+    cache = {.kind = cached_direction, .d = pack_direction(direction(first))};
+    const int second = most_useful(first);
+    if (second < 0) return;
+    const std::uint32_t p = pack_direction(direction(second));
+    cache.a = std::uint8_t(p >> 24);
+    cache.b = std::uint8_t((p >> 16 & 0xf0) | (p >> 12 & 0xf));
+    cache.c = std::uint8_t(p >> 4);
+  }
   /// Is a triangle (seen from the origin of the corners) out of reach, now and as the shape goes on?
-  bool keeps_off(Vec3f p, Vec3f q, Vec3f r) const {
-    for (int i = 0; i < count_; i += 4)
-      if (any(Four::load(floor_ + i) - farthest(i, p, q, r) > Four::splat(most_))) return true;
+  bool keeps_off(Vec3f p, Vec3f q, Vec3f r) {
+    for (int i = 0; i < count_; i += 4) {
+      const std::uint32_t lanes = bitmask(Four::load(floor_ + i) - farthest(i, p, q, r) > Four::splat(most_));
+      if (lanes == 0) continue;
+      ++uses_[i + std::countr_zero(lanes)];
+      return true;
+    }
     return false;
   }
   /// Is it worth a look: off now by so much (m, times its length)?
@@ -36,14 +61,9 @@ class OffDirections {
     const float size = length(n);
     if (!(size > 1e-12f)) return false;
     n = n * (1 / size);
-    const float now = corners_.least(n), floor = min(now, corners_.least_then(n));
-    if (!(floor - max(dot(n, p), max(dot(n, q), dot(n, r))) > most_)) return false;
-    const int i = next_;
-    next_ = (next_ + 1) % capacity;
-    count_ = max(count_, i + 1);
-    float* lane = lanes_ + 12 * (i / 4) + i % 4;
-    lane[0] = n.x, lane[4] = n.y, lane[8] = n.z;
-    now_[i] = now, floor_[i] = floor;
+    const float now = corners_.least(n), then = corners_.least_then(n);
+    if (!(min(now, then) - max(dot(n, p), max(dot(n, q), dot(n, r))) > most_)) return false;
+    add(n, now, then, 1);
     return true;
   }
   /// How far the shape is from a triangle, along the best of them.
@@ -54,6 +74,28 @@ class OffDirections {
   }
 
  private:
+  void begin_with(Vec3f n) {
+    if (!(solid_ && n.y <= 0)) add(n, corners_.least(n), corners_.least_then(n), 0);
+  }
+  Vec3f direction(int i) const {
+    const float* lane = lanes_ + 12 * (i / 4) + i % 4;
+    return {lane[0], lane[4], lane[8]};
+  }
+  /// Which kept off the most triangles, other than `but`; −1: none did.
+  int most_useful(int but) const {
+    int best = -1;
+    for (int i = 0; i < count_; ++i)
+      if (i != but && uses_[i] > (best < 0 ? 0 : uses_[best])) best = i;
+    return best;
+  }
+  void add(Vec3f n, float now, float then, int uses) {
+    const int i = next_;
+    next_ = (next_ + 1) % capacity;
+    count_ = max(count_, i + 1);
+    float* lane = lanes_ + 12 * (i / 4) + i % 4;
+    lane[0] = n.x, lane[4] = n.y, lane[8] = n.z;
+    now_[i] = now, floor_[i] = min(now, then), uses_[i] = uses;
+  }
   Four farthest(int i, Vec3f p, Vec3f q, Vec3f r) const {
     const float* lane = lanes_ + 3 * i;
     const Four x = Four::load(lane), y = Four::load(lane + 4), z = Four::load(lane + 8);
@@ -65,7 +107,7 @@ class OffDirections {
   const PlacedCorners& corners_;
   float most_;
   bool used_, solid_;
-  int count_ = 0, next_ = 0;
+  int count_ = 0, next_ = 0, uses_[capacity] = {};
   float lanes_[3 * capacity], now_[capacity], floor_[capacity];
 };
 

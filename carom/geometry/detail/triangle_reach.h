@@ -23,7 +23,6 @@ struct TriangleReach {
   const ShapeWay& approach;
   float radius = 0;
   bool line = false, solid = false;
-  int along = -1;  ///< the axis of the shape's own frame along which it is longer by half than along others; −1: none
 
   TriangleReach(const Shape3& shape, const Convex& core, const PlacedCorners& placed, const Transform3f& x,
                 float margin, const ShapeWay& goes, bool below)
@@ -42,8 +41,6 @@ struct TriangleReach {
     line = core.kind == CoreKind::point || core.kind == CoreKind::segment;
     if (line) end = core.half.y * axis[1];
     if (corners.known()) {
-      for (int k = 0; k < 3; ++k)
-        if (extents[k] > 1.5f * max(extents[(k + 1) % 3], extents[(k + 2) % 3])) along = k;
       middle -= origin;
       around = 1.0001f * (core.radius + margin) + 1e-6f * (length(origin) + length(max(abs(own.low), abs(own.high))));
       return;
@@ -59,7 +56,7 @@ struct TriangleReach {
   bool meets(const Vec3f (&corner)[3], OffDirections& off) const {
     if (corners.known()) {
       const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
-      return near_corners(p, q, r, off) && !crosses_over(p, q, r, off);
+      return near_corners(p, q, r, off);
     }
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const float above = max(line_height(normal, corner[0]), 0.0f), size = length_squared(normal),
@@ -102,8 +99,7 @@ struct TriangleReach {
     const float level = dot(normal, p);
     if (!solid && dot(normal, middle) < level) return false;
     const float above = max(corners.least(normal) - level, 0.0f), size = length_squared(normal), most = around * around;
-    if (above * above > most * size) return false;
-    if (keeps_off(above, normal, level)) {
+    if (above * above > most * size || keeps_off(above, normal, level)) {
       off.learn(normal, p, q, r);
       return false;
     }
@@ -113,28 +109,22 @@ struct TriangleReach {
       const float beside = corners.least(outward) - dot(outward, start[e]);
       if (!(beside > 0)) continue;
       const float length = length_squared(outward);
-      if (beside * beside * size + above * above * length > most * size * length) return false;
-      if (keeps_off(beside, outward, dot(outward, start[e]))) return false;
+      if (beside * beside * size + above * above * length > most * size * length ||
+          keeps_off(beside, outward, dot(outward, start[e]))) {
+        off.learn(outward, p, q, r);
+        return false;
+      }
     }
     if (solid) return true;
     if (!corners.has_faces()) return in_box(p, q, r);
     // In front of a face of the shape.
     const PlacedCorners::Before face = corners.face_before(p, q, r);
     const float most_before = approach.margin + approach.bend + radius;
-    if (face.distance > around) return false;
-    if (!(face.distance > most_before)) return true;
-    const float nearest = min(dot(face.normal, p), min(dot(face.normal, q), dot(face.normal, r)));
-    return nearest + corners.least_then(-face.normal) <= most_before;
-  }
-  /// Is what is long off an edge that it lies across?
-  bool crosses_over(Vec3f p, Vec3f q, Vec3f r, OffDirections& off) const {
-    if (along < 0) return false;
-    const Vec3f start[3] = {p, q, r}, edge[3] = {q - p, r - q, p - r};
-    for (int e = 0; e < 3; ++e) {
-      const Vec3f across = cross(edge[e], axis[along]);
-      if (off.learn(dot(across, middle - start[e]) < 0 ? -across : across, p, q, r)) return true;
+    if (face.distance > around) {
+      off.learn(-face.normal, p, q, r);
+      return false;
     }
-    return false;
+    return !(face.distance > most_before && off.learn(-face.normal, p, q, r));
   }
 };
 

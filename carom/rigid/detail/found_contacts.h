@@ -63,11 +63,11 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
   found.count = count;
 }
 inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, const Transform3f& b_in_a, float margin,
-                        const geometry::detail::ShapeWay& approach, Found<Dim3>& found) {
+                        const geometry::detail::ShapeWay& approach, geometry::PairCache& cache, Found<Dim3>& found) {
   const bool some = is_surface(a) && is_convex(b);
   found.near = some ? approach.margin : 0;
   if (some)
-    found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, found.manifold);
+    found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, cache, found.manifold);
   else
     found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
   if (found.count == 0)

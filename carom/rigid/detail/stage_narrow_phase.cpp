@@ -121,7 +121,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   ContactStore<D>& store = world.contacts;
   Found<D> found;
   if constexpr (D::dimension == 3)
-    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c, reach), found);
+    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c, reach), c.cache, found);
   else
     collide_all(a.geometry, b.geometry, c.base, reach, found);
   c.gap = found.count == 0 ? found.apart : reach;
