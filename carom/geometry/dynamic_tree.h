@@ -225,7 +225,10 @@ class CAROM_API DynamicTree {
         const bool a = wanted(nodes_[std::size_t(node.child_a)].box);
         const bool b = wanted(nodes_[std::size_t(node.child_b)].box);
         if (a) {
-          if (b) stack.push(std::uint32_t(node.child_b));
+          if (b) {
+            __builtin_prefetch(&nodes_[std::size_t(node.child_b)].parent);  // who wants all has not looked at it
+            stack.push(std::uint32_t(node.child_b));
+          }
           index = node.child_a;
           continue;
         }

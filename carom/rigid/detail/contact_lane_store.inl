@@ -93,6 +93,9 @@ void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources
                  const ContactBlock<Dim2, W>& block, const ContactExtra<Dim2, W>* extra, const std::uint8_t* marks) {
   const int lanes = int(list.size());
   const std::uint32_t at_limit = context.world.kernels.store(sources, list.data(), lanes, &block);
+  for (std::uint32_t left = at_limit; left != 0; left &= left - 1)
+    if (const int lane = std::countr_zero(left); lane < lanes && (marks[lane] & mark_anchored) != 0)
+      __builtin_prefetch(sources.manifolds + list[std::size_t(lane)], 1);
   for (int lane = 0; lane < lanes; ++lane) {
     ManifoldRecord<Dim2>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
     if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];

@@ -94,6 +94,9 @@ void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int
     world.kernels.new_meetings(group, count, full, news);
     for (int i = 0; i < count; ++i)
       for (std::uint64_t left = news[i]; left != 0; left &= left - 1)
+        world.pairs.prefetch(PairSet::key(members[i], shapes[std::countr_zero(left)]));
+    for (int i = 0; i < count; ++i)
+      for (std::uint64_t left = news[i]; left != 0; left &= left - 1)
         consider_pair(world, members[i], shapes[std::countr_zero(left)], found);
     number = 0;
   };
@@ -200,6 +203,17 @@ bool sweep_dynamic(WorldImplementation<Dim3>& world, bool& still_too) {
   return true;
 }
 
+/// Calls for the memory that the contact of a pair will need, so many contacts before it is made. Inlined always, as
+/// prefetch_lines.
+template <class D>
+[[gnu::always_inline]] inline void call_for_creation(const WorldImplementation<D>& world, const FoundPair& pair,
+                                                     std::size_t ahead) {
+  world.pairs.prefetch(PairSet::key(pair.a, pair.b));
+  for (const std::int32_t s : {pair.a, pair.b}) prefetch_lines(&world.shapes.record[std::size_t(s)], 128);
+  const std::vector<std::int32_t>& free = world.contacts.free_contacts;
+  if (free.size() > ahead) prefetch_lines(&world.contacts.at(free[free.size() - 1 - ahead]), sizeof(ContactRecord<D>));
+}
+
 /// A box that overlaps none: pairs with it have not been looked for.
 template <class D>
 typename D::Bounds nowhere() {
@@ -245,10 +259,13 @@ void find_pairs(WorldImplementation<D>& world) {
   // Which worker found a pair is chance; the order of creation must not be. Where both moved it may be found twice.
   std::sort(scratch.pairs.begin(), scratch.pairs.end());
   scratch.pairs.erase(std::unique(scratch.pairs.begin(), scratch.pairs.end()), scratch.pairs.end());
-  for (const FoundPair& pair : scratch.pairs)
+  for (std::size_t k = 0; k < scratch.pairs.size(); ++k) {
+    const FoundPair& pair = scratch.pairs[k];
+    if (k + 6 < scratch.pairs.size()) call_for_creation(world, scratch.pairs[k + 6], 6);
     if (!world.contact_filter ||
         world.contact_filter(world.shapes.slots.handle_at(pair.a), world.shapes.slots.handle_at(pair.b)))
       create_contact(world, pair.a, pair.b);
+  }
   for (const std::int32_t s : scratch.moved) {
     world.shapes.at(s).flags &= std::uint8_t(~shape_moved);
     scratch.moved_place[std::size_t(s)] = none;

@@ -23,7 +23,7 @@ constexpr int block_grain = 8;
 template <class D>
 CAROM_SIMD_INLINE void prefetch_manifold(const ContactSources<D>& from, const ShapeRecord<D>* shapes,
                                          std::span<const std::int32_t> list, std::size_t i, bool velocities) {
-  constexpr std::size_t manifold_lanes = 64, contact_lanes = 40, body_lanes = 18;
+  constexpr std::size_t manifold_lanes = 96, contact_lanes = 40, body_lanes = 18;
   if (i + body_lanes >= list.size()) return;
   const ContactRecord<D>& c = from.contacts[from.manifolds[list[i + body_lanes]].contact];
   for (const std::int32_t body : c.body) {
@@ -206,8 +206,9 @@ void store_blocks(StepContext<D>& context) {
                        const std::size_t i = first + std::size_t(lane);
                        if (i + 12 < manifolds.size()) {
                          const char* record = reinterpret_cast<const char*>(sources.manifolds + manifolds[i + 12]);
-                         // In the plane the impulses lie in the second line alone.
-                         for (std::size_t k = D::dimension == 2 ? 64 : 0; k < ManifoldRecord<D>::hot_bytes; k += 64)
+                         // In the plane the impulses lie in the second line alone; few anchors are asked for.
+                         const bool whole = D::dimension == 3 || (marks[lane + 12] & (mark_anew | mark_open)) != 0;
+                         for (std::size_t k = whole ? 0 : 64; k < ManifoldRecord<D>::hot_bytes; k += 64)
                            __builtin_prefetch(record + k, 1);
                        }
                      }

@@ -344,6 +344,18 @@ void apply_change(WorldImplementation<D>& world, std::size_t i, std::size_t& nex
   if (change & change_begin) send_touch_event(world, world.contacts.at(contact), true);
 }
 
+/// Calls for the memory that apply_change will need for eight contacts. Inlined always, as prefetch_lines.
+template <class D>
+[[gnu::always_inline]] inline void call_for_changes(const WorldImplementation<D>& world, std::size_t block) {
+  std::uint64_t any;
+  __builtin_memcpy(&any, &world.scratch.contact_changes[block], 8);
+  if (any == 0) return;
+  for (std::size_t i = block; i < min(block + 8, world.contacts.awake.size()); ++i) {
+    if (world.scratch.contact_changes[i] == 0) continue;
+    prefetch_lines(&world.contacts.at(world.contacts.awake[i]), sizeof(ContactRecord<D>));
+  }
+}
+
 }  // namespace
 
 template <class D>
@@ -372,6 +384,7 @@ void update_contacts(WorldImplementation<D>& world) {
         const int lanes = min(width, stop - begin);
         for (int soon = begin + width; soon < min(begin + 2 * width, stop); ++soon) {
           const ContactWatch<D>& watch = watches[soon];
+          __builtin_prefetch(&watch + 4 * width);
           if (watch.body[0] == none) continue;
           for (const std::int32_t body : watch.body) {
             __builtin_prefetch(poses + body);
@@ -396,9 +409,17 @@ void update_contacts(WorldImplementation<D>& world) {
         prefetch_shapes(shapes, soon);
         if (soon.first_manifold != none) prefetch_lines(manifolds + soon.first_manifold, ManifoldRecord<D>::hot_bytes);
       };
+      // Those that are apart may have left each other's bounds.
+      const auto bounds_soon = [&](int k) __attribute__((always_inline)) {
+        const ContactRecord<D>& soon = contacts[awake[due[k]]];
+        if (soon.first_manifold != none) return;
+        for (const std::int32_t s : soon.shape)
+          __builtin_prefetch(&world.shapes.trees[shapes[s].tree].bounds(shapes[s].leaf));
+      };
       for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
       for (int k = 0; k < number; ++k) {
         if (k + 6 < number) look_at_soon(k + 6);
+        if (D::dimension == 2 && k + 2 < number) bounds_soon(k + 2);
         scratch.contact_changes[std::size_t(due[k])] =
             update_contact(world, due[k], scratch.found_manifolds[std::size_t(worker)]);
       }
@@ -419,12 +440,22 @@ void update_contacts(WorldImplementation<D>& world) {
   std::size_t next_found = 0;
   for (std::size_t block = 0; block < count; block += 8) {
     std::uint64_t any;
+    if (block + 64 < count) call_for_changes(world, block + 64);
     __builtin_memcpy(&any, &scratch.contact_changes[block], 8);
     if (any == 0) continue;
     for (std::size_t i = block; i < min(block + 8, count); ++i)
       if (scratch.contact_changes[i] != 0) apply_change(world, i, next_found);
   }
-  for (const std::int32_t contact : scratch.doomed_contacts) destroy_contact(world, contact, false);
+  for (std::size_t k = 0; k < scratch.doomed_contacts.size(); ++k) {
+    if (k + 6 < scratch.doomed_contacts.size()) {
+      const ContactRecord<D>& soon = world.contacts.at(scratch.doomed_contacts[k + 6]);
+      world.pairs.prefetch(PairSet::key(soon.shape[0], soon.shape[1]));
+      for (int side = 0; side < 2; ++side)
+        for (const std::int32_t link : {soon.previous[side], soon.next[side]})
+          if (link != none) prefetch_lines(&world.contacts.at(link >> 1), sizeof(ContactRecord<D>));
+    }
+    destroy_contact(world, scratch.doomed_contacts[k], false);
+  }
   // A new contact wakes whoever slept.
   for (const std::int32_t contact : scratch.new_touches) {
     const ContactRecord<D>& c = world.contacts.at(contact);

@@ -51,9 +51,10 @@ void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t
   }
 }
 
+/// Awake contacts have all their manifolds in the graph: so no manifold need be fetched to know it.
 template <class D>
-bool in_graph(const ContactStore<D>& contacts, const ContactRecord<D>& c) {
-  return c.first_manifold != none && contacts.manifold(c.first_manifold).place.color >= 0;
+bool in_graph(const ContactRecord<D>& c) {
+  return c.first_manifold != none && c.awake_index != none;
 }
 
 /// The same for islands in which nothing is restless: only what their bodies touch is looked at. In the end the roots
@@ -93,7 +94,7 @@ void unite_tired(const WorldImplementation<D>& world, std::vector<std::int32_t>&
       const ContactRecord<D>& c = world.contacts.at(key >> 1);
       const int side = key & 1;
       key = c.next[side];
-      if ((c.flags & contact_touching) != 0 && in_graph(world.contacts, c)) join(std::int32_t(i), c.body[1 - side]);
+      if ((c.flags & contact_touching) != 0 && in_graph(c)) join(std::int32_t(i), c.body[1 - side]);
     }
   }
   for (const GraphColor& color : world.graph.colors)
