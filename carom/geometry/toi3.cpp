@@ -17,7 +17,7 @@ constexpr auto never_safe = [](double, Vec3d) { return false; };
 TimeOfImpact cores(const Convex& ca, const Motion3& a, const Convex& cb, const Motion3& b, double target,
                    double limit) {
   const Swept<Vec3d> sa = detail::swept(ca, a), sb = detail::swept(cb, b);
-  detail::CoreGap gap{ca, cb, a, b};
+  detail::CoreGap gap{ca, cb, a, b, 4 * target, detail::bend_of(a, sa) + detail::bend_of(b, sb)};
   return detail::advance<Vec3d>(
       target, limit, gap, [&](double t, Vec3d n) { return a.speed(n, sa, t) + b.speed(-n, sb, t); }, never_safe);
 }

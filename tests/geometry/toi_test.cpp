@@ -1,6 +1,7 @@
 // Time of impact: the touch is found, nothing tunnels, and what stays apart is not stopped.
 #include <gtest/gtest.h>
 
+#include "carom/geometry/detail/swept3.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "manifold_test_support.h"
@@ -79,6 +80,43 @@ TEST(TimeOfImpact3, NothingTunnelsThroughThinWalls) {
   }
   EXPECT_GT(hits, 7000);
   EXPECT_GT(misses, 5);
+}
+
+// Two boxes that turn by up to 1.5 rad on their ways: as long as a direction is said to keep them apart, it does.
+TEST(TimeOfImpact3, ADirectionKeepsApartAsLongAsSaid) {
+  Draw draw;
+  int cut = 0, whole = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const auto sweep = [&](Vec3f from, Vec3f way) {
+      Sweep3 s{{draw.in(-0.5, 0.5), draw.in(-0.5, 0.5), 0}, from, from + way, draw.rotation(), {}};
+      const Vec3f axis = draw.direction();
+      s.q1 = turned(s.q0, axis, draw.in(0, 1.5));
+      return s;
+    };
+    const geometry::detail::Convex a = geometry::detail::convex_of(Box{{draw.in(0.1, 1), draw.in(0.1, 1), 0.2f}}),
+                                   b = geometry::detail::convex_of(Box{{draw.in(0.1, 1), 0.3f, draw.in(0.1, 1)}});
+    const Vec3f apart = draw.vector(2, 4), way = draw.vector(0, 2);
+    const geometry::detail::Motion3 way_a(sweep({}, way)), way_b(sweep(apart, -apart * 0.6f));
+    const geometry::detail::Swept<Vec3d> swept_a = geometry::detail::swept(a, way_a),
+                                         swept_b = geometry::detail::swept(b, way_b);
+    const double target = 0.01;
+    geometry::detail::CoreGap gap{
+        a,     b,      way_a,
+        way_b, target, geometry::detail::bend_of(way_a, swept_a) + geometry::detail::bend_of(way_b, swept_b)};
+    Vec3d n;
+    const double distance = gap(0, n);
+    if (distance <= target) continue;
+    const double until = gap.clear_until(0, n, distance, target, 1);
+    ++(until < 1 ? cut : whole);
+    for (int i = 0; i <= 20; ++i) {
+      const double t = until * i / 20;
+      const geometry::detail::Placed at_a(a, way_a.at(t)), at_b(b, way_b.at(t));
+      const double now = dot(n, at_b.support(-n) - at_a.support(n)) - gap.radii();
+      ASSERT_GE(now, target - 1e-9) << k << " at " << t << " of " << until;
+    }
+  }
+  EXPECT_GT(cut, 300);
+  EXPECT_GT(whole, 300);
 }
 
 TEST(TimeOfImpact3, TwoMovingRodsMeet) {

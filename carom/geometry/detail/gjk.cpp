@@ -1,5 +1,7 @@
 #include "carom/geometry/detail/gjk.h"
 
+#include <utility>
+
 #include "carom/geometry/detail/off_directions.h"
 
 namespace carom::geometry::detail {
@@ -80,6 +82,13 @@ SimplexVertex support_of(const Placed& a, const Placed& b, Vec3d toward_b) {
   v.b = b.support(-toward_b);
   v.w = v.b - v.a;
   return v;
+}
+
+/// Along a guess from A to B; zero: of the centres.
+SimplexVertex first_support(const Placed& a, const Placed& b, Vec3d guess) {
+  if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
+  if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
+  return support_of(a, b, guess);
 }
 
 /// Closest points of the segments from a by u and from b by v (Ericson 2005, §5.1.9).
@@ -207,20 +216,36 @@ void search(const SimplexVertex& first, double cutoff, Support&& support, Enough
   out.normal = out.overlap ? Vec3d{} : r.closest * (1 / out.distance);
 }
 
+/// Of a triangle and a segment or a point. False for other pairs, and where they touch.
+bool closed_distance(const Placed& a, const Placed& b, double cutoff, CoreDistance& out) {
+  if (a.core->kind != CoreKind::triangle || b.core->kind > CoreKind::segment) return false;
+  Vec3d p[3];
+  for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
+  const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
+  return triangle_segment_distance(p, b.position + half, b.position - half, cutoff, out);
+}
+
 }  // namespace gjk
 
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out) {
-  if (a.core->kind == CoreKind::triangle && b.core->kind <= CoreKind::segment) {
-    Vec3d p[3];
-    for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
-    const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
-    if (triangle_segment_distance(p, b.position + half, b.position - half, cutoff, out)) return;
+  if (gjk::closed_distance(a, b, cutoff, out)) return;
+  const auto never = [](const Vec3d&, double) { return false; };
+  gjk::search(gjk::first_support(a, b, guess), cutoff, [&](Vec3d v) { return gjk::support_of(a, b, v); }, never, out);
+}
+
+void core_clearance(const Placed& a, const Placed& b, double radii, double near, double share, Vec3d guess,
+                    CoreDistance& out) {
+  if (gjk::closed_distance(a, b, 1e30, out)) return;
+  if (gjk::closed_distance(b, a, 1e30, out)) {
+    std::swap(out.point_a, out.point_b);
+    out.normal = -out.normal;
+    return;
   }
-  if (!(length_squared(guess) > 1e-20)) guess = b.center() - a.center();
-  if (!(length_squared(guess) > 1e-20)) guess = {0, 1, 0};
-  gjk::search(
-      gjk::support_of(a, b, guess), cutoff, [&](Vec3d v) { return gjk::support_of(a, b, v); },
-      [](const Vec3d&, double) { return false; }, out);
+  const auto enough = [&](const Vec3d& v, double reach) {
+    const double most = math::length(v), least = reach / most - radii;
+    return least > near && least >= share * (most - radii);
+  };
+  gjk::search(gjk::first_support(a, b, guess), 1e30, [&](Vec3d v) { return gjk::support_of(a, b, v); }, enough, out);
 }
 
 /// In closed form: of an edge and an edge, or of a corner of the triangle before a face. Not for what nearly touches.

@@ -36,6 +36,11 @@ struct CoreDistance {
 /// known to be farther apart than `cutoff`. `guess` is a direction from A to B to begin with (zero: the centres').
 void core_distance(const Placed& a, const Placed& b, double cutoff, Vec3d guess, CoreDistance& out);
 
+/// The same for cores within `radii`, with a lower bound as the distance and no points as soon as it keeps these more
+/// than `near` apart and by at least `share` of what does.
+void core_clearance(const Placed& a, const Placed& b, double radii, double near, double share, Vec3d guess,
+                    CoreDistance& out);
+
 /// The same for a triangle and corners that are placed already. False, and all else unknown, where these keep off.
 /// `beyond`: bits of the edges on which the nearest point of the triangle lies; 0: anywhere, or the two meet.
 bool triangle_distance(const Vec3d (&corner)[3], const PlacedCorners& b, Vec3d toward_b, double cutoff, int beyond,

@@ -82,6 +82,8 @@ struct Motion3 {
     sagitta = 2 * (1 - l * l);  // 1 − cos(θ/2)
   }
   bool turns() const { return most_rate != 0; }
+  /// The most that the way of a point 1 m from the centre is bent: its acceleration, m a unit of time squared.
+  double bend() const { return square(most_rate) * math::sqrt(1 + square(0.25 * most_rate)); }
   Quatd rotation(double t) const { return turns() ? normalize(q0 + (q1 - q0) * t) : q0; }
   Transform3d at(double t) const {
     const Quatd q = rotation(t);
@@ -98,9 +100,26 @@ struct Motion3 {
   }
 };
 
+/// The acceleration of all points of a swept core is at most this.
+template <class Motion, class V>
+double bend_of(const Motion& motion, const Swept<V>& shape) {
+  return motion.turns() ? motion.bend() * (math::length(shape.arm) + shape.reach) : 0;
+}
+
+/// The first part of a span of time (0…1; 1: all of it) in which a gap along a fixed direction, `first` at its begin
+/// and `last` at its end, can shrink to nothing. Were all points to go straight and evenly from where they begin to
+/// where they end, the gap would be at least what is linear between both; they stray from there by bend · part ·
+/// (1 − part) / 2, with their accelerations times the span squared as the bend.
+inline double clear_part(double first, double last, double bend) {
+  const double bow = 0.5 * bend, slope = last - first - bow, discriminant = slope * slope - 4 * bow * first;
+  if (slope >= 0 || discriminant < 0) return 1;
+  return min(1.0, 2 * first / (math::sqrt(discriminant) - slope));
+}
+
 /// Steps through time by what the gap cannot close before. gap(t, normal): the distance of the surfaces at t, and the
 /// unit normal from A to B that shows it, zero or less where they overlap; closing(t, normal): the most by which it
 /// shrinks in a unit of time from t on; safe(t, normal): nothing will be passed from t on, as the caller knows better.
+/// A gap that has clear_until(t, normal, distance, target, limit) may know better how long the normal keeps them apart.
 template <class V, class Gap, class Closing, class Safe>
 TimeOfImpact advance(double target, double limit, Gap&& gap, Closing&& closing, Safe&& safe) {
   const double tolerance = 0.25 * target;
@@ -112,7 +131,10 @@ TimeOfImpact advance(double target, double limit, Gap&& gap, Closing&& closing, 
     if (d <= target + tolerance) return {ImpactState::hit, float(t)};
     const double rate = closing(t, n);
     if (!(rate * (limit - t) > d - target) || safe(t, n)) return {};
-    t += (d - target) / rate;
+    double next = t + (d - target) / rate;
+    if constexpr (requires { gap.clear_until(t, n, d, target, limit); })
+      next = max(next, gap.clear_until(t, n, d, target, limit));
+    t = next;
     if (t >= limit) return {};
   }
   // Still near after so many small steps: stop here rather than risk to pass.

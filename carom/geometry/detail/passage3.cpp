@@ -192,17 +192,22 @@ struct Search {
     const auto closing = [&](double t, Vec3d n, const Swept<Vec3d>& s) {
       return a.speed(n, s, t) + b.speed(-n, swept_part, t);
     };
-    CoreGap gap{core, part, a, b, {}, 4 * target};
+    const double bend = bend_of(b, swept_part);
+    CoreGap gap{core, part, a, b, 4 * target, bend + bend_of(a, swept_core)};
     const TimeOfImpact t = advance<Vec3d>(
         target, limit, gap, [&](double time, Vec3d n) { return closing(time, n, swept_core); },
         [&](double time, Vec3d n) {
           const Transform3d at = b.at(time);
           const Vec3d out = inverse_rotate(at.q, -n);
-          return clears(out, dot(out, inverse_transform_point(at, gap.last.point_b)) + double(part.radius));
+          return clears(out, dot(out, support(part, out)) + double(part.radius));
         });
     if (t.state == ImpactState::hit && t.time > 0) return keep(t);
     if (t.state == ImpactState::separated || !passage.guarded) return;
-    guard([&](const Guard& g) { return CoreGap{g.core, part, a, b, g.local}; }, closing);
+    guard(
+        [&](const Guard& g) {
+          return CoreGap{g.core, part, a, b, 4 * target, bend + bend_of(a, swept(g.core, a, g.local)), g.local};
+        },
+        closing);
   }
   void meet_plane(const Plane& plane) {
     const Vec3d normal(plane.normal);

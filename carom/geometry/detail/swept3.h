@@ -66,33 +66,44 @@ inline bool point_distance(const Placed& a, const Placed& b, CoreDistance& out) 
   return true;
 }
 
-/// The distance of two cores, for `advance`: remembers the last normal and closest points.
+/// The distance of two cores, for `advance`: remembers the last normal, and what it kept them apart by.
 struct CoreGap {
   const Convex &a, &b;
   const Motion3 &motion_a, &motion_b;
+  double near;            ///< m: above it, what a direction keeps them apart may stand for the distance
+  double bend = 0;        ///< m a unit of time squared: how much the ways of both are bent
   Transform3d local_a{};  ///< of the core in what moves
-  double near = 1e30;     ///< m: beyond it, what the last normal keeps them apart may stand for the distance
   CoreDistance last{};
   double known = 1e30;  ///< m, the distance that was found last
+  double end = -1;      ///< the time at which the last two of these stand
+  Placed at_a{a}, at_b{b}, end_a{a}, end_b{b};
+
+  double radii() const { return double(a.radius) + double(b.radius); }
 
   double operator()(double t, Vec3d& n) {
-    const Placed at_a(a, motion_a.at(t) * local_a), at_b(b, motion_b.at(t));
-    const double radii = double(a.radius) + double(b.radius);
+    at_a = Placed(a, motion_a.at(t) * local_a), at_b = Placed(b, motion_b.at(t));
     if (known < 1e30) {
-      const Vec3d p = at_b.support(-last.normal);
-      const double apart = dot(last.normal, p - at_a.support(last.normal)) - radii;
-      if (apart > near && apart > 0.5 * known) {
-        last.point_b = p;
+      const double apart = dot(last.normal, at_b.support(-last.normal) - at_a.support(last.normal)) - radii();
+      if (apart > near && apart > 0.25 * known) {
         n = last.normal;
         return apart;
       }
     }
     const Vec3d guess = last.normal;
-    if (!point_distance(at_a, at_b, last)) core_distance(at_a, at_b, 1e30, guess, last);
+    if (!point_distance(at_a, at_b, last)) core_clearance(at_a, at_b, radii(), near, 0.7, guess, last);
     n = last.normal;
-    const double distance = last.overlap ? -1.0 : last.distance - radii;
-    if (near < 1e30 && distance > 0) known = distance;
+    const double distance = last.overlap ? -1.0 : last.distance - radii();
+    if (distance > 0) known = distance;
     return distance;
+  }
+  double clear_until(double t, Vec3d n, double distance, double target, double limit) {
+    if (!(bend > 0)) return t;
+    if (end != limit) {
+      end = limit;
+      end_a = Placed(a, motion_a.at(limit) * local_a), end_b = Placed(b, motion_b.at(limit));
+    }
+    const double apart = dot(n, end_b.support(-n) - end_a.support(n)) - radii(), span = limit - t;
+    return t + span * clear_part(distance - target, apart - target, bend * span * span);
   }
 };
 
