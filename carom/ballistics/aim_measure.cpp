@@ -223,7 +223,7 @@ Vec3d AimSolver::measure_in(Path& path, double fine) const {
     path.bends = path.bends || cuts.count > 1;
     path.layers = path.layers || cuts.layers;
     // Smooth steps err independently of each other.
-    const double budget = (cuts.count > 1 ? 1 : 4) * fine / (h * most);
+    const double budget = (cuts.count > 1 ? 1 : 2) * fine / (h * most);
     Moments moments;
     for (int i = 0; i < cuts.count; ++i) gather<Plain>(pull_, flown, cuts.s[i], cuts.s[i + 1], budget, moments);
     const Path::Stage* s = path.stage[n];

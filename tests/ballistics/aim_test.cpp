@@ -332,6 +332,26 @@ void expect_hits(Rough rough, std::uint64_t seed, int cases) {
   EXPECT_GT(none, cases / 8);
 }
 
+// Nearly straight up by a curve whose slope at Mach 0 is not zero: slow for seconds about the top; and one through the
+// barrier in its first step.
+TEST(Aim, SlowTopsAndTheBarrierAreMeasured) {
+  Case slow;
+  slow.projectile = projectile_from_coefficient(DragFunction::g1, 1);
+  slow.projectile.area_per_mass = 0.0090105280216863735;
+  slow.shooter = {138.76531357108547, {0, 17.212283274124893, 0}, {-12.786540870674559, 0, -10.311386445120171}};
+  slow.target = {{0.056619656096137047, 43.196849767189974, -0.89700539159925219}};
+  Case fast = slow;
+  fast.projectile.area_per_mass = 0.0078752094639944741;
+  fast.shooter = {271.17498481001593, {0, 16.491324292489963, 0}, {-12.834025913271837, 0, -6.5294398743050976}};
+  fast.target = {{564.66806129553606, 173.74140979595475, -250.71458880446639}};
+  for (const Case& c : {slow, fast}) {
+    const auto aims = aim(c.projectile, c.conditions, c.shooter, c.target);
+    ASSERT_TRUE(aims && aims->low && aims->high);
+    EXPECT_LT(miss(c, *aims->low), .01);
+    EXPECT_LT(miss(c, *aims->high), .01);
+  }
+}
+
 // Profiles of wind are steep near the ground and have bends by the hundred.
 TEST(Aim, ShotsThroughAProfileOfWindHit) { expect_hits(Rough::profile, 7, 800); }
 // Layers bend sharply, and thin ones may lie within a step.

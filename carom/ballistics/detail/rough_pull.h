@@ -74,10 +74,12 @@ class RoughPull {
     double place, coefficient, slope;  // M² + ½, and by M²
   };
   static Node node(const DragCurve& curve, int i) {
+    // Curves are lines over M near 0, no cubics over M²: the first cell, to M = 1/8, has the cubic that is nearest to a
+    // line there, whose beginning has the value of M = .15/8 and the slope of M = .3125/8.
     const double place = std::bit_cast<double>((first_cell + std::uint64_t(i)) << 47);
-    const double mach = math::max(math::sqrt(place - lowest), 0.05);
+    const double mach = math::max(math::sqrt(place - lowest), 0.3125 / 8);
     const DragCurve::Value value = curve.with_slope(mach);
-    return {place, value.coefficient, 0.5 * value.slope / mach};
+    return {place, i > 0 ? value.coefficient : curve(0.15 / 8), 0.5 * value.slope / mach};
   }
   [[gnu::always_inline]] DragCurve::Value drag(double mach2) const {
     const double place = math::min(farthest_, mach2 + lowest);  // in this order for what is no number
