@@ -41,16 +41,18 @@ void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int 
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
     const WideVec2<W> t = {F::splat(0) - n.y, n.x};
-    WideFloat<W> sum = F::splat(0), turn_a = F::splat(0);
+    const F offset_turn = cross(offset, n), friction = F::load(c.tangent_impulse);
+    const WideVec2<W> patch = load2<W>(c.patch_r_a);
+    // Arms as the passes have them: the middle of a ground may lie a kilometre off, and what the far arms of all points
+    // together differ by from these would turn the body.
+    F turn_a = friction * cross(patch, t), turn_b = friction * cross(add(patch, offset), t), sum = F::splat(0);
     for (int i = 0; i < 2; ++i) {
-      const F lambda = F::load(c.point[i].impulse);
+      const F lambda = F::load(c.point[i].impulse), turn = cross(load2<W>(c.point[i].r_a), n);
       sum += lambda;
-      turn_a += lambda * cross(load2<W>(c.point[i].r_a), n);
+      turn_a += lambda * turn;
+      turn_b += lambda * (turn + offset_turn);
     }
-    const F friction = F::load(c.tangent_impulse);
     const WideVec2<W> p = {sum * n.x + friction * t.x, sum * n.y + friction * t.y};
-    turn_a += friction * cross(load2<W>(c.patch_r_a), t);
-    F turn_b = turn_a + cross(offset, p);
     if (extra != nullptr) {
       const F rolling = F::load(static_cast<const ContactExtra<Dim2, W>*>(extra)[k].rolling_impulse[0]);
       turn_a += rolling;

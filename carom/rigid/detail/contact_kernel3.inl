@@ -38,18 +38,22 @@ void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int 
     const ContactBlock<Dim3, W>& c = static_cast<const ContactBlock<Dim3, W>*>(blocks)[k];
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     const WideVec3<W> n = load3<W>(c.normal), t = load3<W>(c.tangent), u = cross(n, t);
+    const WideVec3<W> offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
     const F f1 = F::load(c.tangent_impulse[0]), f2 = F::load(c.tangent_impulse[1]);
-    WideVec3<W> lever = {F::splat(0), F::splat(0), F::splat(0)};
+    const WideVec3<W> f = add(multiply(t, f1), multiply(u, f2)), patch = load3<W>(c.patch_r_a);
+    const WideVec3<W> twist = multiply(n, F::load(c.twist_impulse));
+    // Arms as the passes have them: the middle of a ground may lie a kilometre off, and what the far arms of all points
+    // together differ by from these would turn the body.
+    WideVec3<W> turn_a = add(cross(patch, f), twist), turn_b = add(cross(add(patch, offset), f), twist);
     F sum = F::splat(0);
     for (int i = 0; i < 4; ++i) {
       const F lambda = F::load(c.point[i].impulse);
+      const WideVec3<W> turn = cross(load3<W>(c.point[i].r_a), n);
       sum += lambda;
-      lever = add(lever, multiply(load3<W>(c.point[i].r_a), lambda));
+      turn_a = add(turn_a, multiply(turn, lambda));
+      turn_b = add(turn_b, multiply(add(turn, offset_turn), lambda));
     }
-    const WideVec3<W> f = add(multiply(t, f1), multiply(u, f2)), p = add(multiply(n, sum), f);
-    const F twist = F::load(c.twist_impulse);
-    WideVec3<W> turn_a = add(add(cross(lever, n), cross(load3<W>(c.patch_r_a), f)), multiply(n, twist));
-    WideVec3<W> turn_b = add(turn_a, cross(load3<W>(c.center_offset), p));
+    const WideVec3<W> p = add(multiply(n, sum), f);
     if (extra != nullptr) {
       const WideVec3<W> rolling = load3<W>(static_cast<const ContactExtra<Dim3, W>*>(extra)[k].rolling_impulse);
       turn_a = add(turn_a, rolling);
