@@ -5,7 +5,9 @@
 #include "carom/math/elementary.h"
 #include "carom/rigid/detail/character_shape.h"
 #include "carom/rigid/detail/check.h"
+#include "carom/rigid/detail/contacts.h"
 #include "carom/rigid/detail/vicinity.h"
+#include "carom/rigid/detail/world_implementation.h"
 
 namespace carom::rigid {
 namespace {

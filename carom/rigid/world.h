@@ -236,6 +236,8 @@ class CAROM_API World {
   std::uint64_t state_hash() const;
 
  private:
+  template <class>
+  friend class Character;  // looks at all that is near it, in every move: copies would cost more than the look
   struct Implementation;
   std::unique_ptr<Implementation> self_;
 };

@@ -1,4 +1,4 @@
-// The planes that triangles leave to a capsule, four triangles at a time: as distances and contacts tell them.
+// The planes that triangles leave to a capsule, some triangles at a time: as distances and contacts tell them.
 #include "carom/geometry/detail/triangle_blocks.h"
 
 #include <gtest/gtest.h>
@@ -33,10 +33,10 @@ Shape3 wavy_field(int cells, float size, float height) {
 }
 
 constexpr float half_length = 0.6f, radius = 0.3f, margin = 0.4f;
-int planes_of(const Shape3& surface, const Transform3f& x, std::span<SurfacePlane> out) {
+int planes_of(const Shape3& surface, const Transform3f& x, std::span<SurfacePlane> out, int lanes = 0) {
   Bounds3f box = grow(bounds(Shape3(Capsule3{half_length, radius}), x), margin);
   box.high.y += 2 * (half_length + 2 * radius);
-  TriangleBlocks blocks;
+  TriangleBlocks blocks(lanes);
   blocks.gather(surface, grow(box, 0.7f));  // more than is asked about, as a character gathers
   return blocks.planes({x.p, rotate(x.q, Vec3f{0, half_length, 0}), radius, margin, box}, out);
 }
@@ -94,6 +94,27 @@ TEST(TriangleBlocks, TellWhatContactsTell) {
                           math::abs(planes[i].separation - least) < 1e-3f);
         EXPECT_TRUE(same) << k;
       }
+  EXPECT_GT(seen, 2000);
+}
+
+// Whatever the width, the same planes to the bit.
+TEST(TriangleBlocks, WidthsAgree) {
+  Draw draw;
+  int seen = 0;
+  for (const Shape3& ground : {wavy_mesh(16, 0.5f, 1.2f), wavy_field(16, 0.5f, 1.2f)})
+    for (int k = 0; k < 1000; ++k) {
+      const Transform3f x{{draw.in(2, 6), draw.in(0.3, 2), draw.in(2, 6)},
+                          normalize(Quatf{1, draw.in(-0.3, 0.3), 0, draw.in(-0.3, 0.3)})};
+      SurfacePlane four[16], eight[16];
+      const int count = planes_of(ground, x, four, 4);
+      ASSERT_EQ(planes_of(ground, x, eight, 8), count) << k;
+      for (int i = 0; i < count; ++i) {
+        EXPECT_EQ(four[i].normal, eight[i].normal) << k;
+        EXPECT_EQ(four[i].separation, eight[i].separation) << k;
+        EXPECT_EQ(four[i].point, eight[i].point) << k;
+        ++seen;
+      }
+    }
   EXPECT_GT(seen, 2000);
 }
 

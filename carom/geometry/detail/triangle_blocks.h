@@ -1,4 +1,4 @@
-// Triangles of a surface around a place, four side by side, and the half-spaces that they leave to a capsule: what a
+// Triangles of a surface around a place, side by side, and the half-spaces that they leave to a capsule: what a
 // character asks again and again of the same few dozen triangles.
 #pragma once
 
@@ -7,6 +7,7 @@
 
 #include "carom/geometry/bounds.h"
 #include "carom/geometry/detail/surface.h"
+#include "carom/geometry/detail/triangle_planes.h"
 
 namespace carom::geometry::detail {
 
@@ -19,15 +20,10 @@ struct NearbyLine {
   Bounds3f box{};    ///< nor does a triangle that does not meet this
 };
 
-/// What a nearly coplanar patch of triangles leaves to it.
-struct SurfacePlane {
-  Vec3f normal{};        ///< out of the surface
-  float separation = 0;  ///< m, along the way to the nearest point
-  Vec3f point{};         ///< of the surface
-};
-
 class TriangleBlocks {
  public:
+  /// `lanes` as in math::instruction_set_of_width; 0: the widest of this machine. Results are the same in bits.
+  explicit TriangleBlocks(int lanes = 0);
   void clear() { blocks_.clear(), count_ = 0; }
   /// Adds the triangles of a mesh or height field that meet `box`; corners are kept as seen from its middle.
   void gather(const Shape3& surface, const Bounds3f& box);
@@ -36,15 +32,12 @@ class TriangleBlocks {
   int planes(const NearbyLine& line, std::span<SurfacePlane> out) const;
 
  private:
-  struct Block {
-    float corner[3][3][4];
-    float normal[3][4];
-    std::int32_t edges[4];
-  };
-  std::vector<Block> blocks_;
+  std::vector<TriangleBlock> blocks_;
   Vec3f origin_{};
   int count_ = 0;
   bool solid_ = false;
+  FindTrianglePlanes find_planes_;
+  SetTriangleNormals set_normals_;
 };
 
 }  // namespace carom::geometry::detail

@@ -62,30 +62,26 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
   constexpr float most = 1;  // m that anything comes nearer
   const auto asked = geometry::grow(all.whole, most);
   const typename D::Bounds bounds{position_ + Position(asked.low), position_ + Position(asked.high)};
-  if (!world.overlap_bounds(bounds, all.found, {definition_.filter.category, definition_.filter.mask}).ok()) return;
-  for (const ShapeId shape : all.found) {
-    if (shape == shape_) continue;
-    auto geometry = world.shape_geometry(shape);
-    const auto definition = world.shape_definition(shape);
-    const auto body = world.body_of(shape);
-    if (!geometry.ok() || !definition.ok() || !body.ok()) continue;
-    const Filter& other = definition.value().filter;
-    if (other.group != 0 && other.group == definition_.filter.group && other.group < 0) continue;
-    const auto state = world.state(body.value());
-    if (!state.ok()) continue;
-    detail::Neighbour<D> n;
-    n.id = shape, n.body_id = body.value(), n.body = state.value();
-    n.pose = n.body.pose * definition.value().local;
-    if (n.body.type != BodyType::fixed && n.body.awake) {
-      const float arm =
-          float(math::length(position_ - n.body.center_of_mass)) + definition_.half_length + definition_.radius;
-      const float speed = math::length(n.body.linear_velocity) + spin_of(n.body.angular_velocity) * arm;
-      n.approach = min(speed * dt_, most);
+  const QueryFilter filter{definition_.filter.category, definition_.filter.mask, body_};
+  if (!world.overlap_bounds(bounds, all.found, filter).ok()) return;
+  const auto& store = *world.self_;
+  for (const ShapeId id : all.found) {
+    const auto& shape = store.shapes.at(std::int32_t(store.shapes.slots.slot(id)));
+    const std::size_t body = std::size_t(shape.body);
+    const int group = store.shapes.terms_of(shape).filter.group;
+    if (group < 0 && group == definition_.filter.group) continue;
+    float approach = 0;
+    if (const auto& record = store.bodies.record[body]; record.type != BodyType::fixed && record.awake_index >= 0) {
+      const float arm = float(math::length(position_ - store.bodies.motion[body].center)) + definition_.half_length +
+                        definition_.radius;
+      const auto& moves = store.bodies.solver[body];
+      approach = min((math::length(moves.linear_velocity) + spin_of(moves.angular_velocity) * arm) * dt_, most);
     }
-    n.box = geometry::bounds(geometry.value(), relative(typename D::Pose{position_, {}}, n.pose));
-    if (!geometry::overlaps(geometry::grow(n.box, n.approach), all.whole)) continue;
-    n.geometry = std::move(geometry).value();
-    all.near.push_back(std::move(n));
+    const typename D::Pose pose = detail::shape_pose(store, shape);
+    const auto seen = geometry::bounds(shape.geometry, relative(typename D::Pose{position_, {}}, pose));
+    if (!geometry::overlaps(geometry::grow(seen, approach), all.whole)) continue;
+    const BodyId owner = store.bodies.slots.handle_at(shape.body);
+    all.near.push_back({id, owner, shape.geometry, pose, world.state(owner).value(), approach, seen});
   }
   if (all.triangles.size() < all.near.size()) all.triangles.resize(all.near.size());
   for (detail::GatheredTriangles& t : all.triangles) t.known = false;

@@ -1,0 +1,10 @@
+// The planes of triangles for 8 lanes.
+#include "carom/geometry/detail/triangle_planes.h"
+#include "carom/geometry/triangle_mesh.h"
+#include "carom/math/simd.h"
+
+#define CAROM_PLANES_NAMESPACE triangle_planes_avx2
+#define CAROM_PLANES_WIDTH 8
+#include "carom/geometry/detail/triangle_planes.inl"
+#undef CAROM_PLANES_NAMESPACE
+#undef CAROM_PLANES_WIDTH
