@@ -54,9 +54,28 @@ void DynamicTree<V>::remove(int leaf) {
 template <class V>
 void DynamicTree<V>::update(int leaf, const Box& box) {
   ++version_;
-  unlink(leaf);
-  nodes_[std::size_t(leaf)].box = within_range(box);
-  link(leaf);
+  Node* nodes = nodes_.data();
+  const int above = nodes[leaf].parent;
+  const Box to = within_range(box);
+  // What goes no farther than its part of the tree reaches only widens the node above it.
+  const int part = above >= 0 ? nodes[above].parent : -1;
+  const bool stays = part >= 0 && contains(nodes[part].box, to);
+  if (!stays) unlink(leaf);
+  nodes[leaf].box = to;
+  if (stays)
+    fit_from(above);
+  else
+    link(leaf);
+}
+
+template <class V>
+void DynamicTree<V>::fit_from(int index) {
+  Node* nodes = nodes_.data();
+  for (; index >= 0; index = nodes[index].parent) {
+    const Box box = merge(nodes[nodes[index].child_a].box, nodes[nodes[index].child_b].box);
+    if (box == nodes[index].box) break;
+    nodes[index].box = box;
+  }
 }
 
 template <class V>
@@ -254,11 +273,7 @@ void DynamicTree<V>::unlink(int leaf) {
   else
     nodes[above].child_b = sibling;
   give_node(joint);
-  for (int i = above; i >= 0; i = nodes[i].parent) {
-    const Box box = merge(nodes[nodes[i].child_a].box, nodes[nodes[i].child_b].box);
-    if (box == nodes[i].box) break;
-    nodes[i].box = box;
-  }
+  fit_from(above);
 }
 
 template <class V>

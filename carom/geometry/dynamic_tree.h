@@ -26,7 +26,7 @@ class CAROM_API DynamicTree {
   /// Returns the leaf. `item` is the caller's own number.
   int insert(const Box& box, std::uint32_t item);
   void remove(int leaf);
-  /// Gives the leaf a new box, and a new place in the tree.
+  /// Gives the leaf a new box, and a new place in the tree where it leaves its part of that.
   void update(int leaf, const Box& box);
   /// Gives the leaf a new box but leaves it in its place, widening what is above: cheaper than `update`, for many
   /// movers in a step. What has been widened is built anew by `rebuild_enlarged`.
@@ -250,6 +250,7 @@ class CAROM_API DynamicTree {
   void give_node(int node);
   void link(int leaf);
   void unlink(int leaf);
+  void fit_from(int index);  ///< fits boxes to what they hold, from here up as far as that changes them
   int subtrees(std::span<std::int32_t> roots, int& levels) const;
   double refit_below(int top, int levels);
   void refit_and_rotate(int node);
