@@ -69,9 +69,9 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
     const Mask flat[3] = {has(edge0_flat), has(edge1_flat), has(edge2_flat)};
     const F widen = select(flat[0] | flat[1] | flat[2], F::splat(0.0175f * r), zero);
 
-    // The part of the line over the triangle, and the edges that its foot (the end near the plane) is beyond.
+    // The part of the line over the triangle, and whether its foot (the end near the plane) is beyond a sharp edge.
     F enter = zero, leave = one, size[3];
-    Mask beside = Mask::none(), beyond = Mask::none(), beyond_sharp = Mask::none();
+    Mask beside = Mask::none(), beyond_sharp = Mask::none();
     Wide3 outward[3];
     const Mask far_end = lean < zero;  // the foot is the line's second end
     for (int e = 0; e < 3; ++e) {
@@ -88,7 +88,6 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
       enter = select(out_from & (!out_to), max(enter, from / (from - in_to)), enter);
       leave = select(out_to & (!out_from), min(leave, in_from / (in_from - to)), leave);
       const Mask past = select(far_end, to, from) > zero;
-      beyond = beyond | past;
       beyond_sharp = beyond_sharp | (past & (!flat[e]));
     }
     if (none(live)) continue;
