@@ -12,7 +12,7 @@ struct ContactBeginEvent {
 struct ContactEndEvent {
   ShapeId shape_a, shape_b;  ///< may no longer exist
 };
-/// An impact above the world's hit threshold, with the impulse that the solver really applied.
+/// An impact faster than WorldDef::restitution_threshold, with the impulse that the solver really applied.
 template <class D>
 struct ContactHitEvent {
   ShapeId shape_a, shape_b;

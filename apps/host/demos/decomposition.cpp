@@ -72,11 +72,11 @@ class Decomposition final : public Repeatable<Decomposition, Demo3> {
     const auto bowl_parts = stage.keep(geometry::decompose_convex(bowl.positions, bowl.indices, options));
     rigid::BodyDef<Dim3> body;
     body.name = "bowl";
-    body.position = {-0.2, 0.85, 1.8};
+    body.position = {-1.9, 0.85, 2.6};  // out of the rings' way
     add(stage, body, bowl_parts, 3);
     rigid::BodyDef<Dim3> ball;
     ball.name = "ball";
-    ball.position = {-0.2, 1.4, 1.8};
+    ball.position = {-1.9, 1.4, 2.6};
     ball_ = stage.add(ball, geometry::Sphere{0.15f}, {.material = {.user_id = 0xff000000u | red}});
   }
 

@@ -321,6 +321,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
     core::grow_a_little(store.manifolds);
     store.manifolds.emplace_back();
     store.free_manifolds.reserve(store.manifolds.capacity());
+    world.scratch.new_manifolds.reserve(store.manifolds.capacity());
   }
   ManifoldRecord<D>& m = store.manifold(index);
   ContactRecord<D>& c = store.at(contact);
@@ -335,7 +336,24 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
                                      world.bodies.solver[std::size_t(c.body[0])].linear_velocity;
   for (const std::int32_t body : c.body)
     forget_load<D>(world.bodies.motion[std::size_t(body)], meeting, rest_speed(world.definition, world.last_dt));
-  if (c.awake_index != none) enter_graph(world, index);
+  world.scratch.new_manifolds.push_back(index);
+}
+
+// Colours go by who comes first: by the shapes and their parts, so that what else is in the world, and where in memory
+// these manifolds came to lie, does not matter.
+template <class D>
+void enter_graph_in_order(WorldImplementation<D>& world) {
+  ContactStore<D>& store = world.contacts;
+  std::vector<std::int32_t>& fresh = world.scratch.new_manifolds;
+  const auto key = [&](std::int32_t manifold) {
+    const ManifoldRecord<D>& m = store.manifold(manifold);
+    const ContactRecord<D>& c = store.at(m.contact);
+    return std::tuple(c.shape[0], c.shape[1], m.manifold.child);
+  };
+  std::sort(fresh.begin(), fresh.end(), [&](std::int32_t l, std::int32_t r) { return key(l) < key(r); });
+  for (const std::int32_t manifold : fresh)
+    if (store.at(store.manifold(manifold).contact).awake_index != none) enter_graph(world, manifold);
+  fresh.clear();
 }
 
 template <class D>
@@ -390,6 +408,7 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   template void set_manifold_material<D>(WorldImplementation<D>&, std::int32_t, float, float, float);        \
   template void mix_materials<D>(WorldImplementation<D>&, std::int32_t);                                     \
   template void add_manifold<D>(WorldImplementation<D>&, std::int32_t, const D::Manifold&, std::uint32_t);   \
+  template void enter_graph_in_order<D>(WorldImplementation<D>&);                                            \
   template void remove_manifold<D>(WorldImplementation<D>&, std::int32_t);                                   \
   template void activate_contact<D>(WorldImplementation<D>&, std::int32_t);                                  \
   template void deactivate_contact<D>(WorldImplementation<D>&, std::int32_t);

@@ -45,10 +45,12 @@ void destroy_contact(WorldImplementation<D>& world, std::int32_t contact, bool w
 template <class D>
 void destroy_contacts_of_shape(WorldImplementation<D>& world, std::int32_t shape);
 
-/// Takes over a found manifold; it enters the graph.
+/// Takes over a found manifold; it enters the graph with enter_graph_in_order, once all are found.
 template <class D>
 void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typename D::Manifold& manifold,
                   std::uint32_t child);
+template <class D>
+void enter_graph_in_order(WorldImplementation<D>& world);
 template <class D>
 void remove_manifold(WorldImplementation<D>& world, std::int32_t manifold);
 /// What two material ids have been given instead of the mixture, or null.

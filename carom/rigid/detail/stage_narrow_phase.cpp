@@ -446,6 +446,7 @@ void update_contacts(WorldImplementation<D>& world) {
     for (std::size_t i = block; i < min(block + 8, count); ++i)
       if (scratch.contact_changes[i] != 0) apply_change(world, i, next_found);
   }
+  enter_graph_in_order(world);
   for (std::size_t k = 0; k < scratch.doomed_contacts.size(); ++k) {
     if (k + 6 < scratch.doomed_contacts.size()) {
       const ContactRecord<D>& soon = world.contacts.at(scratch.doomed_contacts[k + 6]);

@@ -123,9 +123,9 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
          old_bounds, moved_place, moved, sweep, outgrown, outgrown_places, new_bounds, found_pairs, met_sensors, pairs,
          found_bullet_pairs, found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings, first_bullet_pair,
          swept, fast, broken, body_changes, contact_changes, found_manifolds, manifolds, island_parent, island_list,
-         island_bodies, island_ends, doomed_contacts, new_touches, island_restless, island_substeps, whole_awake,
-         whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end, contact_hit, sensor_begin,
-         sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
+         island_bodies, island_ends, doomed_contacts, new_touches, new_manifolds, island_restless, island_substeps,
+         whole_awake, whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end, contact_hit,
+         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
   (void)blocks;
   visit.scratch(loads);
   visit.scratch(hits);
@@ -167,6 +167,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(island_ends);
   visit.scratch(doomed_contacts);
   visit.scratch(new_touches);
+  visit.scratch(new_manifolds);
   visit.scratch(island_restless);
   visit.scratch(island_substeps);
   visit.scratch(whole_awake);

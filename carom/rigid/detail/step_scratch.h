@@ -153,7 +153,8 @@ struct StepScratch {
   std::vector<std::uint8_t> contact_changes;                   ///< by place in ContactStore::awake
   std::vector<std::vector<FoundManifold<D>>> found_manifolds;  ///< by worker
   std::vector<FoundManifold<D>> manifolds;
-  std::vector<std::int32_t> island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches;
+  std::vector<std::int32_t> island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches,
+      new_manifolds;
   std::vector<std::uint8_t> island_restless;
   // Of islands with substeps of their own (stage_substeps.cpp):
   std::vector<std::uint8_t> island_substeps;  ///< by place in BodyStore::awake; 0: kinematic

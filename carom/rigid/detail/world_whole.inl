@@ -122,6 +122,7 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   }
   s.doomed_contacts.reserve(contacts);
   s.new_touches.reserve(contacts);
+  s.new_manifolds.reserve(manifolds);
   s.contact_begin.reserve(contacts);
   s.contact_end.reserve(contacts);
   s.pending_contact_end.reserve(contacts);
