@@ -21,8 +21,10 @@ struct Wave {
 };
 
 enum class Burst {
-  ground,    ///< a hemisphere on the ground: Kingery and Bulmash as fitted by Swisdak
-  free_air,  ///< a sphere far from any surface: the ground's wave of a charge smaller by 1.8, the reflection factor
+  ground,  ///< a hemisphere on the ground: Kingery and Bulmash as fitted by Swisdak
+  /// A sphere far from any surface: the peak by Kinney and Graham, arrival and duration of the ground's wave of a
+  /// charge smaller by 1.8, the reflection factor, and its other pressures and impulses in proportion to the peak.
+  free_air,
 };
 
 /// The least and the most scaled distance Z = R/W^{1/3} (m/kg^{1/3}) of the fits. Nearer and farther ones are refused.

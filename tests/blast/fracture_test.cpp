@@ -318,6 +318,58 @@ TEST(FractureMesh, HullsStandApartAndBondsCoverTheCuts) {
   }
 }
 
+// The surface keeps the picture that it had: linear in a triangle, so that a point of it has the coordinates of the
+// triangle it came from. Cuts get coordinates in metres of their plane, the same from both sides.
+TEST(FractureMesh, TextureCoordinates) {
+  const geometry::Triangles mesh = geometry::make_box_mesh({0.5, 0.75, 1});
+  const std::vector<Vec3d> vertices(mesh.positions.begin(), mesh.positions.end());
+  const auto picture = [](Vec3d p) {
+    return math::Vec2f{float(0.3 * p.x - 0.5 * p.y + p.z), float(p.x + 0.2 * p.y + 0.4)};
+  };
+  std::vector<math::Vec2f> corners;
+  for (const std::uint32_t i : mesh.indices) corners.push_back(picture(vertices[i]));
+  const ConvexCell box = container_of(vertices);
+  const Pattern pattern = voronoi_pattern(box, uniform_sites(box, 25, 7)).value();
+  constexpr double scale = 3;
+  const auto f = fracture_mesh(vertices, mesh.indices, pattern, {.hulls = false, .texture_scale = scale}, corners);
+  ASSERT_TRUE(f) << f.error().message;
+  struct CutCorner {
+    Vec3d place;
+    math::Vec2f texture;
+    std::uint32_t cell, beyond;
+  };
+  std::vector<CutCorner> cuts;
+  int surface = 0;
+  for (const Piece& p : f->pieces) {
+    ASSERT_EQ(p.texture.size(), p.triangles.size());
+    for (std::size_t t = 0; t < p.sources.size(); ++t) {
+      const auto place = [&](std::size_t k) { return p.vertices[p.triangles[3 * t + k]]; };
+      for (std::size_t k = 0; k < 3; ++k) {
+        const math::Vec2f here = p.texture[3 * t + k], after = p.texture[3 * t + (k + 1) % 3];
+        if (p.sources[t] >= 0) {
+          const math::Vec2f expected = picture(place(k));
+          EXPECT_NEAR(here.x, expected.x, 1e-5f);
+          EXPECT_NEAR(here.y, expected.y, 1e-5f);
+          ++surface;
+        } else {
+          EXPECT_NEAR(length(after - here), scale * length(place((k + 1) % 3) - place(k)), 1e-5);
+          cuts.push_back({place(k), here, p.cell, std::uint32_t(-1 - p.sources[t])});
+        }
+      }
+    }
+  }
+  EXPECT_GT(surface, 100);
+  int both = 0;
+  for (const CutCorner& a : cuts)
+    for (const CutCorner& b : cuts) {
+      if (a.cell != b.beyond || b.cell != a.beyond || length(a.place - b.place) > 1e-9) continue;
+      EXPECT_NEAR(a.texture.x, b.texture.x, 1e-5f);
+      EXPECT_NEAR(a.texture.y, b.texture.y, 1e-5f);
+      ++both;
+    }
+  EXPECT_GT(both, 100);
+}
+
 TEST(FractureMesh, BadMeshesAreRefused) {
   geometry::Triangles box = geometry::make_box_mesh({1, 1, 1});
   std::vector<Vec3d> vertices(box.positions.begin(), box.positions.end());

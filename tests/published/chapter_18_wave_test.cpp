@@ -60,7 +60,26 @@ TEST(Chapter18Wave, ScalingAndAnExample) {
     const Wave at = blast_wave(1, z).value();
     EXPECT_NEAR(shock_speed(at.pressure) / at.front_speed, 1, .012) << z;
   }
-  EXPECT_LT(blast_wave(1, 3, Burst::free_air)->pressure, blast_wave(1, 3)->pressure);
+}
+
+// Kinney & Graham 1985, 1 kg of TNT far from any surface: Z 1, 2, 10 (shared reference "ballistics", 2.9), and
+// cube-root scaling. The shape of the wave stays that of the ground's: b hangs on i / (P t_d).
+TEST(Chapter18Wave, FreeAirBurst) {
+  const struct {
+    double z, kilopascals;
+  } rows[] = {{1, 1008.8}, {2, 207.9}, {10, 9.985}};
+  for (const auto& row : rows)
+    for (const double charge : {1.0, 27.0, 1000.0}) {
+      const double scale = math::cbrt(charge);
+      const Wave w = blast_wave(charge, row.z * scale, Burst::free_air).value();
+      EXPECT_NEAR(w.pressure / 1e3, row.kilopascals, 5e-4 * row.kilopascals) << row.z;
+      const Wave ground = blast_wave(charge / 1.8, row.z * scale).value();
+      EXPECT_NEAR(w.reflected_pressure / w.pressure, ground.reflected_pressure / ground.pressure, 1e-9);
+      EXPECT_NEAR(w.decay, ground.decay, 1e-9 * ground.decay + 1e-9) << row.z;
+      EXPECT_EQ(w.arrival, ground.arrival);
+      EXPECT_NEAR(shock_speed(w.pressure) / w.front_speed, 1, .012) << row.z;
+      EXPECT_LT(w.pressure, blast_wave(charge, row.z * scale)->pressure);
+    }
 }
 
 // The fits themselves, exp(Σ aᵢ (ln Z)ⁱ), over their whole range and not only where the table has rows.
