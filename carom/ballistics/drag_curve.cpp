@@ -1,5 +1,7 @@
 #include "carom/ballistics/drag_curve.h"
 
+#include <utility>
+
 #include "carom/core/string.h"
 #include "carom/math/decimal.h"
 
@@ -100,22 +102,27 @@ DragCurve DragCurve::scaled(double factor) const {
   return curve;
 }
 
-core::Result<DragCurve> banded_drag(DragFunction function, std::span<const BallisticCoefficientBand> bands,
+core::Result<DragCurve> banded_drag(std::span<const DragPoint> table, std::span<const BallisticCoefficientBand> bands,
                                     double reference) {
   if (!(reference > 0) || !math::is_finite(reference))
     return core::Error{core::refused("reference ballistic coefficient", reference, "a finite number > 0")};
-  std::vector<DragPoint> factors;
-  for (const BallisticCoefficientBand& band : bands) {
-    if (!(band.coefficient > 0) || !math::is_finite(band.coefficient))
-      return core::Error{core::text("band ", factors.size() + 1, ": ",
-                                    core::refused("ballistic coefficient", band.coefficient, "a finite number > 0"))};
-    factors.push_back({band.mach, reference / band.coefficient});
+  if (bands.empty()) return core::Error{"expected at least one band"};
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const auto in_band = [&](const std::string& what) { return core::Error{core::text("band ", i + 1, ": ", what)}; };
+    if (!(bands[i].coefficient > 0) || !math::is_finite(bands[i].coefficient))
+      return in_band(core::refused("ballistic coefficient", bands[i].coefficient, "a finite number > 0"));
+    if (!(bands[i].mach >= 0) || !math::is_finite(bands[i].mach))
+      return in_band(core::refused("Mach number", bands[i].mach, "a finite number >= 0"));
+    if (i > 0 && !(bands[i].mach > bands[i - 1].mach))
+      return in_band(
+          core::refused("Mach number", bands[i].mach, core::text("more than the ", bands[i - 1].mach, " before")));
   }
-  const core::Result<DragCurve> factor = DragCurve::from_points(factors);
-  if (!factor) return factor.error();
-  std::vector<DragPoint> points;
-  for (const DragPoint& point : drag_table(function))
-    points.push_back({point.mach, point.coefficient * factor.value()(point.mach)});
+  std::vector<DragPoint> points(table.begin(), table.end());
+  std::size_t band = 0;
+  for (DragPoint& point : points) {
+    while (band + 1 < bands.size() && point.mach >= bands[band + 1].mach) ++band;
+    point.coefficient *= reference / bands[band].coefficient;
+  }
   return DragCurve::from_points(points);
 }
 
@@ -123,6 +130,7 @@ core::Result<DragCurve> read_drag_table(std::string_view text, std::string_view 
   std::vector<DragPoint> points;
   const auto separates = [](char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; };
   int number = 0;
+  bool drag_first = false;
   for (bool headed = false; !text.empty();) {
     ++number;
     const std::size_t end = math::min(text.find('\n'), text.size());
@@ -145,12 +153,14 @@ core::Result<DragCurve> read_drag_table(std::string_view text, std::string_view 
     }
     if (read == 0 && points.empty() && !headed) {
       headed = true;
+      drag_first = line.starts_with("CFM");
       continue;
     }
     if (read < 2 || !line.empty())
       return core::Error{core::text(name, ":", number, ": found ",
                                     line.empty() ? "the end of the line" : core::quoted(line),
                                     ", expected a Mach number and a drag coefficient")};
+    if (drag_first) std::swap(values[0], values[1]);
     points.push_back({values[0], values[1]});
     if (points.size() > 1 && !(values[0] > points[points.size() - 2].mach))
       return core::Error{

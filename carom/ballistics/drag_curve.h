@@ -98,13 +98,15 @@ struct BallisticCoefficientBand {
   double mach = 0;
   double coefficient = 1;  ///< lb/in²
 };
-/// Several coefficients for ranges of speed as one curve, for use with the coefficient `reference`: the function's drag
-/// times reference/coefficient, linear in between the bands' Mach numbers. Bands by rising Mach number.
-CAROM_API core::Result<DragCurve> banded_drag(DragFunction function, std::span<const BallisticCoefficientBand> bands,
-                                              double reference);
+/// Several coefficients for ranges of speed as one curve, for use with the coefficient `reference`: the drag of the
+/// table's nodes times reference/coefficient, each band's from its Mach number up to the next one's, the first one's
+/// below it too; smooth over the node on either side of a change. Bands by rising Mach number.
+CAROM_API core::Result<DragCurve> banded_drag(std::span<const DragPoint> table,
+                                              std::span<const BallisticCoefficientBand> bands, double reference);
 
 /// Two columns, Mach number and C_D, separated by spaces, tabs, commas or semicolons; a heading line, empty lines and
-/// comments after # are skipped. Errors name `name`, the line, what was found and what was expected.
+/// comments after # are skipped. Where the heading begins with "CFM", as in the .drg files of makers' radar data, C_D
+/// comes first. Errors name `name`, the line, what was found and what was expected.
 CAROM_API core::Result<DragCurve> read_drag_table(std::string_view text, std::string_view name,
                                                   Interpolation interpolation = Interpolation::smooth);
 

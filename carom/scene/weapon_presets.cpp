@@ -1,5 +1,6 @@
 #include "carom/scene/weapon_presets.h"
 
+#include "carom/ballistics/drag_data.h"
 #include "carom/core/string.h"
 #include "carom/scene/detail/preset_values.h"
 
@@ -29,8 +30,8 @@ core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std
                                          {"speed_deviation", "m/s"},
                                          {"powder_mass", "kg"},
                                          {"gas_speed", "m/s"}};
-  static constexpr std::string_view texts[] = {"drag_function"};
-  const auto values = detail::read_preset(text, file, names, texts);
+  static constexpr std::string_view texts[] = {"drag_function"}, lists[] = {"drag_table", "ballistic_coefficients"};
+  const auto values = detail::read_preset(text, file, names, texts, lists);
   if (!values) return values.error();
   const auto error = [&](std::string_view where, const std::string& message) {
     return detail::preset_error(file, *values->root.find("values"), "values." + std::string(where), message);
@@ -45,33 +46,28 @@ core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std
   take(*values, "speed_deviation", a.speed_deviation);
   take(*values, "powder_mass", a.powder_mass);
   take(*values, "gas_speed", a.gas_speed);
-  if (values->has("drag_function") == values->has("drag_coefficient"))
-    return error("drag_function", "expected either a drag_function or a drag_coefficient");
-  const double coefficient = values->number("drag_coefficient", 0), form = values->number("form_factor", 1);
-  if (!(coefficient >= 0) || !math::is_finite(coefficient))
-    return error("drag_coefficient", core::refused("it", coefficient, "a finite number >= 0"));
-  if (!(form > 0) || !math::is_finite(form))
-    return error("form_factor", core::refused("it", form, "a finite number > 0"));
-  ballistics::DragCurve curve(coefficient);
+  ballistics::DragData data;
   if (values->has("drag_function")) {
-    const auto function = ballistics::drag_function_from_name(values->text("drag_function"));
-    if (!function)
+    data.function = ballistics::drag_function_from_name(values->text("drag_function"));
+    if (!data.function)
       return error("drag_function", core::text("found ", core::quoted(values->text("drag_function")),
                                                ", expected g1, g2, g5, g6, g7, g8, gi, gs or ra4"));
-    curve = ballistics::DragCurve(*function);
   }
-  if (values->has("ballistic_coefficient")) {
-    const double bc = values->number("ballistic_coefficient", 1);
-    if (!(bc > 0) || !math::is_finite(bc))
-      return error("ballistic_coefficient", core::refused("it", bc, "a finite number of lb/in² > 0"));
-    if (!values->has("drag_function")) return error("ballistic_coefficient", "expected a drag_function beside it");
-    a.projectile = ballistics::projectile_from_coefficient(ballistics::DragFunction::g1, bc);
-    a.projectile.drag = curve;
-    a.projectile.area_per_mass *= form;
-  } else {
-    if (!(a.mass > 0 && a.diameter > 0)) return error("mass", "expected a mass and a diameter above zero");
-    a.projectile = ballistics::projectile_from_size(curve, a.mass, a.diameter, form);
-  }
+  if (values->has("drag_coefficient")) data.coefficient = values->number("drag_coefficient", 0);
+  if (values->has("ballistic_coefficient")) data.ballistic_coefficient = values->number("ballistic_coefficient", 1);
+  take(*values, "form_factor", data.form_factor);
+  const auto pairs = [&](std::string_view name, auto& out) {
+    const std::span<const double> numbers = values->list(name);
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) out.push_back({numbers[i], numbers[i + 1]});
+    return numbers.size() % 2 == 0;
+  };
+  if (!pairs("drag_table", data.table)) return error("drag_table", "expected pairs, one after another");
+  if (!pairs("ballistic_coefficients", data.bands))
+    return error("ballistic_coefficients", "expected pairs, one after another");
+  auto projectile = ballistics::projectile_from(data, a.mass, a.diameter);
+  if (!projectile)
+    return detail::preset_error(file, *values->root.find("values"), "values", projectile.error().message);
+  a.projectile = std::move(projectile).value();
   if (auto s = ballistics::check(a); !s) return told_of(file, s.error());
   return a;
 }

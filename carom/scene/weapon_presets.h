@@ -17,8 +17,9 @@ namespace carom::scene {
 using PresetResolver = std::function<core::Result<std::string>(std::string_view path)>;
 
 // Errors name file, line, value, what was found and what was expected; `file` is how they call the text.
-/// presets/ammunition/NAME.json: "drag_function" (by name) or "drag_coefficient", "ballistic_coefficient" or none
-/// (then by mass, diameter and form_factor), "mass", "diameter", "length", "muzzle_speed", "speed_deviation",
+/// presets/ammunition/NAME.json: "drag_function" (by name), "drag_coefficient" or "drag_table" (Mach number, C_D, …),
+/// "ballistic_coefficient", "ballistic_coefficients" (Mach number, lb/in², …) or none (then by mass, diameter and
+/// form_factor), "mass", "diameter", "length", "muzzle_speed", "speed_deviation",
 /// "powder_mass", "gas_speed".
 CAROM_API core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std::string_view file);
 /// presets/sight/NAME.json: "height", "click", "spacing", "magnification".

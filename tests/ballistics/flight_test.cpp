@@ -59,6 +59,40 @@ TEST(Flight, BadInputIsNamed) {
   ASSERT_TRUE(good) << good.error().message;
   EXPECT_DOUBLE_EQ(good.value()(1), .5);
   EXPECT_DOUBLE_EQ(good.value()(7), .3);
+  // The same as a maker's file has it.
+  const auto radar =
+      read_drag_table("CFM, a bullet of 19.44 g, 0.01944, 0.00858\r\n0.20\t0.0\r\n0.5\t1.0\r\n0.3\t2.0\r\n", "a.drg");
+  ASSERT_TRUE(radar) << radar.error().message;
+  for (const double mach : {0.0, .7, 1.0, 1.6, 3.0}) EXPECT_EQ(radar.value()(mach), good.value()(mach)) << mach;
+}
+
+// A maker's .308 with one coefficient above Mach 1.8, another down to 1.2, a third below: each band flies as a bullet
+// of that coefficient alone does, and what is slower than all is as the first.
+TEST(DragCurve, SeveralBallisticCoefficients) {
+  const BallisticCoefficientBand bands[] = {{0, .405}, {1.2, .424}, {1.8, .462}};
+  const DragCurve plain(DragFunction::g1);
+  const auto banded = banded_drag(drag_table(DragFunction::g1), bands, .462);
+  ASSERT_TRUE(banded) << banded.error().message;
+  for (const double mach : {.3, .9, 1.0}) EXPECT_NEAR((*banded)(mach), plain(mach) * .462 / .405, 2e-3 * plain(mach));
+  for (const double mach : {1.3, 1.5, 1.7}) EXPECT_NEAR((*banded)(mach), plain(mach) * .462 / .424, 2e-3 * plain(mach));
+  for (const double mach : {1.9, 2.4, 4.0}) EXPECT_NEAR((*banded)(mach), plain(mach), 2e-3 * plain(mach));
+  // While it is faster than 1.8 (612 m/s) it loses speed as with the highest coefficient, later faster than that.
+  const forces::FlightPoint muzzle{{0, 0, 0}, {820, 0, 0}};
+  const Projectile best = projectile_from_coefficient(DragFunction::g1, .462);
+  Projectile several = best;
+  several.drag = *banded;
+  const auto speed = [&](const Projectile& p, double distance) {
+    const auto flight = fly(p, {}, muzzle, {.time = 5});
+    return math::length(flight->at_distance(distance)->velocity);
+  };
+  EXPECT_NEAR(speed(several, 200), speed(best, 200), .1);
+  EXPECT_LT(speed(several, 900), speed(best, 900) - 5);
+  const BallisticCoefficientBand falling[] = {{1.2, .4}, {.8, .42}}, naught[] = {{0, 0}};
+  EXPECT_EQ(banded_drag(drag_table(DragFunction::g1), falling, 1).error().message,
+            "band 2: Mach number is 0.8, expected more than the 1.2 before");
+  EXPECT_EQ(banded_drag(drag_table(DragFunction::g1), naught, 1).error().message,
+            "band 1: ballistic coefficient is 0, expected a finite number > 0");
+  EXPECT_FALSE(banded_drag(drag_table(DragFunction::g1), {}, 1));
 }
 
 TEST(DragCurve, StandardTablesHaveTheirNodes) {

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 
+#include "carom/scene/destruction.h"
+#include "carom/scene/scene.h"
 #include "tests/scene/source_file.h"
 
 namespace weapon_presets_test {
@@ -94,6 +96,85 @@ TEST(WeaponPresets, WallsStopWhatTheyShould) {
   EXPECT_GT(behind(pistol, wall("car_door")), 0);
   EXPECT_EQ(behind(pistol, wall("steel_plate")), 0);
   EXPECT_EQ(behind(rifle, wall("sandbags")), 0);
+}
+
+// Drag by a table of one's own and by several coefficients, in a preset and in a scene.
+TEST(WeaponPresets, DragOfOnesOwn) {
+  const std::string size = R"("mass": "10.89 g", "diameter": "7.82 mm", "muzzle_speed": "808 m/s")";
+  const std::string table = size + R"(, "drag_table": [0, 0.14, 1, 0.43, 2, 0.35])",
+                    bands = size + R"(, "drag_function": "g1", "ballistic_coefficients": [0, 0.405, 1.8, 0.462])";
+  for (const std::string& text : {table, bands}) {
+    const auto round = scene::parse_ammunition("{\"values\": {" + text + "}}", "a.json");
+    ASSERT_TRUE(round) << round.error().message;
+    const auto read =
+        scene::parse_scene(R"({"guns": [{"name": "g", "ammunition": {)" + text + "}}]}", "s", read_source);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    const auto world = read->instantiate();
+    ASSERT_TRUE(world.ok()) << world.error().message;
+    const ballistics::Projectile& here =
+        world->destruction->space.guns[0].thing.definition.weapon.ammunition.projectile;
+    EXPECT_EQ(here.area_per_mass, round->projectile.area_per_mass);
+    for (const double mach : {0.5, 1.0, 1.5, 2.5}) EXPECT_EQ(here.drag(mach), round->projectile.drag(mach)) << mach;
+    if (text == table) EXPECT_DOUBLE_EQ(here.drag(1), 0.43);
+    if (text == bands) EXPECT_GT(here.drag(1) / here.drag(2.5), 1.1 * 0.4805 / 0.5397);
+  }
+  const auto message = [&](const std::string& more) {
+    const auto round = scene::parse_ammunition("{\"values\": {" + size + more + "}}", "a.json");
+    return round.ok() ? std::string() : round.error().message;
+  };
+  EXPECT_EQ(message(R"(, "drag_table": [0, 0.1, 1])"),
+            "a.json:1: values.drag_table: expected pairs, one after another");
+  EXPECT_EQ(message(R"(, "drag_table": [0, 0.1, 0, 0.2])"),
+            "a.json:1: values: drag_table: node 2 of a drag curve: Mach number is 0, expected more than the 0 before");
+  EXPECT_EQ(
+      message(R"(, "drag_coefficient": 0.3, "ballistic_coefficients": [0, 0.4])"),
+      "a.json:1: values: expected drag_function or drag_table beside a ballistic_coefficient, not drag_coefficient");
+  EXPECT_EQ(message(""), "a.json:1: values: expected one of drag_function, drag_coefficient and drag_table");
+}
+
+// A drag table and a motor of one's own lie beside the scene; the project's are named without an extension.
+TEST(WeaponPresets, FilesBesideTheScene) {
+  const std::string radar = "CFM, mine, 0.01089, 0.00782\n0.14 0\n0.43 1\n0.35 2\n";
+  const std::string motor = "M1 18 70 0 0.01 0.02 me\n 0.1 10\n 1 8\n 1.2 0\n";
+  const auto files = [&](std::string_view path) -> core::Result<std::string> {
+    if (path == "ranges/data/mine.drg") return radar;
+    if (path == "ranges/mine.eng") return motor;
+    if (path.starts_with("ranges/")) return core::Error{"no file " + std::string(path)};
+    return read_source(path);
+  };
+  const auto load = [&](const std::string& table, const std::string& engine) -> core::Result<scene::SceneWorld> {
+    const std::string text =
+        R"({"guns": [{"name": "g", "ammunition": {"mass": "10.89 g", "diameter": "7.82 mm", "muzzle_speed": 800, "drag_table": )" +
+        table +
+        R"(}}], "rockets": [{"name": "r", "diameter": "3 cm", "length": "50 cm", "stages": [{"dry_mass": "40 g", "motor": )" +
+        engine + "}]}]}";
+    // What is named beside a scene lies beside the file that names it, here an included one.
+    const auto with_part = [&](std::string_view path) -> core::Result<std::string> {
+      if (path == "ranges/part.json") return text;
+      return files(path);
+    };
+    const auto read = scene::parse_scene(R"({"include": ["ranges/part.json"]})", "s.json", with_part);
+    if (!read) return read.error();
+    return read->instantiate();
+  };
+  const auto own = load(R"("data/mine.drg")", R"("mine.eng")");
+  ASSERT_TRUE(own.ok()) << own.error().message;
+  EXPECT_DOUBLE_EQ(own->destruction->space.guns[0].thing.definition.weapon.ammunition.projectile.drag(1), 0.43);
+  const auto ours = load(R"("308_168_smk")", R"("black_powder")");
+  ASSERT_TRUE(ours.ok()) << ours.error().message;
+  EXPECT_EQ(ours->destruction->space.guns[0].thing.definition.weapon.ammunition.projectile.drag(1.4), 0.41);
+  const auto message = [&](const std::string& table, const std::string& engine) {
+    const auto world = load(table, engine);
+    return world.ok() ? std::string("none") : world.error().message;
+  };
+  const std::string at = "ranges/part.json:1: ";
+  EXPECT_EQ(message(R"("none.drg")", R"("mine.eng")"), at + "drag_table: no file ranges/none.drg");
+  EXPECT_EQ(message(R"("../mine.drg")", R"("mine.eng")"),
+            at +
+                "drag_table: found \"../mine.drg\", expected the name of a file of presets/drag, or of one beside this "
+                "scene, as \"my.txt\"");
+  EXPECT_EQ(message(R"("data/mine.drg")", R"("data/mine.drg")").find(at + "motor: "), 0u) << "no thrust curve";
+  EXPECT_NE(message("5", R"("mine.eng")").find("drag_table"), std::string::npos);
 }
 
 TEST(WeaponPresets, ErrorsNameTheirPlace) {

@@ -1,3 +1,4 @@
+#include "carom/ballistics/drag_data.h"
 #include "carom/scene/detail/destruction.h"
 #include "carom/scene/detail/destruction_fields.h"
 #include "carom/scene/detail/matter.h"
@@ -20,30 +21,29 @@ ballistics::Ammunition read_ammunition(Reader& r, const Object& o) {
   a.speed_deviation = r.number(o, "speed_deviation", a.speed_deviation);
   a.powder_mass = r.number(o, "powder_mass", a.powder_mass);
   a.gas_speed = r.number(o, "gas_speed", a.gas_speed);
-  const double coefficient = r.number(o, "drag_coefficient", 0.3), form = r.number(o, "form_factor", 1);
-  const auto positive = [&](const char* key, double value) {
+  ballistics::DragData data;
+  if (o.has("drag_function")) data.function = ballistics::DragFunction(r.choice(o, "drag_function", 0));
+  if (o.has("drag_coefficient")) data.coefficient = r.number(o, "drag_coefficient", 0);
+  if (o.has("ballistic_coefficient")) data.ballistic_coefficient = r.number(o, "ballistic_coefficient", 1);
+  data.form_factor = r.number(o, "form_factor", 1);
+  const auto pairs = [&](const char* key, auto& out) {
+    const std::vector<double> numbers = r.numbers(o, key);
+    if (numbers.size() % 2 != 0) return r.expected(*o.find(key), o.path_of(key), "pairs, one after another");
+    for (std::size_t i = 0; i < numbers.size(); i += 2) out.push_back({numbers[i], numbers[i + 1]});
+  };
+  pairs("drag_table", data.table);
+  pairs("ballistic_coefficients", data.bands);
+  if (!o.has("drag_function") && !o.has("drag_table") && !o.has("ballistic_coefficient") && data.bands.empty())
+    data.coefficient = data.coefficient.value_or(0.3);
+  for (const auto& [key, value] : {std::pair{"mass", a.mass}, std::pair{"diameter", a.diameter}})
     if (!r.failed() && o.has(key) && !(value > 0 && math::is_finite(value)))
       r.expected(*o.find(key), o.path_of(key), "a number above zero");
-  };
-  if (!r.failed() && !(coefficient >= 0))
-    r.expected(*o.find("drag_coefficient"), o.path_of("drag_coefficient"), "a number of zero or more");
-  positive("form_factor", form);
-  positive("mass", a.mass);
-  positive("diameter", a.diameter);
-  ballistics::DragCurve drag(coefficient);
-  if (o.has("drag_function")) drag = ballistics::DragCurve(ballistics::DragFunction(r.choice(o, "drag_function", 0)));
-  if (o.has("ballistic_coefficient")) {
-    const double bc = r.number(o, "ballistic_coefficient", 1);
-    positive("ballistic_coefficient", bc);
-    if (!r.failed() && !o.has("drag_function"))
-      r.fail(*o.node, o.path, "the key \"drag_function\" is missing beside a ballistic coefficient");
-    if (r.failed()) return a;
-    a.projectile = ballistics::projectile_from_coefficient(ballistics::DragFunction::g1, bc);
-    a.projectile.drag = drag;
-    a.projectile.area_per_mass *= form;
-  } else if (!r.failed()) {
-    a.projectile = ballistics::projectile_from_size(drag, a.mass, a.diameter, form);
-  }
+  if (r.failed()) return a;
+  auto projectile = ballistics::projectile_from(data, a.mass, a.diameter);
+  if (projectile.ok())
+    a.projectile = std::move(projectile).value();
+  else
+    r.fail(*o.node, o.path, projectile.error().message);
   return a;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 
+#include "carom/ballistics/drag_curve.h"
 #include "carom/ballistics/motor.h"
 #include "carom/geometry/mesh_file.h"
 #include "carom/scene/detail/preset_values.h"
@@ -125,7 +126,9 @@ class PartReader {
     if (node.is_object() && list == "penetration")
       if (const core::Status read = read_wall(node); !read) return read;
     if (node.is_object() && list == "stages")
-      if (const core::Status read = read_motor(node); !read) return read;
+      if (const core::Status read = read_motor(node, from); !read) return read;
+    if (node.is_object() && list == "ammunition")
+      if (const core::Status read = read_drag(node, from); !read) return read;
     for (std::size_t i = 0; i < node.children.size(); ++i) {
       const std::string_view within = node.is_object() ? std::string_view(node.keys[i]) : list;
       if (const core::Status merged = merge_presets(node.children[i], from, depth, within); !merged) return merged;
@@ -159,18 +162,51 @@ class PartReader {
     return {};
   }
 
+  /// The text of a file that `key` names: beside the scene where the name has an extension, as "my.eng"; without one
+  /// presets/KIND/NAME.EXTENSION. `path`: what it was asked for by.
+  core::Result<std::string> named_file(const Node& at, const std::string& key, const std::string& from,
+                                       const std::string& kind, const std::string& extension, std::string& path) {
+    const bool beside = at.text.find('.') != std::string::npos;
+    if (beside ? !is_inside(at.text) : !is_preset_name(at.text))
+      return error(at, key,
+                   "found " + show(at) + ", expected the name of a file of presets/" + kind +
+                       ", or of one beside this scene, as \"my." + extension + "\"");
+    if (!resolver_) return error(at, key, "found the name of a file, but this scene has no folder to read from");
+    path = beside ? folder_of(from) + at.text : "presets/" + kind + "/" + at.text + "." + extension;
+    core::Result<std::string> text = resolver_(path);
+    if (!text) return error(at, key, text.error().message);
+    if (text->size() > 65536) return error(at, key, path + " has more than 64 kB");
+    return text;
+  }
+
+  /// "drag_table": "308_168_smk" stands for the numbers of presets/drag/308_168_smk.txt.
+  core::Status read_drag(Node& ammunition, const std::string& from) {
+    for (std::size_t i = 0; i < ammunition.keys.size(); ++i) {
+      if (ammunition.keys[i] != "drag_table" || !ammunition.children[i].is_text()) continue;
+      Node& at = ammunition.children[i];
+      std::string path;
+      const auto text = named_file(at, "drag_table", from, "drag", "txt", path);
+      if (!text) return text.error();
+      const auto curve = ballistics::read_drag_table(*text, path);
+      if (!curve) return error(at, "drag_table", curve.error().message);
+      Node numbers = node_at(at, NodeKind::array);
+      for (const ballistics::DragPoint& p : curve->points())
+        for (const double x : {p.mach, p.coefficient}) numbers.children.push_back(number_at(at, x));
+      merged_ += numbers.children.size();
+      at = std::move(numbers);
+    }
+    return {};
+  }
+
   /// "motor": "black_powder" stands for a motor of presets/motor/black_powder.eng.
-  core::Status read_motor(Node& stage) {
+  core::Status read_motor(Node& stage, const std::string& from) {
     for (std::size_t i = 0; i < stage.keys.size(); ++i) {
       if (stage.keys[i] != "motor" || !stage.children[i].is_text()) continue;
       Node& at = stage.children[i];
-      if (!is_preset_name(at.text))
-        return error(at, "motor", "found " + show(at) + ", expected the name of a file of presets/motor");
-      if (!resolver_) return error(at, "motor", "found a preset, but this scene has no folder to read from");
-      const std::string path = "presets/motor/" + at.text + ".eng";
-      const core::Result<std::string> text = resolver_(path);
-      if (!text) return error(at, "motor", text.error().message);
-      const auto motors = ballistics::read_rasp(std::string_view(*text).substr(0, 65536), path);
+      std::string path;
+      const auto text = named_file(at, "motor", from, "motor", "eng", path);
+      if (!text) return text.error();
+      const auto motors = ballistics::read_rasp(*text, path);
       if (!motors) return error(at, "motor", motors.error().message);
       const Node* const wanted = stage.find("designation");
       const auto motor = choose_motor(*motors, path, wanted);

@@ -1,5 +1,7 @@
 #include "carom/scene/detail/preset_values.h"
 
+#include <algorithm>
+
 #include "carom/core/string.h"
 #include "carom/math/units.h"
 
@@ -21,6 +23,12 @@ std::string_view PresetValues::text(std::string_view name, std::string_view othe
   for (const PresetText& t : texts)
     if (t.name == name) return t.value;
   return otherwise;
+}
+
+std::span<const double> PresetValues::list(std::string_view name) const {
+  for (const PresetList& l : lists)
+    if (l.name == name) return l.values;
+  return {};
 }
 
 core::Error preset_error(std::string_view file, const Node& at, std::string_view where, const std::string& message) {
@@ -58,18 +66,31 @@ core::Result<double> read_preset_quantity(const Node& node, std::string_view uni
 
 core::Result<PresetValues> read_preset(std::string_view text, std::string_view file,
                                        std::span<const sports::NumberName> names,
-                                       std::span<const std::string_view> texts) {
+                                       std::span<const std::string_view> texts,
+                                       std::span<const std::string_view> lists) {
   auto tree = read_preset_tree(text, file, false);
   if (!tree) return tree.error();
-  PresetValues out{.root = std::move(*tree), .numbers = {}, .texts = {}};
+  PresetValues out{.root = std::move(*tree), .numbers = {}, .texts = {}, .lists = {}};
   const Node& values = *out.root.find("values");
   for (std::size_t i = 0; i < values.keys.size(); ++i) {
     const std::string& key = values.keys[i];
     const Node& node = values.children[i];
     const std::string where = "values." + key;
-    bool is_text = false;
-    for (const std::string_view name : texts) is_text = is_text || name == key;
-    if (is_text) {
+    const auto among = [&](std::span<const std::string_view> these) {
+      return std::find(these.begin(), these.end(), key) != these.end();
+    };
+    if (among(lists)) {
+      if (!node.is_array())
+        return preset_error(file, node, where, "found " + show(node) + ", expected a list of numbers");
+      out.lists.push_back({key, {}});
+      for (const Node& child : node.children) {
+        const auto number = read_preset_quantity(child, "", file, where);
+        if (!number) return number.error();
+        out.lists.back().values.push_back(*number);
+      }
+      continue;
+    }
+    if (among(texts)) {
       if (!node.is_text()) return preset_error(file, node, where, "found " + show(node) + ", expected a name");
       out.texts.push_back({key, node.text});
       continue;

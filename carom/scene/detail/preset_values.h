@@ -16,22 +16,29 @@ namespace carom::scene::detail {
 struct PresetText {
   std::string name, value;
 };
+struct PresetList {
+  std::string name;
+  std::vector<double> values;
+};
 struct PresetValues {
   Node root;
   std::vector<sports::Number> numbers;  // SI; names live in `root`
   std::vector<PresetText> texts;
+  std::vector<PresetList> lists;
 
   bool has(std::string_view name) const;
   double number(std::string_view name, double otherwise) const;
   std::string_view text(std::string_view name, std::string_view otherwise = "") const;
+  std::span<const double> list(std::string_view name) const;  ///< empty where there is none
 };
 
 /// "file:line: values.mass: found …, expected …"
 core::Error preset_error(std::string_view file, const Node& at, std::string_view where, const std::string& message);
-/// Quantities of these names, and texts of those; others, and what is named twice, are errors.
+/// Quantities of these names, texts of those, and lists of plain numbers; others, and what is named twice, are errors.
 core::Result<PresetValues> read_preset(std::string_view text, std::string_view file,
                                        std::span<const sports::NumberName> names,
-                                       std::span<const std::string_view> texts);
+                                       std::span<const std::string_view> texts,
+                                       std::span<const std::string_view> lists = {});
 /// One quantity, in the unit's dimension (empty: a plain number), or an error.
 core::Result<double> read_preset_quantity(const Node& node, std::string_view unit, std::string_view file,
                                           std::string_view where);
