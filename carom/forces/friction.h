@@ -1,25 +1,10 @@
 // Dry friction and rolling (chapter 3.3).
 #pragma once
 
-#include <array>
-#include <string_view>
-
 #include "carom/export.h"
 #include "carom/math/vec.h"
 
 namespace carom::forces {
-
-/// What a pair of surfaces does: μ_s before it slips, μ_k while it slips.
-struct FrictionPair {
-  std::string_view surfaces;
-  double static_coefficient;
-  double kinetic_coefficient;
-};
-/// Starting values for designers; real surfaces scatter by a third and more.
-inline constexpr std::array<FrictionPair, 4> friction_pairs = {{{"steel on steel, dry", 0.78, 0.42},
-                                                                {"rubber on asphalt, dry", 0.9, 0.7},
-                                                                {"PTFE on steel", 0.04, 0.04},
-                                                                {"steel on ice", 0.1, 0.03}}};
 
 /// The friction force (N) on a body that is pressed with N (N) and otherwise pushed along the surface by `push` (N)
 /// while it moves along the surface with `velocity` (m/s). At rest it holds against the push up to μ_s N.

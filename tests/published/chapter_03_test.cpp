@@ -10,6 +10,7 @@
 #include "carom/forces/drag.h"
 #include "carom/forces/fields.h"
 #include "carom/forces/friction.h"
+#include "carom/forces/friction_table.h"
 #include "carom/forces/pressure.h"
 #include "carom/forces/spring.h"
 #include "carom/forces/wrench.h"
@@ -156,6 +157,23 @@ TEST(Chapter03, InclineSlipsAndRolls) {
   EXPECT_EQ(forces::friction_force(0.5, 0.4, 10, Vec2d{4.9, 0}, Vec2d{}).x, -4.9);
   EXPECT_NEAR(forces::friction_force(0.5, 0.4, 10, Vec2d{5.1, 0}, Vec2d{}).x, -4, 1e-14);
   EXPECT_NEAR(forces::friction_force(0.5, 0.4, 10, Vec2d{5.1, 0}, Vec2d{0, -3}).y, 4, 1e-14);
+}
+
+// 3.3: the designer's pairs of the reference.
+TEST(Chapter03, PairsOfSurfaces) {
+  const struct {
+    const char *first, *second;
+    double at_rest, sliding;
+  } pairs[] = {{"steel", "steel", 0.78, 0.42},
+               {"rubber", "asphalt", 0.9, 0.7},
+               {"PTFE", "steel", 0.04, 0.04},
+               {"steel", "ice", 0.1, 0.03}};
+  for (const auto& pair : pairs) {
+    const auto found = forces::find_friction(pair.first, pair.second);
+    ASSERT_TRUE(found) << pair.first;
+    EXPECT_EQ(found->static_coefficient, pair.at_rest) << pair.first;
+    EXPECT_EQ(found->kinetic_coefficient, pair.sliding) << pair.first;
+  }
 }
 
 // 3.4, 6.2: v_t = 42, g = 9.81, t = 5: v = 34.5905 m/s; terminal speeds of the reference.

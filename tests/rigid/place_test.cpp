@@ -121,8 +121,8 @@ TYPED_TEST(Place, TheSameStackInEverySize) {
     expect_stack_stands<D>(d, size, 5, frame * slower, slower);
   }
 }
-// At 60 Hz and the default settings throughout. Contacts of 30 Hz sag by a fixed length under a load, about .1 mm a
-// cube and level, so that small cubes pile less high: see docs/quality.md.
+// At 60 Hz and the default settings throughout. Soft contacts sag by a fixed length under a load, about .1 mm a cube
+// and level, so that small cubes pile less high.
 TYPED_TEST(Place, StacksOfEverySizeAtSixtyHertz) {
   using D = TypeParam;
   for (const float size : {1.0f, 10.0f, 100.0f}) expect_stack_stands<D>(world_with<D>(), size, 5, frame, 1);

@@ -4,6 +4,7 @@
 #include <dirent.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -411,24 +412,64 @@ TEST(Schema, InTheRepositoryIsTheOneOfTheLoader) {
   EXPECT_TRUE(text.str() == scene_schema()) << "CAROM_REWRITE_SCHEMA=FILE test_scene writes it anew";
 }
 
-TEST(Presets, AllStateTheirSourceAndLoad) {
-  for (const char* name : {"ball/golf", "ball/tennis", "ball/basketball", "ball/soccer", "ball/baseball",
-                           "ball/bowling", "ball/billiard", "ball/cricket"}) {
-    const Result<Scene> scene = parse_scene(
-        std::string("{\"bodies\": [{\"name\": \"b\", \"preset\": \"") + name + "\"}]}", "t", test::read_source);
-    ASSERT_TRUE(scene.ok()) << scene.error().message;
-    EXPECT_GT(read(start(*scene), "b.mass"), 0.04);
+// Two surfaces of the table of friction; "friction" beside it holds.
+TEST(Scene, PairsOfTheTableOfFriction) {
+  const auto scene = [](const std::string& pair) {
+    return parse_scene(R"({"dimension": 2, "world": {"material_pairs": [{"materials": [1, 2], )" + pair + "}]}}", "t",
+                       test::read_source);
+  };
+  for (const auto& [pair, friction] :
+       {std::pair{R"("pair": "rubber on asphalt, wet")", 0.5f}, std::pair{R"("pair": "ice on steel")", 0.03f},
+        std::pair{R"("pair": "ice on steel", "friction": 0.2)", 0.2f}}) {
+    std::vector<rigid::MaterialPair> pairs;
+    start(scene(pair).value()).world2->pair_rules(pairs);
+    ASSERT_EQ(pairs.size(), 1u);
+    EXPECT_EQ(pairs[0].rule.friction, friction) << pair;
   }
-  for (const char* name : {"steel", "aluminium", "wood", "cork", "concrete", "brick", "rubber", "ice", "glass"}) {
-    LoadOptions options;
-    const Result<Scene> scene = parse_scene(
-        std::string("{\"materials\": {\"m\": {\"preset\": \"material/") + name +
-            "\"}}, \"bodies\": [{\"name\": \"b\", \"shape\": {\"type\": \"box\", \"size\": [1, 1, 1], \"material\": "
-            "\"m\"}}]}",
-        "t", test::read_source, options);
-    ASSERT_TRUE(scene.ok()) << scene.error().message;
-    EXPECT_GT(read(start(*scene), "b.mass"), 200);
+  const auto wrong = scene(R"("pair": "rubber on asfalt, wet")");
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.error().message.find("world.material_pairs[0].pair"), std::string::npos) << wrong.error().message;
+  EXPECT_NE(wrong.error().message.find("did you mean \"rubber on asphalt, wet\"?"), std::string::npos)
+      << wrong.error().message;
+}
+
+std::vector<std::filesystem::path> presets_in(const std::string& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(CAROM_SOURCE_DIR "/presets/" + folder))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  return files;
+}
+
+TEST(Presets, AllStateTheirSource) {
+  const std::vector<std::filesystem::path> files = presets_in("");
+  EXPECT_GT(files.size(), 80u);
+  for (const std::filesystem::path& path : files) {
+    std::ifstream file(path);
+    std::stringstream text;
+    text << file.rdbuf();
+    if (path.extension() == ".json") {
+      const std::size_t at = text.str().find("\"source\": \"");
+      EXPECT_TRUE(at != std::string::npos && text.str().find('"', at + 11) > at + 20) << path;
+    } else {  // tables begin with where they are from
+      const std::string first = text.str().substr(0, text.str().find('\n'));
+      EXPECT_TRUE(first.size() > 20 && (first[0] == '#' || first[0] == ';')) << path;
+    }
   }
+}
+
+TEST(Presets, BallsAndMaterialsLoad) {
+  const auto mass = [](const std::string& text) {
+    const Result<Scene> scene = parse_scene(text, "t", test::read_source);
+    EXPECT_TRUE(scene.ok()) << scene.error().message << "\n" << text;
+    return scene.ok() ? read(start(*scene), "b.mass") : 0;
+  };
+  for (const std::filesystem::path& path : presets_in("ball"))
+    EXPECT_GT(mass(R"({"bodies": [{"name": "b", "preset": "ball/)" + path.stem().string() + R"("}]})"), 0.002) << path;
+  for (const std::filesystem::path& path : presets_in("material"))
+    EXPECT_GT(mass(R"({"materials": {"m": {"preset": "material/)" + path.stem().string() +
+                   R"("}}, "bodies": [{"name": "b", "shape": {"type": "box", "size": [1, 1, 1], "material": "m"}}]})"),
+              100)
+        << path;
 }
 
 }  // namespace

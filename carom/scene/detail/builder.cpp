@@ -6,6 +6,7 @@
 #include "carom/scene/detail/environment.h"
 #include "carom/scene/detail/joints.h"
 #include "carom/scene/detail/matter.h"
+#include "carom/scene/detail/world_settings.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -13,59 +14,6 @@ using namespace rigid;
 
 std::unique_ptr<World2>& world_slot(SceneWorld& out, Dim2*) { return out.world2; }
 std::unique_ptr<World3>& world_slot(SceneWorld& out, Dim3*) { return out.world3; }
-
-template <class D>
-bool read_world(Reader& reader, const Object& scene, const InstantiateOptions& options, WorldDef<D>& def) {
-  def.threads = options.threads;
-  def.scheduler = options.scheduler;
-  def.profiler = options.profiler;
-  if (scene.has("gravity")) def.gravity = vector_for(reader.vector(scene, "gravity"), static_cast<D*>(nullptr));
-  def.substeps = reader.integer(scene, "substeps", def.substeps, 1, 64);
-  Object w;
-  if (scene.has("world") && reader.open(*scene.find("world"), "world", *tables().world, w)) {
-    def.restitution_threshold = float(reader.number(w, "restitution_threshold", def.restitution_threshold));
-    def.contact_hertz = float(reader.number(w, "contact_frequency", def.contact_hertz));
-    def.contact_damping_ratio = float(reader.number(w, "contact_damping_ratio", def.contact_damping_ratio));
-    def.contact_push_speed = float(reader.number(w, "contact_push_speed", def.contact_push_speed));
-    def.joint_hertz = float(reader.number(w, "joint_frequency", def.joint_hertz));
-    def.joint_damping_ratio = float(reader.number(w, "joint_damping_ratio", def.joint_damping_ratio));
-    def.joint_solver = JointSolver(reader.choice(w, "joint_solver", int(def.joint_solver)));
-    def.maximum_linear_speed = float(reader.number(w, "maximum_linear_speed", def.maximum_linear_speed));
-    def.sleep_time = float(reader.number(w, "sleep_time", def.sleep_time));
-    def.allow_sleep = reader.flag(w, "allow_sleep", def.allow_sleep);
-    def.continuous = reader.flag(w, "continuous", def.continuous);
-  }
-  return !reader.failed() && reader.accept(World<D>::check(def), *scene.node, "world");
-}
-
-template <class D>
-bool read_material_pairs(Reader& reader, const Object& scene, World<D>& world) {
-  const Node* settings = scene.find("world");
-  const Node* list = settings != nullptr ? settings->find("material_pairs") : nullptr;
-  if (list == nullptr) return true;
-  const std::string path = "world.material_pairs";
-  if (!list->is_array()) return reader.expected(*list, path, "a list"), false;
-  for (std::size_t i = 0; i < list->children.size() && !reader.failed(); ++i) {
-    Object o;
-    if (!reader.open(list->children[i], index_path(path, i), *tables().material_pair, o)) return false;
-    const Node& ids = *o.find("materials");
-    if (!ids.is_array() || ids.children.size() != 2)
-      return reader.expected(ids, o.path_of("materials"), "the user_ids of two materials"), false;
-    std::uint32_t id[2] = {};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double x = reader.value(ids.children[k], index_path(o.path_of("materials"), k), Measure::plain);
-      if (!(x >= 0 && x <= 0xFFFFFFFF && x == double(std::uint32_t(x))))
-        return reader.expected(ids.children[k], index_path(o.path_of("materials"), k), "a whole number"), false;
-      id[k] = std::uint32_t(x);
-    }
-    PairRule rule;
-    rule.friction = float(reader.number(o, "friction", rule.friction));
-    rule.restitution = float(reader.number(o, "restitution", rule.restitution));
-    rule.rolling_resistance = float(reader.number(o, "rolling_resistance", rule.rolling_resistance));
-    if (reader.failed() || !reader.accept(world.set_pair_rule(id[0], id[1], &rule), *o.node, o.path)) return false;
-  }
-  return !reader.failed();
-}
 
 bool read_mass_properties(Reader& reader, const Object& m, geometry::MassProperties2& out) {
   out.mass = reader.number(m, "mass", 0);
