@@ -78,7 +78,7 @@ TYPED_TEST(QualityStacks, MassRatioTable) {
   }
 }
 
-/// The fastest body after ten seconds.
+/// The fastest body.
 template <class D>
 double fastest(const World<D>& world) {
   std::vector<BodyId> bodies;
@@ -117,14 +117,14 @@ TYPED_TEST(QualityStacks, TallPyramidIsStill) {
       .at_most(99.5 - world.state(top).value().pose.position.y, 0.1);
 }
 
-/// Heap (b) of 6.2: 2 000 mixed bodies between walls.
-void add_heap_b(World3& world) {
+/// Heap (b) of 6.2: 2 000 mixed bodies between walls. Its own seed is 12345.
+void add_heap_b(World3& world, std::uint32_t seed) {
   add_body<Dim3>(world, BodyType::fixed, geometry::Box{{200, 1, 200}}, {0, -1, 0}, {0.5f, 0, 1, 0});
   for (const double side : {-1.0, 1.0}) {
     add_body<Dim3>(world, BodyType::fixed, geometry::Box{{1, 12, 8.5f}}, {7.5 * side, 10, 0}, {0.5f, 0, 1, 0});
     add_body<Dim3>(world, BodyType::fixed, geometry::Box{{6.5f, 12, 1}}, {0, 10, 7.5 * side}, {0.5f, 0, 1, 0});
   }
-  std::uint32_t r = 12345;
+  std::uint32_t r = seed;
   const auto u = [&] {
     r = 1664525u * r + 1013904223u;
     return double(r >> 8) / 16777216.0;
@@ -148,14 +148,24 @@ void add_heap_b(World3& world) {
       }
 }
 
-TEST(QualityStacks3, HeapOfTwoThousandIsStill) {
-  World3 world(world_with<Dim3>());
-  add_heap_b(world);
-  run(world, 600);
-  // Of heaps with other seeds most sleep after 7 to 10 s, some later: where one body still jitters in a wedge of
-  // others.
-  Gate(17, "heap of 2 000 after 10 s: fastest body", 3, "m/s").not_yet(1).at_most(fastest(world), 1e-4);
-  Gate(17, "heap of 2 000 after 10 s: still awake", 3).not_yet(2000).at_most(world.counters().awake_bodies, 0);
+// When the last body of a heap comes to rest is chance, which any change of rounding deals anew: so of eight heaps.
+TEST(QualityStacks3, HeapsOfTwoThousandComeToRest) {
+  constexpr int heaps = 8;
+  int late = 0;
+  double worst = 0;
+  for (std::uint32_t i = 0; i < heaps; ++i) {
+    World3 world(world_with<Dim3>());
+    add_heap_b(world, 12345 + i);
+    int steps = 0;
+    while (steps < 1200 && (steps < 60 || world.counters().awake_bodies > 0)) {
+      run(world, 1);
+      ++steps;
+    }
+    late += steps > 600;
+    worst = std::max(worst, fastest(world));
+  }
+  Gate(17, "eight heaps of 2 000 after 20 s: fastest body", 3, "m/s").at_most(worst, 1e-4);
+  Gate(17, "eight heaps of 2 000: not asleep after 10 s", 3).not_yet(5).exactly(late, 0);
 }
 
 TEST(QualityStacks3, RagdollPileIsStill) {
