@@ -20,10 +20,9 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     d.text =
         "What a rocket gains without air and gravity depends on masses and the exhaust speed alone, stage by stage:\n\n"
         "  m dv/dt = F + u dm/dt,   Δv = v_e ln(m₀/m₁)\n\n"
-        "Its motors are read from a file in the RASP format, in which hobby rocketry keeps thrust curves: that of the "
-        "Estes C6 as it was measured for its certificate. Fins pull "
-        "the "
-        "nose toward the air that meets it, with the normal force and centre of pressure of Barrowman's equations, so "
+        "Its motor is given in the RASP format, in which hobby rocketry keeps thrust curves: an Estes C6, whose total "
+        "impulse is that of its certificate. Fins pull the nose toward the air that meets it, with the normal force "
+        "and centre of pressure of Barrowman's equations, so "
         "that it flies into the wind. At the top the parachute opens; then it sinks at √(2 m g/(ρ C_D A)). The rocket "
         "is "
         "drawn thirty times its size.";
@@ -41,8 +40,13 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     };
     d.plots = {
         {"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
-        {"Speed", {"time", "s"}, {"speed", "m/s"}, {{"rocket"}, {"sinks at √(2 m g/ρ C_D A)", Series::Style::points}}},
-        {"Thrust", {"time", "s"}, {"thrust", "N"}, {{"motors"}}},
+        {"Speed",
+         {"time", "s"},
+         {"speed", "m/s"},
+         {{"rocket"},
+          {"sinks at √(2 m g/ρ C_D A)", Series::Style::points},
+          {"without air: v_e ln(m₀/m) − g t", Series::Style::points}}},
+        {"Thrust", {"time", "s"}, {"thrust", "N"}, {{"motors"}, {"certificate of the C6", Series::Style::points}}},
         {"Mass", {"time", "s"}, {"mass", "g"}, {{"rocket"}}}};
     return d;
   }
@@ -99,6 +103,9 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       fall_ = std::move(fall).value();
       dropped_ = separation->time;
     }
+    if (stage.value("fuel") >= 1)
+      for (const ballistics::ThrustPoint& point : rocket_.stages.front().motor.curve.points())
+        stage.sample(2, 1, rocket_.stages.front().ignition_delay + point.time, point.thrust);
     const RocketMoment* apex = flight_->first(RocketEvent::apex);
     const double top = apex != nullptr ? apex->position.y : 50;
     // Where it drifts in half a minute is seen.
@@ -143,6 +150,12 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       stage.sample(1, 0, t, length(point.velocity));
       stage.sample(2, 0, t, thrust(t));
       stage.sample(3, 0, t, 1000 * mass);
+      const ballistics::Motor& first = rocket_.stages.front().motor;
+      const double lit = t - rocket_.stages.front().ignition_delay;
+      if (lit <= first.curve.burn_time()) {  // up to the first burn-out, by Tsiolkovsky
+        const double ideal = first.exhaust_speed() * math::log(flight_->masses.front() / mass) - 9.80665 * lit;
+        if (ideal > 0) stage.sample(1, 2, t, ideal);
+      }
       if (open) stage.sample(1, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
     }
     stage.say(std::string(name) + format(": %.1f s, %.0f m high, %.1f m/s, %.0f g", min(t, end), point.position.y,

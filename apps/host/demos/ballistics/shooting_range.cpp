@@ -71,7 +71,11 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
                 {"right", "mm"},
                 {"up", "mm"},
                 {{"holes", Series::Style::points}, {"range card", Series::Style::points}}},
-               {"Where the gun points", {"time", "s"}, {"angle", "mrad"}, {{"up"}, {"right"}}}};
+               {"Where the gun points", {"time", "s"}, {"angle", "mrad"}, {{"up"}, {"right"}}},
+               {"Drop of the .308, zero 100 yd",
+                {"distance", "yd"},
+                {"height", "in"},
+                {{"as here"}, {"reference solution", Series::Style::points}}}};
     d.inputs = {{"fire", "Fire", {"Space", "Enter"}, true, 1},
                 {"breath", "Hold your breath", {"ShiftLeft", "ShiftRight"}, false, 1},
                 {"right", "Right", {"ArrowRight", "KeyD"}, false, 1},
@@ -153,6 +157,9 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
     stage.set_camera(
         {turned({distance_ - 4.2 * half_, eye_ + 0.25 * half_, 0.5 * half_}), turned({distance_, eye_, 0}), 0.6});
     stage.sample(0, 1, 1000 * card_.x, 1000 * card_.y);
+    for (int i = 0; i <= 40; ++i)
+      if (const auto there = reference_drop(25.0 * i)) stage.sample(2, 0, 25.0 * i, *there);
+    for (const auto& [yards, inches] : drops_) stage.sample(2, 1, yards, inches);
   }
 
   void before_step(Stage3& stage) override {
@@ -208,21 +215,34 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
     out.push_back({"holes in the paper", "", "one each 1.1 s", double(count_ >= 20), 1, 0});
     out.push_back({"height of the strike", "mm", "the range card of the load", 1000 * sum_.y / n, 1000 * card_.y, 1});
     out.push_back({"wind drift", "mm", "the range card: w (T − T_vacuum)", 1000 * sum_.x / n, 1000 * card_.x, 1});
-    const ballistics::Gun smk{.projectile = ballistics::projectile_from_coefficient(ballistics::DragFunction::g7, .218,
-                                                                                    ballistics::Interpolation::linear),
-                              .muzzle_speed = 2650 * foot,
-                              .sight_height = 1.5 * inch};
-    const ballistics::Conditions standard{.air = environment::AirColumn::uniform(1.225)};
-    const auto zero = ballistics::zero_elevation(smk, standard, 100 * yard);
-    const auto flight = ballistics::SightedFlight::fire(smk, standard, {.elevation = zero.ok() ? *zero : 0}, 600);
-    const auto at = flight.ok() ? flight->at(500 * yard) : std::nullopt;
-    out.push_back({"drop of the .308 at 500 yd", "in", "reference integration, zero 100 yd", at ? at->height / inch : 0,
-                   -64.287, 0.05});
+    for (const auto& [yards, inches] : drops_)
+      out.push_back({format("drop of the .308 at %.0f yd", yards), "in", "reference integration, zero 100 yd",
+                     reference_drop(yards).value_or(0), inches, 1e-3 * abs(inches)});
   }
 
  private:
   static constexpr double eye_ = 1.5;
   static constexpr std::uint32_t paper_ = 0xff000001, steel_ = 0xff000002, earth_ = 0xff000003;
+
+  /// in at so many yd: the 168-grain .308 (G7 .218, 2 650 ft/s, sight 1.5 in, zero 100 yd) at 1.225 kg/m³, the drag
+  /// table's nodes joined by lines; an independent integration.
+  static constexpr std::pair<double, double> drops_[] = {
+      {200, -4.333}, {300, -15.565}, {500, -64.287}, {800, -234.960}, {1000, -455.581}};
+  std::optional<double> reference_drop(double yards) {
+    if (!reference_) {
+      const ballistics::Gun smk{.projectile = ballistics::projectile_from_coefficient(
+                                    ballistics::DragFunction::g7, .218, ballistics::Interpolation::linear),
+                                .muzzle_speed = 2650 * foot,
+                                .sight_height = 1.5 * inch};
+      const ballistics::Conditions standard{.air = environment::AirColumn::uniform(1.225)};
+      const auto zero = ballistics::zero_elevation(smk, standard, 100 * yard);
+      auto flight = ballistics::SightedFlight::fire(smk, standard, {.elevation = zero.ok() ? *zero : 0}, 1001 * yard);
+      if (!flight.ok()) return std::nullopt;
+      reference_ = std::move(flight).value();
+    }
+    const auto at = reference_->at(yards * yard);
+    return at ? std::optional<double>(at->height / inch) : std::nullopt;
+  }
 
   /// The shooter's frame (x down range, z to the right) as it lies in the world: the light falls on the paper.
   static constexpr Vec3d turned(Vec3d v) { return {-v.x, v.y, -v.z}; }
@@ -271,6 +291,7 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
   ballistics::SwayMotion sway_{{}, 7};
   ballistics::ProjectileBatch batch_{ballistics::DragCurve(0.3), {}};
   BatchHits<Dim3> hits_;
+  std::optional<ballistics::SightedFlight> reference_;
   math::Random random_{11};
   rigid::BodyId plate_;
   std::vector<Vec3f> holes_;

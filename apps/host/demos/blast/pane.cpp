@@ -33,8 +33,9 @@ class Pane final : public Repeatable<Pane, Demo3> {
         {"speed", "Speed of the ball", "m/s", "m/s", "", 2, 40, 0.5, 12, true},
         {"tension", "Strength", "Pa", "MPa", "of the glass in tension", 5e6, 2e8, 0, 4e7, false},
     };
-    d.plots = {{"Pieces that fell", {"time", "s"}, {"bodies", ""}, {{"bodies"}}},
-               {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}}}};
+    d.plots = {
+        {"Pieces that fell", {"time", "s"}, {"bodies", ""}, {{"bodies"}}},
+        {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}, {"free flight", Series::Style::points}}}};
     d.inputs = {{"shoot", "Throw", {"Space"}, true, 1}};
     return d;
   }
@@ -75,6 +76,7 @@ class Pane final : public Repeatable<Pane, Demo3> {
     body.position = middle_ + Vec3d{0.25 - 0.45 * (shots_ % 3), 0.1 + 0.15 * (shots_ % 2), 2.2};
     body.linear_velocity = {0, 0.9f, -stage.valuef("speed")};
     ball_ = stage.add(body, geometry::Sphere{0.06f}, {.density = 2600, .material = {.user_id = 0xff000000u | red}});
+    thrown_ = stage.world().time();
     ++shots_;
   }
 
@@ -92,8 +94,9 @@ class Pane final : public Repeatable<Pane, Demo3> {
     const double t = stage.world().time();
     if (!stage.world().contains(pane_)) show_changes(stage, glass_pieces_);
     stage.sample(0, 0, t, double(glass_pieces_.cluster_count()));
-    if (shots_ > 0 && stage.world().contains(ball_))
-      stage.sample(1, 0, t, double(length(stage.at(ball_).linear_velocity)));
+    if (shots_ == 0 || !stage.world().contains(ball_)) return;
+    stage.sample(1, 0, t, double(length(stage.at(ball_).linear_velocity)));
+    if (stage.world().contains(pane_)) stage.sample(1, 1, t, hypot(stage.value("speed"), 0.9 - 9.81 * (t - thrown_)));
   }
 
   void expectations(Stage3&, std::vector<Expectation>& out) override {
@@ -169,6 +172,7 @@ class Pane final : public Repeatable<Pane, Demo3> {
   rigid::BodyId pane_, ball_;
   Vec3d half_{}, middle_{0, 1.05, 0};
   int shots_ = 0;
+  double thrown_ = 0;  // s
 };
 
 }  // namespace

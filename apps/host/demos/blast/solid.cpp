@@ -55,7 +55,11 @@ class Solid final : public Repeatable<Solid, Demo3> {
       d.parameters.push_back(
           {"open", "Open", "m", "cm", "before it falls, pieces are moved apart so far", 0, 0.6, 0.01, 0.25, true});
     }
-    d.plots = {{"Bodies", {"time", "s"}, {"bodies", ""}, {{"bodies"}, {"broken bonds"}}}};
+    d.plots = {{"Bodies", {"time", "s"}, {"bodies", ""}, {{"bodies"}, {"broken bonds"}}},
+               {"Height of the middle of all pieces",
+                {"time", "s"},
+                {"height", "m"},
+                {{"pieces"}, {"y₀ − ½ g t²", Series::Style::points}}}};
     return d;
   }
 
@@ -107,6 +111,12 @@ class Solid final : public Repeatable<Solid, Demo3> {
     draw(stage);
     stage.sample(0, 0, stage.world().time(), double(solid_.cluster_count()));
     stage.sample(0, 1, stage.world().time(), double(solid_.broken()));
+    // Whatever breaks, the middle of all falls freely until something lands.
+    const double t = stage.world().time(), fallen = 0.5 * 9.81 * math::square(max(t - (vase_ ? 0 : hold_), 0.0));
+    const double middle = middle_height(stage);
+    if (t <= hold_) start_ = middle + (vase_ ? fallen : 0);
+    stage.sample(1, 0, t, middle);
+    if (fallen < stage.value("height")) stage.sample(1, 1, t, start_ - fallen);
   }
 
   void expectations(Stage3&, std::vector<Expectation>& out) override {
@@ -157,6 +167,16 @@ class Solid final : public Repeatable<Solid, Demo3> {
     return t;
   }
 
+  double middle_height(Stage3& stage) {
+    double mass = 0, moment = 0;
+    for (std::uint32_t p = 0; p < solid_.part_count(); ++p) {
+      if (!stage.world().contains(solid_.body_of(p))) continue;
+      const double part = solid_.definition().parts[p].mass.mass;
+      mass += part;
+      moment += part * stage.at(solid_.body_of(p)).center_of_mass.y;
+    }
+    return moment / mass;
+  }
   std::vector<rigid::BodyId> bodies(Stage3& stage) {
     std::vector<rigid::BodyId> found;
     for (std::uint32_t p = 0; p < solid_.part_count(); ++p)
@@ -216,6 +236,7 @@ class Solid final : public Repeatable<Solid, Demo3> {
   std::vector<Corner> corners_[2];
   int surface_[2] = {0, 0};
   double volume_ = 1, pieces_volume_ = 0;
+  double start_ = 0;  // m, of the middle of all pieces
   bool closed_ = true;
 };
 

@@ -34,8 +34,10 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
         {"angle", "Angle of release", "rad", "°", "of the stone's velocity above the horizon", 0.35, 1.2, 0, 0.72,
          false},
     };
-    d.plots = {{"Tension of the sling", {"time", "s"}, {"force", "kN"}, {{"sling"}}},
-               {"Energy", {"time", "s"}, {"energy", "kJ"}, {{"stone"}, {"given by the weight"}}}};
+    d.plots = {
+        {"Tension of the sling", {"time", "s"}, {"force", "kN"}, {{"sling"}}},
+        {"Energy", {"time", "s"}, {"energy", "kJ"}, {{"stone"}, {"given by the weight"}}},
+        {"Flight", {"way", "m"}, {"height", "m"}, {{"stone"}, {"parabola from the release", Series::Style::points}}}};
     return d;
   }
 
@@ -105,6 +107,7 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
     }
     stage.sample(0, 0, t, 1e-3 * ropes_.peak_tension(0));
     stage.sample(1, 0, t, 1e-3 * energy);
+    if (range_ == 0) stage.sample(2, 0, stone.center_of_mass.x, stone.center_of_mass.y);
     stage.sample(1, 1, t, 1e-3 * stage.value("weight") * 9.80665 * (height_ - lowest_));
     // The sling opens where the stone flies forward and no steeper than was set.
     if (!released_ && v.x > 3 && stone.center_of_mass.y > 3 && v.y < v.x * math::tan(stage.value("angle"))) {
@@ -112,6 +115,11 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
       stage.check(ropes_.detach(0, -1));
       start_ = stone.center_of_mass;
       speed_ = v;
+      const double g = 9.80665, last = (speed_.y + math::sqrt(speed_.y * speed_.y + 2 * g * start_.y)) / g;
+      for (int i = 0; i <= 20; ++i) {
+        const double after = i * last / 20;
+        stage.sample(2, 1, start_.x + speed_.x * after, start_.y + after * (speed_.y - 0.5 * g * after));
+      }
       stage.say(format("away with %.1f m/s at %.0f°", length(v), math::degrees(math::atan2(v.y, v.x))));
     }
     if (released_ && range_ == 0 && stone.center_of_mass.y < 0.25) {

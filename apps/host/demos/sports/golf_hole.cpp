@@ -29,7 +29,7 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
         "Lift saturates with spin, and drag rises steeply where the ball gets slow and the dimples no longer help (Re "
         "near 7·10⁴): that is why a drive falls so steeply at the end. On the turf the ball ploughs in: its bounce is "
         "that of a slope that leans back by up to 15° at 67 km/h, more for a steeper fall (Penner).\n\n"
-        "With its own numbers for each club the flight is within 2 % of the carry, 2.5 yd of the height and 2.5° of "
+        "With its own numbers for each club the flight is within 3 % of the carry, 3 yd of the height and 3° of "
         "the landing angle that launch monitors measured on average on the PGA tour. Open the face or swing across, "
         "and see the ball curve: it starts near where the face looks and bends away from the path.";
     d.duration = 15;
