@@ -51,6 +51,15 @@ template <class D>
 void DestructionPicture::draw_fronts(Stage<D>& stage, const scene::DestructionOf<D>& all, double now) {
   for (const auto& entry : all.explosions) {
     const blast::Explosion<D>& e = entry.thing.explosion;
+    if (entry.thing.casing && entry.thing.casing->batch().size() > 0) {
+      const ballistics::ProjectileBatch& batch = entry.thing.casing->batch();
+      places_.clear();
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        places_.push_back(math::Vec3f(batch.at(i).position));
+        stage.line(batch.previous_position(i), batch.at(i).position, 0xffb04060);
+      }
+      stage.points(places_, 0.02f, 0xffd080ff);
+    }
     const Vec3d center = in_space(e.charge().position);
     if (now < e.charge().time) {
       const float radius = float(0.06 * math::pow(e.charge().mass, 1 / 3.0));

@@ -33,6 +33,11 @@ constexpr double lowest_height = -500, highest_height = 19980;  // 10 m a level
 
 }  // namespace detail
 
+BatchRound chunk_round(double mass, double density) {
+  const double area = 1.5 * math::square(math::cbrt(mass / density));
+  return {.area_per_mass = area / mass, .mass = mass, .frontal_area = area};
+}
+
 ProjectileBatch::ProjectileBatch(const DragCurve& drag, const Conditions& conditions, Vec3d origin, int lanes)
     : origin_(origin) {
   const double last = math::max(drag.points().back().mach, 0.1);

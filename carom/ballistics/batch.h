@@ -19,6 +19,10 @@ struct BatchRound {
   std::uint64_t tag = 0;        ///< the caller's; goes with it when indices change
 };
 
+/// A chunk that tumbles, such as a fragment of a case: the area that a cube of its mass shows on average, a quarter of
+/// its surface (Cauchy), 1.5 (m/ρ)^{2/3}. `mass` (kg) and `density` (kg/m³) > 0.
+CAROM_API BatchRound chunk_round(double mass, double density = 7850);
+
 /// Point masses that share a drag curve. Positions are floats about an origin in double: a millimetre at 10 km from it.
 /// The air and the wind are those of the height in the middle of a step; gravity is uniform, and the frame may turn.
 class CAROM_API ProjectileBatch {

@@ -136,6 +136,28 @@ void push_particles(const blast::Explosion<D>& explosion, MatterOf<D>& matter, d
   }
 }
 
+/// The case flies apart in the step in which the charge goes off, with the velocity of the body that carries it.
+template <class D>
+Status throw_case(SceneExplosion<D>& e, const rigid::World<D>& world, double dt) {
+  const blast::Charge<D>& charge = e.explosion.charge();
+  if (!e.casing || e.casing->thrown() || charge.time >= world.time() + dt) return {};
+  Vec3d velocity{};
+  if (const auto body = world.state(charge.casing); body) velocity = in_space(body->linear_velocity);
+  return e.casing->fly_apart(in_space(charge.position), velocity, charge.mass, world.time());
+}
+
+/// A step of projectiles: what they met is in `all.hits` then, and told to the structures that it loads.
+template <class D>
+Status fly(ballistics::ProjectileBatch& batch, DestructionOf<D>& all, rigid::World<D>& world, double dt,
+           rigid::BodyId without) {
+  batch.step(dt);
+  ballistics::HitOptions options;
+  options.filter.ignore = without;
+  if (Status s = all.hits.collect(batch, world, dt, options); !s) return s;
+  for (const ballistics::BatchHit& hit : all.hits.hits()) load_structures(all, hit, dt);
+  return {};
+}
+
 template <class D>
 void forget_old(SceneGun& gun, double now) {
   for (std::size_t i = gun.batch.size(); i-- > 0;)
@@ -154,6 +176,7 @@ Status Destruction::before(rigid::World<D>& world, double dt, Matter* matter) {
       if (Status s = rocket.thing.before_step(world, dt); !s) return s;
   for (auto& entry : all.explosions) {
     SceneExplosion<D>& e = entry.thing;
+    if (Status s = throw_case(e, world, dt); !s) return s;
     if (e.explosion.finished(world.time())) continue;
     if (matter != nullptr) push_particles(e.explosion, matter->of<D>(), world.time(), dt);
     if (Status s = e.explosion.apply(world, dt); !s) return s;
@@ -182,10 +205,7 @@ Status Destruction::after(rigid::World<D>& world, double dt) {
     SceneGun& gun = entry.thing;
     gun.last.clear();
     if (gun.batch.size() == 0) continue;
-    gun.batch.step(dt);
-    ballistics::HitOptions options;
-    options.filter.ignore = gun.definition.body;
-    if (Status s = all.hits.collect(gun.batch, world, dt, options); !s) return s;
+    if (Status s = fly(gun.batch, all, world, dt, gun.definition.body); !s) return s;
     for (const ballistics::BatchHit& hit : all.hits.hits()) {
       gun.last.push_back(hit);
       ++gun.hits;
@@ -194,9 +214,15 @@ Status Destruction::after(rigid::World<D>& world, double dt) {
       gun.energy += hit.energy;
       gun.last_hit = hit.point;
       gun.hit_speed = length(hit.velocity);
-      load_structures(all, hit, dt);
     }
     forget_old<D>(gun, world.time());
+  }
+  for (auto& entry : all.explosions) {
+    SceneExplosion<D>& e = entry.thing;
+    if (!e.casing || e.casing->batch().size() == 0) continue;
+    if (Status s = fly(e.casing->batch(), all, world, dt, e.explosion.charge().casing); !s) return s;
+    e.casing->hits += int(all.hits.hits().size());
+    e.casing->forget_old(world.time());
   }
   return {};
 }
@@ -215,6 +241,8 @@ void Destruction::add_to(core::StateHash& hash) const {
       for (int component = 0; component < 6; ++component)
         for (const float x : gun.thing.batch.array(component)) hash.add(x);
     }
+    for (const auto& e : all.explosions)
+      if (e.thing.casing) e.thing.casing->add_to(hash);
     for (const auto& s : all.structures) hash.add(std::uint64_t(s.thing.broken()));
     for (const auto& r : all.rockets)
       hash.add(r.thing.stages_left()).add(r.thing.under_parachute()).add(r.thing.apex());
@@ -230,6 +258,8 @@ enum DestructionField {
   front,
   reached,
   impulse,
+  fragments,
+  fragment_hits,
   shots,
   in_flight,
   hits,
@@ -253,14 +283,28 @@ struct FieldName {
   std::string_view name, unit;
   bool vector = false;
 };
-constexpr FieldName fields[] = {
-    {explosion_list, "front", "m"},    {explosion_list, "reached", ""}, {explosion_list, "impulse", "N*s", true},
-    {gun_list, "shots", ""},           {gun_list, "in_flight", ""},     {gun_list, "hits", ""},
-    {gun_list, "passed", ""},          {gun_list, "ricochets", ""},     {gun_list, "energy", "J"},
-    {gun_list, "last_hit", "m", true}, {gun_list, "hit_speed", "m/s"},  {structure_list, "parts", ""},
-    {structure_list, "pieces", ""},    {structure_list, "broken", ""},  {structure_list, "load", ""},
-    {rocket_list, "thrust", "N"},      {rocket_list, "mass", "kg"},     {rocket_list, "stages", ""},
-    {rocket_list, "parachute", ""},    {rocket_list, "apex", "m"}};
+constexpr FieldName fields[] = {{explosion_list, "front", "m"},
+                                {explosion_list, "reached", ""},
+                                {explosion_list, "impulse", "N*s", true},
+                                {explosion_list, "fragments", ""},
+                                {explosion_list, "fragment_hits", ""},
+                                {gun_list, "shots", ""},
+                                {gun_list, "in_flight", ""},
+                                {gun_list, "hits", ""},
+                                {gun_list, "passed", ""},
+                                {gun_list, "ricochets", ""},
+                                {gun_list, "energy", "J"},
+                                {gun_list, "last_hit", "m", true},
+                                {gun_list, "hit_speed", "m/s"},
+                                {structure_list, "parts", ""},
+                                {structure_list, "pieces", ""},
+                                {structure_list, "broken", ""},
+                                {structure_list, "load", ""},
+                                {rocket_list, "thrust", "N"},
+                                {rocket_list, "mass", "kg"},
+                                {rocket_list, "stages", ""},
+                                {rocket_list, "parachute", ""},
+                                {rocket_list, "apex", "m"}};
 
 template <class See>
 void each_name(const Destruction& all, const See& see) {
@@ -304,6 +348,8 @@ double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time)
   if (s.list == explosion_list) {
     const SceneExplosion<D>& e = all.explosions[place].thing;
     if (s.field == reached) return e.reached;
+    if (s.field == fragments) return e.casing ? double(e.casing->batch().size()) : 0;
+    if (s.field == fragment_hits) return e.casing ? e.casing->hits : 0;
     return s.field == front ? e.explosion.front_radius(time) : in_space(e.explosion.impulse_given())[s.component];
   }
   if (s.list == rocket_list) {

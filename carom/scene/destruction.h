@@ -2,6 +2,7 @@
 // rockets.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "carom/blast/explosion.h"
 #include "carom/blast/structure.h"
 #include "carom/math/random.h"
+#include "carom/scene/case_fragments.h"
 #include "carom/scene/matter.h"
 
 namespace carom::scene {
@@ -19,7 +21,8 @@ namespace carom::scene {
 template <class D>
 struct SceneExplosion {
   blast::Explosion<D> explosion;
-  int reached = 0;  ///< bodies that its front met so far
+  std::optional<CaseFragments> casing{};  ///< of space
+  int reached = 0;                        ///< bodies that its front met so far
 };
 
 /// A gun of a scene as it was read.

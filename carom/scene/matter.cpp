@@ -203,6 +203,11 @@ template <class D>
 [[gnu::noinline]] Status step_particles(MatterOf<D>& many, rigid::World<D>& world, double dt) {
   for (auto& entry : many.particles) {
     SceneParticles<D>& p = entry.thing;
+    for (TimedBurst& timed : p.bursts) {
+      if (timed.done || timed.time >= world.time() + 1e-9) continue;
+      timed.done = true;
+      if (const auto born = p.system.burst(timed.burst, timed.lifetime); !born) return born.error();
+    }
     if (Status s = p.coupling.step(world, p.system, dt); !s) return s;
   }
   // Births last: every system has told what happened in this step.

@@ -29,12 +29,20 @@ struct SubEmissionRule {
   int into = 0;          ///< the system that they belong to
   particles::SubEmission emission{};
 };
+/// A burst with an exact budget of momentum and energy, at its time.
+struct TimedBurst {
+  double time = 0;  ///< s
+  particles::BurstDef burst{};
+  particles::Range lifetime{1e30f, 1e30f};  ///< s
+  bool done = false;
+};
 template <class D>
 struct SceneParticles {
   particles::ParticleSystem system;
   particles::Coupling<D> coupling;
   particles::Turbulence turbulence{};
   std::vector<SubEmissionRule> rules;
+  std::vector<TimedBurst> bursts;
 };
 template <class D>
 struct MatterOf {

@@ -425,6 +425,14 @@ class SceneWriter {
     return f.put("magnetic", D::dimension == 2 ? digits(e.magnetic.z) : vector_text(e.magnetic)).object();
   }
 
+  static std::string case_text(const CaseDef& d) {
+    Fields f;
+    f.put("mass", d.mass).put("shape", quote(d.shape == blast::CaseShape::cylinder ? "cylinder" : "sphere"));
+    f.put("explosive", quote(d.gurney_constant == blast::gurney_tnt ? "tnt" : "composition_b"));
+    f.put("fragments", double(d.fragments)).put("density", d.density).put("drag_coefficient", d.drag_coefficient);
+    return f.put("lifetime", d.lifetime).put("seed", double(d.seed)).object();
+  }
+
   /// Charges that have not done their work yet; the time of the world begins anew.
   std::string explosions_text() const {
     std::string list;
@@ -438,6 +446,8 @@ class SceneWriter {
       f.put("burst", quote(c.burst == blast::Burst::ground ? "ground" : "free_air"));
       f.put("time", c.time - world_.time()).put("reach", c.reach).flag("clearing", c.clearing, true);
       f.put("shelter", c.shelter);
+      if (entry.thing.casing && !entry.thing.casing->thrown())
+        f.put("case", case_text(entry.thing.casing->definition()));
       if (!c.casing.is_null()) f.put("casing", quoted_name(c.casing));
       if (c.mask != ~std::uint64_t{0}) f.put("mask", bits_text(c.mask));
       if (c.obstacles != ~std::uint64_t{0}) f.put("obstacles", bits_text(c.obstacles));

@@ -100,6 +100,45 @@ TEST(SceneExplosions, AreWrittenAndGoOnWhereTheyWere) {
   EXPECT_EQ(world.find_body(a.casing)->name, copy.find_body(b.casing)->name);
 }
 
+// 240 g of steel about 160 g of TNT: 2440 m/s/√(1.5 + ⅗) = 1683.8 m/s at first. A board of 2 m × 2 m takes the share of
+// the solid angle that it fills, 4 asin(a b/√((a² + d²)(b² + d²)))/4π, and what it is pushed with.
+TEST(SceneExplosions, ACaseFliesApart) {
+  const auto scene = [](const char* type, const char* drag) {
+    return std::string(R"({"step": "1/480 s", "gravity": [0, 0, 0], "bodies": [
+        {"name": "board", "type": ")") +
+           type +
+           R"(", "position": [3, 0, 0], "density": 7850, "shape": {"type": "box", "size": [0.2, 2, 2], "filter": {"category": 2}}},
+        {"name": "grenade", "position": [0, 0, 0], "velocity": [0, 0, 0], "shape": {"type": "sphere", "radius": "3 cm", "filter": {"category": 2}}}],
+        "explosions": [{"name": "c", "mass": "160 g", "burst": "free_air", "casing": "grenade", "mask": "0x4", "time": "1 ms",
+          "case": {"mass": "240 g", "fragments": 4000, "drag_coefficient": )" +
+           drag + R"(, "seed": 5}}]})";
+  };
+  SceneWorld still = start(scene("fixed", "0"));
+  run(still, 0.9 / 480);
+  EXPECT_EQ(read(still, "explosion.c.fragments") + read(still, "explosion.c.fragment_hits"), 4000);
+  const auto& batch = still.destruction->space.explosions[0].thing.casing->batch();
+  for (std::size_t i = 0; i < batch.size(); i += 100)
+    EXPECT_NEAR(length(batch.at(i).velocity), 2440 / math::sqrt(1.5 + 0.6), 0.1);
+  run(still, 0.02);
+  const double share = 4 * math::asin(1 / (1 + 2.9 * 2.9)) / (4 * math::pi), expected = 4000 * share;
+  EXPECT_NEAR(read(still, "explosion.c.fragment_hits"), expected, 3 * math::sqrt(expected));
+  SceneWorld pushed = start(scene("dynamic", "0"));
+  run(pushed, 0.02);
+  const double momentum = read(pushed, "board.mass") * read(pushed, "board.velocity.x");
+  EXPECT_GT(momentum, 0.8 * 0.24 * share * 1683.8);
+  EXPECT_LT(momentum, 1.1 * 0.24 * share * 1683.8);
+  // Air takes speed of the small ones first.
+  SceneWorld slowed = start(scene("dynamic", "1.1"));
+  run(slowed, 0.02);
+  EXPECT_LT(read(slowed, "board.velocity.x"), read(pushed, "board.velocity.x"));
+  // Until it goes off, it is written; then it is gone after its lifetime.
+  const auto text = scene::write_scene(start(scene("fixed", "0")));
+  ASSERT_TRUE(text.ok()) << text.error().message;
+  EXPECT_EQ(start(*text).destruction->space.explosions[0].thing.casing->definition().fragments, 4000);
+  run(still, 10.1);
+  EXPECT_EQ(read(still, "explosion.c.fragments"), 0);
+}
+
 TEST(SceneExplosions, DriveParticlesAlong) {
   const auto thrown = [](const char* charges) {
     SceneWorld world = start(std::string(R"({"gravity": [0, 0, 0], "particles": [{"name": "dust", "radius": "1 mm",
@@ -288,6 +327,9 @@ TEST(SceneDestruction, ErrorsNameTheirPlace) {
       {R"("explosions": [{"mass": "-1 kg"}])", "mass is -1"},
       {R"("explosions": [{"mass": "1 kg", "shelter": 2}])", "shelter is 2"},
       {R"("explosions": [{"mass": "1 kg", "burst": "sky"}])", "expected one of ground, free_air"},
+      {R"("explosions": [{"mass": "1 kg", "case": {}}])", "the key \"mass\" is missing"},
+      {R"("explosions": [{"mass": "1 kg", "case": {"mass": "-1 kg"}}])", "mass is -1, expected a finite number > 0"},
+      {R"("explosions": [{"mass": "1 kg", "case": {"mass": "1 kg", "fragments": 1}}])", "explosions[0].case.fragments"},
       {R"("explosions": [{"mass": "1 m"}])", "explosions[0].mass"},
       {R"("explosions": [{"mass": 1, "casing": "nobody"}])", "expected the name of a body"},
       {R"("explosions": [{"mass": 1, "name": "a"}, {"mass": 1, "name": "a"}])", "a second time"},

@@ -120,6 +120,38 @@ TEST(SceneMatter, DropsSplashIntoAnotherSystem) {
   EXPECT_EQ(read(world, "particles.splash.count"), 30);
 }
 
+// No momentum between them and the energy that was asked for, whatever the seed: chapters 2.7 and 18.7.
+TEST(SceneMatter, BurstsKeepTheirBudget) {
+  for (const int dimension : {2, 3})
+    for (const char* how :
+         {R"("energy": "90 J")", R"("energy": "90 J", "equal_speeds": false)", R"("speed": "6 m/s")"}) {
+      const std::string zero = dimension == 2 ? "[0, 0]" : "[0, 0, 0]", drift = dimension == 2 ? "[3, 1]" : "[3, 1, 2]";
+      SceneWorld world = start("{\"dimension\": " + std::to_string(dimension) + R"(, "gravity": )" + zero +
+                               R"(, "particles": [{"name": "fire", "mass": "5 g", "drag": "none",
+          "bursts": [{"time": "50 ms", "count": 1001, "velocity": )" +
+                               drift + R"(, "seed": 9, )" + how + "}]}]}");
+      for (int i = 0; i < 3; ++i) ASSERT_TRUE(world.step().ok());
+      EXPECT_EQ(read(world, "particles.fire.count"), 0);
+      for (int i = 0; i < 10; ++i) ASSERT_TRUE(world.step().ok());
+      const auto& matter = *world.matter;
+      const particles::ParticleSystem& system =
+          dimension == 2 ? matter.plane.particles[0].thing.system : matter.space.particles[0].thing.system;
+      ASSERT_EQ(system.size(), 1001);
+      math::Vec3d sum{};
+      double energy = 0;
+      const math::Vec3d centre{3, 1, dimension == 2 ? 0.0 : 2.0};
+      for (int i = 0; i < system.size(); ++i) {
+        const math::Vec3d v{double(system.array(3)[i]), double(system.array(4)[i]), double(system.array(5)[i])};
+        sum += v - centre;
+        energy += 0.5 * 0.005 * math::length_squared(v - centre);
+      }
+      EXPECT_LT(math::length(sum) / 1001, 1e-6);
+      EXPECT_NEAR(energy, 90.09, 0.1);  // of 6 m/s each; of 90 J within rounding and that
+    }
+  const auto wrong = parse(R"({"particles": [{"bursts": [{"energy": "1 J", "speed": 3}]}]})");
+  ASSERT_FALSE(wrong.ok() && wrong->instantiate().ok());
+}
+
 TEST(SceneMatter, ThePlaneHasLiquidsGrainsAndParticles) {
   SceneWorld world = start(R"({"dimension": 2,
       "liquids": [{"name": "w", "lower": [0, 0], "upper": [2, 1], "spacing": 0.05, "walls": ["lower_x", "lower_y", "upper_x"],

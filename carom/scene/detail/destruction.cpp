@@ -8,6 +8,31 @@ namespace carom::scene::detail {
 namespace {
 
 template <class D>
+bool read_case(DestructionPlace<D>& place, const Object& o, typename D::Position at,
+               std::optional<CaseFragments>& out) {
+  Reader& r = place.reader;
+  Object c;
+  if (!r.open(*o.find("case"), o.path_of("case"), case_kind, c)) return false;
+  if constexpr (D::dimension == 3) {
+    CaseDef d;
+    d.mass = r.number(c, "mass", d.mass);
+    d.shape = blast::CaseShape(r.choice(c, "shape", int(d.shape)));
+    if (r.choice(c, "explosive", 0) == 1) d.gurney_constant = blast::gurney_composition_b;
+    d.fragments = r.integer(c, "fragments", d.fragments, 2, 100'000);
+    d.density = r.number(c, "density", d.density);
+    d.drag_coefficient = r.number(c, "drag_coefficient", d.drag_coefficient);
+    d.lifetime = r.number(c, "lifetime", d.lifetime);
+    d.seed = std::uint64_t(r.integer(c, "seed", 1, 0, 0x7FFFFFFF));
+    if (r.failed() || !r.accept(check(d), *c.node, c.path)) return false;
+    out.emplace(d, conditions_at(at, -double(place.world.definition().gravity.y), place.around));
+    return true;
+  } else {
+    (void)at, (void)out;
+    return r.fail(*c.node, c.path, "a case flies apart in space only"), false;
+  }
+}
+
+template <class D>
 void read_explosion(DestructionPlace<D>& place, const Object& o) {
   Reader& r = place.reader;
   blast::Charge<D> charge;
@@ -22,13 +47,15 @@ void read_explosion(DestructionPlace<D>& place, const Object& o) {
   charge.obstacles = r.bits(o, "obstacles", charge.obstacles);
   if (o.has("casing"))
     charge.casing = place.names.find_body(*o.find("casing"), o.path_of("casing"), r.text(o, "casing"));
+  std::optional<CaseFragments> casing;
+  if (o.has("case") && !read_case(place, o, charge.position, casing)) return;
   std::string name;
   std::uint32_t color = 0;
   auto& list = place.out.template of<D>().explosions;
   if (r.failed() || !name_thing(r, o, "charge", list, name, color)) return;
   auto made = blast::Explosion<D>::make(charge);
   if (!r.accept(made.ok() ? core::Status{} : core::Status{made.error()}, *o.node, o.path)) return;
-  list.push_back({std::move(name), color, {std::move(*made)}});
+  list.push_back({std::move(name), color, {std::move(*made), std::move(casing)}});
 }
 
 bool read_layers(Reader& r, const Node& list, const std::string& path, std::vector<ballistics::Layer>& out,

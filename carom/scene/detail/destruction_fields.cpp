@@ -22,9 +22,23 @@ constexpr Field explosion_fields[] = {
     {"reach", T::quantity, M::length, "at most 40 m/kg^(1/3), which 0 stands for"},
     {"clearing", T::flag, M::plain, "edges relieve the reflected pressure; true unless given"},
     {"shelter", T::quantity, M::plain, "0 to 1: share of the pressure that arrives behind an obstacle"},
+    {"case", T::object, M::plain, "that flies apart as it goes off, in space", &case_kind},
     {"casing", T::name, M::plain, "name of a body that is neither pushed nor in the way"},
     {"mask", T::bits, M::plain, "categories of shapes that feel it"},
     {"obstacles", T::bits, M::plain, "categories of shapes that shelter"},
+};
+
+constexpr std::string_view case_shapes[] = {"cylinder", "sphere"}, explosives[] = {"tnt", "composition_b"};
+constexpr Field case_fields[] = {
+    {"description", T::text},
+    {"mass", T::quantity, M::mass, "", nullptr, {}, true},
+    {"shape", T::choice, M::plain, "sphere unless given", nullptr, case_shapes},
+    {"explosive", T::choice, M::plain, "for the speed by Gurney; tnt unless given", nullptr, explosives},
+    {"fragments", T::integer, M::plain, "how many, 500 unless given"},
+    {"density", T::quantity, M::density, "of its material, steel unless given"},
+    {"drag_coefficient", T::quantity, M::plain, "of tumbling fragments, 1.1 unless given"},
+    {"lifetime", T::quantity, M::time, "that they fly at most, 10 s unless given"},
+    {"seed", T::integer, M::plain, "of masses and directions"},
 };
 
 constexpr Field ammunition_fields[] = {
@@ -218,6 +232,7 @@ const ObjectKind rocket_motor_kind{"rocket_motor", "The motor of a stage.", rock
 const ObjectKind stage_kind{"stage", "A stage of a rocket.", stage_fields};
 const ObjectKind rocket_kind{"rocket", "A rocket that flies as a body.", rocket_fields};
 const ObjectKind explosion_kind{"explosion", "A charge that goes off.", explosion_fields};
+const ObjectKind case_kind{"case", "What is thrown as fragments.", case_fields};
 const ObjectKind ammunition_kind{"ammunition", "What a gun shoots.", ammunition_fields};
 const ObjectKind sight_kind{"sight", "What a gun is aimed with.", sight_fields};
 const ObjectKind gun_kind{"gun", "A gun that shoots.", gun_fields};

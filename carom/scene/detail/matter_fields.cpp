@@ -227,6 +227,17 @@ constexpr Field attractor_fields[] = {
     {"exponent", T::quantity, M::plain, "of the distance"},
     {"range", T::quantity, M::length},
 };
+constexpr Field burst_fields[] = {
+    {"time", T::quantity, M::time, "0 unless given"},
+    {"count", T::integer, M::plain, "1000 unless given; what finds no room is not born"},
+    {"center", T::vector, M::length},
+    {"velocity", T::vector, M::speed, "of the centre"},
+    {"energy", T::quantity, M::energy, "of all in the centre's frame, instead of a speed"},
+    {"speed", T::quantity, M::speed, "root of the mean square"},
+    {"equal_speeds", T::flag, M::plain, "true unless given; false: uniform in velocity space"},
+    {"lifetime", T::quantity, M::time},
+    {"seed", T::integer, M::plain},
+};
 constexpr Field touch_fields[] = {
     {"restitution", T::quantity, M::plain, "0 to 1, between particles"},
     {"friction", T::quantity, M::plain, "between particles"},
@@ -260,6 +271,7 @@ constexpr Field particles_fields[] = {
     {"two_way", T::flag, M::plain, "bodies feel the particles"},
     {"touch", T::object, M::plain, "particles touch each other", &touch_kind},
     {"emitters", T::list, M::plain, "where they come from", &emitter_kind},
+    {"bursts", T::list, M::plain, "that fly apart with no momentum between them", &burst_kind},
     {"sub_emissions", T::list, M::plain, "particles born where others die or strike", &sub_emission_kind},
     {"attractors", T::list, M::plain, "that pull all alike", &attractor_kind},
 };
@@ -281,6 +293,7 @@ const ObjectKind grains_kind{"grains", "Round grains in a box-shaped domain.", g
 const ObjectKind emitter_kind{"emitter", "Where particles come from.", emitter_fields};
 const ObjectKind sub_emission_kind{"sub_emission", "Particles born where others die or strike.", sub_emission_fields};
 const ObjectKind attractor_kind{"attractor", "Pulls particles to a point.", attractor_fields};
+const ObjectKind burst_kind{"burst", "Particles that fly apart.", burst_fields};
 const ObjectKind touch_kind{"touch", "How particles touch each other.", touch_fields};
 const ObjectKind particles_kind{"particles", "A system of particles of one kind.", particles_fields};
 

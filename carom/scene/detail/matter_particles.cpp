@@ -173,6 +173,27 @@ void read_particles(MatterPlace<D>& place, const Object& o) {
       {std::move(name), color,
        SceneParticles<D>{
            .system = std::move(*system), .coupling = particles::Coupling<D>(coupling), .turbulence = turbulence}});
+  std::vector<TimedBurst>& bursts = list.back().thing.bursts;
+  each_entry(r, o, "bursts", burst_kind, [&](const Object& b) {
+    TimedBurst timed;
+    timed.time = r.number(b, "time", 0);
+    timed.burst.count = r.integer(b, "count", timed.burst.count, 2, 1 << 24);
+    timed.burst.center = r.vector(b, "center");
+    timed.burst.velocity = r.vector(b, "velocity");
+    timed.burst.energy = r.number(b, "energy", 0);
+    timed.burst.speed = r.number(b, "speed", timed.burst.speed);
+    timed.burst.mass = double(def.mass);
+    timed.burst.equal_speeds = r.flag(b, "equal_speeds", true);
+    timed.burst.planar = D::dimension == 2;
+    timed.burst.seed = std::uint64_t(r.integer(b, "seed", 1, 0, 0x7FFFFFFF));
+    const float lifetime = float(r.number(b, "lifetime", 1e30));
+    timed.lifetime = {lifetime, lifetime};
+    if (r.failed()) return;
+    if (b.has("energy") && b.has("speed")) return r.fail(*b.node, b.path, "found both energy and speed");
+    if (!(lifetime > 0)) return r.expected(*b.find("lifetime"), b.path_of("lifetime"), "a time above zero");
+    const auto tried = particles::burst_velocities(timed.burst);
+    if (r.accept(tried.ok() ? core::Status{} : core::Status{tried.error()}, *b.node, b.path)) bursts.push_back(timed);
+  });
   if (o.has("sub_emissions")) place.unresolved.push_back({o, list.size() - 1, r.variables});
 }
 template void read_particles(MatterPlace<rigid::Dim2>&, const Object&);

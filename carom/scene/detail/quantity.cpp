@@ -41,6 +41,7 @@ constexpr MeasureInfo measures[] = {
     {"a damping of strain", "N*s", "50 N*s"},
     {"a bending stiffness per width", "N*m", "5e-6 N*m"},
     {"a kinematic viscosity", "m^2/s", "1e-6 m^2/s"},
+    {"an energy", "J", "4 kJ"},
 };
 static_assert(sizeof measures / sizeof measures[0] == std::size_t(Measure::count_));
 

@@ -67,6 +67,7 @@ enum class Measure : std::uint8_t {
   rope_damping,
   cloth_bending,
   kinematic_viscosity,
+  energy,
   count_
 };
 struct MeasureInfo {

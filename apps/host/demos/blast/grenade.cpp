@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "apps/host/demos/blast/list.h"
+#include "carom/ballistics/hits.h"
 #include "carom/blast/explosion.h"
 #include "carom/blast/fragments.h"
 #include "carom/math/elementary.h"
@@ -70,27 +71,31 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
     const bool flight = stage.world().time() - start_ < 0.05;
     const double dt = stage.declaration().dt / (flight ? max(stage.value("slow"), 1.0) : 1.0);
     if (auto s = blast_.apply(stage.world(), dt); !s) return s;
-    fly(stage, dt);
-    return stage.world().step(float(dt));
+    if (auto s = stage.world().step(float(dt)); !s) return s;
+    batch_.step(dt);
+    return struck_.collect(batch_, stage.world(), dt);
   }
   void before_step(Stage3& stage) override {
     if (stage.presses("again") > 0) throw_one(stage);
   }
 
   void after_step(Stage3& stage) override {
-    std::vector<Vec3f> places;
-    std::vector<float> radii;
-    std::vector<std::uint32_t> colors;
+    for (const ballistics::BatchHit& hit : struck_.hits()) {
+      rest_.push_back(Vec3f(hit.point));
+      for (int b = 0; b < boards_; ++b) hits_[b] += hit.body == body_[b];
+    }
+    std::vector<Vec3f> places = rest_;
+    std::vector<float> radii(rest_.size(), 0.018f);
+    std::vector<std::uint32_t> colors(rest_.size(), pen(dark));
     double fastest = 0, mean = 0;
-    for (const Flying& f : flying_) {
-      places.push_back(Vec3f(f.place));
-      radii.push_back(f.rests ? 0.018f : 0.026f);
-      const double hot = math::clamp(length(f.velocity) / first_speed_, 0.0, 1.0);
-      colors.push_back(f.rests ? pen(dark)
-                               : (std::uint32_t(200 + 55 * hot) << 24 | std::uint32_t(60 + 150 * hot) << 16 | 0x30ffu));
-      if (f.rests) continue;
-      fastest = max(fastest, length(f.velocity));
-      mean += length(f.velocity) / double(flying_.size());
+    for (std::size_t i = 0; i < batch_.size(); ++i) {
+      const forces::FlightPoint f = batch_.at(i);
+      const double speed = length(f.velocity), hot = math::clamp(speed / first_speed_, 0.0, 1.0);
+      places.push_back(Vec3f(f.position));
+      radii.push_back(0.026f);
+      colors.push_back(std::uint32_t(200 + 55 * hot) << 24 | std::uint32_t(60 + 150 * hot) << 16 | 0x30ffu);
+      fastest = max(fastest, speed);
+      mean += speed / double(thrown_);
     }
     stage.points(places, radii, colors);
     const double since = stage.world().time() - start_;
@@ -108,12 +113,12 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
     int hits = 0;
     for (int k = 0; k < boards_; ++k) hits += hits_[k];
     stage.say(format("%.0f m/s at first; %.0f hits in the boards, %.0f still fly", first_speed_, double(hits),
-                     double(std::count_if(flying_.begin(), flying_.end(), [](const Flying& f) { return !f.rests; }))));
+                     double(batch_.size())));
     if (!told_ && since > 0.02) {
       told_ = true;
       for (int k = 0; k < boards_; ++k) {
         stage.sample(1, 0, distance_[k], hits_[k] / 2.4);
-        stage.sample(1, 1, distance_[k], double(flying_.size()) / (4 * pi * square(distance_[k])));
+        stage.sample(1, 1, distance_[k], double(thrown_) / (4 * pi * square(distance_[k])));
       }
     }
   }
@@ -136,15 +141,11 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
   }
 
  private:
-  struct Flying {
-    Vec3d place{}, velocity{};
-    double mass = 0;
-    bool rests = false;
-  };
   static constexpr int boards_ = 9;
 
   void throw_one(Stage3& stage) {
-    flying_.clear();
+    batch_.clear();
+    rest_.clear();
     std::fill(std::begin(hits_), std::end(hits_), 0);
     told_ = false;
     start_ = stage.world().time();
@@ -155,12 +156,13 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
     double size = 0;
     std::vector<double> masses;
     for (const blast::Fragment& f : spray) {
-      flying_.push_back({{0, 1, 0}, f.velocity, f.mass, false});
+      batch_.add({{0, 1, 0}, f.velocity}, ballistics::chunk_round(f.mass, 7800));
       sum += f.mass * f.velocity;
       size += f.mass * length(f.velocity);
       masses.push_back(f.mass);
     }
     momentum_ = length(sum) / size;
+    thrown_ = spray.size();
     std::sort(masses.begin(), masses.end());
     const double mu = 0.5 * mass / double(masses.size());
     for (std::size_t i = 0; i < masses.size(); i += math::max<std::size_t>(masses.size() / 60, 1)) {
@@ -176,43 +178,11 @@ class Grenade final : public Repeatable<Grenade, Demo3> {
     blast_ = stage.keep(blast::Explosion3::make(c));
   }
 
-  /// Drag of tumbling chunks: C_D 1.1, the area of a cube of that mass seen from all sides. A swept step each.
-  void fly(Stage3& stage, double dt) {
-    std::vector<rigid::RayQuery<Dim3>> rays;
-    std::vector<std::size_t> who;
-    for (std::size_t i = 0; i < flying_.size(); ++i) {
-      Flying& f = flying_[i];
-      if (f.rests) continue;
-      const double area = 1.5 * math::pow(f.mass / 7800, 2.0 / 3), k = 0.5 * 1.225 * 1.1 * area / f.mass;
-      // v' = −k v² exactly over the step, then gravity.
-      const double v = length(f.velocity);
-      f.velocity = f.velocity / (1 + k * v * dt) - Vec3d{0, 9.80665 * dt, 0};
-      rays.push_back({f.place, Vec3f(f.velocity * dt), {}});
-      who.push_back(i);
-    }
-    std::vector<rigid::RayHit<Dim3>> hits(rays.size());
-    stage.check(stage.world().cast_rays(rays, hits));
-    for (std::size_t k = 0; k < hits.size(); ++k) {
-      Flying& f = flying_[who[k]];
-      if (hits[k].shape.is_null()) {
-        f.place += Vec3d(rays[k].translation);
-        continue;
-      }
-      f.place = hits[k].point;
-      f.rests = true;
-      const auto body = stage.world().body_of(hits[k].shape);
-      for (int b = 0; b < boards_ && body.ok(); ++b)
-        if (*body == body_[b]) {
-          ++hits_[b];
-          stage.check(stage.world().add_impulse_at(*body, Vec3f(f.mass * f.velocity), hits[k].point));
-        }
-      f.velocity = {};
-    }
-    if (flying_.size() > 5000) flying_.resize(5000);
-  }
-
   blast::Explosion3 blast_;
-  std::vector<Flying> flying_;
+  ballistics::ProjectileBatch batch_{ballistics::DragCurve(1.1), {}};  // of tumbling chunks
+  ballistics::BatchHits<Dim3> struck_;
+  std::vector<Vec3f> rest_;  // where they hit
+  std::size_t thrown_ = 1;
   rigid::BodyId body_[boards_];
   double distance_[boards_] = {};
   int hits_[boards_] = {};
