@@ -1,74 +1,115 @@
-// The recipes of the plane in Box2D 2.4 (Debian's package), with its usual 8 velocity and 3 position iterations.
+// Box2D 2.4 (Debian's package), with its usual 8 velocity and 3 position iterations.
 #include <box2d/box2d.h>
 
-#include <chrono>
 #include <cmath>
 
-#include "benchmarks/recipe.h"
+#include "benchmarks/engine.h"
 
 namespace carom::bench {
+namespace box2d_2 {
 
-RecipeOutcome run_box2d(const Recipe& recipe, const RecipeSettings& settings) {
-  b2World world({0, -recipe.gravity});
-  world.SetAllowSleeping(recipe.sleep);
-  std::vector<b2Body*> bodies;
-  for (const BodyRecipe& b : recipe.bodies) {
+b2Vec2 vector(Vec3d v) { return {float(v.x), float(v.y)}; }
+
+class Box2D final : public Engine {
+ public:
+  explicit Box2D(const Setting& setting) : world_(vector(setting.gravity)) {
+    world_.SetAllowSleeping(setting.sleep);
+    b2BodyDef ground;
+    ground_ = world_.CreateBody(&ground);
+  }
+  void add(const Body& b) override {
     b2BodyDef definition;
     definition.type = b.fixed ? b2_staticBody : b2_dynamicBody;
-    definition.position.Set(float(b.position[0]), float(b.position[1]));
-    bodies.push_back(world.CreateBody(&definition));
+    definition.position = vector(b.position);
+    definition.angle = float(2 * std::atan2(b.rotation.z, b.rotation.w));
+    definition.linearVelocity = vector(b.velocity);
+    definition.angularVelocity = float(b.spin.z);
+    definition.bullet = b.bullet;
+    bodies_.push_back(world_.CreateBody(&definition));
     b2FixtureDef fixture;
+    fixture.density = float(density(b, 2));
+    fixture.friction = float(b.friction);
+    fixture.restitution = float(b.restitution);
+    if (!b.collides) fixture.filter.maskBits = 0;
+    const auto attach = [&](const b2Shape& shape) {
+      fixture.shape = &shape;
+      bodies_.back()->CreateFixture(&fixture);
+    };
+    const auto x = float(b.size.x), y = float(b.size.y);
     b2PolygonShape polygon;
     b2CircleShape circle;
-    circle.m_radius = b.size[0];
-    polygon.SetAsBox(b.size[0], b.size[1]);
-    fixture.shape = b.kind == Kind::box ? static_cast<b2Shape*>(&polygon) : &circle;
-    fixture.density = recipe.density;
-    fixture.friction = b.fixed ? recipe.ground_friction : recipe.friction;
-    if (!b.collides) fixture.filter.maskBits = 0;
-    bodies.back()->CreateFixture(&fixture);
+    if (b.kind == Kind::sphere) {
+      circle.m_radius = x;
+      attach(circle);
+    } else if (b.kind == Kind::capsule) {  // of a box and two circles
+      polygon.SetAsBox(y, x);
+      attach(polygon);
+      circle.m_radius = y;
+      fixture.density = 0;
+      for (const float end : {-x, x}) {
+        circle.m_p.Set(0, end);
+        attach(circle);
+      }
+      b2MassData data;
+      data.mass = float(mass(b, 2));
+      data.center.SetZero();
+      data.I = float(moments(b, 2).z);
+      if (!b.fixed) bodies_.back()->SetMassData(&data);
+    } else {
+      polygon.SetAsBox(x, y);
+      attach(polygon);
+    }
   }
-  for (const JointRecipe& j : recipe.joints) {
-    b2RevoluteJointDef definition;
-    definition.bodyA = bodies[std::size_t(j.body_a)];
-    definition.bodyB = bodies[std::size_t(j.body_b)];
-    definition.localAnchorA.Set(j.anchor_a[0], j.anchor_a[1]);
-    definition.localAnchorB.Set(j.anchor_b[0], j.anchor_b[1]);
-    world.CreateJoint(&definition);
+  void join(const Joint& j) override {
+    b2Body* a = j.body_a < 0 ? ground_ : bodies_[std::size_t(j.body_a)];
+    b2Body* b = bodies_[std::size_t(j.body_b)];
+    if (j.weld) {
+      b2WeldJointDef definition;
+      definition.Initialize(a, b, vector(j.at));
+      world_.CreateJoint(&definition);
+    } else {
+      b2RevoluteJointDef definition;
+      definition.Initialize(a, b, vector(j.at));
+      world_.CreateJoint(&definition);
+    }
+  }
+  void step() override { world_.Step(1.0f / 60.0f, 8, 3); }
+  BodyMotion motion(int body) const override {
+    const b2Body* b = bodies_[std::size_t(body)];
+    const b2Vec2 p = b->GetPosition(), v = b->GetLinearVelocity();
+    const double half = 0.5 * b->GetAngle();
+    return {{p.x, p.y, 0}, {std::cos(half), 0, 0, std::sin(half)}, {v.x, v.y, 0}, {0, 0, b->GetAngularVelocity()}};
+  }
+  void set_velocity(int body, Vec3d velocity, Vec3d spin) override {
+    bodies_[std::size_t(body)]->SetAwake(true);
+    bodies_[std::size_t(body)]->SetLinearVelocity(vector(velocity));
+    bodies_[std::size_t(body)]->SetAngularVelocity(float(spin.z));
+  }
+  bool awake(int body) const override { return bodies_[std::size_t(body)]->IsAwake(); }
+  double deepest_overlap() const override {
+    double deepest = 0;
+    for (const b2Contact* contact = world_.GetContactList(); contact; contact = contact->GetNext()) {
+      if (!contact->IsTouching()) continue;
+      b2WorldManifold manifold;
+      contact->GetWorldManifold(&manifold);
+      for (int k = 0; k < contact->GetManifold()->pointCount; ++k)
+        deepest = std::fmax(deepest, -manifold.separations[k]);
+    }
+    return deepest;
   }
 
-  RecipeOutcome outcome;
-  const int steps = settings.steps > 0 ? settings.steps : recipe.steps;
-  for (int i = 0; i < steps; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    world.Step(1.0f / 60.0f, 8, 3);
-    outcome.step_ms.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-  }
-  double sum = 0;
-  int moving = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (recipe.bodies[i].fixed) continue;
-    const b2Vec2 p = bodies[i]->GetPosition();
-    const double speed = bodies[i]->GetLinearVelocity().Length();
-    ++moving;
-    sum += speed * speed;
-    outcome.worst_speed = std::fmax(outcome.worst_speed, speed);
-    outcome.worst_drift = std::fmax(outcome.worst_drift,
-                                    std::hypot(p.x - recipe.bodies[i].position[0], p.y - recipe.bodies[i].position[1]));
-    if (p.Length() > 200) ++outcome.escaped;
-  }
-  outcome.rms_speed = std::sqrt(sum / std::fmax(1, moving));
-  for (b2Contact* contact = world.GetContactList(); contact; contact = contact->GetNext()) {
-    if (!contact->IsTouching()) continue;
-    b2WorldManifold manifold;
-    contact->GetWorldManifold(&manifold);
-    for (int k = 0; k < contact->GetManifold()->pointCount; ++k)
-      outcome.worst_penetration = std::fmax(outcome.worst_penetration, -manifold.separations[k]);
-  }
-  for (b2Joint* joint = world.GetJointList(); joint; joint = joint->GetNext())
-    outcome.worst_joint_gap = std::fmax(outcome.worst_joint_gap, (joint->GetAnchorA() - joint->GetAnchorB()).Length());
-  return outcome;
+ private:
+  b2World world_;
+  b2Body* ground_;
+  std::vector<b2Body*> bodies_;
+};
+
+}  // namespace box2d_2
+
+std::unique_ptr<Engine> make_box2d_2(const Setting& setting) { return std::make_unique<box2d_2::Box2D>(setting); }
+std::string box2d_2_version() {
+  return std::to_string(b2_version.major) + "." + std::to_string(b2_version.minor) + "." +
+         std::to_string(b2_version.revision);
 }
 
 }  // namespace carom::bench

@@ -9,12 +9,12 @@
 
 namespace carom::bench {
 
-enum class Kind : std::uint8_t { box, sphere, capsule };  ///< capsule: along local y
+enum class Kind : std::uint8_t { box, sphere, capsule, cylinder };  ///< capsule, cylinder: along local y
 
 struct BodyRecipe {
   Kind kind = Kind::box;
   bool fixed = false;
-  float size[3] = {0.5f, 0.5f, 0.5f};  ///< box: half extents; sphere: radius; capsule: half length, radius
+  float size[3] = {0.5f, 0.5f, 0.5f};  ///< box: half extents; sphere: radius; others: half length, radius
   double position[3] = {0, 0, 0};
   float rotation[4] = {1, 0, 0, 0};  ///< w, x, y, z
   bool collides = true;
@@ -67,7 +67,5 @@ struct RecipeSettings {
 };
 using Runner = RecipeOutcome (*)(const Recipe&, const RecipeSettings&);
 RecipeOutcome run_carom(const Recipe&, const RecipeSettings&);
-RecipeOutcome run_bullet(const Recipe&, const RecipeSettings&);
-RecipeOutcome run_box2d(const Recipe&, const RecipeSettings&);
 
 }  // namespace carom::bench

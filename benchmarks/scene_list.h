@@ -15,6 +15,20 @@ typename D::Position position_of(const BodyRecipe& b) {
 }
 
 template <class D>
+typename D::Shape shape_of(Kind kind, const float (&size)[3]) {
+  if constexpr (D::dimension == 2) {
+    if (kind == Kind::sphere) return geometry::Circle{size[0]};
+    if (kind == Kind::capsule) return geometry::Capsule2{size[0], size[1]};
+    return geometry::make_box2({size[0], size[1]});
+  } else {
+    if (kind == Kind::sphere) return geometry::Sphere{size[0]};
+    if (kind == Kind::capsule) return geometry::Capsule3{size[0], size[1]};
+    if (kind == Kind::cylinder) return geometry::Cylinder{size[0], size[1]};
+    return geometry::Box{{size[0], size[1], size[2]}};
+  }
+}
+
+template <class D>
 class ListScene final : public Scene<D> {
  public:
   explicit ListScene(Recipe recipe) : recipe_(std::move(recipe)) {}
@@ -34,7 +48,7 @@ class ListScene final : public Scene<D> {
       surface.density = recipe_.density;
       surface.material.friction = b.fixed ? recipe_.ground_friction : recipe_.friction;
       if (!b.collides) surface.filter = {2, ~std::uint64_t{2}, 0};
-      bodies.push_back(add_body(world, body, shape_of(b), surface));
+      bodies.push_back(add_body(world, body, shape_of<D>(b.kind, b.size), surface));
     }
     for (const JointRecipe& j : recipe_.joints) {
       const auto connect = [&](auto joint) {
@@ -51,17 +65,6 @@ class ListScene final : public Scene<D> {
   }
 
  private:
-  static typename D::Shape shape_of(const BodyRecipe& b) {
-    if constexpr (D::dimension == 2) {
-      if (b.kind == Kind::sphere) return geometry::Circle{b.size[0]};
-      if (b.kind == Kind::capsule) return geometry::Capsule2{b.size[0], b.size[1]};
-      return geometry::make_box2({b.size[0], b.size[1]});
-    } else {
-      if (b.kind == Kind::sphere) return geometry::Sphere{b.size[0]};
-      if (b.kind == Kind::capsule) return geometry::Capsule3{b.size[0], b.size[1]};
-      return geometry::Box{{b.size[0], b.size[1], b.size[2]}};
-    }
-  }
   Recipe recipe_;
 };
 

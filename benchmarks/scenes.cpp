@@ -7,14 +7,14 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "benchmarks/engine.h"
 #include "benchmarks/measure.h"
-#include "benchmarks/recipe.h"
 
 using namespace carom::bench;
 
 namespace {
 
-struct Engine {
+struct Entry {
   const char* name;
   Runner run;
   RecipeSettings settings;
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   for (const std::string& name : recipe_names()) {
     if (only && name != only) continue;
     const Recipe recipe = make_recipe(name);
-    std::vector<Engine> engines;
+    std::vector<Entry> engines;
     const auto add = [&](const char* label, Runner run, int engine_threads) {
       if (engine && std::strcmp(engine, label) != 0 && std::strstr(label, engine) == nullptr) return;
       if (threads > 0 && engine_threads != threads) return;
@@ -77,10 +77,12 @@ int main(int argc, char** argv) {
     add("carom", run_carom, 1);
     add("carom 2 threads", run_carom, 2);
 #ifdef CAROM_WITH_BULLET
-    if (recipe.dimension == 3) add("bullet", run_bullet, 1);
+    if (recipe.dimension == 3)
+      add("bullet", [](const Recipe& r, const RecipeSettings& s) { return run_recipe(make_bullet, r, s); }, 1);
 #endif
 #ifdef CAROM_WITH_BOX2D
-    if (recipe.dimension == 2) add("box2d 2.4", run_box2d, 1);
+    if (recipe.dimension == 2)
+      add("box2d 2.4", [](const Recipe& r, const RecipeSettings& s) { return run_recipe(make_box2d_2, r, s); }, 1);
 #endif
     std::vector<RecipeOutcome> best(engines.size());
     for (int round = 0; round < rounds; ++round)

@@ -17,10 +17,6 @@ std::vector<Row>& rows() {
   static std::vector<Row> all;
   return all;
 }
-std::vector<std::pair<std::string, std::string>>& peer_rows() {
-  static std::vector<std::pair<std::string, std::string>> all;
-  return all;
-}
 
 std::string text(double value) {
   char buffer[32];
@@ -81,8 +77,6 @@ void Gate::exactly(long measured, long truth) {
          double(std::labs(measured - truth)) <= reached_);
 }
 
-void peer_row(const std::string& scene, const std::string& carom) { peer_rows().push_back({scene, carom}); }
-
 std::string gate_table() {
   std::string out = "| # | test | truth | bar | Carom 3D | Carom 2D | bar met |\n|---|---|---|---|---|---|---|\n";
   for (int number = 0; number < 100; ++number)
@@ -98,32 +92,6 @@ std::string gate_table() {
       out += "| " + std::to_string(r.number) + " | " + r.what + " | " + r.truth + " | " + r.bar + " | " +
              cell(r.measured[1]) + " | " + cell(r.measured[0]) + " | " + verdict + " |\n";
     }
-  return out;
-}
-
-std::string peer_table() {
-  // Other engines on the same scenes: measured on one machine at their defaults (rigid-body.md 6.2 says which
-  // versions).
-  static constexpr const char* peers[] = {
-      "Box3D 0.1, 4 substeps | 40 | 1:100 | .08 / 8.4 | .0012 | −34 %, 16 | 100 / .1 / 0 % | stops | 2.538",
-      "Box3D 0.1, 8 substeps | 60 | 1:300 | .08 / .53 | .0003 | −19 %, 16 | – | stops | –",
-      "Jolt 5.5, 1 step | 15 | 1:100 | .50 / 71 | .0000 | +.03 %, 13 | 0 / 30 / 35 % | needs linear cast | 2.507",
-      "Jolt 5.5, 4 steps | 30 | 1:300 | .03 / .27 | .0000 | +.09 %, 14 | – | – | –",
-      "Rapier 0.2x, 4 iterations | 40 | 1:100 | .26 / 8.0 | .0009 | +.23 %, 15 | 96 / 11 / 12 % | stops | 2.538",
-      "PhysX 5.6 PGS | 10 | 1:30 | 23 / 109 | .13 | gyroscopic off | 100 / 0 / 0 % | tunnels | 2.507",
-      "PhysX 5.6 TGS | 15 | 1:100 | .98 / 7.5 | .021 | gyroscopic off | – | – | 2.507",
-      "Bullet 3.24 | 10 | 1:10 | 4.8 / 69 | .0001 | −68 %, 13 | 1 / 33 / 20 % | opt-in | 2.503",
-      "ODE 0.16 Quick | 12 | 1:30 | 7.7 / 101 | .0014 | −10 %, 77 | 0 / 0 / 0 % | tunnels | 2.507",
-      "ReactPhysics3D 0.10 | 12 | 1:30 | 27 / 60 | .003 | none | 0 / 0 / 0 % | tunnels | 2.507",
-      "MuJoCo 2.2 Newton, 4 × 4 ms | 12 | 1:1000 | 0 / 0 | .065 | +53 %, 13 | – | tunnels | 2.54"};
-  std::string head = "| engine |", rule = "|---|", values = "| **Carom** |";
-  for (const auto& [scene, value] : peer_rows()) {
-    head += " " + scene + " |";
-    rule += "---|";
-    values += " " + value + " |";
-  }
-  std::string out = head + "\n" + rule + "\n" + values + "\n";
-  for (const char* peer : peers) out += "| " + std::string(peer) + " |\n";
   return out;
 }
 

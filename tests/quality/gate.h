@@ -35,11 +35,7 @@ class Gate {
   double reached_ = -1;
 };
 
-/// A row of the comparison with other engines on their scenes: no bar, just what Carom does.
-void peer_row(const std::string& scene, const std::string& carom);
-
 /// Markdown of all that was measured so far: the gates, one row a gate and case with a column for each dimension.
 std::string gate_table();
-std::string peer_table();
 
 }  // namespace carom::quality

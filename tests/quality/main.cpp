@@ -21,10 +21,8 @@ int write_table(const char* file) {
   std::stringstream content;
   content << in.rdbuf();
   std::string document = content.str();
-  if (!in || !replace_between(document, "<!-- gates -->", "<!-- end of gates -->", carom::quality::gate_table()) ||
-      !replace_between(document, "<!-- peers -->", "<!-- end of peers -->", carom::quality::peer_table())) {
-    std::fprintf(stderr, "%s: no lines <!-- gates -->, <!-- end of gates -->, <!-- peers -->, <!-- end of peers -->\n",
-                 file);
+  if (!in || !replace_between(document, "<!-- gates -->", "<!-- end of gates -->", carom::quality::gate_table())) {
+    std::fprintf(stderr, "%s: no lines <!-- gates -->, <!-- end of gates -->\n", file);
     return 1;
   }
   std::ofstream(file) << document;
@@ -43,7 +41,7 @@ int main(int argc, char** argv) {
   const int failed = RUN_ALL_TESTS();
   if (table != nullptr) {
     if (std::strcmp(table, "-") == 0)
-      std::printf("%s\n%s", carom::quality::gate_table().c_str(), carom::quality::peer_table().c_str());
+      std::printf("%s", carom::quality::gate_table().c_str());
     else if (write_table(table) != 0)
       return 1;
   }

@@ -1,4 +1,5 @@
-// The scenes on which other engines were measured (rigid-body.md 6.2): what Carom does on them, at its defaults.
+// The scenes on which other engines were measured first (rigid-body.md 6.2): what Carom does on them, at its defaults.
+// bench_quality has them too, beside the peers.
 #include <cmath>
 
 #include "tests/quality/chain.h"
@@ -10,12 +11,6 @@ namespace peers {
 
 using namespace carom::rigid;
 using namespace carom::rigid::test;
-
-std::string text(const char* format, double a, double b = 0, double c = 0) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, a, b, c);
-  return buffer;
-}
 
 double sag_of_stack(int n) {
   World3 world(world_with<Dim3>());
@@ -39,19 +34,16 @@ TEST(QualityPeers, ScenesOfTheComparison) {
   int tallest = 0;
   for (const int n : {5, 10, 12, 15, 20, 25, 30, 40, 50, 60})
     if (sag_of_stack(n) < 0.5) tallest = n;
-  peer_row("a: tallest stack", std::to_string(tallest) + (tallest == 60 ? " or more" : ""));
   EXPECT_GE(tallest, 40);
 
   int heaviest = 1;
   for (const int ratio : {3, 10, 30, 100, 300, 1000, 3000, 10000})
     if (sag_of_heavy_top(ratio) < 0.3) heaviest = ratio;
-  peer_row("b: heavy top", "1:" + std::to_string(heaviest));
   EXPECT_GE(heaviest, 100);
 
   Chain<Dim3> light(20, 100), heavy(20, 1000);
   light.run(15);
   heavy.run(15);
-  peer_row("c: chain 1:100 / 1:1000, gap m", text("%.2g / %.2g", light.worst_gap, heavy.worst_gap));
   EXPECT_LT(std::max(light.worst_gap, heavy.worst_gap), 0.01);
 
   {
@@ -63,7 +55,6 @@ TEST(QualityPeers, ScenesOfTheComparison) {
     const BodyId box = add_box<Dim3>(world, {0, 0.5, 0}, 0.5f, {0.5f, 0, 1, 0});
     run(world, 300);
     const double creep = world.state(box).value().pose.position.x;
-    peer_row("d: creep at .98 μ in 5 s, m", text("%.4f", creep));
     EXPECT_LT(creep, 0.003);
   }
   {
@@ -83,7 +74,6 @@ TEST(QualityPeers, ScenesOfTheComparison) {
       last = wy;
     }
     const double energy = 100 * (world.totals().kinetic_energy / before - 1);
-    peer_row("e: spin energy in 60 s, flips", text("%+.3f %%, %.0f", energy, double(flips)));
     EXPECT_EQ(flips, 13);
     EXPECT_LT(std::abs(energy), 0.1);
   }
@@ -108,7 +98,6 @@ TEST(QualityPeers, ScenesOfTheComparison) {
     const double box = lost(geometry::Box{{0.25f, 0.25f, 0.25f}}, 0.25, normalize(Quatf{0.98877f, 0, 0.14944f, 0})),
                  ball = lost(geometry::Sphere{0.3f}, 0.3, {}),
                  capsule = lost(geometry::Capsule3{0.3f, 0.3f}, 0.3, normalize(Quatf{1, 1, 0, 0}));
-    peer_row("f: speed lost, box/sphere/capsule", text("%.2g / %.2g / %.2g %%", box, ball, capsule));
     EXPECT_LT(std::max({box, ball, capsule}), 0.1);
   }
   {
@@ -117,7 +106,6 @@ TEST(QualityPeers, ScenesOfTheComparison) {
     const BodyId ball = add_ball<Dim3>(world, {-3, 0, 0}, 0.05f, {}, {300, 0, 0});
     run(world, 60);
     const bool stops = world.state(ball).value().pose.position.x < 0;
-    peer_row("g: ball at 300 m/s", stops ? "stops" : "tunnels");
     EXPECT_TRUE(stops);
   }
   {
@@ -129,7 +117,6 @@ TEST(QualityPeers, ScenesOfTheComparison) {
     world.set_velocity(box, {5, 0, 0}, {}).value();
     run(world, 180);
     const double way = world.state(box).value().pose.position.x - start;
-    peer_row("h: stop (2.548 m)", text("%.3f", way));
     EXPECT_NEAR(way, 2.548, 0.02548);
   }
 }
