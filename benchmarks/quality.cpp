@@ -1,10 +1,13 @@
 // bench_quality: the scenes of docs/quality.md in Carom and in the peers found at build time, one after the other.
 //   bench_quality [--only SCENE] [--engine NAME] [--dimension 2|3] [--json FILE] [--plot FILE] [--table FILE]
+//     [--commits TEXT]
 // --table writes the tables into a Markdown file between <!-- peers --> and <!-- end of peers -->; else they are
-// printed. --plot writes FILE for space; the plane's goes beside it as FILE with 2d before its extension.
+// printed; --commits says of which states the peers' sources are. --plot writes FILE for space; the plane's goes beside
+// it as FILE with 2d before its extension.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <sstream>
 
@@ -44,7 +47,7 @@ std::vector<Contender> contenders(int dimension) {
 namespace {
 
 struct Options {
-  std::string only, engine, json, plot, table;
+  std::string only, engine, json, plot, table, commits;
   int dimension = 0;
 };
 
@@ -52,17 +55,19 @@ Options read_options(int argc, char** argv) {
   Options o;
   for (int i = 1; i < argc; ++i) {
     const auto is = [&](const char* name) { return std::strcmp(argv[i], name) == 0; };
-    std::string* value = is("--only")     ? &o.only
-                         : is("--engine") ? &o.engine
-                         : is("--json")   ? &o.json
-                         : is("--plot")   ? &o.plot
-                         : is("--table")  ? &o.table
-                                          : nullptr;
+    std::string* value = is("--only")      ? &o.only
+                         : is("--engine")  ? &o.engine
+                         : is("--json")    ? &o.json
+                         : is("--plot")    ? &o.plot
+                         : is("--table")   ? &o.table
+                         : is("--commits") ? &o.commits
+                                           : nullptr;
     if ((value == nullptr && !is("--dimension")) || i + 1 == argc) {
-      std::fprintf(stderr,
-                   "bench_quality: what is '%s'? Known: --only, --engine, --dimension, --json, --plot, --table, "
-                   "each with a value\n",
-                   argv[i]);
+      std::fprintf(
+          stderr,
+          "bench_quality: what is '%s'? Known: --only, --engine, --dimension, --json, --plot, --table, --commits, "
+          "each with a value\n",
+          argv[i]);
       std::exit(2);
     }
     if (value != nullptr)
@@ -88,6 +93,29 @@ QualityTable measure(int dimension, const Options& options) {
     table.figures.push_back(measurement.figures());
   }
   return table;
+}
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
+  return "unknown processor";
+}
+/// When, where and with what the tables were measured.
+std::string circumstances(const std::vector<QualityTable>& tables, const std::string& commits) {
+  char day[16];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(day, sizeof day, "%Y-%m-%d", std::gmtime(&now));
+  std::string versions, last;
+  for (const QualityTable& table : tables)
+    for (const Contender& engine : table.engines) {
+      const std::string name = engine.name.substr(0, engine.name.find(',')) + " (" + engine.version + ")";
+      if (engine.version.empty() || name == last) continue;
+      versions += (versions.empty() ? "" : ", ") + name;
+      last = name;
+    }
+  return std::string(day) + ", one run on one thread, " + processor() + ". " + versions +
+         (commits.empty() ? "" : "; " + commits) + ".\n\n";
 }
 
 bool write(const std::string& file, const std::string& text) {
@@ -128,6 +156,7 @@ int main(int argc, char** argv) {
     written = write(file, svg(tables.back())) && written;
   }
   if (!options.json.empty()) written = write(options.json, json(tables)) && written;
+  text = circumstances(tables, options.commits) + text;
   if (!options.table.empty())
     written = write_between(options.table, text) && written;
   else

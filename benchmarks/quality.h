@@ -12,7 +12,7 @@ namespace carom::bench {
 
 /// One row of the table.
 struct Figure {
-  std::string scene;  ///< of docs/quality.md: a gate's number, or a letter of the list of its second table
+  std::string scene;  ///< of docs/quality.md: a gate's number, or the letter of a scene of its second table
   std::string what, unit;
   double truth = 0;
   double bar = 0;  ///< error that the gate allows, in the unit; 0: a count without a bar

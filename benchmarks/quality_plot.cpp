@@ -9,7 +9,8 @@ namespace carom::bench {
 namespace {
 
 constexpr double low = 1e-4, high = 1e4;  ///< of the bar
-constexpr double left = 470, width = 500, top = 84, row_height = 22, bottom = 40;
+constexpr double left = 470, width = 500, top = 84, row_height = 25, bottom = 40;
+constexpr double apart = 2.2;  ///< engines' marks, downwards, so that equal ones are seen
 
 std::string escaped(const std::string& s) {
   std::string out;
@@ -81,7 +82,7 @@ std::string svg(const QualityTable& table) {
     for (std::size_t i = table.engines.size(); i-- > 0;)
       if (const Figure* f = table.find(i, rows[r])) {
         const double ratio = std::isfinite(f->value) ? f->error() / f->bar : high;
-        mark(out, i, x_of(ratio), y);
+        mark(out, i, x_of(ratio), y + apart * (double(i) - 0.5 * double(table.engines.size() - 1)));
       }
   }
   return out + "</svg>\n";

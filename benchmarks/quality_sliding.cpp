@@ -34,7 +34,7 @@ void critical_slope(Measurement& m) {
   stage.add(ground(0.5));
   const int cube = stage.add(cube_at({0, 0.5, 0}, 0.5, 1, 0.5));
   stage.run(300);
-  m.tell("d", "slope at .98 of critical, first 5 s: moved", "m", 0, 1e-3, std::abs(stage.motion(cube).position.x));
+  m.tell("d", "slope at .98 of critical, first 5 s: moved", "m", 0, 1e-4, std::abs(stage.motion(cube).position.x));
 }
 
 void stop_distance(Measurement& m) {

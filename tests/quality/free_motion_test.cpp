@@ -116,10 +116,9 @@ TYPED_TEST(QualityFree, MomentumOfAPile) {
     turned = std::abs(after.angular_momentum - before.angular_momentum);
   else
     turned = length(after.angular_momentum - before.angular_momentum);
-  Gate(21, "80 bodies of 1 : 10⁴ collide: momentum off by (of Σ|p|)", D::dimension)
-
+  Gate(21, "80 bodies of 1 : 10⁴ collide: momentum off by (of Σ‖p‖)", D::dimension)
       .at_most(length(after.momentum - before.momentum) / linear, 1e-6);
-  Gate(21, "the same: angular momentum off by (of Σ|r||p|)", D::dimension)
+  Gate(21, "the same: angular momentum off by (of Σ‖r‖‖p‖)", D::dimension)
       .not_yet(0.0014)
       .at_most(turned / angular, 1e-6);
 }
