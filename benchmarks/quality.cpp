@@ -4,6 +4,7 @@
 // --table writes the tables into a Markdown file between <!-- peers --> and <!-- end of peers -->; else they are
 // printed; --commits says of which states the peers' sources are. --plot writes FILE for space; the plane's goes beside
 // it as FILE with 2d before its extension.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

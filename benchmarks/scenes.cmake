@@ -3,5 +3,5 @@ set(folder ${CMAKE_CURRENT_LIST_DIR})
 add_library(carom_benchmark_scenes STATIC EXCLUDE_FROM_ALL ${folder}/recipe.cpp ${folder}/suites.cpp
   ${folder}/scenes_box3d.cpp ${folder}/scenes_box2d.cpp ${folder}/scenes_jolt.cpp ${folder}/rain2.cpp ${folder}/rain3.cpp
   ${folder}/ragdolls_jolt.cpp ${folder}/characters_jolt.cpp
-  ${folder}/measure.cpp ${folder}/carom_engine.cpp)
+  ${folder}/measure.cpp)
 target_link_libraries(carom_benchmark_scenes PUBLIC carom carom_flags)
