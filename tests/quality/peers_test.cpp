@@ -55,7 +55,7 @@ TEST(QualityPeers, ScenesOfTheComparison) {
     const BodyId box = add_box<Dim3>(world, {0, 0.5, 0}, 0.5f, {0.5f, 0, 1, 0});
     run(world, 300);
     const double creep = world.state(box).value().pose.position.x;
-    EXPECT_LT(creep, 0.003);
+    EXPECT_LT(creep, 1e-4);  // friction has taken back what slipped before the box sleeps
   }
   {
     World3 world(world_with<Dim3>(0));

@@ -6,6 +6,7 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr std::uint64_t sleep_interval = 4;  ///< steps between looks at the islands
+constexpr float settling_time = 1;           ///< s: so long friction may take back what slipped before a body sleeps
 
 /// Union-find over places in the list of awake bodies; roots are the lowest place of their set.
 std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t i) {
@@ -57,6 +58,14 @@ bool in_graph(const ContactRecord<D>& c) {
   return c.first_manifold != none && c.awake_index != none;
 }
 
+/// Friction of the contact still takes back what slipped while it took up its load.
+template <class D>
+bool still_settles(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
+  for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next)
+    if (world.contacts.manifold(m).anchor == Anchor::settles) return true;
+  return false;
+}
+
 /// The same for islands in which nothing is restless: only what their bodies touch is looked at. In the end the roots
 /// of islands that may sleep are not restless.
 template <class D>
@@ -94,7 +103,12 @@ void unite_tired(const WorldImplementation<D>& world, std::vector<std::int32_t>&
       const ContactRecord<D>& c = world.contacts.at(key >> 1);
       const int side = key & 1;
       key = c.next[side];
-      if ((c.flags & contact_touching) != 0 && in_graph(c)) join(std::int32_t(i), c.body[1 - side]);
+      if ((c.flags & contact_touching) == 0 || !in_graph(c)) continue;
+      if (world.bodies.record[std::size_t(body)].sleep_timer < world.definition.sleep_time + settling_time &&
+          still_settles(world, c))
+        restless[i] = 1;
+      else
+        join(std::int32_t(i), c.body[1 - side]);
     }
   }
   for (const GraphColor& color : world.graph.colors)
