@@ -20,6 +20,7 @@ struct BodyRocket::Flight {
 
   explicit Flight(const BodyRocketDef& d)
       : definition(d), run(definition.rocket, definition.conditions, definition.launch, RocketModel::six_degrees) {
+    definition.conditions.field_time += d.start;
     const Rocket& rocket = definition.rocket;
     double bottom = rocket.length;
     for (std::size_t i = 0; i < rocket.stages.size(); ++i) {
@@ -142,6 +143,12 @@ core::Result<BodyRocket> BodyRocket::make(rigid::World3& world, const BodyRocket
   return made;
 }
 
+void BodyRocket::set_conditions(const Conditions& conditions) {
+  BodyRocketDef definition = flight_->definition;
+  definition.conditions = conditions;
+  flight_ = std::make_shared<const Flight>(definition);
+}
+
 core::Status BodyRocket::set_mass(rigid::World3& world, double time) {
   const Rocket& rocket = flight_->definition.rocket;
   const detail::MassNow now = detail::mass_at(rocket, flight_->run.schedule, time);
@@ -234,7 +241,7 @@ core::Status BodyRocket::before_step(rigid::World3& world, double dt) {
     if (under_parachute_) {
       // Drag that would stop it within a fraction of a step is taken at the end of the part.
       const environment::AirColumn::Air air = d.conditions.air.at(s.position.y);
-      const Vec3d wind = d.conditions.wind.at(s.position.y);
+      const Vec3d wind = detail::wind_of(d.conditions, s.position, time);
       const Vec3d pulled = s.velocity - wind + h * detail::beside_drag(d.conditions, s.position, s.velocity);
       const double drag = 0.5 * air.density * rocket.parachute.drag_area / mass_ * length(s.velocity - wind);
       s.velocity = wind + pulled / (1 + h * drag);

@@ -35,6 +35,8 @@ class CAROM_API BodyRocket {
  public:
   /// Makes the bodies. Errors: what fly_rocket and the world refuse.
   static core::Result<BodyRocket> make(rigid::World3& world, const BodyRocketDef& definition);
+  /// Other air, wind and gravity from now on.
+  void set_conditions(const Conditions& conditions);
   /// Before each step of `dt` s: forces, mass, and what drops.
   core::Status before_step(rigid::World3& world, double dt);
 

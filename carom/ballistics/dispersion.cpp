@@ -88,6 +88,10 @@ core::Result<Spread> spread_at(const Gun& gun, const Conditions& conditions, con
   for (environment::WindColumn::Level& level : levels) level.velocity.z += 1;
   Conditions windier = conditions;
   windier.wind = environment::WindColumn(levels);
+  if (conditions.field)
+    windier.field = [&](math::Vec3d point, double time) {
+      return conditions.field(point, time) + math::Vec3d{0, 0, 1};
+    };
   if (const core::Result<void> r = add(place(gun, windier, distance), 1, variation.wind); !r.ok()) return r.error();
   const double nearer = math::min(1.0, 0.01 * distance);
   if (const core::Result<void> r = add(place(gun, conditions, distance - nearer), nearer, variation.range); !r.ok())

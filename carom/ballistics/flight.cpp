@@ -1,6 +1,6 @@
 #include "carom/ballistics/flight.h"
 
-#include "carom/ballistics/detail/point_mass.h"
+#include "carom/ballistics/detail/flight_air.h"
 #include "carom/core/string.h"
 #include "carom/ode/dormand_prince.h"
 
@@ -28,8 +28,8 @@ Vec3d earth_rotation_rate(double latitude, double bearing) {
   return rate * (math::cos(latitude) * north + math::sin(latitude) * Vec3d{0, 1, 0});
 }
 
-Vec3d acceleration(const Projectile& projectile, const Conditions& conditions, const State& state) {
-  return detail::point_mass_acceleration(projectile, conditions, state.position, state.velocity);
+Vec3d acceleration(const Projectile& projectile, const Conditions& conditions, const State& state, double time) {
+  return detail::flight_acceleration(projectile, conditions, state.position, state.velocity, time);
 }
 
 Trajectory::Point Trajectory::at(double time) const {
@@ -121,17 +121,19 @@ core::Result<Trajectory> fly(const Projectile& projectile, const Conditions& con
     return core::Error{core::refused("time limit of a flight", limits.time, "a finite number of seconds > 0")};
   if (!(limits.tolerance > 0) || limits.tolerance > 0.1)
     return core::Error{core::refused("tolerance of a flight", limits.tolerance, "a number in (0, 0.1]")};
-  const auto derivative = [&](double, const State& s) {
-    return State{s.velocity, acceleration(projectile, conditions, s)};
+  const auto derivative = [&](double t, const State& s) {
+    return State{s.velocity, acceleration(projectile, conditions, s, t)};
   };
-  ode::DormandPrince<State> solver(0, {start.position, start.velocity},
-                                   {.relative_tolerance = limits.tolerance,
-                                    .absolute_tolerance = limits.tolerance,
-                                    .maximum_step = math::max(1e-3, 0.02 * limits.time)});
+  const double longest = math::max(1e-3, 0.02 * limits.time);
+  ode::DormandPrince<State> solver(
+      0, {start.position, start.velocity},
+      {.relative_tolerance = limits.tolerance,
+       .absolute_tolerance = limits.tolerance,
+       .maximum_step = conditions.field ? math::min(longest, detail::longest_field_step) : longest});
   std::vector<Trajectory::Node> nodes;
   const auto add = [&] {
     const State& s = solver.y();
-    nodes.push_back({solver.t(), s.position, s.velocity, acceleration(projectile, conditions, s)});
+    nodes.push_back({solver.t(), s.position, s.velocity, acceleration(projectile, conditions, s, solver.t())});
   };
   add();
   const auto remaining = [&](const State& s) {
@@ -154,7 +156,7 @@ core::Result<Trajectory> fly(const Projectile& projectile, const Conditions& con
       while (nodes.size() > 1 && nodes.back().time > end->time) nodes.pop_back();
       const State s{end->position, end->velocity};
       if (end->time > nodes.back().time)
-        nodes.push_back({end->time, s.position, s.velocity, acceleration(projectile, conditions, s)});
+        nodes.push_back({end->time, s.position, s.velocity, acceleration(projectile, conditions, s, end->time)});
     }
     break;
   }

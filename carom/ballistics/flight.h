@@ -7,7 +7,7 @@
 
 #include "carom/ballistics/drag_curve.h"
 #include "carom/core/function_ref.h"
-#include "carom/environment/column.h"
+#include "carom/environment/wind_field.h"
 #include "carom/forces/projectile.h"
 #include "carom/ode/state.h"
 
@@ -45,14 +45,20 @@ struct Conditions {
   double earth_radius = 6356766;  ///< m
   /// rad/s, the turning of the frame: adds the true −2Ω × v. Zero: no Coriolis force.
   math::Vec3d rotation{};
+  /// Wind by place and time, which stands for `wind` where there is one: gusts, thermals, lees. Flights, shells,
+  /// rockets and bodies of a world feel it, in steps of at most a fiftieth of a second. Batches and the aim solver know
+  /// wind by height alone: they keep to `wind`.
+  environment::WindFunction field{};
+  double field_time = 0;  ///< s: of the field when a flight begins, or when a world's time is 0
 };
 
 /// The Earth's turning in a local frame whose x axis points to compass bearing `bearing` (rad from north over east):
 /// Ω (cos φ north + sin φ up).
 CAROM_API math::Vec3d earth_rotation_rate(double latitude, double bearing);
 
-/// Acceleration (m/s²) of the projectile.
-CAROM_API math::Vec3d acceleration(const Projectile& projectile, const Conditions& conditions, const State& state);
+/// Acceleration (m/s²) of the projectile, `time` s after the flight began.
+CAROM_API math::Vec3d acceleration(const Projectile& projectile, const Conditions& conditions, const State& state,
+                                   double time = 0);
 
 /// A flight as nodes with a polynomial of fifth order between them: ask it at any time, distance or height.
 class CAROM_API Trajectory {

@@ -98,6 +98,7 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
   bool apex_passed = false, landed = false;
   add_node();
   std::vector<char> ignited(rocket.stages.size(), 0), burnt(rocket.stages.size(), 0), dropped(rocket.stages.size(), 0);
+  const double leg = model == RocketModel::six_degrees || conditions.field ? detail::longest_field_step : 0.25;
   while (time < limits.time && !landed) {
     for (std::size_t i = 0; i < rocket.stages.size(); ++i) {
       const auto& entry = run.schedule.stages[i];
@@ -110,7 +111,7 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
       under_parachute = true;
       tell(RocketEvent::parachute);
     }
-    double until = math::min(limits.time, time + (model == RocketModel::six_degrees ? 0.02 : 0.25));
+    double until = math::min(limits.time, time + leg);
     for (const double stop : stops)
       if (stop > time) until = math::min(until, stop);
     if (deploy_at > time) until = math::min(until, deploy_at);
@@ -139,7 +140,7 @@ core::Result<RocketFlight> fly_rocket(const Rocket& rocket, const Conditions& co
     state = solver.y();
     if (math::length(state.axis) > 0) state.axis = state.axis / math::length(state.axis);
     if (!on_rail && model == RocketModel::six_degrees && !under_parachute && math::length(state.velocity) > 5)
-      largest_angle = math::max(largest_angle, run.angle_of_attack(state));
+      largest_angle = math::max(largest_angle, run.angle_of_attack(time, state));
     if (found) {
       event(time, state);
       if (what == rail) {

@@ -1,5 +1,6 @@
 #include "carom/ballistics/shell.h"
 
+#include "carom/ballistics/detail/flight_air.h"
 #include "carom/core/string.h"
 #include "carom/ode/dormand_prince.h"
 
@@ -109,8 +110,7 @@ namespace detail {
 
 /// Gravity and the turning frame: the acceleration of something without drag.
 Vec3d free_acceleration(const Conditions& conditions, Vec3d position, Vec3d velocity) {
-  static const Projectile nothing{};
-  return acceleration(nothing, conditions, {position, velocity});
+  return beside_drag(conditions, position, velocity);
 }
 
 struct PointMassMotion {
@@ -118,9 +118,10 @@ struct PointMassMotion {
   Vec3d yaw;
 };
 
-PointMassMotion modified_point_mass(const Shell& shell, const Conditions& conditions, const SpinningPoint& s) {
+PointMassMotion modified_point_mass(const Shell& shell, const Conditions& conditions, double time,
+                                    const SpinningPoint& s) {
   const environment::AirColumn::Air air = conditions.air.at(s.position.y);
-  const Vec3d v = s.velocity - conditions.wind.at(s.position.y),
+  const Vec3d v = s.velocity - wind_of(conditions, s.position, time),
               g = free_acceleration(conditions, s.position, s.velocity);
   const double speed = math::length(v), area = frontal_area(shell), d = shell.diameter;
   if (!(speed > 1e-9) || !(air.density > 0)) return {{s.velocity, g, 0}, {}};
@@ -138,9 +139,9 @@ PointMassMotion modified_point_mass(const Shell& shell, const Conditions& condit
   return {{s.velocity, a, spin}, yaw};
 }
 
-SymmetricBody six_degrees(const Shell& shell, const Conditions& conditions, const SymmetricBody& s) {
+SymmetricBody six_degrees(const Shell& shell, const Conditions& conditions, double time, const SymmetricBody& s) {
   const environment::AirColumn::Air air = conditions.air.at(s.position.y);
-  const Vec3d w = s.velocity - conditions.wind.at(s.position.y),
+  const Vec3d w = s.velocity - wind_of(conditions, s.position, time),
               g = free_acceleration(conditions, s.position, s.velocity);
   const Vec3d e = s.axis / math::length(s.axis);
   const double p = math::dot(s.momentum, e) / shell.axial_inertia;
@@ -228,21 +229,24 @@ core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& condit
   const core::Result<void> checked = detail::check(shell, start, limits);
   if (!checked.ok()) return checked.error();
   const double spin = muzzle_spin(shell, math::length(start.velocity));
-  const auto angle = [&](Vec3d axis, Vec3d position, Vec3d velocity) {
-    const Vec3d w = velocity - conditions.wind.at(position.y);
+  const auto longest = [&](double step) {
+    return conditions.field ? math::min(step, detail::longest_field_step) : step;
+  };
+  const auto angle = [&](double time, Vec3d axis, Vec3d position, Vec3d velocity) {
+    const Vec3d w = velocity - detail::wind_of(conditions, position, time);
     return math::atan2(math::length(math::cross(axis, w)), math::dot(axis, w));
   };
   if (model == ShellModel::modified_point_mass) {
     return detail::integrate(
-        detail::SpinningPoint{start.position, start.velocity, spin}, start, limits, 0.25,
-        [&](double, const detail::SpinningPoint& s) {
-          return detail::modified_point_mass(shell, conditions, s).derivative;
+        detail::SpinningPoint{start.position, start.velocity, spin}, start, limits, longest(0.25),
+        [&](double time, const detail::SpinningPoint& s) {
+          return detail::modified_point_mass(shell, conditions, time, s).derivative;
         },
         [&](double time, const detail::SpinningPoint& s) {
-          const Vec3d yaw = detail::modified_point_mass(shell, conditions, s).yaw;
-          const Vec3d w = s.velocity - conditions.wind.at(s.position.y);
+          const Vec3d yaw = detail::modified_point_mass(shell, conditions, time, s).yaw;
+          const Vec3d w = s.velocity - detail::wind_of(conditions, s.position, time);
           const Vec3d axis = math::normalize(math::normalize(w) + yaw);
-          return ShellState{time, s.position, s.velocity, s.spin, axis, angle(axis, s.position, s.velocity)};
+          return ShellState{time, s.position, s.velocity, s.spin, axis, angle(time, axis, s.position, s.velocity)};
         });
   }
   const Vec3d axis = math::normalize(start.velocity);
@@ -250,13 +254,13 @@ core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& condit
   const detail::SymmetricBody first{start.position, start.velocity, axis,
                                     (shell.axial_inertia * spin) * axis + shell.transverse_inertia * across};
   return detail::integrate(
-      first, start, limits, 0.05,
-      [&](double, const detail::SymmetricBody& s) { return detail::six_degrees(shell, conditions, s); },
+      first, start, limits, longest(0.05),
+      [&](double time, const detail::SymmetricBody& s) { return detail::six_degrees(shell, conditions, time, s); },
       [&](double time, const detail::SymmetricBody& s) {
         const Vec3d e = s.axis / math::length(s.axis);
         return ShellState{time,       s.position,
                           s.velocity, math::dot(s.momentum, e) / shell.axial_inertia,
-                          e,          angle(e, s.position, s.velocity)};
+                          e,          angle(time, e, s.position, s.velocity)};
       });
 }
 

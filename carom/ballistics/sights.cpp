@@ -1,5 +1,6 @@
 #include "carom/ballistics/sights.h"
 
+#include "carom/ballistics/detail/flight_air.h"
 #include "carom/core/string.h"
 
 namespace carom::ballistics {
@@ -104,7 +105,7 @@ core::Result<SightedFlight> SightedFlight::fire(const Gun& gun, const Conditions
     const double twist = math::abs(gun.twist);
     seen.stability_ = density > 0 ? miller_stability(*gun.shape, twist, gun.muzzle_speed / foot, density / 1.225) : 0;
     seen.twist_sign_ = gun.twist > 0 ? 1 : -1;
-    const double from_right = -math::dot(conditions.wind.at(0), line.right) / mph;
+    const double from_right = -math::dot(detail::wind_of(conditions, {}, 0), line.right) / mph;
     seen.jump_ = seen.twist_sign_ * from_right * aerodynamic_jump(seen.stability_, *gun.shape) * minute_of_angle;
   }
   return seen;

@@ -43,6 +43,12 @@ WindColumn::WindColumn(std::span<const Level> levels) : levels_(levels.begin(), 
   prepare();
 }
 
+WindColumn WindColumn::raised(double by) const {
+  std::vector<Level> levels = levels_;
+  for (Level& level : levels) level.height += by;
+  return WindColumn(levels);
+}
+
 void WindColumn::prepare() {
   constexpr double octaves = 30;  // what is nearer to the lowest level than that is searched level by level
   if (levels_.empty()) return;

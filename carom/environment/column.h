@@ -80,6 +80,8 @@ class CAROM_API WindColumn {
     return leg.velocity + (height - leg.height) * leg.shear;
   }
   std::span<const Level> levels() const { return levels_; }
+  /// The same with every level `by` m higher.
+  WindColumn raised(double by) const;
   /// Calls `f` with the heights of the levels between `low` and `high` m, in rising order, at which the wind leaves the
   /// line of the leg below by more than `least` m/s within the two legs beside it.
   template <class F>

@@ -41,6 +41,11 @@ Vec3d WindField::at(Vec3d point, double time, double ground) const {
   return wind;
 }
 
+WindColumn column_of(const WindField& field, double ground) {
+  const WindColumn above = field.layers.empty() ? WindColumn(field.mean, 20e3) : WindColumn(field.layers);
+  return ground == 0 ? above : above.raised(ground);
+}
+
 core::Status validate(const WindField& field) {
   core::Status status;
   const auto wants = [&](bool good, const auto& name, double found, const char* expected) {

@@ -2,6 +2,7 @@
 // thermals, lees of obstacles and wakes of wings. The y axis is up.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "carom/environment/column.h"
@@ -30,6 +31,14 @@ struct WindField {
   /// the uniform wind blows.
   CAROM_API math::Vec3d at(math::Vec3d point, double time, double ground = 0) const;
 };
+
+/// The velocity of the air (m/s) at a place (m) and a time (s), for models that know no more of the wind: a pure
+/// function, as WindField::at and Environment::wind are.
+using WindFunction = std::function<math::Vec3d(math::Vec3d point, double time)>;
+
+/// The steady part over the height y, above ground that lies at `ground` m: for what asks by height alone. Profiles go
+/// on to 20 km.
+CAROM_API WindColumn column_of(const WindField& field, double ground = 0);
 
 /// Names what is not finite or out of range.
 CAROM_API core::Status validate(const WindField& field);

@@ -1,5 +1,7 @@
 #include "carom/sports/bounce.h"
 
+#include <optional>
+
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/ode/dormand_prince.h"
@@ -161,8 +163,13 @@ core::Result<Shot> play(const Ball& ball, const Conditions& conditions, const Ba
   const Ground first = ground(start.position.x, start.position.z);
   bool on_ground = (start.position.y - first.height) * first.normal.y - ball.radius <= 1e-9 &&
                    math::dot(start.velocity, first.normal) <= 1e-9;
+  std::optional<Conditions> later;  // the time of a field of wind goes on from leg to leg
   for (int i = 0; !on_ground && now < limits.time; ++i) {
-    auto leg = fly_until(ball, conditions, state, [&](double, const BallState& s) { return gap(s); },
+    if (conditions.field && i > 0) {
+      if (!later) later = conditions;
+      later->field_time = conditions.field_time + now;
+    }
+    auto leg = fly_until(ball, later ? *later : conditions, state, [&](double, const BallState& s) { return gap(s); },
                          {.time = limits.time - now, .tolerance = limits.tolerance});
     if (!leg) return leg.error();
     shot.legs_.push_back({now, Shot::Phase::flight, std::move(*leg)});

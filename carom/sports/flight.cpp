@@ -9,7 +9,7 @@ BallState derivative(const Ball& ball, const Conditions& conditions, double time
   const double height = state.position.y;
   const Air air{conditions.air.at(height).density, conditions.viscosity};
   const forces::Wrench3 load =
-      air_load(ball, air, {state.velocity - conditions.wind.at(height), state.spin, state.turned, time});
+      air_load(ball, air, {state.velocity - wind_at(conditions, state.position, time), state.spin, state.turned, time});
   return {state.velocity, load.force / ball.mass - Vec3d{0, conditions.gravity, 0}, load.moment / inertia(ball),
           math::length(state.spin)};
 }
@@ -127,11 +127,12 @@ core::Result<BallFlight> fly_until(const Ball& ball, const Conditions& condition
     return core::Error{"gravity and viscosity of a flight must be finite, and viscosity above 0"};
 
   const auto rates = [&](double t, const BallState& s) { return derivative(ball, conditions, t, s); };
+  const double longest = math::max(1e-3, 0.02 * limits.time);
   // The angle turned may be large and matters least; it is an integral of the rest and follows from its accuracy.
   ode::DormandPrince<BallState> solver(0, start,
                                        {.relative_tolerance = limits.tolerance,
                                         .absolute_tolerance = limits.tolerance,
-                                        .maximum_step = math::max(1e-3, 0.02 * limits.time)});
+                                        .maximum_step = conditions.field ? math::min(longest, 0.05) : longest});
   std::vector<BallFlight::Node> nodes;
   nodes.reserve(64);
   const auto add = [&] { nodes.push_back({solver.t(), solver.y(), rates(solver.t(), solver.y())}); };

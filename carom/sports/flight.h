@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "carom/core/function_ref.h"
-#include "carom/environment/column.h"
+#include "carom/environment/wind_field.h"
 #include "carom/ode/state.h"
 #include "carom/sports/ball.h"
 
@@ -30,7 +30,15 @@ struct Conditions {
   environment::WindColumn wind{};
   double viscosity = 1.7894e-5;  ///< Pa·s
   double gravity = 9.80665;      ///< m/s²
+  /// Wind by place and time, which stands for `wind` where there is one: gusts, thermals, lees. Flights take steps of
+  /// at most a twentieth of a second through it.
+  environment::WindFunction field{};
+  double field_time = 0;  ///< s: of the field when a flight begins, or when a world's time is 0
 };
+/// Of the air at a place, `time` s after the flight began (m/s).
+inline Vec3d wind_at(const Conditions& conditions, Vec3d position, double time) {
+  return conditions.field ? conditions.field(position, conditions.field_time + time) : conditions.wind.at(position.y);
+}
 
 /// Rates of everything in a state: v, F/m − g ŷ, torque/I, |ω|.
 CAROM_API BallState derivative(const Ball& ball, const Conditions& conditions, double time, const BallState& state);

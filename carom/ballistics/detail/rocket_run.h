@@ -1,7 +1,7 @@
 // The equations of a rocket's flight, for flights alone (rocket.cpp) and for bodies of a world (body_rocket.cpp).
 #pragma once
 
-#include "carom/ballistics/detail/point_mass.h"
+#include "carom/ballistics/detail/flight_air.h"
 #include "carom/ballistics/rocket.h"
 #include "carom/ode/state.h"
 
@@ -82,9 +82,9 @@ struct RocketRun {
 
   RocketState derivative(double time, const RocketState& s, bool on_rail, bool under_parachute) const {
     const MassNow now = mass_at(rocket, schedule, time);
-    const Vec3d g = point_mass_acceleration({}, conditions, s.position, s.velocity);
+    const Vec3d g = beside_drag(conditions, s.position, s.velocity);
     const environment::AirColumn::Air air = conditions.air.at(s.position.y);
-    const Vec3d w = s.velocity - conditions.wind.at(s.position.y);
+    const Vec3d w = s.velocity - wind_of(conditions, s.position, time);
     const double speed = math::length(w), area = math::pi / 4 * rocket.diameter * rocket.diameter;
     const double q = 0.5 * air.density * speed * speed;
     if (under_parachute) {
@@ -136,8 +136,8 @@ struct RocketRun {
     return flow;
   }
   double mass(double time) const { return mass_at(rocket, schedule, time).mass; }
-  double angle_of_attack(const RocketState& s) const {
-    const Vec3d w = s.velocity - conditions.wind.at(s.position.y);
+  double angle_of_attack(double time, const RocketState& s) const {
+    const Vec3d w = s.velocity - wind_of(conditions, s.position, time);
     return math::atan2(math::length(math::cross(s.axis, w)), math::dot(s.axis, w));
   }
 
