@@ -12,6 +12,9 @@ struct BodyFlight {
   /// turning of the frame) the effector adds.
   Conditions conditions{};
   double dt = 1.0 / 60;  ///< s, the world's step: the force is the mean over it, by one classic Runge–Kutta step
+  /// Whether it keeps to the air, and to the wind, of `conditions`. Else those of the world's Surroundings count where
+  /// it has any, and its Wind blows beside them.
+  bool own_air = false, own_wind = false;
 };
 
 /// Drag, wind and the Earth on a body: give it to World::add_effector. In the plane z is left out.

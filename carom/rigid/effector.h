@@ -153,7 +153,9 @@ template <class D>
 struct EffectorInput {
   BodyId body;
   BodyState<D> state;
-  double time;
+  double time;                                       ///< s, at the beginning of the step
+  const environment::Environment* around = nullptr;  ///< of the world's Surroundings; null where it has none
+  typename D::Position wind{};                       ///< m/s, of the world's Wind, beside what is around
 };
 template <class D>
 struct Wrench {

@@ -32,6 +32,7 @@ struct FieldForces {
   WorldImplementation<D>& world;
   double dt;
   const environment::Environment* around;
+  typename D::Position uniform_wind;
   using Position = typename D::Position;
 
   void operator()(const SphericalGravity<D>& e) const {
@@ -75,6 +76,8 @@ struct FieldForces {
       EffectorInput<D> input;
       input.body = world.bodies.slots.handle_at(body.slot);
       input.time = world.time;
+      input.around = around;
+      input.wind = uniform_wind;
       input.state.pose = world.bodies.pose[i];
       input.state.center_of_mass = motion.center;
       const float pace = world.bodies.pace(body.slot);
@@ -272,7 +275,7 @@ void apply_effectors(WorldImplementation<D>& world, float dt) {
              std::holds_alternative<ElectromagneticField<D>>(definition))
       turning = true;
   }
-  const FieldForces<D> fields{world, double(dt), resistances.around};
+  const FieldForces<D> fields{world, double(dt), resistances.around, resistances.uniform_wind};
   for (const std::int32_t slot : store.in_order) std::visit(fields, store.data[std::size_t(slot)].definition);
   if (turning) {
     const Turns<D> turns{world, double(dt), resistances.around};

@@ -72,7 +72,7 @@ rigid::EffectorDef<D> read_ball_flight(Reader& reader, const Object& o, rigid::B
   ball->side.seam_normal = seam / length;
   if (!reader.accept(sports::check(*ball), *e.node, e.path)) return rigid::LinearDrag<D>{};
   if constexpr (D::dimension == 3)
-    return sports::flight_effector(*ball, conditions, body, reader.step);
+    return sports::flight_effector(*ball, conditions, body, reader.step, o.has("density"), o.has("velocity"));
   else
     return fail("a ball_flight is of space only: balls curve out of the plane");
 }

@@ -10,7 +10,9 @@ rigid::EffectorDef<D> read_projectile(Reader& reader, const Object& o, rigid::Bo
   flight.dt = reader.step;
   const auto missing = [&](std::string_view what) { reader.fail(*o.node, o.path, what); };
   if (!o.has("body")) missing("the key \"body\" is missing in a projectile");
-  // By default as a world's; what a scene's world pulls with the effector leaves alone.
+  // Gravity as a world's by default; what a scene's world pulls with the effector leaves alone.
+  flight.own_air = o.has("density");
+  flight.own_wind = o.has("velocity");
   flight.conditions.wind = environment::WindColumn(reader.vector(o, "velocity"));
   if (o.has("density")) flight.conditions.air = environment::AirColumn::uniform(reader.number(o, "density", 1.225));
   if (o.has("latitude"))
