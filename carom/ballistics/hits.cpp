@@ -135,7 +135,7 @@ core::Status BatchHits<D>::cast_batch(const ProjectileBatch& batch, const rigid:
           typename D::Vector(detail::to_world<D>(Vec3d{arrays[0][i], arrays[1][i], arrays[2][i]} - from));
       queries_[k].filter = options.filter;
     }
-    if (const core::Status s = world.cast_rays(queries_, found_); !s.ok()) return s;
+    if (const core::Status s = world.cast_rays(queries_, {}, found_, steps_); !s.ok()) return s;
     for (std::size_t k = 0; k < size; ++k) {
       if (found_[k].shape == rigid::ShapeId{}) continue;
       const std::size_t i = first + k;
@@ -157,11 +157,13 @@ template <class D>
 core::Status BatchHits<D>::cast_rest(const rigid::World<D>& world, double dt, const HitOptions& options) {
   queries_.resize(ways_.size());
   found_.resize(ways_.size());
+  begins_.resize(ways_.size());
+  for (std::size_t i = 0; i < ways_.size(); ++i) begins_[i] = float(math::min(ways_[i].time / dt, 1.0));
   for (std::size_t i = 0; i < ways_.size(); ++i)
     queries_[i] = {detail::to_world<D>(ways_[i].from), typename D::Vector(detail::to_world<D>(ways_[i].along)),
                    options.filter};
   cast_ += ways_.size();
-  if (const core::Status s = world.cast_rays(queries_, found_); !s.ok()) return s;
+  if (const core::Status s = world.cast_rays(queries_, begins_, found_, steps_); !s.ok()) return s;
   met_.clear();
   for (std::size_t i = 0; i < ways_.size(); ++i)
     if (found_[i].shape != rigid::ShapeId{})
@@ -186,7 +188,12 @@ void BatchHits<D>::strike(ProjectileBatch& batch, rigid::World<D>& world, double
   hit.velocity = way.velocity;
   hit.normal = detail::from_world(found.normal);
   if (const auto body = world.body_of(found.shape); body.ok()) hit.body = *body;
-  const detail::Struck<D> struck(world, hit.body);
+  // The body as it was when they met; since then it has gone on.
+  detail::Struck<D> struck(world, hit.body);
+  const typename D::Pose now = struck.state.pose;
+  const auto rest = steps_.rest_of_way(hit.body, hit.time / dt);
+  struck.state.center_of_mass -= rest;
+  if (const auto then = world.pose_in_step(hit.body, hit.time / dt, steps_); then.ok()) struck.state.pose = *then;
   Vec3d relative = way.velocity - struck.velocity_at(hit.point);
   if constexpr (D::dimension == 2) relative.z = 0;
   const double speed = math::length(relative);
@@ -235,12 +242,16 @@ void BatchHits<D>::strike(ProjectileBatch& batch, rigid::World<D>& world, double
   if (hit.outcome == LayerOutcome::passed) hit.exit += hit.depth * path;
   if (options.push && struck.inverse_mass > 0 && changed > 0) {
     const typename D::Vector impulse(detail::to_world<D>(hit.impulse));
-    if (const core::Status s = world.add_impulse_at(hit.body, impulse, detail::to_world<D>(hit.point)); !s.ok())
+    if (const core::Status s = world.add_impulse_at(hit.body, impulse, detail::to_world<D>(hit.point) + rest); !s.ok())
       hit.impulse = {};
   }
   hits_.push_back(hit);
   if (hit.outcome == LayerOutcome::stopped) {
-    batch.place(way.projectile, {hit.exit, hit.exit_velocity});
+    const auto place =
+        steps_.way_of(hit.body) == nullptr
+            ? hit.exit
+            : detail::from_world(world_point(now, local_point(struck.state.pose, detail::to_world<D>(hit.exit))));
+    batch.place(way.projectile, {place, hit.exit_velocity});
     stopped_.push_back(way.projectile);
     return;
   }
@@ -260,6 +271,8 @@ core::Status BatchHits<D>::collect(ProjectileBatch& batch, rigid::World<D>& worl
   cast_ = 0;
   if (!(dt > 0) || !math::is_finite(dt))
     return core::Error{core::text("BatchHits::collect: ", core::refused("dt", dt, "a finite number of seconds > 0"))};
+  world.find_ways(steps_);
+  if (!(math::abs(dt - double(steps_.dt)) < 1e-4 * dt)) steps_.clear();
   if (const core::Status s = cast_batch(batch, world, dt, options); !s.ok()) return s;
   for (int order = 0; order < options.most_hits && !met_.empty(); ++order) {
     std::sort(met_.begin(), met_.end(), [](const Met& a, const Met& b) {

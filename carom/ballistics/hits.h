@@ -1,8 +1,10 @@
 // Projectiles of a batch meet the bodies of a world: what they hit on their way through a step, what of them goes
 // through or skips off, and the push they give (chapters 2.6, 18.5).
 //
-// A step is swept as a segment from where each projectile was to where it is, so that no speed carries it through a
-// body unseen. Bodies stand where the world has them now: step the world, then the batch, then ask.
+// A step is swept as a segment from where each projectile was to where it is, and bodies move through it meanwhile from
+// where the world's last step found them to where they are, so that no speed of either carries one through the other
+// unseen. Step the world, then the batch by the same time, then ask. After a step of another length than the world's
+// last one bodies stand where they are.
 #pragma once
 
 #include <cstdint>
@@ -90,7 +92,9 @@ class CAROM_API BatchHits {
   std::vector<BatchHit> hits_;
   std::vector<Way> ways_;
   std::vector<Met> met_;
+  rigid::StepWays<D> steps_;  // of bodies, in the world's last step
   std::vector<rigid::RayQuery<D>> queries_;
+  std::vector<float> begins_;  // of queries, parts of the step
   std::vector<rigid::RayHit<D>> found_;
   std::vector<std::size_t> stopped_;
   std::size_t cast_ = 0;

@@ -14,6 +14,7 @@
 #include "carom/rigid/events.h"
 #include "carom/rigid/snapshot.h"
 #include "carom/rigid/state.h"
+#include "carom/rigid/step_ways.h"
 
 namespace carom::rigid {
 using core::Result;
@@ -214,6 +215,14 @@ class CAROM_API World {
   // Many queries at once, on the world's threads: the same answers as one by one, to the bit. Errors: a bad query,
   // which the message names by its number, and then none is answered; results that are not as many as queries.
   Status cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const;
+  /// Bodies on their ways through the last step, for what flies meanwhile.
+  void find_ways(StepWays<D>& into) const;
+  /// Where a body was at a fraction of the last step; where it is now, if it stood.
+  Result<Pose> pose_in_step(BodyId body, double fraction, const StepWays<D>& ways) const;
+  /// Rays that go their way within the last step, ray i from the fraction begins[i] of it (none given: from 0) to its
+  /// end: what moved in it is met where it was at each moment. Points and normals are those of that moment.
+  Status cast_rays(std::span<const RayQuery<D>> rays, std::span<const float> begins, std::span<RayHit<D>> hits,
+                   const StepWays<D>& ways) const;
   Status cast_shapes(const Shape& shape, std::span<const ShapeCastQuery<D>> casts, std::span<RayHit<D>> hits) const;
   /// What query i found stands in `found` from ends[i − 1] (0 for the first) to ends[i].
   Status overlap_shapes(const Shape& shape, std::span<const OverlapQuery<D>> queries, std::vector<ShapeId>& found,

@@ -9,6 +9,7 @@
 #include "carom/rigid/detail/world_joints.inl"
 #include "carom/rigid/detail/world_queries.inl"
 #include "carom/rigid/detail/world_snapshot.inl"
+#include "carom/rigid/detail/world_ways.inl"
 #include "carom/rigid/detail/world_whole.inl"
 
 namespace carom::rigid {

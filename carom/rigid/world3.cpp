@@ -10,6 +10,7 @@
 #include "carom/rigid/detail/world_queries.inl"
 #include "carom/rigid/detail/world_snapshot.inl"
 #include "carom/rigid/detail/world_terrain.inl"
+#include "carom/rigid/detail/world_ways.inl"
 #include "carom/rigid/detail/world_whole.inl"
 
 namespace carom::rigid {

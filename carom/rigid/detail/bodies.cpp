@@ -120,6 +120,15 @@ void deactivate_body(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   if (record.awake_index == none) return;
   const std::int32_t last = world.bodies.awake.back();
+  // The ways of the last step stay beside their bodies; one without a way stands.
+  std::vector<SweepStart<D>>& ways = world.scratch.swept;
+  const std::size_t place = std::size_t(record.awake_index), end = world.bodies.awake.size() - 1;
+  if (end < ways.size()) {
+    ways[place] = ways[end];
+    ways.pop_back();
+  } else if (place < ways.size()) {
+    ways[place] = {world.bodies.pose[std::size_t(last)].rotation, world.bodies.motion[std::size_t(last)].center, {}, 1};
+  }
   world.bodies.awake[std::size_t(record.awake_index)] = last;
   world.bodies.record[std::size_t(last)].awake_index = record.awake_index;
   world.bodies.awake.pop_back();

@@ -19,6 +19,11 @@ Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
   wake_touching(*self_, *slot);
   self_->bodies.pose[std::size_t(*slot)] = {position, unit_rotation(rotation)};
   center_from_pose(*self_, *slot);
+  // What is set from place to place has gone no way in between.
+  const std::size_t place = std::size_t(self_->bodies.record[std::size_t(*slot)].awake_index);
+  if (place < self_->scratch.swept.size())
+    self_->scratch.swept[place] = {
+        self_->bodies.pose[std::size_t(*slot)].rotation, self_->bodies.motion[std::size_t(*slot)].center, {}, 1};
   update_world_inertia(*self_, *slot);
   refresh_bounds(*self_, *slot);
   return {};

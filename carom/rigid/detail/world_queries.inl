@@ -235,15 +235,16 @@ bool anything_near(const WorldImplementation<D>& world, const typename D::Bounds
   return any;
 }
 
-template <class D>
-RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray) {
+/// `sees(body)` adds to the filter of the ray.
+template <class D, class Sees>
+RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray, const Sees& sees) {
   const SeenFilter filter(world, ray.filter);
   RayHit<D> best;
   std::int32_t best_slot = none;
   geometry::CastHit<typename D::Vector> best_hit;
   cast_in_trees(world, ray.origin, typename D::Position(ray.translation), {}, [&](std::int32_t slot, float limit) {
     const auto& shape = world.shapes.at(slot);
-    if (!query_sees<D>(shape, filter)) return limit;
+    if (!query_sees<D>(shape, filter) || !sees(shape.body)) return limit;
     if (limit == 0 && best_slot != none && slot > best_slot) return limit;  // at best as near
     const typename D::Pose pose = shape_pose<D>(world, shape);
     const auto hit = geometry::ray_cast(shape.geometry, local_point(pose, ray.origin),
@@ -256,6 +257,11 @@ RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>&
   if (best_slot != none)
     best = world_hit<D>(world, best_slot, shape_pose<D>(world, world.shapes.at(best_slot)), best_hit);
   return best;
+}
+
+template <class D>
+RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray) {
+  return closest_on_ray(world, ray, [](std::int32_t) { return true; });
 }
 
 template <class D>
@@ -308,21 +314,16 @@ void for_queries(const WorldImplementation<D>& world, std::size_t count, Body&& 
   });
 }
 
-}  // namespace detail
-
-template <class D>
-Result<RayHit<D>> World<D>::ray_cast(Position origin, Vector translation, QueryFilter filter) const {
-  if (const Status s = detail::check_query<D>("World::ray_cast", origin, translation); !s.ok()) return s.error();
-  return detail::closest_on_ray<D>(*self_, {origin, translation, filter});
-}
-
-template <class D>
-Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const {
+/// Answers every ray by closest(i) that comes where anything is: within `more`, or near a shape of the world.
+/// near(box): whether a group of rays in that box is worth asking for more than the world's shapes.
+template <class D, class Near, class Closest>
+Status cast_in_groups(const WorldImplementation<D>& world, std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits,
+                      const typename D::Bounds& more, const Near& near, const Closest& closest) {
   constexpr std::string_view call = "World::cast_rays";
-  if (const Status s = detail::check_batch(call, rays.size(), "hits", hits.size()); !s.ok()) return s;
+  if (const Status s = check_batch(call, rays.size(), "hits", hits.size()); !s.ok()) return s;
   double nothing = 0, longest = 0;  // nothing: NaN as soon as one number is not finite
   for (const RayQuery<D>& ray : rays) {
-    const auto way = Position(ray.translation);
+    const auto way = typename D::Position(ray.translation);
     if constexpr (D::dimension == 3) {
       nothing += 0 * ((ray.origin.x + way.x) + (ray.origin.y + way.y) + (ray.origin.z + way.z));
       longest = math::max(longest, way.x * way.x + way.y * way.y + way.z * way.z);
@@ -333,28 +334,50 @@ Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D
   }
   if (nothing != 0)
     for (std::size_t i = 0; i < rays.size(); ++i)
-      if (!detail::check_query<D>(call, rays[i].origin, rays[i].translation).ok())
-        return detail::check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
+      if (!check_query<D>(call, rays[i].origin, rays[i].translation).ok())
+        return check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
   // Each is asked first whether it comes where anything is. What does asks with its neighbours whether there is
   // anything at all where they go: one walk for a group.
-  typename D::Bounds all = detail::bounds_of_shapes<D>(*self_);
+  typename D::Bounds all = bounds_of_shapes<D>(world);
+  all = {min(all.low, more.low), max(all.high, more.high)};
   const double slack = 2e-5 + 4e-6 * math::sqrt(longest);
   for (int k = 0; k < D::dimension; ++k) all.low[k] -= slack, all.high[k] += slack;
-  self_->scheduler->parallel_for(int(rays.size()), detail::rays_a_chunk, [&](int begin, int end, int) {
-    int chosen[detail::rays_a_group];
+  world.scheduler->parallel_for(int(rays.size()), rays_a_chunk, [&](int begin, int end, int) {
+    int chosen[rays_a_group];
     for (int next = begin; next < end;) {
       int count = 0;
-      for (; next < end && count < detail::rays_a_group; ++next) {
+      for (; next < end && count < rays_a_group; ++next) {
         hits[std::size_t(next)] = {};
         chosen[count] = next;
-        count += detail::reaches<D>(rays[std::size_t(next)], all);
+        count += reaches<D>(rays[std::size_t(next)], all);
       }
       const std::span<const int> group(chosen, std::size_t(count));
-      if (count > 2 && !detail::anything_near<D>(*self_, detail::bounds_of_rays<D>(rays, group))) continue;
-      for (const int i : group) hits[std::size_t(i)] = detail::closest_on_ray<D>(*self_, rays[std::size_t(i)]);
+      if (count > 2) {
+        const typename D::Bounds box = bounds_of_rays<D>(rays, group);
+        if (!anything_near<D>(world, box) && !near(box)) continue;
+      }
+      for (const int i : group) hits[std::size_t(i)] = closest(std::size_t(i));
     }
   });
   return {};
+}
+
+}  // namespace detail
+
+template <class D>
+Result<RayHit<D>> World<D>::ray_cast(Position origin, Vector translation, QueryFilter filter) const {
+  if (const Status s = detail::check_query<D>("World::ray_cast", origin, translation); !s.ok()) return s.error();
+  return detail::closest_on_ray<D>(*self_, {origin, translation, filter});
+}
+
+template <class D>
+Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const {
+  constexpr double inside_out = 1e300;
+  typename D::Bounds nowhere;
+  for (int k = 0; k < D::dimension; ++k) nowhere.low[k] = inside_out, nowhere.high[k] = -inside_out;
+  return detail::cast_in_groups<D>(
+      *self_, rays, hits, nowhere, [](const typename D::Bounds&) { return false; },
+      [&](std::size_t i) { return detail::closest_on_ray<D>(*self_, rays[i]); });
 }
 
 template <class D>

@@ -354,6 +354,7 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
   world.shapes.terms.link();
   if (data.world_number != world.world_number) adopt_handles(world);
   world.scratch.watches.clear();  // they speak of other contacts
+  world.scratch.swept.clear();
   world.scratch.old_bounds.clear();
   world.shapes.bounce = Bounce::unknown;
   return {};
