@@ -1,6 +1,7 @@
 #include "carom/ballistics/batch.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "carom/ballistics/detail/batch_step.h"
@@ -28,8 +29,7 @@ void append_rows(std::vector<float>& table, int rows, const auto& values_of) {
 }
 
 constexpr std::size_t padding = 16;
-constexpr int drag_nodes = 1024, levels = 2048;
-constexpr double lowest_height = -500, highest_height = 19980;  // 10 m a level
+constexpr int drag_nodes = 1024;
 
 }  // namespace detail
 
@@ -44,24 +44,41 @@ ProjectileBatch::ProjectileBatch(const DragCurve& drag, const Conditions& condit
   nodes_per_mach_ = float(detail::drag_nodes / last);
   detail::append_rows<1, detail::drag_row>(
       drag_, detail::drag_nodes, [&](int i, double* value) { value[0] = drag(last * i / detail::drag_nodes); });
-  const double spacing = (detail::highest_height - detail::lowest_height) / detail::levels;
-  lowest_ = float(detail::lowest_height - origin.y);
-  levels_per_metre_ = float(1 / spacing);
-  detail::append_rows<5, detail::air_row>(air_, detail::levels, [&](int i, double* value) {
-    const double height = detail::lowest_height + spacing * i;
-    const environment::AirColumn::Air air = conditions.air.at(height);
-    const Vec3d wind = conditions.wind.at(height);
-    value[0] = air.density;
-    value[1] = 1 / air.speed_of_sound;
-    value[2] = wind.x;
-    value[3] = wind.y;
-    value[4] = wind.z;
-  });
-  gravity_ = float(conditions.gravity);
-  for (int k = 0; k < 3; ++k) turning_[k] = float(-2 * conditions.rotation[k]);
+  set_conditions(conditions);
   const math::InstructionSet set =
       lanes == 0 ? math::detect_instruction_set() : math::choose_instruction_set(math::instruction_set_of_width(lanes));
   lanes_ = math::simd_width(set);
+}
+
+void ProjectileBatch::set_conditions(const Conditions& conditions) {
+  const std::span<const environment::WindColumn::Level> winds = conditions.wind.levels();
+  const double base = winds.size() > 1 ? winds.front().height : 0;  // where profiles begin
+  base_ = float(base - origin_.y);
+  air_.clear();
+  air_.reserve(std::size_t(2) * detail::air_cells * detail::air_row);
+  for (const double side : {1.0, -1.0})
+    for (int i = 0; i < detail::air_cells; ++i) {
+      const auto distance = [](int cell) {
+        return double(std::bit_cast<float>((detail::air_first + cell) << detail::air_shift));
+      };
+      double here[5], next[5];
+      const auto values_at = [&](double height, double(&value)[5]) {
+        const environment::AirColumn::Air air = conditions.air.at(height);
+        const Vec3d wind = conditions.wind.at(height);
+        value[0] = air.density;
+        value[1] = 1 / air.speed_of_sound;
+        for (int k = 0; k < 3; ++k) value[2 + k] = wind[k];
+      };
+      values_at(base + side * distance(i), here);
+      values_at(base + side * distance(i + 1), next);
+      for (int k = 0; k < 5; ++k) {
+        air_.push_back(float(here[k]));
+        air_.push_back(float((next[k] - here[k]) / (distance(i + 1) - distance(i))));
+      }
+      air_.resize(air_.size() + detail::air_row - 10, 0.0f);
+    }
+  gravity_ = float(conditions.gravity);
+  for (int k = 0; k < 3; ++k) turning_[k] = float(-2 * conditions.rotation[k]);
 }
 
 void ProjectileBatch::reserve(std::size_t count) {
@@ -167,9 +184,7 @@ void ProjectileBatch::step(double dt, std::size_t from, std::size_t to) {
   batch.nodes_per_mach = nodes_per_mach_;
   // The last cell is never left: a hair below the end keeps the node within the table.
   batch.last_node = float(detail::drag_nodes) - 0.001f;
-  batch.lowest = lowest_;
-  batch.levels_per_metre = levels_per_metre_;
-  batch.last_level = float(detail::levels) - 0.001f;
+  batch.base = base_;
   batch.gravity = gravity_;
   batch.dt = float(dt);
 #if defined(__x86_64__)

@@ -24,11 +24,15 @@ struct BatchRound {
 CAROM_API BatchRound chunk_round(double mass, double density = 7850);
 
 /// Point masses that share a drag curve. Positions are floats about an origin in double: a millimetre at 10 km from it.
-/// The air and the wind are those of the height in the middle of a step; gravity is uniform, and the frame may turn.
+/// The air and the wind are those of the height in the middle of a step (it knows nothing of Conditions::field);
+/// gravity is uniform, and the frame may turn.
 class CAROM_API ProjectileBatch {
  public:
   /// `lanes`: 4, 8 or 16; 0: the widest that the machine has. The results do not depend on it.
   ProjectileBatch(const DragCurve& drag, const Conditions& conditions, math::Vec3d origin = {}, int lanes = 0);
+
+  /// Other air, wind, gravity and turning from now on.
+  void set_conditions(const Conditions& conditions);
 
   /// Index of the new one: the number of those before it.
   std::size_t add(const FlightPoint& start, double area_per_mass);
@@ -69,8 +73,8 @@ class CAROM_API ProjectileBatch {
   std::vector<float> moved_;
   std::vector<BatchRound> moved_rounds_;
   std::vector<float> drag_;  // C_D by Mach number: a value and the difference to the next, node by node
-  std::vector<float> air_;   // by height: density, 1/speed of sound and wind, likewise
-  float nodes_per_mach_ = 0, lowest_ = 0, levels_per_metre_ = 0;
+  std::vector<float> air_;   // by height: density, 1/speed of sound and wind, each with what a metre changes
+  float nodes_per_mach_ = 0, base_ = 0;
   float gravity_ = 0, turning_[3] = {0, 0, 0};
   int lanes_ = 4;
 };

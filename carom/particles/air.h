@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "carom/core/result.h"
-#include "carom/environment/wind.h"
+#include "carom/environment/column.h"
 #include "carom/export.h"
 #include "carom/forces/fields.h"
 
@@ -39,10 +39,12 @@ struct Whirl {
   math::Vec3d axis{0, 1, 0};  ///< unit
   forces::Vortex vortex{};
 };
-/// Velocity of the medium is wind + turbulence + whirls.
+/// Velocity of the medium is wind (or layers) + turbulence + whirls.
 struct Air {
   environment::Wind wind{};
-  double ground = 0;  ///< m: heights of the wind's profile are above this
+  /// Where there are any they stand for `wind`; by rising height, constant beyond.
+  std::vector<environment::WindColumn::Level> layers{};
+  double ground = 0;  ///< m: heights of the wind's profile and of the layers are above this
   Turbulence turbulence{};
   std::vector<Whirl> whirls{};
 };

@@ -193,6 +193,7 @@ class CAROM_API ParticleSystem {
   std::vector<detail::WhirlData> whirl_data_;
   std::vector<detail::AttractorData> attractor_data_;
   std::vector<float> wind_table_, drag_table_;
+  double wind_base_ = 0, wind_height_ = 1;  // m: where the table begins, and how high it is
   std::vector<detail::SurfaceData> surfaces_;
   std::vector<float> hull_planes_;
   std::vector<std::int32_t> dead_, chunk_dead_, chunk_hits_;

@@ -28,6 +28,13 @@ core::Status check(const Air& air) {
   if (!math::is_finite(w.exponent)) return detail::bad("wind", "exponent", w.exponent, "a finite number");
   if (!(w.roughness_length > 0 && w.roughness_length < w.reference_height))
     return detail::bad("wind", "roughness_length", w.roughness_length, "above 0 m and below the reference height");
+  for (std::size_t i = 0; i < air.layers.size(); ++i) {
+    if (!detail::finite_vector(air.layers[i].velocity))
+      return core::Error{"air: the velocity of a layer is not finite"};
+    const double height = air.layers[i].height;
+    if (!(math::abs(height) <= 1e6) || (i > 0 && !(height > air.layers[i - 1].height)))
+      return detail::bad("air", "height of a layer", height, "more than that of the layer before, within 10^6 m");
+  }
   const Turbulence& t = air.turbulence;
   if (!(t.speed >= 0 && t.speed <= 1e4f)) return detail::bad("turbulence", "speed", t.speed, "0 to 10^4 m/s");
   if (!(t.length > 0 && t.length <= 1e6f)) return detail::bad("turbulence", "length", t.length, "above 0 to 10^6 m");
@@ -60,9 +67,29 @@ core::Status ParticleSystem::set_air(const Air& air) {
   if (const core::Status status = particles::check(air); !status) return status;
   air_ = air;
   if (definition_.planar) air_.wind.velocity.z = 0;
-  const environment::Wind& wind = air_.wind;
   wind_table_.clear();
-  if (wind.profile != environment::WindProfile::uniform && math::length(wind.velocity) > 0) {
+  wind_base_ = air_.ground;
+  wind_height_ = wind_top;
+  if (!air_.layers.empty()) {
+    const environment::WindColumn column(air_.layers);
+    const double low = air_.layers.front().height;
+    wind_base_ += low;
+    wind_height_ = math::max(1.0, air_.layers.back().height - low);
+    // What drifts with the wind does so with that of the height at which profiles have theirs.
+    air_.wind = {.velocity = column.at(air_.wind.reference_height)};
+    if (definition_.planar) air_.wind.velocity.z = 0;
+    for (int k = 0; air_.layers.size() > 1 && k < 3; ++k)
+      for (int i = 0; i < wind_nodes; ++i) {
+        const auto at = [&](int node) {
+          const double v = column.at(low + wind_height_ * math::square(double(node) / wind_nodes))[k];
+          return k == 2 && definition_.planar ? 0.0f : float(v);
+        };
+        wind_table_.push_back(at(i));
+        wind_table_.push_back(at(i + 1) - at(i));
+      }
+  }
+  const environment::Wind& wind = air_.wind;
+  if (air_.layers.empty() && wind.profile != environment::WindProfile::uniform && math::length(wind.velocity) > 0) {
     // By the root of the height: fine at the ground, where the wind changes most.
     environment::Wind unit = wind;
     unit.velocity = {1, 0, 0};
@@ -136,8 +163,9 @@ void ParticleSystem::prepare_move(double dt) {
   }
   if (!wind_table_.empty()) {
     m.wind_table = wind_table_.data();
-    m.wind_floor = float(air_.ground - d.anchor.y);
-    m.wind_scale = float(wind_nodes * wind_nodes / wind_top);
+    m.wind_layers = air_.layers.empty() ? 0 : 2 * wind_nodes;
+    m.wind_floor = float(wind_base_ - d.anchor.y);
+    m.wind_scale = float(wind_nodes * wind_nodes / wind_height_);
     m.wind_last = float(wind_nodes) - 0.001f;
   }
   // The waves are carried along by the wind at its reference height (Taylor's frozen turbulence) and turn over.

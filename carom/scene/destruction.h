@@ -72,8 +72,9 @@ struct DestructionOf {
   blast::FractureStepper<D> stepper;
 };
 
-/// Guns shoot at the beginning of the step in which their time falls; projectiles fly in the mean wind and the air of
-/// the environment, or in still air of the standard day, and pull along y as the world does.
+/// Guns shoot at the beginning of the step in which their time falls; projectiles fly in the air of the environment, in
+/// its steady wind by height and its turning frame, or in still air of the standard day, and are pulled along y as the
+/// world's bodies are. Rockets feel all of the environment's wind.
 class CAROM_API Destruction {
  public:
   DestructionOf<rigid::Dim2> plane;

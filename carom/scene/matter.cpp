@@ -243,6 +243,7 @@ Status Matter::set_wind(const environment::Environment* around) {
       particles::Air air{.turbulence = entry.thing.turbulence};
       if (around != nullptr) {
         air.wind = around->definition().wind.mean;
+        air.layers = around->definition().wind.layers;
         air.ground = around->definition().ground;
       }
       if (Status s = entry.thing.system.set_air(air); !s) return s;

@@ -46,6 +46,24 @@ TEST(Batch, AgreesWithSingleFlights) {
   EXPECT_LT(worst, 1e-4);
 }
 
+// A rifle's flat shot feels the wind of the lowest metres, where a profile changes most, over ground at any height.
+TEST(Batch, FlatShotsFeelTheFootOfAProfile) {
+  for (const auto profile : {environment::WindProfile::power, environment::WindProfile::logarithmic})
+    for (const double ground : {0.0, -37.0, 412.0}) {
+      const Conditions air{
+          .wind = environment::WindColumn(environment::Wind{.velocity = {0, 0, 8}, .profile = profile}).raised(ground)};
+      const Projectile bullet = projectile_from_coefficient(DragFunction::g7, .218);
+      const FlightPoint start{{0, ground + 1.5, 0}, 808.0 * direction(.004)};
+      ProjectileBatch batch(bullet.drag, air, {0, ground, 0});
+      batch.add(start, bullet.area_per_mass);
+      for (int i = 0; i < 40; ++i) batch.step(1.0 / 60);
+      const auto flight = fly(bullet, air, start, {.time = 40.0 / 60});
+      const double drift = flight->end().position.z;
+      EXPECT_GT(drift, .1);
+      EXPECT_NEAR(batch.at(0).position.z, drift, .005 * drift) << ground;
+    }
+}
+
 TEST(Batch, SameBitsForAnyWidthAndAnyCut) {
   const auto fly_all = [](int lanes, bool cut) {
     ProjectileBatch batch(DragCurve(DragFunction::g1), windy(), {}, lanes);

@@ -47,11 +47,12 @@ void step(const BatchStep& b, std::size_t from, std::size_t to) {
     const Vector v1 = {F::load(b.velocity[0] + i), F::load(b.velocity[1] + i), F::load(b.velocity[2] + i)};
     const F k = F::load(b.half_area_per_mass + i);
     const F height = x.y + half * v1.y;
-    const F place =
-        clamp((height - F::splat(b.lowest)) * F::splat(b.levels_per_metre), F::zero(), F::splat(b.last_level));
-    const I level = to_int(place);
+    const F above = height - F::splat(b.base);
+    const F distance = min(F::splat(greatest_distance), max(F::splat(least_distance), abs(above)));
+    const I cell = bits(distance) >> air_shift;
+    const I below = select(above < F::zero(), I::splat(air_cells), I::zero());
     F row[5];
-    look_up<air_row>(b.air, level, place - to_float(level), row);
+    look_up<air_row>(b.air, cell - I::splat(air_first) + below, distance - float_of_bits(cell << air_shift), row);
     const Air air = {row[0], row[1], {row[2], row[3], row[4]}};
     const Vector a1 = acceleration(b, air, k, v1);
     const Vector v2 = add(v1, half, a1), a2 = acceleration(b, air, k, v2);

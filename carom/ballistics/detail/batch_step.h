@@ -5,10 +5,14 @@
 
 namespace carom::ballistics::detail {
 
-/// Uniform tables, every value followed by the difference to the next node's: drag_row and air_row floats a node,
-/// filled up so that rows are gathered whole.
-inline constexpr int drag_row = 4;  // C_D
+/// Tables, every value followed by the difference to the next node's or by the slope toward it: drag_row and air_row
+/// floats a node, filled up so that rows are gathered whole.
+inline constexpr int drag_row = 4;  // C_D, uniform
 inline constexpr int air_row = 12;  // density, 1/speed of sound, wind x, y, z
+/// Air by the distance above and below a height, near which wind changes most: 64 cells an octave, by the first bits of
+/// the number, those above first.
+inline constexpr float least_distance = 0.015625f, greatest_distance = 32767.0f;  // m
+inline constexpr int air_shift = 17, air_first = 0x3c800000 >> air_shift, air_cells = 21 * 64;
 struct BatchStep {
   float* position[3];
   float* velocity[3];
@@ -17,7 +21,7 @@ struct BatchStep {
   const float* drag;
   const float* air;
   float nodes_per_mach, last_node;
-  float lowest, levels_per_metre, last_level;
+  float base;  // m: the height that distances are counted from
   float gravity;
   float turning[3];  // −2 Ω
   float dt;

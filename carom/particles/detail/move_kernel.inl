@@ -7,7 +7,12 @@ CAROM_SIMD_INLINE V air_at(const MoveData& d, const V& p) {
   if (d.wind_table != nullptr) {
     // In this order a place that is no number gives the table's end, not an index out of it.
     const F root = math::sqrt(math::max(F::zero(), p.y - splat(d.wind_floor)) * splat(d.wind_scale));
-    u = look_up(d.wind_table, math::min(splat(d.wind_last), root)) * u;
+    const F place = math::min(splat(d.wind_last), root);
+    if (d.wind_layers > 0)
+      u = {look_up(d.wind_table, place), look_up(d.wind_table + d.wind_layers, place),
+           look_up(d.wind_table + 2 * d.wind_layers, place)};
+    else
+      u = look_up(d.wind_table, place) * u;
   }
   for (int w = 0; w < d.waves; ++w) {
     const Wave& wave = d.wave[w];

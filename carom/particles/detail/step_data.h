@@ -50,6 +50,7 @@ struct MoveData {
   float gravity[3];
   float wind[3];
   const float* wind_table;  ///< null: the same everywhere; else factors by the root of the height, and differences
+  int wind_layers;          ///< 0; or the floats from one to the next of three such tables of velocities, not factors
   float wind_floor, wind_scale, wind_last;
   int waves, whirls, attractors;
   const Wave* wave;

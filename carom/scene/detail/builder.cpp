@@ -151,13 +151,15 @@ class Builder final : public BodyNames {
 
   /// Structures first, so that guns may aim at them. What runs already stays as it is.
   [[gnu::noinline]] bool make_destruction() {
-    if (update_) return true;
     const std::shared_ptr<const environment::Environment> around = environment_of(world(), out_.environment);
+    if (update_) {
+      if (out_.destruction != nullptr) renew_air(*out_.destruction, world(), around);
+      return true;
+    }
     auto made = std::make_unique<Destruction>();
     for (const Node& part : document_.parts)
       if (!read_penetration<D>(reader_, part, made->of<D>().hits)) return false;
-    DestructionPlace<D> place{reader_, *this,    world(),      *made,
-                              out_,    library_, around.get(), 10.0 * document_.maximum_objects};
+    DestructionPlace<D> place{reader_, *this, world(), *made, out_, library_, around, 10.0 * document_.maximum_objects};
     destruction_ = &place;
     for (const char* what : destruction_lists) {
       what_ = what;

@@ -18,8 +18,8 @@ struct DestructionPlace {
   Destruction& out;
   SceneWorld& scene;  ///< gets the bodies of structures
   const Library& library;
-  const environment::Environment* around;  ///< null: still air of the standard day
-  double budget = 0;                       ///< pieces and rounds that may still be made
+  std::shared_ptr<const environment::Environment> around;  ///< null: still air of the standard day
+  double budget = 0;                                       ///< pieces and rounds that may still be made
 };
 
 /// Makes one thing of the list. Fails the reader where it is wrong.
@@ -35,7 +35,16 @@ template <class D>
 template <class D>
 [[gnu::noinline]] void read_structure(DestructionPlace<D>& place, const Object& o);
 [[gnu::noinline]] void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o);
-/// Air, wind and gravity as what flies through the scene from a point meets them.
-ballistics::Conditions conditions_at(math::Vec3d point, double gravity, const environment::Environment* around);
+/// Air, steady wind by height, gravity and the turning of the frame as what flies through the scene from a point meets
+/// them.
+ballistics::Conditions conditions_at(math::Vec3d point, double gravity, int dimension,
+                                     const environment::Environment* around);
+/// The same with all of the wind.
+ballistics::Conditions rocket_conditions(math::Vec3d point, const rigid::World3& world,
+                                         const std::shared_ptr<const environment::Environment>& around);
+/// Guns and rockets that run meet what is around them now.
+template <class D>
+[[gnu::noinline]] void renew_air(Destruction& all, const rigid::World<D>& world,
+                                 const std::shared_ptr<const environment::Environment>& around);
 
 }  // namespace carom::scene::detail

@@ -82,14 +82,32 @@ ballistics::Weapon read_weapon(Reader& r, const Object& o) {
   return w;
 }
 
+/// Where a gun stands, and the air there.
+template <class D>
+ballistics::Conditions conditions_of(const GunDef& gun, const rigid::World<D>& world,
+                                     const environment::Environment* around) {
+  math::Vec3d stands = gun.muzzle;
+  if (const auto carrier = world.state(gun.body); carrier.ok())
+    for (int k = 0; k < D::dimension; ++k) stands[k] = carrier->pose.position[k];
+  return conditions_at(stands, -double(world.definition().gravity.y), D::dimension, around);
+}
+
 }  // namespace
 
-ballistics::Conditions conditions_at(math::Vec3d point, double gravity, const environment::Environment* around) {
+ballistics::Conditions conditions_at(math::Vec3d point, double gravity, int dimension,
+                                     const environment::Environment* around) {
   ballistics::Conditions conditions{.gravity = gravity};
   if (around == nullptr) return conditions;
   const environment::Environment::Definition& d = around->definition();
   conditions.air = d.vacuum ? environment::AirColumn::uniform(0) : environment::AirColumn(d.air, d.altitude);
-  conditions.wind = environment::WindColumn(d.wind.mean);
+  environment::WindField wind = d.wind;
+  conditions.rotation = d.frame.rate;
+  if (dimension == 2) {  // as bodies of the plane feel it
+    wind.mean.velocity.z = 0;
+    for (environment::WindColumn::Level& level : wind.layers) level.velocity.z = 0;
+    conditions.rotation.x = conditions.rotation.y = 0;
+  }
+  conditions.wind = environment::column_of(wind, around->ground(point.x, point.z));
   if (around->has_gravity()) conditions.gravity -= around->gravity(point).y;
   return conditions;
 }
@@ -123,9 +141,10 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
     return r.expected(*o.find("lifetime"), o.path_of("lifetime"), "1 ms to 600 s");
   if (!r.accept(ballistics::check(gun.weapon), *o.node, o.path)) return;
 
-  gun.conditions = conditions_at(gun.muzzle, -double(place.world.definition().gravity.y), place.around);
+  gun.conditions = conditions_of(gun, place.world, place.around.get());
   if (sighted) {
-    const auto aiming = ballistics::zeroed(gun.weapon, gun.conditions);
+    // A zero is shot in still air.
+    const auto aiming = ballistics::zeroed(gun.weapon, {.air = gun.conditions.air, .gravity = gun.conditions.gravity});
     if (!r.accept(aiming.ok() ? core::Status{} : core::Status{aiming.error()}, *o.node, o.path)) return;
     const ballistics::Laying l = ballistics::laying(gun.bore);
     gun.bore = ballistics::direction(l.elevation + aiming->elevation, l.azimuth);
@@ -136,6 +155,22 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
                                      .frontal_area = math::pi / 4 * math::square(a.diameter)};
   list.push_back({std::move(name), color, SceneGun(gun, round)});
 }
+template <class D>
+void renew_air(Destruction& all, const rigid::World<D>& world,
+               const std::shared_ptr<const environment::Environment>& around) {
+  for (auto& entry : all.of<D>().guns) {
+    SceneGun& gun = entry.thing;
+    gun.definition.conditions = conditions_of(gun.definition, world, around.get());
+    gun.batch.set_conditions(gun.definition.conditions);
+  }
+  if constexpr (D::dimension == 3)
+    for (auto& entry : all.space.rockets)
+      if (const auto rocket = world.state(entry.thing.body()); rocket.ok())
+        entry.thing.set_conditions(rocket_conditions(rocket->pose.position, world, around));
+}
+template void renew_air(Destruction&, const rigid::World2&, const std::shared_ptr<const environment::Environment>&);
+template void renew_air(Destruction&, const rigid::World3&, const std::shared_ptr<const environment::Environment>&);
+
 template void read_gun(DestructionPlace<rigid::Dim2>&, const Object&);
 template void read_gun(DestructionPlace<rigid::Dim3>&, const Object&);
 

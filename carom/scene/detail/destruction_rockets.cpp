@@ -78,6 +78,14 @@ ballistics::Rocket read_rocket_itself(Reader& r, const Object& o) {
 
 }  // namespace
 
+ballistics::Conditions rocket_conditions(math::Vec3d point, const rigid::World3& world,
+                                         const std::shared_ptr<const environment::Environment>& around) {
+  ballistics::Conditions out = conditions_at(point, -double(world.definition().gravity.y), 3, around.get());
+  if (around != nullptr && around->has_wind())
+    out.field = [around](math::Vec3d place, double time) { return around->wind(place, time); };
+  return out;
+}
+
 void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o) {
   Reader& r = place.reader;
   std::string name;
@@ -100,7 +108,7 @@ void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o) {
     return r.expected(*o.find("direction"), o.path_of("direction"), "a direction that is not zero");
   def.shape.material = surface.material;
   def.shape.filter = surface.filter;
-  def.conditions = conditions_at(def.launch.position, -double(place.world.definition().gravity.y), place.around);
+  def.conditions = rocket_conditions(def.launch.position, place.world, place.around);
   def.name = name;
   auto made = ballistics::BodyRocket::make(place.world, def);
   if (!r.accept(made.ok() ? core::Status{} : core::Status{made.error()}, *o.node, o.path)) return;
