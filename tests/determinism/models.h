@@ -14,6 +14,7 @@ inline void print_model(const char* name, const core::StateHash& hash) {
 void particle_models(int width);  ///< lanes of the kernels, 0: what the machine has
 void billiards_models(int width);
 void ballistics_models(int width);  ///< lanes of the batch, 0: what the machine has
+void gun_models();
 void environment_models(int width);
 void blast_models(int width);  ///< lanes of the world
 void sports_models();

@@ -16,6 +16,7 @@ void print_models(int width) {
   using namespace carom::determinism;
   particle_models(width);
   ballistics_models(width);
+  gun_models();
   billiards_models(width);
   environment_models(width);
   blast_models(width);
