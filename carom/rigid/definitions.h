@@ -215,6 +215,7 @@ struct JointMotor {
   bool enabled = false;
   float speed = 0;      ///< m/s or rad/s
   float max_force = 0;  ///< N or N·m
+/// At speed 0 it is dry friction of `max_force`.
   friend bool operator==(const JointMotor&, const JointMotor&) = default;
 };
 
@@ -231,8 +232,9 @@ struct DistanceJointDef : JointFrames<D> {
 /// Keeps the frames' origins together; turns freely (3D), within a cone about frame z of A and a twist range.
 template <class D>
 struct BallJointDef : JointFrames<D> {
-  JointSpring spring{};   ///< toward frames aligned
-  float cone_angle = -1;  ///< rad, < 0: no limit
+  JointSpring spring{};                    ///< toward `target_rotation`
+  typename D::Rotation target_rotation{};  ///< of frame B in frame A; the default: frames aligned
+  float cone_angle = -1;                   ///< rad, < 0: no limit
   JointLimit twist{};
   float friction_torque = 0;  ///< N·m
 };
@@ -240,7 +242,8 @@ struct BallJointDef : JointFrames<D> {
 template <class D>
 struct HingeJointDef : JointFrames<D> {
   JointSpring spring{};
-  float target_angle = 0;  ///< rad, of the spring
+  float target_angle = 0;       ///< rad, of the spring
+  float max_spring_torque = 0;  ///< N·m, 0: as much as it takes. With a stiff spring: a motor to a position.
   JointLimit limit{};
   JointMotor motor{};
 };
@@ -253,18 +256,26 @@ struct SliderJointDef : JointFrames<D> {
   JointMotor motor{};
 };
 /// Frames stay together; a spring of 0 Hz is rigid.
+  float max_spring_force = 0;    ///< N, 0: as much as it takes. With a stiff spring: a motor to a position.
 template <class D>
 struct WeldJointDef : JointFrames<D> {
   JointSpring linear{};
   JointSpring angular{};
 };
-/// Drives B toward a pose relative to A with limited force and torque.
+/// Drives B toward a pose relative to A, or at a velocity, with limited force and torque.
 template <class D>
 struct MotorJointDef : JointFrames<D> {
-  JointSpring linear{2.0f, 1.0f};
+  JointSpring linear{2.0f, 1.0f};  ///< 0 Hz: as much as it takes
   JointSpring angular{2.0f, 1.0f};
-  float max_force = 1e3f;   ///< N
-  float max_torque = 1e3f;  ///< N·m
+  float max_force = 1e3f;                  ///< N
+  float max_torque = 1e3f;                 ///< N·m
+  typename D::Vector target_position{};    ///< m, of B's frame in A's
+  typename D::Rotation target_rotation{};  ///< likewise
+  /// m/s and rad/s, as seen from A in the axes of its frame: what the springs damp toward. The target itself stays.
+  typename D::Vector target_velocity{};
+  typename D::Angular target_spin{};
+  bool hold_position = true;  ///< false: drives at `target_velocity` wherever B is, as hard as it takes
+  bool hold_rotation = true;  ///< likewise at `target_spin`
 };
 /// Pulls a point of B toward a target in the world: the hand of a user. body_a is ignored; frame_b.p is the point.
 /// Slows the body's turning too, at the rate ½ hertz · damping_ratio (1/s).

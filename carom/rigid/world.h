@@ -171,9 +171,22 @@ class CAROM_API World {
   bool contains(JointId joint) const;
   Result<JointState<D>> joint_state(JointId joint) const;
   Result<AnyJointDef<D>> joint_definition(JointId joint) const;  ///< as it is now
-  Status set_motor(JointId joint, const JointMotor& motor);      ///< distance, hinge, slider, path
-  Status set_limit(JointId joint, const JointLimit& limit);      ///< distance, ball (its twist), hinge, slider, path
-  Status set_spring(JointId joint, const JointSpring& spring);   ///< both springs of a weld or motor joint
+  // What of a joint can change.
+  Status set_motor(JointId joint, const JointMotor& motor);     ///< distance, hinge, slider, path
+  Status set_limit(JointId joint, const JointLimit& limit);     ///< distance, ball (its twist), hinge, slider, path
+  Status set_spring(JointId joint, const JointSpring& spring);  ///< both springs of a weld or motor joint
+  // What these set to what it is wakes nobody.
+  Status set_spring_target(JointId joint, float target);                      ///< m or rad: hinge, slider, path
+  Status set_max_spring_force(JointId joint, float most);                     ///< N or N·m, 0: any; hinge, slider, path
+  Status set_target_rotation(JointId joint, Rotation target);                 ///< ball, motor
+  Status set_target_pose(JointId joint, Vector position, Rotation rotation);  ///< motor
+  Status set_target_velocity(JointId joint, Vector velocity, Angular spin);   ///< motor
+  Status set_hold(JointId joint, bool position, bool rotation);               ///< motor
+  Status set_max_force(JointId joint, float force, float torque);             ///< motor; mouse (torque: 0)
+  Status set_length(JointId joint, float length);                             ///< m: distance, pulley
+  Status set_cone_angle(JointId joint, float angle);                          ///< rad, < 0: none; ball in space
+  Status set_friction(JointId joint, float friction);  ///< N or N·m: ball, path (others: a motor at speed 0)
+  Status set_break_force(JointId joint, float force, float torque);  ///< N, N·m, 0: never; every joint
   /// Of a generic joint: the linear axes come first, then the angular ones. Whether it is free stays as it was made.
   Status set_axis(JointId joint, int axis, const JointAxis& settings);
   Status set_mouse_target(JointId joint, Position target);

@@ -229,19 +229,20 @@ class SceneWriter {
   std::string joint_text(const BallJointDef<D>& j) const {
     Fields f = joint_fields("ball", j);
     f.unless("cone_angle", j.cone_angle, -1.0f).unless("friction_torque", j.friction_torque, 0.0f);
+    if (!(j.target_rotation == typename D::Rotation{})) f.put("target_rotation", rotation_text(j.target_rotation));
     if (!(j.spring == JointSpring{})) f.put("spring", spring_text(j.spring));
     if (!(j.twist == JointLimit{})) f.put("twist", limit_text(j.twist));
     return f.object();
   }
   std::string joint_text(const HingeJointDef<D>& j) const {
     Fields f = joint_fields("hinge", j);
-    f.unless("target_angle", j.target_angle, 0.0f);
+    f.unless("target_angle", j.target_angle, 0.0f).unless("max_spring_torque", j.max_spring_torque, 0.0f);
     put_drive(f, j.spring, j.limit, j.motor, true);
     return f.object();
   }
   std::string joint_text(const SliderJointDef<D>& j) const {
     Fields f = joint_fields("slider", j);
-    f.unless("target_translation", j.target_translation, 0.0f);
+    f.unless("target_translation", j.target_translation, 0.0f).unless("max_spring_force", j.max_spring_force, 0.0f);
     put_drive(f, j.spring, j.limit, j.motor, false);
     return f.object();
   }
@@ -255,6 +256,12 @@ class SceneWriter {
     Fields f = joint_fields("motor", j);
     f.put("linear_spring", spring_text(j.linear)).put("angular_spring", spring_text(j.angular));
     return f.put("max_force", j.max_force).put("max_torque", j.max_torque).object();
+    using V = typename D::Vector;
+    if (!(j.target_position == V{})) f.put("target_position", vector_text(j.target_position));
+    if (!(j.target_rotation == typename D::Rotation{})) f.put("target_rotation", rotation_text(j.target_rotation));
+    if (!(j.target_velocity == V{})) f.put("target_velocity", vector_text(j.target_velocity));
+    if (!(j.target_spin == typename D::Angular{})) f.put("target_spin", angular_text(j.target_spin));
+    f.flag("hold_position", j.hold_position, true).flag("hold_rotation", j.hold_rotation, true);
   }
   std::string joint_text(const MouseJointDef<D>& j) const {
     Fields f = joint_fields("mouse", j, false);

@@ -186,6 +186,15 @@ struct Maker {
     if constexpr (requires { d.motor; }) d.motor = {in.flag(), in.number(), in.number(100)};
     if constexpr (requires { d.target; }) d.target = position();
     if constexpr (requires { d.length; }) d.length = in.number();
+    if (in.byte() > 180) {
+      if constexpr (requires { d.target_rotation; }) d.target_rotation = rotation();
+      if constexpr (requires { d.target_position; }) d.target_position = vector();
+      if constexpr (requires { d.target_velocity; }) d.target_velocity = vector(4), d.hold_position = in.flag();
+      if constexpr (requires { d.target_spin; }) d.target_spin = angular(), d.hold_rotation = in.flag();
+      if constexpr (requires { d.max_spring_torque; }) d.max_spring_torque = in.number(10);
+      if constexpr (requires { d.max_spring_force; }) d.max_spring_force = in.number(10);
+      d.break_force = in.number(1000);
+    }
     if constexpr (requires { d.ratio; }) d.ratio = in.number();
     if constexpr (requires { d.radius; }) d.radius = in.number();
     if constexpr (requires { d.pitch; }) d.pitch = in.number();

@@ -234,11 +234,12 @@ TEST(SceneBodies, ReadRotationsInEveryForm) {
 TEST(SceneJoints, OfEveryTypeInBothDimensions) {
   const char* joints = R"("joints": [
     {"type": "distance", "body_a": "a", "body_b": "b", "anchor_a": [A0], "anchor_b": [A1], "spring": {"frequency": "2 Hz", "damping_ratio": 0.3}},
-    {"type": "hinge", "body_a": "world", "body_b": "a", "anchor": [A0], "limit": {"lower": "-1 deg", "upper": "90 deg"}, "motor": {"speed": "60 rpm", "max_torque": "5 N*m"}},
-    {"type": "slider", "body_a": "world", "body_b": "b", "anchor": [A1], "axis": [A1], "motor": {"speed": "1 m/s", "max_force": "10 N"}},
+    {"type": "hinge", "body_a": "world", "body_b": "a", "anchor": [A0], "spring": {"frequency": "3 Hz"}, "target_angle": "10 deg", "max_spring_torque": "4 N*m", "limit": {"lower": "-1 deg", "upper": "90 deg"}, "motor": {"speed": "60 rpm", "max_torque": "5 N*m"}},
+    {"type": "slider", "body_a": "world", "body_b": "b", "anchor": [A1], "axis": [A1], "spring": {"frequency": "3 Hz"}, "target_translation": "10 cm", "max_spring_force": "4 N", "motor": {"speed": "1 m/s", "max_force": "10 N"}},
     {"type": "weld", "body_a": "a", "body_b": "c", "anchor": [A0], "angular_spring": {"frequency": "1 Hz"}},
-    {"type": "ball", "body_a": "a", "body_b": "c", "anchor": [A0]},
-    {"type": "motor", "body_a": "b", "body_b": "c", "max_force": "10 N"},
+    {"type": "ball", "body_a": "a", "body_b": "c", "anchor": [A0], "spring": {"frequency": "1 Hz"}, "target_rotation": TURN},
+    {"type": "motor", "body_a": "b", "body_b": "c", "max_force": "10 N", "target_position": [A1], "target_rotation": TURN,
+     "target_velocity": [A1], "target_spin": SPIN, "hold_position": false},
     {"type": "mouse", "body_b": "c", "anchor": [A1], "target": [A0]},
     {"type": "generic", "body_a": "a", "body_b": "b", "anchor": [A0], "break_force": "40 kN", "break_torque": "9 kN*m",
      "axes": {"x": {"limit": {"lower": "-1 m", "upper": "2 m"}, "spring": {"frequency": "1 Hz"}, "target": "10 cm", "max_spring_force": "50 N"},
@@ -257,9 +258,12 @@ TEST(SceneJoints, OfEveryTypeInBothDimensions) {
       text += std::string(name[0] == 'a' ? "" : ", ") + "{\"name\": \"" + name + "\", \"shape\": {\"type\": \"" +
               (dimension == 2 ? "circle" : "sphere") + "\"}, \"position\": [A1]}";
     text += std::string("], ") + joints + "}";
-    for (const auto& [from, to] : {std::pair<std::string, std::string>{"[A0]", dimension == 2 ? "[0, 0]" : "[0, 0, 0]"},
-                                   {"[A2]", dimension == 2 ? "[2, 0]" : "[2, 0, 1]"},
-                                   {"[A1]", dimension == 2 ? "[1, 1]" : "[1, 1, 1]"}})
+    for (const auto& [from, to] :
+         {std::pair<std::string, std::string>{"[A0]", dimension == 2 ? "[0, 0]" : "[0, 0, 0]"},
+          {"TURN", dimension == 2 ? "\"30 deg\"" : "{\"axis\": [0, 1, 0], \"angle\": \"30 deg\"}"},
+          {"SPIN", dimension == 2 ? "\"2 rpm\"" : "[1, \"2 rpm\", 0]"},
+          {"[A2]", dimension == 2 ? "[2, 0]" : "[2, 0, 1]"},
+          {"[A1]", dimension == 2 ? "[1, 1]" : "[1, 1, 1]"}})
       for (std::size_t at = 0; (at = text.find(from)) != std::string::npos;) text.replace(at, from.size(), to);
     SceneWorld world = start(parse(text));
     EXPECT_EQ(world.joints.size(), 14u);

@@ -22,9 +22,8 @@ class Joints final : public Repeatable<Joints, Demo3> {
         "ratio, whatever the mass. A ball joint holds a point and lets its arm swing within a cone. A hinge turns "
         "about "
         "one axis, here with a motor of limited torque. A slider moves along one axis, here on a spring between two "
-        "stops. Welds hold everything; these four carry a beam. A motor joint drives a body toward a place with "
-        "limited "
-        "force: push it away and it comes back.\n\n"
+        "stops. Welds hold everything; these four carry a beam. A motor joint drives a body toward a place and an "
+        "attitude with limited force: push it away and it comes back, move the target and it follows.\n\n"
         "Each is a constraint on velocities, solved with the contacts; how far a joint is pulled apart is its "
         "error.\n\n"
         "  T = 2π √(L/g)      f = (1/2π) √(k/m)";
@@ -40,6 +39,9 @@ class Joints final : public Repeatable<Joints, Demo3> {
         {"damping", "Damping ratio", "", "", "of those springs; 1: no swing", 0, 1, 0, 0.1, false},
         {"cone", "Cone of the ball joint", "rad", "deg", "how far its arm swings aside", 0.1, 1.4, 0, radians(35.0),
          false},
+        {"height", "Height of the driven box", "m", "m", "that its motor joint wants, from the middle", -1.5, 1.5, 0.05,
+         0.5, true},
+        {"turn", "Turn of the driven box", "rad", "deg", "likewise", -3, 3, 0, radians(40.0), true},
     };
     d.plots = {{"Springs", {"time", "s"}, {"height over the ground", "m"}, {{"hung on a spring"}, {"slider"}}},
                {"Hinge", {"time", "s"}, {"speed", "rad/s"}, {{"windmill"}, {"motor wants"}}},
@@ -90,6 +92,7 @@ class Joints final : public Repeatable<Joints, Demo3> {
   void changed(Stage3& stage, std::string_view) override {
     stage.check(stage.world().set_motor(hinge_, {true, stage.valuef("motor_speed"), stage.valuef("motor_torque")}));
     stage.check(stage.world().set_awake(mill_, true));
+    stage.check(stage.world().set_target_pose(drive_, wanted_place(stage), wanted_turn(stage)));
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
@@ -100,6 +103,12 @@ class Joints final : public Repeatable<Joints, Demo3> {
     const double ring = exp(-pi * 0.1 / sqrt(1 - 0.01)), sag = 9.80665 / square(2 * pi * 0.8);
     out.push_back({"farthest the slider sank", "m", "g/ω² (1 + e^(−πζ/√(1−ζ²)))", travel_, sag * (1 + ring), 0.01});
     out.push_back({"sag of the welded beam", "m", "welds hold", 3.0 - stage.at(tip_).pose.position.y, 0, 0.05});
+    // The spring of the motor joint, 2 Hz, gives way under the weight by g/ω².
+    out.push_back({"height of the driven box", "m", "its target less g/ω²", stage.at(driven_).pose.position.y,
+                   2.6 + 0.5 - 9.80665 / square(2 * pi * 2), 0.005});
+    out.push_back({"turn of the driven box", "deg", "its target, 40°",
+                   degrees(2 * double(atan2(stage.at(driven_).pose.rotation.z, stage.at(driven_).pose.rotation.w))), 40,
+                   0.5});
     out.push_back({"worst joint error", "m", "joints hold", stage.world().worst_joint_error(), 0, 0.005});
   }
 
@@ -226,15 +235,22 @@ class Joints final : public Repeatable<Joints, Demo3> {
 
   void servo(Stage3& stage) {
     const Vec3d place{station(7), 2.6, 0};
-    const BodyId box = body(stage, "box of a motor joint", place, geometry::Box{{0.4f, 0.4f, 0.4f}}, sand);
+    driven_ = body(stage, "box of a motor joint", place, geometry::Box{{0.4f, 0.4f, 0.4f}}, sand);
     rigid::MotorJointDef<Dim3> joint;
     joint.max_force = 12000;
     joint.max_torque = 2000;
-    hang(stage, joint, box, place);
+    joint.target_position = wanted_place(stage);
+    joint.target_rotation = wanted_turn(stage);
+    drive_ = hang(stage, joint, driven_, place);
+  }
+  static Vec3f wanted_place(Stage3& stage) { return {0, stage.valuef("height"), 0}; }
+  static Quatf wanted_turn(Stage3& stage) {
+    const float half = 0.5f * stage.valuef("turn");
+    return {cos(half), 0, 0, sin(half)};
   }
 
-  BodyId frame_, tied_, hung_, arm_, mill_, sled_, tip_;
-  rigid::JointId hinge_;
+  BodyId frame_, tied_, hung_, arm_, mill_, sled_, tip_, driven_;
+  rigid::JointId hinge_, drive_;
   double rope_ = 0, tilt_ = 0, travel_ = 0;
 };
 

@@ -74,8 +74,11 @@ struct PointBlock {
   Vector impulse{};
   Vector before{};  ///< of a spring: the speed at the end of the last substep
   Response response{};
+  Vector drive{};  ///< m/s, the velocity that is wanted, world axes at the start of the step
   float max_impulse = 1e30f;
   bool rigid = true;
+  bool driven = false;    ///< `drive` is not zero
+  bool anywhere = false;  ///< no wanted place
 
   // At B's anchor, as a pin; here it matters more, because the anchors may be far apart.
   template <class Pair>
@@ -84,19 +87,24 @@ struct PointBlock {
     pair.apply(impulse, offset + pair.shift + b, b);
   }
   template <class Pair>
+  Vector velocity(const Pair& pair, const Vector& a, const Vector& b) const {
+    const Vector v = pair.point_velocity(a, b);
+    return driven ? v - rotate(pair.turn_a, drive) : v;
+  }
+  template <class Pair>
   void note_speed(const Pair& pair) {
     const Vector b = rotate(pair.turn_b, arm_b);
-    before = pair.point_velocity(offset + pair.shift + b, b);
+    before = velocity(pair, offset + pair.shift + b, b);
   }
   template <class Pair>
   void solve(Pair& pair, const JointPass& pass) {
     const Vector b = rotate(pair.turn_b, arm_b), a = offset + pair.shift + b;
-    const Vector v = pair.point_velocity(a, b);
-    if (!rigid && !pass.use_bias) {
+    const Vector v = velocity(pair, a, b);
+    if (!rigid && !anywhere && !pass.use_bias) {
       before = v;
       return;
     }
-    const Response& r = rigid ? pass.rigid : response;
+    const Response& r = anywhere ? velocity_only : (rigid ? pass.rigid : response);
     Vector residual = r.velocity * v;
     if (r.position > 0) residual += r.position * (a - rotate(pair.turn_a, arm_a));
     if (!rigid) residual += r.previous * before;
@@ -115,21 +123,32 @@ struct AngularBlock {
   Angular impulse{};
   Angular before{};  ///< as in PointBlock
   Response response{};
+  Angular drive{};  ///< rad/s, as in PointBlock
   float max_impulse = 1e30f;
   bool rigid = true;      ///< else a spring, or friction
   bool friction = false;  ///< no wanted attitude
+  bool driven = false;    ///< `drive` is not zero
 
   template <class Pair>
   void warm_start(Pair& pair) const {
     pair.apply_angular(impulse);
   }
   template <class Pair>
+  Angular relative_spin(const Pair& pair) const {
+    const Angular spin = pair.spin_b - pair.spin_a;
+    if (!driven) return spin;
+    if constexpr (D::dimension == 2)
+      return spin - drive;
+    else
+      return spin - rotate(pair.turn_a, drive);
+  }
+  template <class Pair>
   void note_speed(const Pair& pair) {
-    before = pair.spin_b - pair.spin_a;
+    before = relative_spin(pair);
   }
   template <class Pair>
   void solve(Pair& pair, const JointPass& pass) {
-    const Angular spin = pair.spin_b - pair.spin_a;
+    const Angular spin = relative_spin(pair);
     if (!rigid && !friction && !pass.use_bias) {
       before = spin;
       return;

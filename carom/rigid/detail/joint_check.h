@@ -67,6 +67,11 @@ class Complaint {
     finite(core::text(field, ".speed"), m.speed);
     not_negative(core::text(field, ".max_force"), m.max_force);
   }
+  void cone_angle(std::string_view field, float x, bool in_plane) {
+    finite(field, x);
+    if (x > pi_f) say(core::refused(field, x, "at most π rad"));
+    if (in_plane && x >= 0) say(core::refused(field, x, "none (−1) in the plane: use twist"));
+  }
   void not_zero(std::string_view field, double x) {
     if (!is_finite(x) || x == 0) say(core::refused(field, x, "a finite number other than 0"));
   }
@@ -111,8 +116,6 @@ void check_path(Complaint& c, const PathJointDef<D>& d) {
     if (!d.tangents.empty() && !(math::length(d.tangents[i]) > 1e-5f))
       return c.say(core::text("tangents[", i, "] is zero, expected a direction"));
   }
-  c.finite("target_distance", d.target_distance);
-  c.not_negative("max_spring_force", d.max_spring_force);
   c.not_negative("friction", d.friction);
   c.limit("limit", d.limit);
   if (d.closed && d.limit.enabled) c.say("limit is enabled, expected none on a closed path");
@@ -131,6 +134,13 @@ void check_joint(Complaint& c, const Def& d) {
   if constexpr (requires { d.target; }) c.vector("target", d.target);
   if constexpr (requires { d.target_angle; }) c.finite("target_angle", d.target_angle);
   if constexpr (requires { d.target_translation; }) c.finite("target_translation", d.target_translation);
+  if constexpr (requires { d.target_rotation; }) c.rotation("target_rotation", d.target_rotation);
+  if constexpr (requires { d.target_position; }) check_size(c, "target_position", d.target_position, 1e6);
+  if constexpr (requires { d.target_velocity; }) check_size(c, "target_velocity", d.target_velocity, 1e6);
+  if constexpr (requires { d.target_spin; }) check_size(c, "target_spin", d.target_spin, 1e6);
+  if constexpr (requires { d.max_spring_force; }) c.not_negative("max_spring_force", d.max_spring_force);
+  if constexpr (requires { d.max_spring_torque; }) c.not_negative("max_spring_torque", d.max_spring_torque);
+  if constexpr (requires { d.target_distance; }) c.finite("target_distance", d.target_distance);
   if constexpr (requires { d.length; }) c.not_negative("length", d.length);
   if constexpr (distance)
     c.distance_limit("limit", d.limit);
@@ -139,10 +149,7 @@ void check_joint(Complaint& c, const Def& d) {
   else if constexpr (std::is_same_v<Def, SliderJointDef<D>>)
     c.limit("limit", d.limit);
   else if constexpr (ball) {
-    c.finite("cone_angle", d.cone_angle);
-    if (d.cone_angle > pi_f) c.say(core::refused("cone_angle", d.cone_angle, "at most π rad"));
-    if (D::dimension == 2 && d.cone_angle >= 0)
-      c.say(core::refused("cone_angle", d.cone_angle, "none (−1) in the plane: use twist"));
+    c.cone_angle("cone_angle", d.cone_angle, D::dimension == 2);
     c.angle_limit("twist", d.twist);
     c.not_negative("friction_torque", d.friction_torque);
   } else if constexpr (std::is_same_v<Def, GenericJointDef<D>>) {

@@ -64,8 +64,11 @@ CAROM_SIMD_INLINE WideFloat<W> hold_law(LawLanes<W>& law, WideFloat<W> v, const 
     const F old = F::load_aligned(law.spring);
     const F residual = F::load_aligned(law.velocity) * v + F::load_aligned(law.position) * F::load_aligned(law.error) +
                        F::load_aligned(law.previous) * F::load_aligned(law.before);
-    const F change = F::zero() - mass * residual - F::load_aligned(law.memory) * old;
-    (old + change).store_aligned(law.spring);
+    F change = F::zero() - mass * residual - F::load_aligned(law.memory) * old;
+    const F next = old + change, most = F::load_aligned(law.max_spring);
+    const F bounded = clamp(next, F::zero() - most, most);
+    change = select(abs(next) > most, bounded - old, change);
+    bounded.store_aligned(law.spring);
     v += mobility * change;
     sum += change;
   } else {
@@ -339,7 +342,7 @@ CAROM_SIMD_INLINE void place(LimbLanes<Dim3, W>& c, const Placement3<W>& a, cons
     store(n, c.twist_axis);
     place_law(c.law, F::splat(2) * arc(q.u.v[2] * sign, q.w * sign), dot(n, times(both, n)));
   }
-  if (c.parts & part_angular) place_attitude(c, qa, qb);
+  if (c.parts & part_angular) place_attitude(c, c.parts & limb_is_aimed ? product(qa, load_turn(c.aim)) : qa, qb);
   if (c.parts & part_hinge) place_hinge(c, qa, zb, both);
 }
 

@@ -27,7 +27,7 @@ template <int W>
 struct LawLanes {
   float axis_mass[W], axis_mobility[W];  ///< of the row; 0 where it cannot move
   float rest[W], error[W];               ///< rad
-  float velocity[W], position[W], memory[W], previous[W], before[W], spring[W];
+  float velocity[W], position[W], memory[W], previous[W], before[W], spring[W], max_spring[W];
   float speed[W], max_motor[W], motor[W];
   float low[W], high[W];  ///< rad
   StopLanes<W> lower, upper;
@@ -64,6 +64,7 @@ struct alignas(64) LimbLanes<Dim3, W> {
   float turn_factor[6][W];  ///< of the two tensors' sum
   float friction[3][W], max_friction[W];
   float spring[3][W], attitude[3][W], before[3][W];  ///< attitude: rotation vector from frame A to frame B
+  float aim[4][W];  ///< of a limb that is aimed: the wanted attitude of frame B in frame A
   float velocity[W], position[W], memory[W], previous[W];
   float cone_axis[3][W], cone_mass[W], cone_angle[W];
   StopLanes<W> cone;
@@ -76,6 +77,8 @@ struct alignas(64) LimbLanes<Dim3, W> {
 
 /// In the parts of a limb: its spring is rigid (a weld).
 inline constexpr std::uint32_t limb_is_stiff = 1u << 31;
+/// Its spring pulls toward another attitude than that of frames aligned.
+inline constexpr std::uint32_t limb_is_aimed = 1u << 30;
 
 /// The kernels of one width. Blocks [begin, end).
 template <class D>

@@ -40,6 +40,7 @@ void put_law(LawLanes<W>& out, int lane, const AxisLaw& law) {
   out.previous[lane] = spring ? law.response.previous : 0;
   out.before[lane] = law.before;
   out.spring[lane] = law.spring_impulse;
+  out.max_spring[lane] = law.max_spring_impulse > 0 ? law.max_spring_impulse : 1e30f;
   out.speed[lane] = law.speed;
   out.max_motor[lane] = law.has(AxisLaw::motor) ? law.max_motor_impulse : 0;
   out.motor[lane] = law.motor_impulse;
@@ -131,6 +132,8 @@ void fill_lane(LimbLanes<D, W>& out, int lane, std::int32_t joint, const WorldIm
     set_lane(out.start_tensor_b, lane, record.tensors()[1]);
     const JointPlacement<D> at =
         place_joint(world.bodies, world.joints.headers[std::size_t(joint)], world.joints.at(joint));
+    if (out.parts & limb_is_aimed)
+      set_lane(out.aim, lane, world.joints.at(joint).template get<BallJointDef>()->target_rotation);
     set_lane(out.frame_a, lane, at.frame_a);
     set_lane(out.frame_b, lane, at.frame_b);
   }
@@ -173,8 +176,10 @@ std::uint32_t limb_parts(const WorldImplementation<D>& world, std::int32_t joint
   const std::uint32_t parts = data.parts;
   if ((parts & part_pin) == 0 || (parts & ~mask) != 0 || world.joints.tree_of(joint) != none) return 0;
   if (D::dimension == 3 && turning_is_locked(world, joint)) return 0;
-  const bool stiff = (parts & part_angular) != 0 && turns_rigidly(data);
-  return parts | (stiff ? limb_is_stiff : 0);
+  if ((parts & part_angular) == 0) return parts;
+  const auto* ball = data.template get<BallJointDef>();
+  const bool aimed = ball != nullptr && !(ball->target_rotation == typename D::Rotation{});
+  return parts | (turns_rigidly(data) ? limb_is_stiff : 0) | (aimed ? limb_is_aimed : 0);
 }
 
 template <class D>

@@ -175,8 +175,13 @@ JointState<D> measure_joint(const WorldImplementation<D>& world, std::int32_t jo
       out.angular_error = relative_angle<D>(relative_turn);
       break;
     }
+    case JointType::motor: {
+      const auto& def = *data.template get<MotorJointDef>();
+      if (def.hold_position) out.linear_error = math::length(d - rotate(frame_a, def.target_position));
+      if (def.hold_rotation) out.angular_error = relative_angle<D>(conjugate(def.target_rotation) * relative_turn);
+      break;
+    }
     case JointType::weld:
-    case JointType::motor:
       out.linear_error = distance;
       out.angular_error = relative_angle<D>(relative_turn);
       break;

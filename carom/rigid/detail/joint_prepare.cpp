@@ -137,6 +137,7 @@ void fill_linear(LinearAxis<D>& block, const JointData<D>& data, const JointPlac
       stiffer = mass_ratio_root(mobility, mobility - inner(turns, solve_mobility(locked, turns)));
     }
     fill_spring(law, slider->spring, slider->target_translation, t, stiffer);
+    law.max_spring_impulse = slider->max_spring_force * t.push();
     fill_motor(law, slider->motor, t);
     fill_limit(law, slider->limit);
   } else if (const auto* generic = data.template get<GenericJointDef>()) {
@@ -187,6 +188,7 @@ void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlac
       stiffer = mass_ratio_root(mobility, mobility - dot(anchors, held));
     }
     fill_spring(block.law, hinge->spring, hinge->target_angle, t, stiffer);
+    block.law.max_spring_impulse = hinge->max_spring_torque * t.push();
     fill_motor(block.law, hinge->motor, t);
     fill_limit(block.law, hinge->limit);
   } else if (const auto* ball = data.template get<BallJointDef>()) {
@@ -291,9 +293,10 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
   block.frame_b = at.frame_b;
   block.impulse = data.memory.angular;
   JointSpring spring{};
-  if (const auto* ball = data.template get<BallJointDef>())
+  if (const auto* ball = data.template get<BallJointDef>()) {
     spring = ball->spring;
-  else if (const auto* weld = data.template get<WeldJointDef>())
+    block.frame_a = at.frame_a * ball->target_rotation;
+  } else if (const auto* weld = data.template get<WeldJointDef>())
     spring = weld->angular;
   else if (const auto* mouse = data.template get<MouseJointDef>()) {
     // The hand also slows the body's turning, so that it does not swing for ever.
@@ -304,6 +307,13 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
   } else if (const auto* motor = data.template get<MotorJointDef>()) {
     spring = motor->angular;
     block.max_impulse = motor->max_torque * t.push();
+    block.frame_a = at.frame_a * motor->target_rotation;
+    block.friction = !motor->hold_rotation;
+    block.driven = !(motor->target_spin == typename D::Angular{});
+    if constexpr (D::dimension == 2)
+      block.drive = t.pace * motor->target_spin;
+    else
+      block.drive = rotate(at.frame_a, t.pace * motor->target_spin);
   }
   block.rigid = !(spring.hertz > 0);
   if (!block.rigid) block.response = spring_response(t.pace * spring.hertz, spring.damping_ratio, t.h);
@@ -321,6 +331,10 @@ void fill_point(PointBlock<D>& block, const JointData<D>& data, const JointPlace
   else if (const auto* motor = data.template get<MotorJointDef>()) {
     spring = motor->linear;
     block.max_impulse = motor->max_force * t.push();
+    block.arm_a += rotate(at.frame_a, motor->target_position);
+    block.anywhere = !motor->hold_position;
+    block.driven = !(motor->target_velocity == typename D::Vector{});
+    block.drive = rotate(at.frame_a, t.pace * motor->target_velocity);
   } else if (const auto* mouse = data.template get<MouseJointDef>()) {
     spring = mouse->spring;
     block.max_impulse = mouse->max_force * t.push();

@@ -107,7 +107,8 @@ struct JointData {
 };
 template <class D>
 struct SmallJoint {
-  static constexpr std::size_t room = std::max(sizeof(DistanceJointDef<D>), sizeof(HingeJointDef<D>));
+  static constexpr std::size_t room =
+      std::max({sizeof(DistanceJointDef<D>), sizeof(HingeJointDef<D>), sizeof(BallJointDef<D>)});
   JointData<D> data{};
   alignas(4) unsigned char definition[room]{};
 };

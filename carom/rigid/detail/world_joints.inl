@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "carom/rigid/detail/joint_check.h"
+#include "carom/rigid/detail/check.h"
 #include "carom/rigid/detail/joint_record.h"
 #include "carom/rigid/detail/world_implementation.h"
 
@@ -37,6 +37,7 @@ Result<JointId> make_joint(WorldImplementation<D>& world, Def def) {
 
   def.frame_a.q = unit_rotation(def.frame_a.q);
   def.frame_b.q = unit_rotation(def.frame_b.q);
+  if constexpr (requires { def.target_rotation; }) def.target_rotation = unit_rotation(def.target_rotation);
   JointStore<D>& joints = world.joints;
   const JointId id = joints.slots.allocate();
   const std::int32_t slot = joints.slots.slot(id);
@@ -77,6 +78,34 @@ inline std::string_view joint_type_name(std::size_t index) {
 inline core::Error wrong_joint(std::string_view call, JointType type, std::string_view expected) {
   return core::Error{
       core::text(call, ": the joint is a ", joint_type_name(std::size_t(type)), " joint, expected ", expected)};
+}
+
+/// What a setter did with the definition of a joint.
+enum class Change : std::uint8_t { wrong_type, none, made };
+template <class T>
+Change give(T& field, const T& value) {
+  if (field == value) return Change::none;
+  field = value;
+  return Change::made;
+}
+inline Change both(Change a, Change b) { return std::max(a, b); }
+
+/// change(definition) is called with what is known to be right but for the joint's type.
+template <class D, class F>
+Status change_joint(WorldImplementation<D>& world, JointId joint, std::string_view call, const Complaint& complaint,
+                    std::string_view expected, F&& change) {
+  const auto slot = find_joint<D>(world, joint, call);
+  if (!slot.ok()) return slot.error();
+  if (!complaint.none_yet()) return complaint.error();
+  JointData<D>& any = world.joints.at(*slot);
+  const bool broke = may_break(any.frames());
+  const Change done =
+      any.visit([&](const auto& def) { return change(const_cast<std::remove_cvref_t<decltype(def)>&>(def)); });
+  if (done == Change::wrong_type) return wrong_joint(call, any.type, expected);
+  if (done == Change::none) return {};
+  world.joints.breakable_count += int(may_break(any.frames())) - int(broke);
+  wake_joint<D>(world, *slot);
+  return {};
 }
 
 }  // namespace detail
@@ -283,6 +312,163 @@ Status World<D>::set_mouse_target(JointId joint, Position target) {
   mouse->target = target;
   detail::wake_joint<D>(*self_, *slot);
   return {};
+}
+
+template <class D>
+Status World<D>::set_spring_target(JointId joint, float target) {
+  constexpr std::string_view call = "World::set_spring_target";
+  detail::Complaint complaint(call);
+  complaint.finite("target", target);
+  return detail::change_joint(*self_, joint, call, complaint, "a hinge, slider or path joint", [&](auto& d) {
+    if constexpr (requires { d.target_angle; })
+      return detail::give(d.target_angle, target);
+    else if constexpr (requires { d.target_translation; })
+      return detail::give(d.target_translation, target);
+    else if constexpr (requires { d.target_distance; })
+      return detail::give(d.target_distance, target);
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_max_spring_force(JointId joint, float most) {
+  constexpr std::string_view call = "World::set_max_spring_force";
+  detail::Complaint complaint(call);
+  complaint.not_negative("most", most);
+  return detail::change_joint(*self_, joint, call, complaint, "a hinge, slider or path joint", [&](auto& d) {
+    if constexpr (requires { d.max_spring_torque; })
+      return detail::give(d.max_spring_torque, most);
+    else if constexpr (requires { d.max_spring_force; })
+      return detail::give(d.max_spring_force, most);
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_target_rotation(JointId joint, Rotation target) {
+  constexpr std::string_view call = "World::set_target_rotation";
+  detail::Complaint complaint(call);
+  complaint.rotation("target", target);
+  return detail::change_joint(*self_, joint, call, complaint, "a ball or motor joint", [&](auto& d) {
+    if constexpr (requires { d.target_rotation; })
+      return detail::give(d.target_rotation, detail::unit_rotation(target));
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_target_pose(JointId joint, Vector position, Rotation rotation) {
+  constexpr std::string_view call = "World::set_target_pose";
+  detail::Complaint complaint(call);
+  detail::check_size(complaint, "position", position, detail::max_size);
+  complaint.rotation("rotation", rotation);
+  return detail::change_joint(*self_, joint, call, complaint, "a motor joint", [&](auto& d) {
+    if constexpr (requires { d.target_position; })
+      return detail::both(detail::give(d.target_position, position),
+                          detail::give(d.target_rotation, detail::unit_rotation(rotation)));
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_target_velocity(JointId joint, Vector velocity, Angular spin) {
+  constexpr std::string_view call = "World::set_target_velocity";
+  detail::Complaint complaint(call);
+  detail::check_size(complaint, "velocity", velocity, detail::max_velocity);
+  detail::check_size(complaint, "spin", spin, detail::max_velocity);
+  return detail::change_joint(*self_, joint, call, complaint, "a motor joint", [&](auto& d) {
+    if constexpr (requires { d.target_velocity; })
+      return detail::both(detail::give(d.target_velocity, velocity), detail::give(d.target_spin, spin));
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_hold(JointId joint, bool position, bool rotation) {
+  constexpr std::string_view call = "World::set_hold";
+  return detail::change_joint(*self_, joint, call, detail::Complaint(call), "a motor joint", [&](auto& d) {
+    if constexpr (requires { d.hold_position; })
+      return detail::both(detail::give(d.hold_position, position), detail::give(d.hold_rotation, rotation));
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_max_force(JointId joint, float force, float torque) {
+  constexpr std::string_view call = "World::set_max_force";
+  detail::Complaint complaint(call);
+  complaint.not_negative("force", force);
+  complaint.not_negative("torque", torque);
+  if (const auto slot = detail::find_joint<D>(*self_, joint, call);
+      slot.ok() && self_->joints.at(*slot).type == JointType::mouse && torque != 0)
+    complaint.say(core::refused("torque", torque, "0 for a mouse joint"));
+  return detail::change_joint(*self_, joint, call, complaint, "a motor or mouse joint", [&](auto& d) {
+    if constexpr (requires { d.max_torque; })
+      return detail::both(detail::give(d.max_force, force), detail::give(d.max_torque, torque));
+    else if constexpr (requires { d.max_force; })
+      return detail::give(d.max_force, force);
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_length(JointId joint, float length) {
+  constexpr std::string_view call = "World::set_length";
+  detail::Complaint complaint(call);
+  complaint.not_negative("length", length);
+  return detail::change_joint(*self_, joint, call, complaint, "a distance or pulley joint", [&](auto& d) {
+    if constexpr (requires { d.length; })
+      return detail::give(d.length, length);
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_cone_angle(JointId joint, float angle) {
+  constexpr std::string_view call = "World::set_cone_angle";
+  detail::Complaint complaint(call);
+  complaint.cone_angle("angle", angle, D::dimension == 2);
+  return detail::change_joint(*self_, joint, call, complaint, "a ball joint", [&](auto& d) {
+    if constexpr (requires { d.cone_angle; })
+      return detail::give(d.cone_angle, angle);
+    else
+      return detail::Change::wrong_type;
+  });
+}
+
+template <class D>
+Status World<D>::set_friction(JointId joint, float friction) {
+  constexpr std::string_view call = "World::set_friction";
+  detail::Complaint complaint(call);
+  complaint.not_negative("friction", friction);
+  return detail::change_joint(*self_, joint, call, complaint, "a ball or path joint (others: a motor at speed 0)",
+                              [&](auto& d) {
+                                if constexpr (requires { d.friction_torque; })
+                                  return detail::give(d.friction_torque, friction);
+                                else if constexpr (requires { d.friction; })
+                                  return detail::give(d.friction, friction);
+                                else
+                                  return detail::Change::wrong_type;
+                              });
+}
+
+template <class D>
+Status World<D>::set_break_force(JointId joint, float force, float torque) {
+  constexpr std::string_view call = "World::set_break_force";
+  detail::Complaint complaint(call);
+  complaint.not_negative("force", force);
+  complaint.not_negative("torque", torque);
+  return detail::change_joint(*self_, joint, call, complaint, "any", [&](auto& d) {
+    return detail::both(detail::give(d.break_force, force), detail::give(d.break_torque, torque));
+  });
 }
 
 template <class D>

@@ -54,15 +54,25 @@ class SnapshotWriter {
   void scratch(const T&) {}
   template <class T>
   void events(const T&) {}
+  // Member by member: what lies between members is left to chance when a whole is copied, and equal worlds are to have
+  // equal snapshots.
   void definition(const WorldDef<D>& d) {
     const WorldDef<D> plain = without_machine(d);
-    put(&plain, 1);
+    const auto& [gravity, substeps, threads, scheduler, profiler, simd_width, allow_sleep, continuous,
+                 restitution_threshold, contact_hertz, contact_damping_ratio, contact_push_speed, joint_hertz,
+                 joint_damping_ratio, joint_solver, maximum_linear_speed, sleep_time, move_events] = plain;
+    put_members(static_cast<std::byte*>(room<WorldDef<D>>(1)), plain, gravity, substeps, threads, scheduler, profiler,
+                simd_width, allow_sleep, continuous, restitution_threshold, contact_hertz, contact_damping_ratio,
+                contact_push_speed, joint_hertz, joint_damping_ratio, joint_solver, maximum_linear_speed, sleep_time,
+                move_events);
   }
   void shapes(const std::vector<ShapeRecord<D>>& v) {
-    ShapeTraits<D>* to = static_cast<ShapeTraits<D>*>(room<ShapeTraits<D>>(v.size()));
-    for (const ShapeRecord<D>& record : v) {
-      const ShapeTraits<D> traits = record;
-      std::memcpy(static_cast<void*>(to++), &traits, sizeof traits);
+    std::byte* to = static_cast<std::byte*>(room<ShapeTraits<D>>(v.size()));
+    for (const ShapeTraits<D>& traits : v) {
+      const auto& [local, body, next, leaf, tree, flags, at_origin, outer_extent, inner_extent, margin, terms] = traits;
+      put_members(to, traits, local, body, next, leaf, tree, flags, at_origin, outer_extent, inner_extent, margin,
+                  terms);
+      to += sizeof traits;
     }
   }
   void names(const std::vector<std::string>& v) {
@@ -75,6 +85,11 @@ class SnapshotWriter {
   void effectors(const std::vector<EffectorData<D>>& v) { to_.effectors = v; }
 
  private:
+  template <class T, class... Member>
+  static void put_members(std::byte* to, const T& whole, const Member&... member) {
+    const std::byte* const from = reinterpret_cast<const std::byte*>(&whole);
+    (std::memcpy(to + (reinterpret_cast<const std::byte*>(&member) - from), &member, sizeof member), ...);
+  }
   template <class T>
   void* room(std::size_t count) {
     const std::size_t first = to_.image.size();

@@ -220,6 +220,8 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
     case ball_joint: {
       BallJointDef<D> d{frames};
       d.spring = out.spring;
+      if (o.has("target_rotation"))
+        d.target_rotation = rotation_for(reader, o, "target_rotation", static_cast<D*>(nullptr));
       d.cone_angle = float(reader.number(o, "cone_angle", d.cone_angle));
       d.twist = read_limit(reader, o, "twist", Measure::angle);
       d.friction_torque = float(reader.number(o, "friction_torque", 0));
@@ -230,6 +232,7 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
       HingeJointDef<D> d{frames};
       d.spring = out.spring;
       d.target_angle = float(reader.number(o, "target_angle", 0));
+      d.max_spring_torque = float(reader.number(o, "max_spring_torque", 0));
       d.limit = out.limit;
       d.motor = out.motor;
       out.definition = d;
@@ -239,6 +242,7 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
       SliderJointDef<D> d{frames};
       d.spring = out.spring;
       d.target_translation = float(reader.number(o, "target_translation", 0));
+      d.max_spring_force = float(reader.number(o, "max_spring_force", 0));
       d.limit = out.limit;
       d.motor = out.motor;
       out.definition = d;
@@ -257,6 +261,13 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
       d.angular = read_spring(reader, o, "angular_spring", d.angular);
       d.max_force = float(reader.number(o, "max_force", d.max_force));
       d.max_torque = float(reader.number(o, "max_torque", d.max_torque));
+      d.target_position = vector_for(reader.vector(o, "target_position"), static_cast<D*>(nullptr));
+      if (o.has("target_rotation"))
+        d.target_rotation = rotation_for(reader, o, "target_rotation", static_cast<D*>(nullptr));
+      d.target_velocity = vector_for(reader.vector(o, "target_velocity"), static_cast<D*>(nullptr));
+      d.target_spin = angular_for(reader.angular(o, "target_spin"), static_cast<D*>(nullptr));
+      d.hold_position = reader.flag(o, "hold_position", true);
+      d.hold_rotation = reader.flag(o, "hold_rotation", true);
       out.definition = d;
       break;
     }
