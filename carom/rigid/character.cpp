@@ -101,6 +101,7 @@ Status Character<D>::teleport(World<D>& world, Position feet) {
   velocity_ = {};
   rise_ = 0;
   ground_ = {};
+  dropping_ = false;
   return {};
 }
 
@@ -110,6 +111,7 @@ void Character<D>::restore(const CharacterState<D>& state) {
   velocity_ = state.velocity;
   rise_ = state.rise;
   ground_ = state.ground;
+  dropping_ = state.dropping;
 }
 
 /// The way nearest to `wanted` that crosses no plane: Hildreth's method on the dual, x = wanted + Σ λ n with λ ≥ 0.
@@ -267,9 +269,11 @@ template <class D>
 typename Character<D>::Vector Character<D>::carry(const World<D>& world) {
   if (ground_.state != GroundState::on_ground) return {};
   const Result<BodyState<D>> state = world.state(ground_.body);
-  if (!state.ok() || state.value().type == BodyType::fixed || !state.value().awake) return {};
+  if (!state.ok()) return {};
   const BodyState<D>& s = state.value();
-  return way_of_point(s.linear_velocity, s.angular_velocity, Vector(ground_.point - s.center_of_mass), dt_);
+  const Vector belt = ground_.belt * dt_;
+  if (s.type == BodyType::fixed || !s.awake) return belt;
+  return way_of_point(s.linear_velocity, s.angular_velocity, Vector(ground_.point - s.center_of_mass), dt_) + belt;
 }
 
 /// Sets what is under the feet; who stood and did not jump is kept on the ground down a step.
@@ -298,6 +302,8 @@ void Character<D>::follow_ground(const World<D>& world, bool jumped, bool stood)
   ground_.slope = math::acos(clamp(dot(best->normal, up), -1.0f, 1.0f));
   if (const BodyState<D>& s = of(*best).body; s.type != BodyType::fixed)
     ground_.velocity = s.linear_velocity + cross(s.angular_velocity, Vector(best->point - s.center_of_mass));
+  ground_.belt = belt_of(world, *best);
+  ground_.velocity += ground_.belt;
 }
 
 template <class D>
@@ -309,6 +315,7 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
     complaint.say("the character's body does not exist in this world");
   if (!complaint.none_yet()) return complaint.error();
   dt_ = dt;
+  held_ = false;
   const Vector up = definition_.up;
   const Position begin = position_;
   const bool stood = ground_.state == GroundState::on_ground;
@@ -356,6 +363,7 @@ Status Character<D>::move(World<D>& world, Vector velocity, float dt) {
   }
   follow_ground(world, jumped, stood);
   if (ground_.state == GroundState::on_ground) rise_ = 0;
+  dropping_ = dropping_ && held_;
   velocity_ = Vector(position_ - begin) / dt;
   return world.set_pose(body_, position_, rotation_);
 }

@@ -1,6 +1,7 @@
 // A character: an upright capsule that walks where it is told. It climbs stairs, stays on slopes and moving platforms,
 // slides along walls, and pushes bodies with a limited force. It is no dynamic body: between worlds' steps it moves by
-// its own rule, and the world knows it as a kinematic body, so that bodies, queries and other characters meet it.
+// its own rule, and the world knows it as a kinematic body, so that bodies, queries and other characters meet it. It
+// jumps through one-way surfaces from behind, and belts carry it.
 //
 //   auto player = Character3::create(world, {.max_slope = radians(45.0f)}, {0, 0, 0}).value();
 //   each step:  player.move(world, {3, jump ? 5.0f : 0.0f, 0}, dt);  world.step(dt);
@@ -56,7 +57,8 @@ struct CharacterGround {
   typename D::Position point{};
   typename D::Vector normal{};    ///< of the contact, out of the ground
   float slope = 0;                ///< rad between the normal and up
-  typename D::Vector velocity{};  ///< m/s, of the ground there
+  typename D::Vector velocity{};  ///< m/s, of the ground there, with that of a belt
+  typename D::Vector belt{};      ///< m/s of it, by which the surface runs over its body
 };
 
 /// What a rollback keeps of a character beside the world's snapshot.
@@ -66,6 +68,7 @@ struct CharacterState {
   typename D::Vector velocity{};
   float rise = 0;  ///< m/s along up while it does not stand
   CharacterGround<D> ground{};
+  bool dropping = false;  ///< drop_through was called, and it is not yet within a one-way surface
 };
 
 /// Not copyable: it owns a body of the world. Every call takes the world that it was created in. Deterministic; a call
@@ -89,10 +92,12 @@ class CAROM_API Character {
   /// world's gravity pulls at what does not stand. Call it before the world's step of the same dt. Errors: velocity or
   /// dt not finite or out of range, or the body no longer exists; nothing has moved then.
   Status move(World<D>& world, Vector velocity, float dt);
+  /// Lets go of the one-way surfaces that it stands on: the next moves fall through them. Others hold it again.
+  void drop_through() { dropping_ = true; }
   /// Elsewhere at once, at rest and in the air until the next move.
   Status teleport(World<D>& world, Position feet);
   /// For rollback: with the world's own snapshot, everything that later moves depend on.
-  CharacterState<D> state() const { return {position_, velocity_, rise_, ground_}; }
+  CharacterState<D> state() const { return {position_, velocity_, rise_, ground_, dropping_}; }
   void restore(const CharacterState<D>& state);
   /// Removes its body; the character is of no use afterwards.
   Status destroy(World<D>& world);
@@ -119,6 +124,8 @@ class CAROM_API Character {
   };
   Character();
   void look_around(const World<D>& world, const geometry::Bounds<Vector>& needed);
+  bool lets_through(std::size_t neighbour, const Vector& front);
+  Vector belt_of(const World<D>& world, const Plane& plane) const;
   void find_planes(const World<D>& world, const Vector& way, float around);
   void add_plane(std::size_t neighbour, const Vector& normal, float separation, const Vector& point);
   bool carries(const Plane& plane) const;
@@ -143,6 +150,8 @@ class CAROM_API Character {
   float rise_ = 0;      ///< m/s along up while it does not stand
   float least_up_ = 0;  ///< cosine of max_slope
   float dt_ = 0;
+  bool dropping_ = false;
+  bool held_ = false;     ///< in this move a one-way surface would have held it
   bool stopped_ = false;  ///< the last advance ended at something
   float reach_ = 0;       ///< m that this move may lead, steps up and down aside
   CharacterGround<D> ground_{};

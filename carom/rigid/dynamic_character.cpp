@@ -10,6 +10,7 @@ namespace {
 
 constexpr float thinner = 0.97f;   // of the probe, in radii
 constexpr float fastest_drop = 5;  // m/s with which it is kept on ground that falls away
+constexpr float through = 0.02f;   // radii that a contact without an impulse reaches in, at least, to be none
 constexpr float inward = 0.1f;     // radii inward of an edge at which its top is looked for
 
 }  // namespace
@@ -142,8 +143,11 @@ void DynamicCharacter<D>::stand_on(const World<D>& world, const Touch& t, Ground
     ground_.velocity =
         s.value().linear_velocity + cross(s.value().angular_velocity, Vector(t.point - s.value().center_of_mass));
   const Result<ShapeDef<D>> shape = world.shape_definition(t.shape);
-  if (s.ok() && shape.ok())
-    ground_.velocity += rotate((s.value().pose * shape.value().local).rotation, shape.value().surface_velocity);
+  if (!s.ok() || !shape.ok()) return;
+  const ShapeDef<D>& def = shape.value();
+  ground_.belt = detail::belt_velocity(rotate((s.value().pose * def.local).rotation, def.surface_velocity),
+                                       def.material, t.normal);
+  ground_.velocity += ground_.belt;
 }
 
 /// Finds what is under the feet: what touches, a step that the walk leads against, or ground a step below.
@@ -164,6 +168,10 @@ void DynamicCharacter<D>::look(const World<D>& world, Position feet, const Vecto
     int deepest = 0;
     for (int i = 1; i < c.count; ++i)
       if (c.points[i].separation < c.points[deepest].separation) deepest = i;
+    // What pushes nothing however deep it reaches lets it through: one-way surfaces, contacts that were switched off.
+    float pushed = 0;
+    for (int i = 0; i < c.count; ++i) pushed += c.points[i].normal_impulse;
+    if (pushed == 0 && c.points[deepest].separation < -through * definition_.radius) continue;
     t.point = c.points[deepest].point;
     t.height = float(dot(t.point - feet, Position(up)));
     const bool walkable = t.rise >= least_up_;

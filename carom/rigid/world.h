@@ -147,7 +147,7 @@ class CAROM_API World {
   void pair_rules(std::vector<MaterialPair>& out) const;
   using ContactFilter = std::function<bool(ShapeId, ShapeId)>;
   /// Asked, after the filters of the shapes, when the bounds of two shapes come to overlap: false, and they do not
-  /// collide until they part and meet again.
+  /// collide until they part and meet again. Kinematic characters ask in every move about what is near.
   void set_contact_filter(ContactFilter filter);
   using ContactModifier = std::function<void(ContactModification<D>&)>;
   /// Asked before every step about each patch of contact of shapes that have modify_contacts.

@@ -65,6 +65,7 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
   const QueryFilter filter{definition_.filter.category, definition_.filter.mask, body_};
   if (!world.overlap_bounds(bounds, all.found, filter).ok()) return;
   const auto& store = *world.self_;
+  bool special = false;
   for (const ShapeId id : all.found) {
     const auto& shape = store.shapes.at(std::int32_t(store.shapes.slots.slot(id)));
     const std::size_t body = std::size_t(shape.body);
@@ -80,11 +81,57 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
     const typename D::Pose pose = detail::shape_pose(store, shape);
     const auto seen = geometry::bounds(shape.geometry, relative(typename D::Pose{position_, {}}, pose));
     if (!geometry::overlaps(geometry::grow(seen, approach), all.whole)) continue;
+    if (store.contact_filter && !store.contact_filter(shape_, id)) continue;
+    special = special || (shape.flags & detail::shape_special) != 0;
     const BodyId owner = store.bodies.slots.handle_at(shape.body);
     all.near.push_back({id, owner, shape.geometry, pose, world.state(owner).value(), approach, seen});
   }
   if (all.triangles.size() < all.near.size()) all.triangles.resize(all.near.size());
   for (detail::GatheredTriangles& t : all.triangles) t.known = false;
+  for (std::size_t i = all.near.size(); special && i-- > 0;) {
+    const auto* extra = store.shapes.extra(std::int32_t(store.shapes.slots.slot(all.near[i].id)));
+    if (extra == nullptr || extra->one_way == Vector{} || !lets_through(i, extra->one_way)) continue;
+    all.near.erase(all.near.begin() + std::ptrdiff_t(i));
+    for (detail::GatheredTriangles& t : all.triangles) t.known = false;
+  }
+}
+
+/// Is the character within or behind a one-way surface, or lets itself fall through it? `front`: in the shape's frame.
+template <class D>
+bool Character<D>::lets_through(std::size_t neighbour, const Vector& front) {
+  const detail::Neighbour<D>& n = around_->near[neighbour];
+  const float close = reach_ + n.approach + definition_.skin, reach = close + definition_.step_height;
+  float nearest = 1e30f;
+  bool passes = false;
+  detail::for_planes(*around_, neighbour, capsule_, relative(n.pose, pose()), reach, {Vector{}, reach},
+                     [&](const Vector& normal, float separation, const Vector&) {
+                       if (separation >= nearest) return;
+                       nearest = separation;
+                       passes = separation < -0.5f * definition_.skin || dot(normal, front) < detail::side_cosine;
+                     });
+  held_ = held_ || (nearest < close && !passes);
+  return passes || dropping_;
+}
+
+/// m/s, world axes, by which the surface under a plane runs over its body.
+template <class D>
+typename D::Vector Character<D>::belt_of(const World<D>& world, const Plane& plane) const {
+  const auto& store = *world.self_;
+  const detail::Neighbour<D>& n = of(plane);
+  const std::int32_t slot = std::int32_t(store.shapes.slots.slot(n.id));
+  const auto* extra = store.shapes.extra(slot);
+  std::uint32_t number = 0;
+  if (extra != nullptr && extra->surface_count > 0) {
+    const float r = definition_.radius;
+    const Vector out = inverse_rotate(n.pose.rotation, plane.normal);
+    const auto hit =
+        detail::ray_into(n.geometry, local_point(n.pose, plane.point) + out * (0.1f * r), out * (-0.2f * r));
+    if (hit.hit) number = geometry::material_of_part(n.geometry, hit.child);
+  }
+  const SurfaceMaterial<D>* part = store.shapes.surface(slot, number);
+  const Vector runs =
+      part != nullptr ? part->surface_velocity : (extra != nullptr ? extra->surface_velocity : Vector{});
+  return detail::belt_velocity(rotate(n.pose.rotation, runs), detail::material_at(store, slot, number), plane.normal);
 }
 
 /// The planes of all that a straight `way` may meet, and of what is no farther than `around` from it. What lies beside

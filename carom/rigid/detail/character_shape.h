@@ -31,6 +31,13 @@ float check_character(Complaint& complaint, const Definition& d, const Position&
   return size;
 }
 
+/// How fast a belt runs where its normal (outward, world axes) is this. `runs`: of its surface, world axes.
+inline Vec2f belt_velocity(Vec2f runs, const Material& material, Vec2f normal) {
+  const Vec2f tangent{-normal.y, normal.x};
+  return tangent * (dot(runs, tangent) + material.tangent_speed);
+}
+inline Vec3f belt_velocity(Vec3f runs, const Material&, Vec3f normal) { return runs - normal * dot(runs, normal); }
+
 /// A body with one shape, or neither.
 template <class D>
 Status make_character(World<D>& world, const BodyDef<D>& body, const typename D::Shape& capsule,

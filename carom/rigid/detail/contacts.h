@@ -68,6 +68,8 @@ inline const Material& material_at(const WorldImplementation<D>& world, std::int
   const SurfaceMaterial<D>* surface = world.shapes.surface(shape, number);
   return surface != nullptr ? surface->material : world.shapes.terms_of(shape).material;
 }
+/// cos of the angle to its direction within which a one-way surface holds: 60°.
+inline constexpr float side_cosine = 0.5f;
 /// How fast A's surface runs against B's, world axes, where they are belts.
 template <class D>
 inline typename D::Vector surface_slip(const WorldImplementation<D>& world, const ContactRecord<D>& c,

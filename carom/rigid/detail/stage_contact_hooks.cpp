@@ -4,8 +4,6 @@
 namespace carom::rigid::detail {
 namespace {
 
-constexpr float side_cosine = 0.5f;  ///< of the angle to its direction within which a one-way surface holds: 60°
-
 /// m/s of B against A at a point of the world.
 template <class D>
 typename D::Vector velocity_between(const WorldImplementation<D>& world, const ContactRecord<D>& c,
@@ -44,9 +42,11 @@ bool lets_through(const WorldImplementation<D>& world, ContactRecord<D>& c, int 
   bool beside = false, inside = false, rising = false;
   for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
     const Patch<D> patch(world, world.contacts.manifold(m));
+    const float rise = dot(velocity_between(world, c, patch.middle), up);
     beside = beside || dot(patch.normal, up) < side_cosine;
-    inside = inside || patch.deepest < -0.25f * c.inner;
-    rising = rising || dot(velocity_between(world, c, patch.middle), up) > 0.05f;
+    // A step ago: what falls fast is noticed when it already reaches in.
+    inside = inside || patch.deepest - min(rise, 0.0f) * world.last_dt < -0.25f * c.inner;
+    rising = rising || rise > 0.05f;
   }
   if ((c.flags & contact_decided) == 0) {
     c.flags |= contact_decided;
@@ -102,9 +102,16 @@ void modify_contacts(WorldImplementation<D>& world) {
         if (!(extra->one_way == typename D::Vector{})) open = open || lets_through(world, c, side, *extra);
         modify = modify || extra->modify;
       }
+    bool sinks = false;
     for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
       world.contacts.manifold(m).disabled = open;
       if (modify && world.contact_modifier) ask_modifier(world, c, m, !open);
+      sinks = sinks || world.contacts.manifold(m).disabled;
+    }
+    // What nothing stops goes through along the normal, which kept manifolds take for an ever deeper contact.
+    if (sinks) {
+      c.flags &= std::uint16_t(~contact_known);
+      if (!world.scratch.watches.empty()) world.scratch.watches[std::size_t(c.awake_index)] = {};
     }
   }
 }
