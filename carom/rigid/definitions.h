@@ -105,13 +105,16 @@ struct BodyDef {
   std::string_view name{};  ///< for reports and pictures; copied
 };
 
-/// How a surface behaves. Mixed for a pair: friction √(ab), restitution max(a, b), resistance max(a, b), unless the
+/// How a surface behaves. Mixed for a pair: friction √(ab), restitution max(a, b), resistances max(a, b), unless the
 /// world has a rule for the two user_ids (World::set_pair_rule).
 struct Material {
   float friction = 0.6f;         ///< Coulomb's μ, ≥ 0
   float restitution = 0;         ///< 0 … 1
   float rolling_resistance = 0;  ///< lever arm / radius (what is not round: half its thickness), ≥ 0
-  float tangent_speed = 0;       ///< m/s along the surface (2D), a conveyor
+  /// Likewise of what spins about the normal of the contact (3D), ≥ 0. Rolling resistance holds against spin too; this
+  /// is for what spins less freely than it rolls. None without friction.
+  float spinning_resistance = 0;
+  float tangent_speed = 0;  ///< m/s along the surface (2D), a conveyor
   std::uint32_t user_id = 0;
   friend bool operator==(const Material&, const Material&) = default;
 };
@@ -124,9 +127,10 @@ struct SurfaceMaterial {
 };
 /// What holds between two materials instead of the mixture: rubber on ice is neither.
 struct PairRule {
-  float friction = 0.6f;         ///< ≥ 0
-  float restitution = 0;         ///< 0 … 1
-  float rolling_resistance = 0;  ///< ≥ 0
+  float friction = 0.6f;          ///< ≥ 0
+  float restitution = 0;          ///< 0 … 1
+  float rolling_resistance = 0;   ///< ≥ 0
+  float spinning_resistance = 0;  ///< ≥ 0
 };
 struct MaterialPair {
   std::uint32_t material_a = 0, material_b = 0;  ///< user_ids
@@ -211,11 +215,11 @@ struct JointLimit {
   float lower = 0, upper = 0;  ///< m or rad
   friend bool operator==(const JointLimit&, const JointLimit&) = default;
 };
+/// At speed 0 it is dry friction of `max_force`.
 struct JointMotor {
   bool enabled = false;
   float speed = 0;      ///< m/s or rad/s
   float max_force = 0;  ///< N or N·m
-/// At speed 0 it is dry friction of `max_force`.
   friend bool operator==(const JointMotor&, const JointMotor&) = default;
 };
 
@@ -252,11 +256,11 @@ template <class D>
 struct SliderJointDef : JointFrames<D> {
   JointSpring spring{};
   float target_translation = 0;  ///< m, of the spring
+  float max_spring_force = 0;    ///< N, 0: as much as it takes. With a stiff spring: a motor to a position.
   JointLimit limit{};
   JointMotor motor{};
 };
 /// Frames stay together; a spring of 0 Hz is rigid.
-  float max_spring_force = 0;    ///< N, 0: as much as it takes. With a stiff spring: a motor to a position.
 template <class D>
 struct WeldJointDef : JointFrames<D> {
   JointSpring linear{};

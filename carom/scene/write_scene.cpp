@@ -102,6 +102,7 @@ class SceneWriter {
       p.put("materials", "[" + std::to_string(pair.material_a) + ", " + std::to_string(pair.material_b) + "]");
       p.put("friction", pair.rule.friction).put("restitution", pair.rule.restitution);
       p.unless("rolling_resistance", pair.rule.rolling_resistance, 0.0f);
+      p.unless("spinning_resistance", pair.rule.spinning_resistance, 0.0f);
       list += (list.empty() ? "" : ", ") + p.object();
     }
     if (!list.empty()) f.put("material_pairs", "[" + list + "]");
@@ -228,8 +229,8 @@ class SceneWriter {
   }
   std::string joint_text(const BallJointDef<D>& j) const {
     Fields f = joint_fields("ball", j);
-    f.unless("cone_angle", j.cone_angle, -1.0f).unless("friction_torque", j.friction_torque, 0.0f);
     if (!(j.target_rotation == typename D::Rotation{})) f.put("target_rotation", rotation_text(j.target_rotation));
+    f.unless("cone_angle", j.cone_angle, -1.0f).unless("friction_torque", j.friction_torque, 0.0f);
     if (!(j.spring == JointSpring{})) f.put("spring", spring_text(j.spring));
     if (!(j.twist == JointLimit{})) f.put("twist", limit_text(j.twist));
     return f.object();
@@ -255,13 +256,13 @@ class SceneWriter {
   std::string joint_text(const MotorJointDef<D>& j) const {
     Fields f = joint_fields("motor", j);
     f.put("linear_spring", spring_text(j.linear)).put("angular_spring", spring_text(j.angular));
-    return f.put("max_force", j.max_force).put("max_torque", j.max_torque).object();
     using V = typename D::Vector;
     if (!(j.target_position == V{})) f.put("target_position", vector_text(j.target_position));
     if (!(j.target_rotation == typename D::Rotation{})) f.put("target_rotation", rotation_text(j.target_rotation));
     if (!(j.target_velocity == V{})) f.put("target_velocity", vector_text(j.target_velocity));
     if (!(j.target_spin == typename D::Angular{})) f.put("target_spin", angular_text(j.target_spin));
     f.flag("hold_position", j.hold_position, true).flag("hold_rotation", j.hold_rotation, true);
+    return f.put("max_force", j.max_force).put("max_torque", j.max_torque).object();
   }
   std::string joint_text(const MouseJointDef<D>& j) const {
     Fields f = joint_fields("mouse", j, false);

@@ -188,7 +188,7 @@ struct Player : fuzz::Maker<D> {
       case 19:
         return world.add_angular_impulse(body(), angular()).ok();
       case 20: {
-        Material m{in.number(), in.number(), in.number(), in.number(), in.byte() % 4u};
+        const Material m{in.number(), in.number(), in.number(), in.number(), in.number(), in.byte() % 4u};
         return world.set_material(shape(), m).ok();
       }
       case 21:
@@ -205,7 +205,7 @@ struct Player : fuzz::Maker<D> {
             return world.set_density(shape(), in.number(1000)).ok();
         }
       case 23: {
-        const PairRule rule{in.number(), in.number(), in.number()};
+        const PairRule rule{in.number(), in.number(), in.number(), in.number()};
         return world.set_pair_rule(in.byte() % 4, in.byte() % 4, in.flag() ? &rule : nullptr).ok();
       }
       case 24:

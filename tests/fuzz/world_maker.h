@@ -164,7 +164,7 @@ struct Maker {
     if ((options & 192) == 192) d.local = transform();
     if (in.byte() > 180) {
       d.density = in.number(1000);
-      d.material = {in.number(), in.number(), in.number(), in.number(), in.byte() % 4u};
+      d.material = {in.number(), in.number(), in.number(), in.number(), in.number(), in.byte() % 4u};
       d.filter = {in.byte(), in.byte(), std::int32_t(in.byte()) - 128};
     }
     if (in.byte() > 230) d.surface_velocity = vector();

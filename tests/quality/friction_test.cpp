@@ -191,6 +191,60 @@ TYPED_TEST(QualityFriction, RollingDownAnIncline) {
   }
 }
 
+// Gate 7, with rolling resistance c: under the torque c r m g, m a = F and k m r² a/r = c r m g − F r give
+// a = c g/(1 + k), and the way is v²/2a.
+TYPED_TEST(QualityFriction, RollsOutUnderRollingResistance) {
+  using D = TypeParam;
+  const double c = 0.05, v = 3;
+  const auto way = [&](const typename D::Shape& shape, typename D::Rotation rotation) {
+    WorldDef<D> def = world_with<D>();
+    def.allow_sleep = false;
+    World<D> world(def);
+    add_ground(world);
+    BodyDef<D> body;
+    body.position = rigid::test::at<D>(0, 0.5);
+    body.rotation = rotation;
+    const BodyId id = world.create_body(body).value();
+    ShapeDef<D> d;
+    d.material.rolling_resistance = float(c);
+    world.add_shape(id, shape, d).value();
+    run(world, 30);
+    const double start = world.state(id).value().pose.position.x;
+    world.set_velocity(id, rigid::test::along<D>(float(v), 0), about_z<D>(float(-v / 0.5))).value();
+    run(world, 720);
+    return world.state(id).value().pose.position.x - start;
+  };
+  const auto truth = [&](double k) { return v * v * (1 + k) / (2 * c * g); };
+  if constexpr (D::dimension == 3) {
+    EXPECT_NEAR(truth(0.4), 12.84, 0.01);
+    Gate(7, "sphere with rolling resistance .05 rolls out from 3 m/s: way", 3, "m")
+        .near(way(geometry::Sphere{0.5f}, {}), truth(0.4), 0.01);
+    const Quatf lying = normalize(Quatf{1, 1, 0, 0});
+    Gate(7, "cylinder (2D: disc) with rolling resistance .05 rolls out from 3 m/s: way", 3, "m")
+        .near(way(geometry::Cylinder{0.5f, 0.5f}, lying), truth(0.5), 0.01);
+  } else {
+    Gate(7, "cylinder (2D: disc) with rolling resistance .05 rolls out from 3 m/s: way", 2, "m")
+        .near(way(geometry::Circle{0.5f}, {}), truth(0.5), 0.01);
+  }
+}
+
+// Gate 8, of a ball: the torque c r m g on ⅖ m r² stops the spin about the normal after 2 r ω₀/(5 c g).
+TEST(QualityFriction3, SpinningBall) {
+  World3 world(world_with<Dim3>());
+  add_ground(world);
+  const BodyId ball = add_ball<Dim3>(world, {0, 0.5, 0}, 0.5f, {.spinning_resistance = 0.05f});
+  run(world, 30);
+  world.set_velocity(ball, {}, {0, 20, 0}).value();
+  run(world, 240);
+  const double w = double(world.state(ball).value().angular_velocity.y), truth = 2 * 0.5 * 20 / (5 * 0.05 * g);
+  EXPECT_NEAR(truth, 8.155, 1e-3);
+  Gate(8, "ball spins on its spot at 20 rad/s, spinning resistance .05: stops after", 3, "s")
+      .near(4 * 20 / (20 - w), truth, 0.01);
+  run(world, 270);
+  EXPECT_NEAR(length(world.state(ball).value().angular_velocity), 0, 1e-3);
+  EXPECT_NEAR(length(world.state(ball).value().linear_velocity), 0, 1e-3);
+}
+
 // Gate 8: a disc under uniform pressure feels ⅔ μ m g R and stops after 3 R ω₀/(4 μ g).
 TEST(QualityFriction3, SpinningDisc) {
   World3 world(world_with<Dim3>());

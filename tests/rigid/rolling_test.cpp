@@ -1,4 +1,4 @@
-// Rolling resistance of what is not round, and the sleep of what is long.
+// Rolling resistance of what is not round, the sleep of what is long, and resistance to spin about the normal.
 #include <gtest/gtest.h>
 
 #include "carom/geometry/hull.h"
@@ -54,6 +54,61 @@ TEST(Rolling, WhatIsLongAndRollsSlowlyFallsAsleep) {
   world.set_velocity(pole, {0.01f, 0, 0}, {0, 0, -0.01f / 0.3f}).value();
   run(world, 120);
   EXPECT_FALSE(world.state(pole).value().awake);
+}
+
+/// How fast (rad/s) a ball of radius 0.5 m that spins at 20 rad/s on its spot is after 2 s.
+double spin_left(const Material& ball, const Material& ground, const PairRule* rule = nullptr, float half = 0) {
+  World3 world(world_with<Dim3>());
+  const BodyId floor = world.create_body({.type = BodyType::fixed, .position = {0, -1, 0}}).value();
+  world.add_shape(floor, geometry::Box{{20, 1, 20}}, {.material = ground}).value();
+  const BodyId body = world.create_body({.position = {0, 0.5, 0}}).value();
+  world
+      .add_shape(body, half > 0 ? geometry::Shape3(geometry::Box{{half, 0.5f, half}}) : geometry::Sphere{0.5f},
+                 {.material = ball})
+      .value();
+  if (rule != nullptr) world.set_pair_rule(ball.user_id, ground.user_id, rule).value();
+  run(world, 30);
+  world.set_velocity(body, {}, {0, 20, 0}).value();
+  run(world, 120);
+  EXPECT_NEAR(world.state(body).value().linear_velocity.x, 0, half > 0 ? 0.01 : 1e-4);
+  return double(world.state(body).value().angular_velocity.y);
+}
+
+// I dω/dt = −c r N about the normal: with ⅖ m r², ω₀ − (5/2) c g t/r.
+TEST(Spinning, SlowsByItsResistance) {
+  const auto left = [](double c) { return 20 - 2.5 * c * 9.81 * 2 / 0.5; };
+  const double none = spin_left({}, {});
+  EXPECT_GT(none, 19);
+  EXPECT_NEAR(spin_left({.spinning_resistance = 0.1f}, {}), left(0.1), 0.02);
+  EXPECT_NEAR(spin_left({.spinning_resistance = 0.05f}, {.spinning_resistance = 0.1f}), left(0.1), 0.02)
+      << "the larger";
+  EXPECT_NEAR(spin_left({.friction = 0.1f, .spinning_resistance = 0.1f}, {}), left(0.1), 0.02) << "whatever friction";
+  EXPECT_NEAR(spin_left({.friction = 0, .spinning_resistance = 0.1f}, {}), 20, 1e-3) << "none without friction";
+  EXPECT_NEAR(spin_left({.rolling_resistance = 0.05f}, {}), left(0.05), 0.02) << "rolling resistance holds too,";
+  EXPECT_NEAR(spin_left({.rolling_resistance = 0.05f, .spinning_resistance = 0.1f}, {}), left(0.1), 0.02)
+      << "and counts within it";
+  EXPECT_NEAR(spin_left({.rolling_resistance = 0.1f, .spinning_resistance = 0.05f}, {}), left(0.1), 0.02);
+  const PairRule rule{.spinning_resistance = 0.02f};
+  EXPECT_NEAR(spin_left({.spinning_resistance = 0.2f, .user_id = 1}, {.user_id = 2}, &rule), left(0.02), 0.02);
+}
+
+// On a face it adds to what friction turns on: a difference of c (half the thickness) N/I.
+TEST(Spinning, AddsToTheFrictionOfAFace) {
+  const double plain = spin_left({.friction = 0.05f}, {.friction = 0.05f}, nullptr, 0.5f),
+               more = spin_left({.friction = 0.05f, .spinning_resistance = 0.02f}, {.friction = 0.05f}, nullptr, 0.5f);
+  EXPECT_NEAR(plain - more, 0.02 * 0.5 * 9.81 * 2 / (1.0 / 6), 0.01);
+}
+
+TEST(Spinning, IsRefusedWhereItCannotBe) {
+  World3 world(world_with<Dim3>());
+  const BodyId body = world.create_body({}).value();
+  const auto shape = world.add_shape(body, geometry::Sphere{1}, {.material = {.spinning_resistance = -1}});
+  ASSERT_FALSE(shape.ok());
+  EXPECT_NE(shape.error().message.find("material.spinning_resistance"), std::string::npos) << shape.error().message;
+  const PairRule rule{.spinning_resistance = std::numeric_limits<float>::infinity()};
+  const Status ruled = world.set_pair_rule(0, 1, &rule);
+  ASSERT_FALSE(ruled.ok());
+  EXPECT_NE(ruled.error().message.find("spinning_resistance"), std::string::npos) << ruled.error().message;
 }
 
 // A log that rolls over its edges strikes with a face and rocks to rest. All four corners of the face hold it, and what

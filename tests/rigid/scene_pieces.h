@@ -43,7 +43,7 @@ WorldDef<D> world_with(float gravity = 9.81f) {
 }
 
 struct Surface {
-  float friction = 0.6f, restitution = 0, density = 1000, rolling_resistance = 0;
+  float friction = 0.6f, restitution = 0, density = 1000, rolling_resistance = 0, spinning_resistance = 0;
 };
 template <class D>
 BodyId add_body(World<D>& world, BodyType type, const typename D::Shape& shape, typename D::Position position,
@@ -58,6 +58,7 @@ BodyId add_body(World<D>& world, BodyType type, const typename D::Shape& shape, 
   d.material.friction = surface.friction;
   d.material.restitution = surface.restitution;
   d.material.rolling_resistance = surface.rolling_resistance;
+  d.material.spinning_resistance = surface.spinning_resistance;
   world.add_shape(id, shape, d).value();
   return id;
 }

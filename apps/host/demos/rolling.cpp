@@ -13,7 +13,9 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     Declaration d;
     d.id = "rolling";
     d.title = "From sliding to rolling";
-    d.summary = "A ball, a disc and a box start alike on a rough lane; two of them soon roll, and one stops.";
+    d.summary =
+        "A ball, a disc and a box start alike on a rough lane; two of them soon roll, and one stops. Another ball "
+        "spins.";
     d.group = "Surfaces";
     d.chapter = "11";
     d.text =
@@ -22,7 +24,10 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
         "ω r has grown to v the contact point rests, and nothing slows them any more.\n\n"
         "  ball: v = 5/7 v₀ at t = 2 v₀/(7 μ g)\n\n"
         "  disc: v = 2/3 v₀ at t = v₀/(3 μ g)      box: stops after s = v₀²/(2 μ g)\n\n"
-        "How fast they roll in the end does not depend on friction, only how soon.";
+        "How fast they roll in the end does not depend on friction, only how soon.\n\n"
+        "With rolling resistance c the ground gives way a little: a torque c r N holds against the roll. With spinning "
+        "resistance the same holds against spin about the normal, as of the ball that spins on its spot.\n\n"
+        "  ball: a = −5/7 c g      disc: a = −2/3 c g      spin: dω/dt = −5/2 c g/r";
     d.dt = 1.0 / 120;
     d.duration = 4;
     d.loop = true;
@@ -31,16 +36,20 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     d.parameters = {
         {"speed", "Speed at the start v₀", "m/s", "m/s", "", 0.5, 10, 0, 5, false},
         {"friction", "Friction μ", "", "", "on the lane", 0.05, 1, 0, 0.3, false},
+        {"rolling", "Rolling resistance", "", "", "lever arm over radius", 0, 0.1, 0, 0, false},
+        {"spinning", "Spinning resistance", "", "", "likewise, about the normal", 0, 0.1, 0, 0.02, false},
     };
-    d.plots = {{"Speed",
-                {"time", "s"},
-                {"speed", "m/s"},
-                {{"ball"},
-                 {"disc"},
-                 {"box"},
-                 {"ball: 5/7 v₀", Series::Style::points},
-                 {"disc: 2/3 v₀", Series::Style::points}}},
-               {"Slip at the ground", {"time", "s"}, {"v − ω r", "m/s"}, {{"ball"}, {"disc"}}}};
+    d.plots = {
+        {"Speed",
+         {"time", "s"},
+         {"speed", "m/s"},
+         {{"ball"},
+          {"disc"},
+          {"box"},
+          {"ball: 5/7 v₀", Series::Style::points},
+          {"disc: 2/3 v₀", Series::Style::points}}},
+        {"Slip at the ground", {"time", "s"}, {"v − ω r", "m/s"}, {{"ball"}, {"disc"}}},
+        {"Spin about the normal", {"time", "s"}, {"spin", "rad/s"}, {{"ball on its spot"}, {"ω₀ − 5/2 c g t/r"}}}};
     return d;
   }
 
@@ -49,6 +58,8 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     // The geometric mean of a pair counts.
     rigid::Material lane;
     lane.friction = stage.valuef("friction");
+    lane.rolling_resistance = stage.valuef("rolling");
+    lane.spinning_resistance = stage.valuef("spinning");
     stage.floor(0, lane);
     rigid::ShapeDef<Dim3> shape;
     shape.material = lane;
@@ -58,6 +69,12 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     disc_ = start(stage, "disc", 0, geometry::Cylinder{0.15f, radius_}, shape, blue);
     shape.local.q = {};
     box_ = start(stage, "box", 2, geometry::Box{{radius_, radius_, radius_}}, shape, green);
+    rigid::BodyDef<Dim3> top;
+    top.name = "ball on its spot";
+    top.position = {0, double(radius_), -4};
+    top.angular_velocity = {0, float(spin_), 0};
+    shape.local.q = {};
+    top_ = stage.add(top, geometry::Sphere{radius_}, shape, gold);
     const double v = stage.value("speed"), g = 9.80665 * stage.value("friction");
     stage.sample(0, 3, 2 * v / (7 * g), 5 * v / 7);
     stage.sample(0, 4, v / (3 * g), 2 * v / 3);
@@ -71,6 +88,8 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     stage.sample(0, 2, t, box.linear_velocity.x);
     stage.sample(1, 0, t, ball.linear_velocity.x + ball.angular_velocity.z * radius_);
     stage.sample(1, 1, t, disc.linear_velocity.x + disc.angular_velocity.z * radius_);
+    stage.sample(2, 0, t, stage.at(top_).angular_velocity.y);
+    stage.sample(2, 1, t, spin_at(stage, t));
     for (const auto* s : {&ball, &disc, &box})
       stage.line(s->center_of_mass, s->center_of_mass + 0.3 * Vec3d(s->linear_velocity), pen(0xffffff, 0xc0));
   }
@@ -80,10 +99,18 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     out.push_back({"speed of the disc", "m/s", "2/3 v₀", stage.at(disc_).linear_velocity.x, 2 * 5.0 / 3, 0.018});
     out.push_back(
         {"where the box stops", "m", "v₀²/(2 μ g)", stage.at(box_).pose.position.x, 25 / (2 * 0.3 * 9.80665), 0.04});
+    out.push_back({"spin of the ball on its spot", "rad/s", "ω₀ − 5/2 c g t/r", stage.at(top_).angular_velocity.y,
+                   spin_at(stage, stage.world().time()), 0.1});
   }
 
  private:
   static constexpr float radius_ = 0.4f;
+  static constexpr double spin_ = 20;  ///< rad/s
+
+  static double spin_at(Stage3& stage, double t) {
+    const double c = max(stage.value("rolling"), stage.value("spinning"));
+    return max(spin_ - 2.5 * c * 9.80665 * t / double(radius_), 0.0);
+  }
 
   BodyId start(Stage3& stage, const char* name, double z, const geometry::Shape3& form,
                const rigid::ShapeDef<Dim3>& shape, std::uint32_t color) {
@@ -94,7 +121,7 @@ class Rolling final : public Repeatable<Rolling, Demo3> {
     return stage.add(body, form, shape, color);
   }
 
-  BodyId ball_, disc_, box_;
+  BodyId ball_, disc_, box_, top_;
 };
 
 }  // namespace

@@ -38,6 +38,7 @@ inline void check_material(Complaint& c, std::string_view field, const Material&
   check_range(c, field, m.friction, 0, 1e6, ".friction");
   check_range(c, field, m.restitution, 0, 1, ".restitution");
   check_range(c, field, m.rolling_resistance, 0, 1e6, ".rolling_resistance");
+  check_range(c, field, m.spinning_resistance, 0, 1e6, ".spinning_resistance");
   check_range(c, field, m.tangent_speed, -max_velocity, max_velocity, ".tangent_speed");
 }
 

@@ -80,6 +80,7 @@ struct alignas(64) ContactRaw {
   float friction_impulse[dimension][W];
   float squeezed[W];  ///< 0 … 1: how far the masses follow the load (load.h), of the body where they do more
   float tangent_speed[W], patch_factor[W], point_factor[W];
+  float spin_radius[W];  ///< m by which spinning resistance adds to the radius on which friction turns
 };
 
 /// Only where a contact of the colour rolls with resistance or bounces.

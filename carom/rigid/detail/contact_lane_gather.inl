@@ -65,8 +65,11 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   // Radius of the patch for the twist over the mean distance of its points, under uniform pressure: a disc turns on 2/3
   // of its radius, rectangles from square to thin line on .54 … .5 of the distance of their corners.
   raw.patch_factor[lane] = (c.flags & contact_on_disc) != 0 ? 2.0f / 3.0f : 0.53f;
-  // What a single point's disc turns on (prepare_friction3); rolling resistance holds against spin too.
-  raw.point_factor[lane] = m.rolling_lever > 0 ? 0 : 0.589f;
+  // What a single point's disc turns on (prepare_friction3), unless a resistance holds against spin. Of spinning
+  // resistance what rolling resistance does not do already.
+  raw.point_factor[lane] = m.rolling_lever > 0 || m.spinning_lever > 0 ? 0 : 0.589f;
+  const float spinning = m.spinning_lever - m.rolling_lever;
+  raw.spin_radius[lane] = spinning > 0 && m.friction > 0 ? spinning / m.friction : 0;
 
   block.read_a[lane] = a;
   block.read_b[lane] = b;

@@ -116,6 +116,7 @@ CAROM_SIMD_INLINE void prepare_friction3(ContactBlock<Dim3, W>& c, ContactRaw<Di
   const F arm = min(sqrt(dot(center, center)), sqrt(dot(center_b, center_b)));
   const F disc = F::load(raw.point_factor) * sqrt(arm * max(zero - F::load(c.point[0].separation), zero));
   radius = select(count > one, radius * F::load(raw.patch_factor) * share, keep(loaded, disc));
+  radius += F::load(raw.spin_radius);
   radius.store(c.twist_radius);
   keep(radius > zero, F::load(c.twist_impulse)).store(c.twist_impulse);
 

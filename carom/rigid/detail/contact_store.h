@@ -93,11 +93,12 @@ struct alignas(record_alignment<D>) ManifoldRecord {
   GraphPlace place{};
   float approach_speed = 0;  ///< m/s at the start of the step, for hit events
   float slip_speed = 0;      ///< m/s across the surface at the start of the step, for hit events
-  [[no_unique_address]] RecordRest<D::dimension == 2 ? 10 : 0> rest;
+  float spinning_lever = 0;  ///< m, of the torque about the normal (3D)
+  [[no_unique_address]] RecordRest<D::dimension == 2 ? 9 : 0> rest;
 
   static constexpr std::size_t hot_bytes = D::dimension == 2 ? 128 : 256;
 };
-static_assert(sizeof(ManifoldRecord<Dim2>) == 192 && sizeof(ManifoldRecord<Dim3>) == 244);
+static_assert(sizeof(ManifoldRecord<Dim2>) == 192 && sizeof(ManifoldRecord<Dim3>) == 248);
 
 template <class D>
 struct ContactStore {

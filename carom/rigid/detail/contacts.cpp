@@ -299,11 +299,14 @@ void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   const float round = max(round_radius(a.geometry), round_radius(b.geometry)), radius = round > 0 ? round : c.inner;
   const Material &ma = material_at(world, c.shape[0], m.manifold.material),
                  &mb = material_at(world, c.shape[1], m.manifold.material);
-  if (const PairRule* rule = find_pair_rule(world, ma.user_id, mb.user_id))
+  const PairRule* const rule = find_pair_rule(world, ma.user_id, mb.user_id);
+  if (rule != nullptr)
     set_manifold_material(world, manifold, rule->friction, rule->restitution, rule->rolling_resistance * radius);
   else
     set_manifold_material(world, manifold, math::sqrt(ma.friction * mb.friction), max(ma.restitution, mb.restitution),
                           max(ma.rolling_resistance, mb.rolling_resistance) * radius);
+  m.spinning_lever =
+      (rule != nullptr ? rule->spinning_resistance : max(ma.spinning_resistance, mb.spinning_resistance)) * radius;
   m.tangent_speed = ma.tangent_speed + mb.tangent_speed;
 }
 

@@ -36,7 +36,12 @@ struct ShapeTerms {
   std::uint64_t hash() const {
     core::StateHash h;
     h.add(density).add(material.friction).add(material.restitution).add(material.rolling_resistance);
-    h.add(material.tangent_speed).add(material.user_id).add(filter.category).add(filter.mask).add(filter.group);
+    h.add(material.spinning_resistance)
+        .add(material.tangent_speed)
+        .add(material.user_id)
+        .add(filter.category)
+        .add(filter.mask)
+        .add(filter.group);
     return h.digest();
   }
   friend bool operator==(const ShapeTerms&, const ShapeTerms&) = default;

@@ -29,6 +29,7 @@ constexpr Field material_fields[] = {
     {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0"},
     {"restitution", T::quantity, M::plain, "0 to 1"},
     {"rolling_resistance", T::quantity, M::plain, "lever arm over radius, at least 0"},
+    {"spinning_resistance", T::quantity, M::plain, "likewise, of what spins about the normal (3D)"},
     {"tangent_speed", T::quantity, M::speed, "speed of a conveyor along the surface"},
     {"density", T::quantity, M::density, "used by shapes that give neither density nor mass"},
     {"user_id", T::integer},

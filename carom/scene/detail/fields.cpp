@@ -107,6 +107,7 @@ constexpr Field material_pair_fields[] = {
     {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0"},
     {"restitution", T::quantity, M::plain, "0 to 1"},
     {"rolling_resistance", T::quantity, M::plain, "lever arm over radius, at least 0"},
+    {"spinning_resistance", T::quantity, M::plain, "likewise, of what spins about the normal (3D)"},
 };
 const ObjectKind material_pair_kind{"material_pair", "What holds between two materials instead of the mixture.",
                                     material_pair_fields};

@@ -64,6 +64,7 @@ void read_material(Reader& reader, const Library& library, const Node& node, std
   m.friction = float(reader.number(o, "friction", m.friction));
   m.restitution = float(reader.number(o, "restitution", m.restitution));
   m.rolling_resistance = float(reader.number(o, "rolling_resistance", m.rolling_resistance));
+  m.spinning_resistance = float(reader.number(o, "spinning_resistance", m.spinning_resistance));
   m.tangent_speed = float(reader.number(o, "tangent_speed", m.tangent_speed));
   m.user_id = reader.user_id(o);
   out.material = m;

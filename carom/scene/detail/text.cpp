@@ -178,7 +178,8 @@ std::string material_text(const Material& m) {
   Fields f;
   f.put("friction", m.friction)
       .put("restitution", m.restitution)
-      .unless("rolling_resistance", m.rolling_resistance, 0.0f);
+      .unless("rolling_resistance", m.rolling_resistance, 0.0f)
+      .unless("spinning_resistance", m.spinning_resistance, 0.0f);
   f.unless("tangent_speed", m.tangent_speed, 0.0f);
   if (m.user_id != 0) f.put("user_id", std::to_string(m.user_id));
   return f.object();

@@ -78,6 +78,7 @@ bool read_material_pairs(Reader& reader, const Object& scene, World<D>& world) {
     rule.friction = float(reader.number(o, "friction", rule.friction));
     rule.restitution = float(reader.number(o, "restitution", rule.restitution));
     rule.rolling_resistance = float(reader.number(o, "rolling_resistance", rule.rolling_resistance));
+    rule.spinning_resistance = float(reader.number(o, "spinning_resistance", rule.spinning_resistance));
     if (reader.failed() || !reader.accept(world.set_pair_rule(id[0], id[1], &rule), *o.node, o.path)) return false;
   }
   return !reader.failed();
