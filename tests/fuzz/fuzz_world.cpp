@@ -63,9 +63,112 @@ struct Player : fuzz::Maker<D> {
     }
   }
 
+  JointId joint() { return joints[in.byte() % joints.size()]; }
+  bool change_joint() {
+    switch (in.byte() % 16) {
+      case 0:
+        return world.set_motor(joint(), {in.flag(), in.number(), in.number(100)}).ok();
+      case 1:
+        return world.set_limit(joint(), {in.flag(), in.number(), in.number()}).ok();
+      case 2:
+        return world.set_spring(joint(), {in.number(4), in.number()}).ok();
+      case 3:
+        return world.set_spring_target(joint(), in.number()).ok();
+      case 4:
+        return world.set_max_spring_force(joint(), in.number(100)).ok();
+      case 5:
+        return world.set_target_rotation(joint(), rotation()).ok();
+      case 6:
+        return world.set_target_pose(joint(), vector(), rotation()).ok();
+      case 7:
+        return world.set_target_velocity(joint(), vector(4), angular()).ok();
+      case 8:
+        return world.set_hold(joint(), in.flag(), in.flag()).ok();
+      case 9:
+        return world.set_max_force(joint(), in.number(100), in.number(100)).ok();
+      case 10:
+        return world.set_length(joint(), in.number()).ok();
+      case 11:
+        return world.set_cone_angle(joint(), in.number()).ok();
+      case 12:
+        return world.set_friction(joint(), in.number()).ok();
+      case 13:
+        return world.set_break_force(joint(), in.number(100), in.number(100)).ok();
+      case 14:
+        return world.set_axis(joint(), int(in.byte() % 8) - 1, this->any_axis()).ok();
+      default:
+        return world.set_mouse_target(joint(), position()).ok();
+    }
+  }
+  bool change_body() {
+    switch (in.byte() % 9) {
+      case 0:
+        return world.set_damping(body(), in.number(), in.number()).ok();
+      case 1:
+        return world.set_gravity_scale(body(), in.number()).ok();
+      case 2:
+        return world.set_substeps(body(), int(in.byte() % 70) - 2).ok();
+      case 3: {
+        typename D::MassProperties m;
+        m.mass = double(in.number(10));
+        if constexpr (D::dimension == 2)
+          m.inertia = double(in.number());
+        else
+          m.inertia = Mat3d::diagonal({double(in.number()), double(in.number()), double(in.number())});
+        m.center = typename D::Position(vector(0.1f));
+        return world.set_mass_properties(body(), m).ok();
+      }
+      case 4:
+        return world.add_force(body(), vector(1e4f)).ok();
+      case 5:
+        return world.add_impulse(body(), vector(1e3f)).ok();
+      case 6:
+        return world.add_torque(body(), angular()).ok();
+      case 7:
+        return world.set_effector(effectors[in.byte() % effectors.size()], any_effector()).ok();
+      default:
+        return world.set_user_data(body(), in.byte()).ok();
+    }
+  }
+  /// Says what might help, does some of it, and makes room.
+  bool look_after() {
+    if (in.flag()) {
+      const int most = 200;
+      const Capacity capacity{in.byte() % most, in.byte() % most, in.byte() % most, in.byte() % most,
+                              int(in.byte() % 20) - 1};
+      return world.reserve(capacity).ok();
+    }
+    const std::vector<Advice> advice = advise(world, 1.0f / 60);
+    return apply_advice<D>(world, advice) > 0;
+  }
+
+  bool many_queries() {
+    std::vector<RayHit<D>> hits(in.byte() % 4);
+    const QueryFilter filter{in.byte(), in.byte(), body()};
+    switch (in.byte() % 3) {
+      case 0: {
+        std::vector<RayQuery<D>> rays;
+        for (int i = in.byte() % 4; i > 0; --i) rays.push_back({position(), vector(8), filter});
+        return world.cast_rays(rays, hits).ok();
+      }
+      case 1: {
+        std::vector<ShapeCastQuery<D>> casts;
+        for (int i = in.byte() % 4; i > 0; --i) casts.push_back({{position(), rotation()}, vector(8), filter});
+        return world.cast_shapes(any_shape(), casts, hits).ok();
+      }
+      default: {
+        std::vector<OverlapQuery<D>> places;
+        for (int i = in.byte() % 4; i > 0; --i) places.push_back({{position(), rotation()}, filter});
+        std::vector<ShapeId> found;
+        std::vector<std::uint32_t> ends(in.byte() % 4);
+        return world.overlap_shapes(any_shape(), places, found, ends).ok();
+      }
+    }
+  }
   bool query() {
     std::vector<RayHit<D>> hits;
     std::vector<ShapeId> found;
+    if (in.byte() > 170) return many_queries();
     switch (in.byte() % 5) {
       case 0:
         return world.ray_cast(position(), vector(8)).ok();
@@ -130,6 +233,8 @@ struct Player : fuzz::Maker<D> {
     auto made = Walker::create(world, d, position());
     if (!made.ok()) return false;
     for (int i = in.byte() % 4; i >= 0; --i) {
+      if constexpr (requires { made->drop_through(); })
+        if (in.byte() > 200) made->drop_through();
       (void)made->move(world, vector(4), in.byte() < 245 ? 1.0f / 60 : in.number());
       if (steps < 40) ++steps, (void)world.step(1.0f / 60);
     }
@@ -144,7 +249,7 @@ struct Player : fuzz::Maker<D> {
     if (call >= 250) return walk<Character<D>, CharacterDef<D>>();
     if (call >= 246) return walk<DynamicCharacter<D>, DynamicCharacterDef<D>>();
     if (call >= 238) return mechanism();
-    switch (call % 34) {
+    switch (call % 39) {
       case 0:
       case 1:
         return bodies.size() < 40 && add_body();
@@ -219,6 +324,14 @@ struct Player : fuzz::Maker<D> {
       case 32:
       case 33:
         return change_ground();
+      case 34:
+      case 35:
+      case 36:
+        return change_joint();
+      case 37:
+        return change_body();
+      case 38:
+        return in.byte() < 128 ? change_body() : look_after();
       case 28:
       case 29:
         return snapshots();
@@ -265,9 +378,12 @@ struct Player : fuzz::Maker<D> {
       c.friction = c.count == 1 ? std::numeric_limits<float>::quiet_NaN() : 0.1f;
       c.restitution = 0.5f;
     });
+    Snapshot<D> before, after;
     for (int calls = 0; calls < 300 && !in.empty(); ++calls) {
-      const std::uint64_t before = world.state_hash();
-      if (!act()) require(world.state_hash() == before, "a refused call leaves the world as it was");
+      world.snapshot(before);
+      if (act()) continue;
+      world.snapshot(after);
+      require(after.digest() == before.digest(), "a refused call leaves the world as it was");
     }
     for (int i = 0; i < 5; ++i) require(world.step(1.0f / 60).ok(), "the world goes on");
     for (const BodyId b : bodies) {
