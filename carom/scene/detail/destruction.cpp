@@ -24,7 +24,7 @@ bool read_case(DestructionPlace<D>& place, const Object& o, typename D::Position
     d.lifetime = r.number(c, "lifetime", d.lifetime);
     d.seed = std::uint64_t(r.integer(c, "seed", 1, 0, 0x7FFFFFFF));
     if (r.failed() || !r.accept(check(d), *c.node, c.path)) return false;
-    out.emplace(d, conditions_at(at, -double(place.world.definition().gravity.y), place.around));
+    out.emplace(d, conditions_at(at, -double(place.world.definition().gravity.y), D::dimension, place.around.get()));
     return true;
   } else {
     (void)at, (void)out;

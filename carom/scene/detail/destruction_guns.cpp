@@ -163,6 +163,11 @@ void renew_air(Destruction& all, const rigid::World<D>& world,
     gun.definition.conditions = conditions_of(gun.definition, world, around.get());
     gun.batch.set_conditions(gun.definition.conditions);
   }
+  for (auto& entry : all.of<D>().explosions)
+    if (entry.thing.casing)
+      entry.thing.casing->batch().set_conditions(conditions_at(entry.thing.explosion.charge().position,
+                                                               -double(world.definition().gravity.y), D::dimension,
+                                                               around.get()));
   if constexpr (D::dimension == 3)
     for (auto& entry : all.space.rockets)
       if (const auto rocket = world.state(entry.thing.body()); rocket.ok())
