@@ -128,16 +128,15 @@ void gather(const PointMassPull& pull, const Interpolant<Plain>& flown, double f
 /// Where in a step its heights pass the bends of the wind and its Mach numbers those of the drag curve, in rising order
 /// of s.
 struct Cuts {
-  static constexpr double least = 0.2;  // m/s
   static constexpr int most = 40;
   int count = 0;
   bool layers = false, lands = false;
   double s[most + 1];
 
-  /// `layered`: there are such bends of the wind.
+  /// `layered`: there are such bends of the wind, by more than `least` m/s; `bent`: of the drag curve.
   template <bool Plain>
-  Cuts(const Projectile& projectile, const Conditions& conditions, bool layered, const Interpolant<Plain>& flown,
-       const FlightPath::Node& a, const FlightPath::Node& b) {
+  Cuts(const Projectile& projectile, const Conditions& conditions, bool layered, bool bent, double least,
+       const Interpolant<Plain>& flown, const FlightPath::Node& a, const FlightPath::Node& b) {
     const auto height = [&](double at) { return value(flown.position[1], at); };
     s[count++] = 0;
     const auto levels = conditions.wind.levels();
@@ -154,7 +153,7 @@ struct Cuts {
       if (turn < 1) between(bends, height, turn, 1);
       layers = count > 1;
     }
-    if (projectile.drag.has_bends()) {
+    if (bent) {
       const auto mach = [&](double at) {
         const double y = height(at);
         const Vec3d v{value(flown.velocity[0], at), value(flown.velocity[1], at), value(flown.velocity[2], at)};
@@ -211,15 +210,13 @@ Vec3d AimSolver::measure_in(Path& path, double fine) const {
   Vec3d off{};
   path.bends = path.layers = false;
   path.total = path.steep = 0;
-  bool layered = false;
-  conditions_.wind.for_each_bend(-1e300, 1e300, Cuts::least, [&](double) { layered = true; });
   for (int n = 0; n < path.count; ++n) {
     const Path::Node &a = path.node[n], &b = path.node[n + 1];
     const Path::Debt &owed = path.debt[n], &after = path.debt[n + 1];
     const double h = b.t - a.t,
                  most = math::abs(owed.v[0].v[0]) + math::abs(owed.v[1].v[1]) + math::abs(owed.v[2].v[2]);
     const Interpolant<Plain> flown(a, b);
-    const Cuts cuts(projectile_, conditions_, layered, flown, a, b);
+    const Cuts cuts(projectile_, conditions_, layered_, bent_, least_bend, flown, a, b);
     path.bends = path.bends || cuts.count > 1;
     path.layers = path.layers || cuts.layers;
     // Smooth steps err independently of each other.

@@ -3,11 +3,17 @@
 
 namespace carom::ballistics::detail {
 
+namespace {
+
+/// m/s, faster than anything will fly.
+double fastest(const Shooter& shooter) { return 1.5 * (shooter.muzzle_speed + math::length(shooter.velocity)); }
+
+}  // namespace
+
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
     : pull_(projectile, conditions),
-      rough_(projectile, conditions, conditions.air.at(shooter.muzzle.y).speed_of_sound,
-             1.5 * (shooter.muzzle_speed + math::length(shooter.velocity))),
+      rough_(projectile, conditions, conditions.air.at(shooter.muzzle.y).speed_of_sound, fastest(shooter)),
       projectile_(projectile),
       conditions_(conditions),
       shooter_(shooter),
@@ -19,6 +25,10 @@ AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions,
   const double k = 0.5 * density * projectile.drag(speed / sound_) * projectile.area_per_mass;
   decay_ = k > 0 ? 1 / (k * speed) : 1e30;
   fall_speed_ = math::min(speed, math::sqrt(conditions.gravity * decay_ * speed));
+  conditions.wind.for_each_bend(-1e300, 1e300, least_bend, [&](double) { layered_ = true; });
+  // Most curves have one bend, at their very end.
+  if (projectile.drag.has_bends())
+    projectile.drag.for_each_bend(0, fastest(shooter) / sound_, [&](double) { bent_ = true; });
 }
 
 Aims AimSolver::scan() const {

@@ -131,6 +131,7 @@ class AimSolver {
     return sound_ * math::clamp(0.55 * math::sqrt(math::sqrt(share)), 0.03, 0.3);
   }
   static constexpr double far_bend = 4;
+  static constexpr double least_bend = 0.2;  // m/s, of the wind
 
   using Step = FlightStep;
   template <bool Plain>
@@ -169,6 +170,8 @@ class AimSolver {
   double decay_ = 1e30;     // s, in which drag takes the muzzle speed
   double fall_speed_ = 0;   // m/s, terminal, at most the muzzle speed
   double sound_ = 340.294;  // m/s, at the muzzle
+  bool layered_ = false;    // the wind bends sharply somewhere
+  bool bent_ = false;       // the drag curve does, at a Mach number that is flown
 };
 
 }  // namespace carom::ballistics::detail
