@@ -90,6 +90,14 @@ bool ClothState::tangle(std::uint32_t vertex, std::uint32_t triangle) {
   const Vec3f at = place(vertex), corner[3] = {place(t[0]), place(t[1]), place(t[2])};
   const FoldFace face(corner[0], corner[1], corner[2]);
   const float height = face.height(at);
+  // Nearly always all that the vertex hangs on stands on the same side of the triangle: then nothing crosses.
+  bool beside_it = true;
+  for (int k = triangle_first[vertex]; beside_it && k < triangle_first[vertex + 1]; ++k) {
+    const std::uint32_t own = std::uint32_t(triangle_list[std::size_t(k)]), first = own / 3 * 3;
+    for (const std::uint32_t end : {corners[first + (own + 1 - first) % 3], corners[first + (own + 2 - first) % 3]})
+      beside_it = beside_it && end != t[0] && end != t[1] && end != t[2] && face.height(place(end)) * height > 0;
+  }
+  if (beside_it) return false;
   bool any = false;
   for (int k = triangle_first[vertex]; k < triangle_first[vertex + 1]; ++k) {
     const std::uint32_t own = std::uint32_t(triangle_list[std::size_t(k)]), first = own / 3 * 3;

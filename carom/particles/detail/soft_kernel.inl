@@ -105,7 +105,8 @@ class Sum {
 
 void fill(const SoftSweep& sweep, const SoftEntries& entries) {
   for (int tile = 0; tile < sweep.tiles; ++tile)
-    for (int entry = sweep.first[tile]; entry < sweep.last[tile]; ++entry)
+    for (int entry = sweep.first[tile]; entry < sweep.last[tile]; ++entry) {
+      if (entries.stale[entry] == 0) continue;
       for (int lane = 0; lane < soft_lanes; lane += width) {
         const std::ptrdiff_t at = std::ptrdiff_t(entry) * soft_lanes + lane;
         const Block own = load_block(sweep.scale + std::ptrdiff_t(tile) * soft_block, lane);
@@ -124,6 +125,7 @@ void fill(const SoftSweep& sweep, const SoftEntries& entries) {
         store(transposed_times(own, inner.y), out + soft_vector, lane);
         store(transposed_times(own, inner.z), out + 2 * soft_vector, lane);
       }
+    }
 }
 
 /// L times `forward`, for a part of a tile.

@@ -73,6 +73,7 @@ struct SoftHold {
   std::uint8_t rank = 0;  ///< 0 free, 1 along `normal`, 3 all
   Vec3f normal{};
   Vec3f filter(Vec3f v) const { return rank == 0 ? v : (rank == 1 ? v - dot(normal, v) * normal : Vec3f{}); }
+  bool operator==(const SoftHold& other) const = default;
 };
 
 class SoftMatrix {
@@ -204,7 +205,7 @@ class SoftSolver {
 
  private:
   SoftSweep sweep(const SoftMatrix& matrix);
-  void prepare(const SoftMatrix& matrix);
+  void prepare(const SoftMatrix& matrix, bool again);
   // soft_movers.cpp
   Vec3f carried(const SoftTie& tie, const SoftTwist& motion) const;  ///< of the tie's particle, where it is held
   Vec3f row(const SoftMatrix& matrix, int node, const SoftVector* x) const;
@@ -228,9 +229,11 @@ class SoftSolver {
   AlignedFloats swept_, direction_, back_, sum_;            ///< scaled, by tile
   std::vector<SoftVector> field_, pull_;                    ///< of the particles, by the bodies' motion
   std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_;
-  std::vector<SoftBlock> scale_;  ///< W by place, with W Wᵀ the inverse of the diagonal within what is free
-  AlignedFloats scale_tiles_;     ///< the same by tile
-  AlignedFloats lower_;           ///< Wᵀ K W below the diagonal, by the tiles' entries
+  std::vector<SoftBlock> scale_;      ///< W by place, with W Wᵀ the inverse of the diagonal within what is free
+  AlignedFloats scale_tiles_;         ///< the same by tile
+  AlignedFloats lower_;               ///< Wᵀ K W below the diagonal, by the tiles' entries
+  std::vector<SoftHold> scaled_for_;  ///< by particle: what W was made for
+  std::vector<std::uint8_t> rescaled_, stale_;  ///< by place, by entry: whether this solve makes it anew
 };
 
 }  // namespace carom::particles::detail

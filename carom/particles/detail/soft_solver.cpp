@@ -26,6 +26,9 @@ void SoftSolver::resize(const SoftMatrix& matrix) {
   scale_.assign((tiles + 1) * soft_lanes, SoftBlock{});
   scale_tiles_ = AlignedFloats(tiles * soft_block);
   lower_ = AlignedFloats(matrix.tiles_.column.size() * 9);
+  scaled_for_.resize(n);
+  rescaled_.assign((tiles + 1) * soft_lanes, 0);
+  stale_.resize(matrix.tiles_.column.size() / soft_lanes);
 }
 
 void SoftSolver::begin(const SoftMatrix& matrix, const std::vector<Vec3f>& velocity, core::TaskScheduler& scheduler) {
@@ -86,11 +89,15 @@ SoftSweep SoftSolver::sweep(const SoftMatrix& matrix) {
   return sweep;
 }
 
-void SoftSolver::prepare(const SoftMatrix& matrix) {
+/// `again`: what has the hold of the last solve stays as it is, and with it most of the matrix.
+void SoftSolver::prepare(const SoftMatrix& matrix, bool again) {
   const SoftTiles& tiles = matrix.tiles_;
   for (std::size_t p = 0; p < tiles.row.size(); ++p) {
     if (tiles.row[p] < 0) continue;
     const std::size_t i = std::size_t(tiles.row[p]);
+    rescaled_[p] = !again || !(holds[i] == scaled_for_[i]);
+    if (rescaled_[p] == 0) continue;
+    scaled_for_[i] = holds[i];
     const SoftBlock scale = scale_[p] =
         scale_of(diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal_[i])].matrix(), holds[i]);
     float* const out = &scale_tiles_[p / soft_lanes * soft_block + p % soft_lanes];
@@ -100,7 +107,19 @@ void SoftSolver::prepare(const SoftMatrix& matrix) {
       out[(6 + k) * soft_lanes] = scale.z[k];
     }
   }
+  if (!again) std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
+  for (std::size_t tile = 0; again && tile < std::size_t(tiles.count); ++tile) {
+    std::uint8_t own = 0;
+    for (std::size_t lane = 0; lane < soft_lanes; ++lane) own |= rescaled_[tile * soft_lanes + lane];
+    for (int entry = tiles.first[tile]; entry < tiles.first[tile + 1]; ++entry) {
+      std::uint8_t any = own;
+      const int* const column = &tiles.column[std::size_t(entry) * soft_lanes];
+      for (std::size_t lane = 0; lane < soft_lanes; ++lane) any |= rescaled_[std::size_t(column[lane])];
+      stale_[std::size_t(entry)] = any;
+    }
+  }
   SoftEntries entries;
+  entries.stale = stale_.data();
   entries.far = tiles.far.data();
   entries.source = tiles.source.data();
   entries.scale = reinterpret_cast<const float*>(scale_.data());
@@ -159,7 +178,7 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
                       core::TaskScheduler& scheduler) {
   const std::size_t bodies = ties.empty() ? 0 : movers.size();
   const std::vector<int>& row = matrix.tiles_.row;
-  prepare(matrix);
+  prepare(matrix, again);
   prepare_movers(matrix);
   // Against the right-hand side, not the first residual: a good guess needs fewer iterations. At rest nothing is left
   // to be relative to: a change of `least` for every particle is what does not matter.

@@ -39,8 +39,9 @@ struct SoftSweep {
 /// What the blocks below the diagonal are made from.
 struct SoftEntries {
   const int *far = nullptr, *source = nullptr;
-  const float* scale = nullptr;   ///< W by place, and sixteen more: three columns of four floats
-  const float* blocks = nullptr;  ///< K by slot, likewise
+  const std::uint8_t* stale = nullptr;  ///< by entry: whether to make it
+  const float* scale = nullptr;         ///< W by place, and sixteen more: three columns of four floats
+  const float* blocks = nullptr;        ///< K by slot, likewise
   const float* links = nullptr;
   float link_scale = 1;
 };
