@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "carom/geometry/detail/chain_tree.h"
+#include "carom/geometry/detail/polygon_lanes.h"
 #include "carom/geometry/detail/text.h"
 
 namespace carom::geometry {
@@ -117,6 +118,20 @@ Bounds2f bounds_of_points(std::span<const Vec2f> points, const Transform2f& t, f
     b = {min(b.low, p), max(b.high, p)};
   }
   return grow(b, radius);
+}
+/// The same, with the corners side by side in lanes.
+template <int N>
+Bounds2f bounds_of_polygon(const Polygon& polygon, const Transform2f& t) {
+  using namespace detail::polygon_pair;
+  Vectors<N> v;
+  v.load(polygon.vertices, polygon.count);
+  v.turn(t.q), v.move(t.p);
+  Lanes low_x = v.x[0], low_y = v.y[0], high_x = v.x[0], high_y = v.y[0];
+  for (int k = 1; k < N; ++k) {
+    low_x = min(low_x, v.x[k]), low_y = min(low_y, v.y[k]);
+    high_x = max(high_x, v.x[k]), high_y = max(high_y, v.y[k]);
+  }
+  return grow(Bounds2f{{least_of(low_x), least_of(low_y)}, {greatest_of(high_x), greatest_of(high_y)}}, polygon.radius);
 }
 
 }  // namespace
@@ -242,7 +257,7 @@ Bounds2f bounds(const Shape2& shape, const Transform2f& t) {
       return {t.p - e, t.p + e};
     }
     case ShapeType2::polygon:
-      return bounds_of_points({shape.polygon.vertices, std::size_t(shape.polygon.count)}, t, shape.polygon.radius);
+      return shape.polygon.count <= 4 ? bounds_of_polygon<1>(shape.polygon, t) : bounds_of_polygon<2>(shape.polygon, t);
     case ShapeType2::segment: {
       const Vec2f ends[2] = {shape.segment.a, shape.segment.b};
       return bounds_of_points(ends, t, 0);

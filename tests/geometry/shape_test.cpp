@@ -80,6 +80,31 @@ TEST(ShapeTest, BoundsAreTheSupportAlongTheAxes2) {
     }
 }
 
+// Of a polygon they are the least and the greatest of its corners, to the last bit, however many it has.
+TEST(ShapeTest, BoundsOfAPolygonAreThoseOfItsCorners) {
+  Sequence random{4};
+  for (int count = 3; count <= max_polygon_vertices; ++count) {
+    std::vector<Vec2f> points;
+    for (int i = 0; i < count; ++i) {
+      const double angle = 6.283185307179586 * (i + 0.3 * random.unit()) / count;
+      points.push_back({float(std::cos(angle)), float(std::sin(angle))});
+    }
+    const Polygon polygon = make_polygon(points, 0.1f).value();
+    ASSERT_EQ(polygon.count, count);
+    for (int k = 0; k < 50; ++k) {
+      const double angle = 7 * random.unit(), x = random.symmetric(), y = random.symmetric();
+      const Transform2f t{{float(x), float(y)}, {float(std::cos(angle)), float(std::sin(angle))}};
+      Vec2f low{infinite, infinite}, high = -low;
+      for (int i = 0; i < count; ++i) {
+        const Vec2f corner = transform_point(t, polygon.vertices[i]);
+        low = min(low, corner), high = max(high, corner);
+      }
+      EXPECT_EQ(bounds(Shape2(polygon), t).low, low - Vec2f(0.1f, 0.1f));
+      EXPECT_EQ(bounds(Shape2(polygon), t).high, high + Vec2f(0.1f, 0.1f));
+    }
+  }
+}
+
 // h(d) = max x·d is convex and positively homogeneous: h(a + b) ≤ h(a) + h(b).
 TEST(ShapeTest, SupportFunctionIsSubadditive) {
   Sequence random{3};
