@@ -82,6 +82,7 @@ void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int
   std::int32_t shapes[BoxGroup<D>::room];
   const Bounds* near[BoxGroup<D>::room];
   int number = 0;
+  std::uint64_t looking = 0;  // bits by place: who looks for partners in the same way, and so finds us
   const auto look = [&] {
     for (int k = 0; k < number; ++k) {
       const std::int32_t place = scratch.moved_place[std::size_t(shapes[k])];
@@ -93,16 +94,22 @@ void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int
     std::uint64_t news[most_in_group];
     world.kernels.new_meetings(group, count, full, news);
     for (int i = 0; i < count; ++i)
-      for (std::uint64_t left = news[i]; left != 0; left &= left - 1)
-        world.pairs.prefetch(PairSet::key(members[i], shapes[std::countr_zero(left)]));
+      for (std::uint64_t left = news[i]; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        if ((looking >> k & 1u) != 0 && shapes[k] < members[i])
+          news[i] ^= std::uint64_t(1) << k;
+        else
+          world.pairs.prefetch(PairSet::key(members[i], shapes[k]));
+      }
     for (int i = 0; i < count; ++i)
       for (std::uint64_t left = news[i]; left != 0; left &= left - 1)
         consider_pair(world, members[i], shapes[std::countr_zero(left)], found);
-    number = 0;
+    number = 0, looking = 0;
   };
   for (int tree = tree_fixed; tree <= tree_dynamic; ++tree)
     world.shapes.trees[tree].query_boxes(all, [&](std::uint32_t item, const Bounds& box) {
       near[number] = &box;
+      if (tree == tree_dynamic && scratch.moved_place[item] >= 0) looking |= std::uint64_t(1) << number;
       shapes[number++] = std::int32_t(item);
       if (number == BoxGroup<D>::room) look();
       return true;
