@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "carom/core/column.h"
+
 namespace carom::core {
 
 /// Hands out memory from a block and takes it all back at once. Grows while it must (further blocks); at `reset` the
@@ -84,11 +86,11 @@ class Arena {
   static std::size_t rounded(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
   void add_block(std::size_t size) {
     const std::size_t bytes = size < 4096 ? 4096 : size;
-    blocks_.push_back({static_cast<std::byte*>(::operator new(bytes, std::align_val_t{alignment})), bytes});
+    blocks_.push_back({static_cast<std::byte*>(detail::resize_block(nullptr, 0, bytes, alignment)), bytes});
     used_ = 0;
   }
   void free_blocks() {
-    for (const Block& block : blocks_) ::operator delete(block.data, std::align_val_t{alignment});
+    for (const Block& block : blocks_) detail::resize_block(block.data, block.size, 0, alignment);
     blocks_.clear();
   }
   void swap(Arena& other) noexcept {

@@ -73,6 +73,8 @@ class Column {
     }
     return *new (static_cast<void*>(data_ + size_++)) T(value);
   }
+  T& back() { return data_[size_ - 1]; }
+  void pop_back() { --size_; }
   void clear() { size_ = 0; }
   /// Gives back what is beyond the content.
   void fit() { change_capacity(size_); }

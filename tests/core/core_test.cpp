@@ -245,7 +245,13 @@ TEST(Column, KeepsItsContentWhileItGrowsAndShrinks) {
     EXPECT_EQ((*c)[count + 2].value, 5u);
     EXPECT_EQ((*c)[count + 3].value, 6u);
   }
-  rows.resize(1000);  // from pages to a small block
+  EXPECT_EQ(rows.back().value, 6u);
+  rows.pop_back();
+  EXPECT_EQ(rows.back().value, 5u);
+  rows.resize(count / 10);  // from large pages to small ones,
+  rows.fit();
+  for (std::size_t i = 0; i < count / 10; ++i) ASSERT_EQ(rows[i].value, i);
+  rows.resize(1000);  // and to a small block
   rows.fit();
   EXPECT_EQ(rows[999].value, 999u);
   rows.clear();

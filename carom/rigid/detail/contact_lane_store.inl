@@ -78,7 +78,7 @@ void store_lane(StepContext<Dim3>& context, std::int32_t index, const ContactBlo
 
 /// A contact that bears a load for the first time is looked at again.
 void stop_watching(WorldImplementation<Dim2>& world, std::int32_t contact) {
-  std::vector<ContactWatch<Dim2>>& watches = world.scratch.watches;
+  core::Column<ContactWatch<Dim2>>& watches = world.scratch.watches;
   const auto place = std::size_t(world.contacts.at(contact).awake_index);
   if (place < watches.size()) watches[place].body[0] = none;
 }

@@ -102,8 +102,8 @@ static_assert(sizeof(ManifoldRecord<Dim2>) == 192 && sizeof(ManifoldRecord<Dim3>
 
 template <class D>
 struct ContactStore {
-  std::vector<ContactRecord<D>> contacts;
-  std::vector<ManifoldRecord<D>> manifolds;
+  core::Column<ContactRecord<D>> contacts;
+  core::Column<ManifoldRecord<D>> manifolds;
   std::vector<std::int32_t> free_contacts, free_manifolds;
   std::vector<std::int32_t> awake;  ///< contacts with an awake body, updated every step
   int count = 0;

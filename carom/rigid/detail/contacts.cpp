@@ -163,8 +163,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
     store.at(index) = {};
   } else {
     index = std::int32_t(store.contacts.size());
-    core::grow_a_little(store.contacts);
-    store.contacts.emplace_back();
+    store.contacts.push_back({});
     store.free_contacts.reserve(store.contacts.capacity());
   }
   ContactRecord<D>& c = store.at(index);
@@ -262,7 +261,7 @@ void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact) {
   ContactRecord<D>& c = world.contacts.at(contact);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   c.flags &= std::uint16_t(~(contact_bouncy | contact_special));
-  std::vector<ContactWatch<D>>& watches = world.scratch.watches;
+  core::Column<ContactWatch<D>>& watches = world.scratch.watches;
   if (c.awake_index != none && !watches.empty()) watches[std::size_t(c.awake_index)] = {};
   if (((a.flags | b.flags) & shape_special) != 0) c.flags |= contact_special;
   float restitution = 0;
@@ -321,8 +320,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
     store.manifold(index) = {};
   } else {
     index = std::int32_t(store.manifolds.size());
-    core::grow_a_little(store.manifolds);
-    store.manifolds.emplace_back();
+    store.manifolds.push_back({});
     store.free_manifolds.reserve(store.manifolds.capacity());
     world.scratch.new_manifolds.reserve(store.manifolds.capacity());
   }
@@ -378,7 +376,7 @@ void activate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   if (c.awake_index != none) return;
   c.awake_index = std::int32_t(world.contacts.awake.size());
   world.contacts.awake.push_back(contact);
-  if (!world.scratch.watches.empty()) world.scratch.watches.emplace_back();
+  if (!world.scratch.watches.empty()) world.scratch.watches.push_back({});
   for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) enter_graph(world, m);
 }
 
@@ -392,7 +390,7 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   awake[std::size_t(c.awake_index)] = last;
   world.contacts.at(last).awake_index = c.awake_index;
   awake.pop_back();
-  std::vector<ContactWatch<D>>& watches = world.scratch.watches;
+  core::Column<ContactWatch<D>>& watches = world.scratch.watches;
   if (!watches.empty()) {
     watches[std::size_t(c.awake_index)] = watches.back();
     watches.pop_back();

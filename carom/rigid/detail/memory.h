@@ -24,11 +24,15 @@ struct ByteCounter {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>
-  void manifolds(const std::vector<T>& v) {
+  void manifolds(const core::Column<T>& v) {
     state(v);
   }
   template <class T>
   void scratch(const std::vector<T>& v) {
+    state(v);
+  }
+  template <class T>
+  void scratch(const core::Column<T>& v) {
     state(v);
   }
   template <class T>

@@ -192,7 +192,10 @@ float slack_of(const ContactRecord<D>& c, const Moved<D>& moved) {
 template <class D>
 void measure_sweeps(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
-  if (scratch.watches.size() != world.contacts.awake.size()) scratch.watches.assign(world.contacts.awake.size(), {});
+  if (scratch.watches.size() != world.contacts.awake.size()) {
+    scratch.watches.clear();
+    scratch.watches.resize(world.contacts.awake.size());
+  }
   if (world.contacts.awake.empty()) return;
   scratch.sweeps.resize(world.bodies.pose.size());
   for (const std::int32_t body : scratch.sweeping) scratch.sweeps[std::size_t(body)] = {};

@@ -130,7 +130,7 @@ struct StepScratch {
   std::vector<core::TaskScheduler::Stage> solver_loops;  ///< of the same places
   std::vector<BodySweep<D>> sweeps;                      ///< by slot of the body
   std::vector<std::int32_t> sweeping;                    ///< bodies whose sweep is not zero
-  std::vector<ContactWatch<D>> watches;                  ///< by place in ContactStore::awake, or empty: look at all
+  core::Column<ContactWatch<D>> watches;                 ///< by place in ContactStore::awake, or empty: look at all
   std::vector<typename D::Bounds> old_bounds;       ///< by place in `moved`: fat bounds when pairs were last looked for
   std::vector<std::int32_t> moved_place;            ///< by slot of the shape: place in old_bounds, or −1
   std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed

@@ -115,8 +115,12 @@ struct MemoryRelease {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>
-  void manifolds(std::vector<T>& v) {
+  void manifolds(core::Column<T>& v) {
     state(v);
+  }
+  template <class T>
+  void scratch(core::Column<T>& v) {
+    v.clear(), v.fit();
   }
   template <class T>
   void scratch(std::vector<T>& v) {

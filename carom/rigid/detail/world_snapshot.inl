@@ -46,7 +46,7 @@ class SnapshotWriter {
     to_.bodies_at = to_.sections.size();
     state(solver), state(pose), state(motion), state(record);
   }
-  void manifolds(const std::vector<ManifoldRecord<D>>& v) {
+  void manifolds(const core::Column<ManifoldRecord<D>>& v) {
     to_.manifolds_at = to_.sections.size();
     state(v);
   }
@@ -130,7 +130,7 @@ class SnapshotChecker {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>
-  void manifolds(const std::vector<T>& v) {
+  void manifolds(const core::Column<T>& v) {
     state(v);
   }
   template <class T>
@@ -187,7 +187,7 @@ class SnapshotReader {
     state(solver), state(pose), state(motion), state(record);
   }
   template <class T>
-  void manifolds(std::vector<T>& v) {
+  void manifolds(core::Column<T>& v) {
     state(v);
   }
   template <class T>
