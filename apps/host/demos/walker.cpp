@@ -77,6 +77,7 @@ class Walker final : public Repeatable<Walker, Demo3> {
     stage.sample(0, 0, t, feet.y);
     stage.sample(1, 0, t, walker_->velocity().x);
     highest_ = max(highest_, feet.y);
+    if (stage.world().step_count() == 330) dropped_ = other_->feet().y;
     if (stage.world().step_count() == 144) ledge_height_ = other_->feet().y, ridden_ = other_->ground().velocity.x;
     trail_.add(feet + Vec3d{0, 0.02, 0});
     trail_.draw(stage, pen(orange, 0xa0));
@@ -88,7 +89,7 @@ class Walker final : public Repeatable<Walker, Demo3> {
     out.push_back({"height of the feet after the slope", "m", "the floor", walker_->feet().y, 0.01, 0.02});
     out.push_back({"height of the other one's feet on the ledge", "m", "the ledge", ledge_height_, 0.91, 0.005});
     out.push_back({"its speed there", "m/s", "that of the belt", ridden_, 0.4, 0.001});
-    out.push_back({"height of its feet at last", "m", "dropped through", other_->feet().y, 0.01, 0.005});
+    out.push_back({"height of its feet below the ledge", "m", "dropped through", dropped_, 0.01, 0.005});
     out.push_back({"crate pushed along by at least", "m", "500 N against μ m g = 118 N",
                    stage.at(crate_).pose.position.x > 9.5 ? 1.0 : 0.0, 1, 0});
   }
@@ -141,7 +142,7 @@ class Walker final : public Repeatable<Walker, Demo3> {
   std::optional<Character3> walker_, other_;
   BodyId ferry_, crate_;
   Trail trail_{0.1, 300};
-  double highest_ = 0, ledge_height_ = 0, ridden_ = 0;
+  double highest_ = 0, ledge_height_ = 0, ridden_ = 0, dropped_ = 0;
   bool driven_ = false;
 };
 
