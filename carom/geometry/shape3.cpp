@@ -67,18 +67,16 @@ Bounds3f bounds_of_plane(const Plane& plane, const Transform3f& t) {
 
 Bounds3f bounds_of_hull(const Hull& hull, const Transform3f& t) {
   using Four = math::WideFloat<4>;
+  // The rows of the rotation in three of four lanes: the sums of a vertex's three products, side by side.
   const Mat3f r = to_matrix(t.q);
-  Vec3f low, high;
-  for (int k = 0; k < 3; ++k) {
-    const Four x = Four::splat(r.cx[k]), y = Four::splat(r.cy[k]), z = Four::splat(r.cz[k]);
-    Four least = Four::splat(3.4e38f), most = -least;
-    for (const float *p = hull.vertex_lanes.data(), *end = p + hull.vertex_lanes.size(); p != end; p += 12) {
-      const Four along = x * Four::load(p) + y * Four::load(p + 4) + z * Four::load(p + 8);
-      least = min(least, along), most = max(most, along);
-    }
-    low[k] = min(min(least[0], least[1]), min(least[2], least[3]));
-    high[k] = max(max(most[0], most[1]), max(most[2], most[3]));
+  const Four x{Four::Vector{r.cx.x, r.cx.y, r.cx.z, 0}}, y{Four::Vector{r.cy.x, r.cy.y, r.cy.z, 0}},
+      z{Four::Vector{r.cz.x, r.cz.y, r.cz.z, 0}};
+  Four least = Four::splat(3.4e38f), most = -least;
+  for (const Vec3f& v : hull.vertices) {
+    const Four at = x * Four::splat(v.x) + y * Four::splat(v.y) + z * Four::splat(v.z);
+    least = min(least, at), most = max(most, at);
   }
+  const Vec3f low{least[0], least[1], least[2]}, high{most[0], most[1], most[2]};
   return grow(Bounds3f{low + t.p, high + t.p}, hull.radius);
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "carom/rigid/detail/rotation_step.h"
@@ -63,6 +64,37 @@ float settle(const StepContext<D>& context, const BodyMotion<D>& m, SolverBody<D
   return left;
 }
 
+/// Bounds of the box that a hull has in its own frame: found far sooner than its own, and no smaller. For bodies of
+/// several shapes, all of which are asked in every step while they are quick.
+class BoxesOfHulls {
+ public:
+  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body)
+      : several_(has_several_shapes(world, body)), position_(world.bodies.pose[std::size_t(body)].position) {
+    if (several_) turn_ = math::to_matrix(world.bodies.pose[std::size_t(body)].rotation);
+  }
+  bool know(const ShapeRecord<Dim3>& shape) const {
+    return several_ && shape.at_origin && shape.geometry.type == geometry::ShapeType3::hull;
+  }
+  Dim3::Bounds bounds(const ShapeRecord<Dim3>& shape) const {
+    const geometry::Bounds3f& own = shape.geometry.hull->bounds;
+    const Vec3f e = own.extents(), middle = turn_ * own.center();
+    Vec3f half = abs(turn_.cx) * e.x + abs(turn_.cy) * e.y + abs(turn_.cz) * e.z;
+    const float rounding = 1e-6f * (math::length(middle) + math::length(e)) + shape.geometry.hull->radius;
+    half += Vec3f{rounding, rounding, rounding};
+    return {position_ + Vec3d(middle - half), position_ + Vec3d(middle + half)};
+  }
+
+ private:
+  bool several_;
+  Vec3d position_;
+  Mat3f turn_{};
+};
+struct NoBoxes {
+  NoBoxes(const WorldImplementation<Dim2>&, std::int32_t) {}
+  static bool know(const ShapeRecord<Dim2>&) { return false; }
+  static Dim2::Bounds bounds(const ShapeRecord<Dim2>&) { return {}; }
+};
+
 template <class D>
 void reset_delta(SolverBody<D>& s) {
   s.delta_position = {};
@@ -96,6 +128,7 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   const bool bullet = (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;  // looks one step ahead
   if (quick && (bullet || !has_several_shapes(world, body)))
     for (int k = 0; k < D::dimension; ++k) farthest = max(farthest, math::abs(way[k]));
+  const std::conditional_t<D::dimension == 2, NoBoxes, BoxesOfHulls> boxes(world, body);
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
@@ -104,13 +137,17 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
       any = true;
       continue;
     }
-    const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf),
-                             tight = shape_bounds(world, shape);
-    const typename D::Position below = tight.low - fat.low, above = fat.high - tight.high;
-    for (int k = 0; k < D::dimension; ++k) slack = min(slack, min(below[k], above[k]));
+    const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf);
     const P ahead = quick ? way_ahead(world, shape) : P{};
-    const typename D::Bounds next{tight.low + math::min(ahead, P{}), tight.high + math::max(ahead, P{})};
-    if (geometry::contains(fat, next)) continue;
+    const auto stays_within = [&](const typename D::Bounds& box) {
+      const typename D::Bounds next{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
+      if (!geometry::contains(fat, next)) return false;
+      const P below = box.low - fat.low, above = fat.high - box.high;
+      for (int k = 0; k < D::dimension; ++k) slack = min(slack, min(below[k], above[k]));
+      return true;
+    };
+    if (quick && boxes.know(shape) && stays_within(boxes.bounds(shape))) continue;
+    if (stays_within(shape_bounds(world, shape))) continue;
     shape.flags |= shape_outgrown;
     any = true;
   }
