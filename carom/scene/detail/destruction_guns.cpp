@@ -163,15 +163,15 @@ void renew_air(Destruction& all, const rigid::World<D>& world,
     gun.definition.conditions = conditions_of(gun.definition, world, around.get());
     gun.batch.set_conditions(gun.definition.conditions);
   }
-  for (auto& entry : all.of<D>().explosions)
-    if (entry.thing.casing)
-      entry.thing.casing->batch().set_conditions(conditions_at(entry.thing.explosion.charge().position,
-                                                               -double(world.definition().gravity.y), D::dimension,
-                                                               around.get()));
-  if constexpr (D::dimension == 3)
+  if constexpr (D::dimension == 3) {
+    for (auto& entry : all.space.explosions)
+      if (entry.thing.casing)
+        entry.thing.casing->batch().set_conditions(conditions_at(
+            entry.thing.explosion.charge().position, -double(world.definition().gravity.y), 3, around.get()));
     for (auto& entry : all.space.rockets)
       if (const auto rocket = world.state(entry.thing.body()); rocket.ok())
         entry.thing.set_conditions(rocket_conditions(rocket->pose.position, world, around));
+  }
 }
 template void renew_air(Destruction&, const rigid::World2&, const std::shared_ptr<const environment::Environment>&);
 template void renew_air(Destruction&, const rigid::World3&, const std::shared_ptr<const environment::Environment>&);
