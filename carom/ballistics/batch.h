@@ -50,7 +50,9 @@ class CAROM_API ProjectileBatch {
   void reserve(std::size_t count);
   std::size_t size() const { return count_; }
 
-  /// All by `dt` s: one classic Runge–Kutta step each. An index of `from … to` can be stepped by another thread.
+  /// All by `dt` s: one classic Runge–Kutta step each, in which drag takes at most as much as would stop it in one:
+  /// what is so light that it would stop within a part of a step slows down by e in it. An index of `from … to` can be
+  /// stepped by another thread.
   void step(double dt) { step(dt, 0, count_); }
   /// Those of [from, to) only; `from` must be a multiple of 16.
   void step(double dt, std::size_t from, std::size_t to);

@@ -88,6 +88,30 @@ TEST(Batch, SameBitsForAnyWidthAndAnyCut) {
   EXPECT_EQ(std::memcmp(four.data(), fly_all(0, true).data(), four.size() * sizeof(float)), 0);
 }
 
+// Dust that drag stops within a ten-thousandth of a step slows down without a leap, and sinks at its terminal speed,
+// √(2 g/(ρ C_D A/m)); a bullet beside it flies as alone.
+TEST(Batch, DustSlowsDown) {
+  for (const int lanes : {4, 8, 16}) {
+    ProjectileBatch batch(DragCurve(1.1), {.air = environment::AirColumn::uniform(1.225)}, {}, lanes);
+    const BatchRound dust = chunk_round(1e-13, 7850);
+    batch.add({{}, {2000, 0, 0}}, dust);
+    batch.add({{}, {800, 0, 0}}, chunk_round(.01));
+    double before = 2000;
+    for (int i = 0; i < 400; ++i) {
+      batch.step(1.0 / 60);
+      const double speed = batch.at(0).velocity.x;
+      ASSERT_TRUE(speed <= before && speed >= -1e-3) << i;
+      before = speed;
+    }
+    EXPECT_NEAR(batch.at(0).velocity.y, -math::sqrt(2 * 9.80665 / (1.225 * 1.1 * dust.area_per_mass)), 1e-3);
+    EXPECT_LT(before, 1e-3);
+    ProjectileBatch alone(DragCurve(1.1), {.air = environment::AirColumn::uniform(1.225)}, {}, lanes);
+    alone.add({{}, {800, 0, 0}}, chunk_round(.01));
+    for (int i = 0; i < 400; ++i) alone.step(1.0 / 60);
+    EXPECT_EQ(alone.at(0).position, batch.at(1).position);
+  }
+}
+
 // Vacuum: a parabola, to the rounding of floats. Faster than the table's end: its last value.
 TEST(Batch, VacuumAndTheEndsOfTheTables) {
   ProjectileBatch vacuum(DragCurve(.3), {.air = environment::AirColumn::uniform(0)});

@@ -30,11 +30,12 @@ struct Air {
 CAROM_SIMD_INLINE Vector acceleration(const BatchStep& b, const Air& air, F k, const Vector& v) {
   const Vector w = {v.x - air.wind.x, v.y - air.wind.y, v.z - air.wind.z};
   const F speed = sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
-  const F place = min(speed * air.slowness * F::splat(b.nodes_per_mach), F::splat(b.last_node));
+  // In this order for what is no number.
+  const F place = min(F::splat(b.last_node), speed * air.slowness * F::splat(b.nodes_per_mach));
   const I node = to_int(place);
   F coefficient[1];
   look_up<drag_row>(b.drag, node, place - to_float(node), coefficient);
-  const F drag = coefficient[0] * air.density * k * speed;
+  const F drag = min(F::splat(b.most_drag), coefficient[0] * air.density * k * speed);
   const F tx = F::splat(b.turning[0]), ty = F::splat(b.turning[1]), tz = F::splat(b.turning[2]);
   return {ty * v.z - tz * v.y - drag * w.x, tz * v.x - tx * v.z - drag * w.y - F::splat(b.gravity),
           tx * v.y - ty * v.x - drag * w.z};

@@ -25,6 +25,8 @@ struct BatchStep {
   float gravity;
   float turning[3];  // −2 Ω
   float dt;
+  /// 1/s: what drag would stop within a part of a step slows down by e in it; there Runge and Kutta's steps would grow.
+  float most_drag;
 };
 
 namespace batch_baseline {
