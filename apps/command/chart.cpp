@@ -105,12 +105,20 @@ void curves(cairo_t* c, const Chart& chart, const Frame& f) {
       if (s.points != points || s.data.empty()) continue;
       set(c, color_of(s, i));
       if (points || s.data.size() == 1) {
-        for (const math::Vec2d p : s.data) {
+        const auto disc = [&](math::Vec2d p) {
           cairo_new_sub_path(c);
           cairo_arc(c, f.x(p.x), f.y(p.y), 4, 0, 2 * M_PI);
-        }
+        };
+        for (const math::Vec2d p : s.data) disc(p);
         set(c, color_of(s, i, 0.85));
-        cairo_fill_preserve(c);
+        cairo_fill(c);
+        // Rims tell points apart; where the next ones lie on top of each other, they would hide them.
+        const auto apart = [&](std::size_t k, std::size_t other) {
+          return other >= s.data.size() ||
+                 std::hypot(f.x(s.data[k].x) - f.x(s.data[other].x), f.y(s.data[k].y) - f.y(s.data[other].y)) > 7;
+        };
+        for (std::size_t k = 0; k < s.data.size(); ++k)
+          if (apart(k, k - 1) && apart(k, k + 1)) disc(s.data[k]);
         set(c, rgb(0xffffff));
         cairo_set_line_width(c, 1);
         cairo_stroke(c);
