@@ -51,7 +51,7 @@ TEST(Bars, HundredThousandSleepersAddLessThanOnePercent) {
   add_spinning_boxes(alone, 4000);
   add_spinning_boxes(beside, 4000);
   double fastest[2] = {1e9, 1e9};
-  for (int attempt = 0; attempt < 40; ++attempt) {
+  for (int attempt = 0; attempt < 200; ++attempt) {
     for (int i = 0; i < 30; ++i) {
       World3* worlds[] = {&alone, &beside};
       for (int k = 0; k < 2; ++k) {
