@@ -88,7 +88,8 @@ class SnapshotWriter {
   template <class T, class... Member>
   static void put_members(std::byte* to, const T& whole, const Member&... member) {
     const std::byte* const from = reinterpret_cast<const std::byte*>(&whole);
-    (std::memcpy(to + (reinterpret_cast<const std::byte*>(&member) - from), &member, sizeof member), ...);
+    const auto put_member = [&](const std::byte* at, std::size_t size) { std::memcpy(to + (at - from), at, size); };
+    (put_member(reinterpret_cast<const std::byte*>(&member), sizeof(Member)), ...);
   }
   template <class T>
   void* room(std::size_t count) {
