@@ -88,8 +88,10 @@ class SnapshotWriter {
   template <class T, class... Member>
   static void put_members(std::byte* to, const T& whole, const Member&... member) {
     const std::byte* const from = reinterpret_cast<const std::byte*>(&whole);
-    const auto put_member = [&](const std::byte* at, std::size_t size) { std::memcpy(to + (at - from), at, size); };
-    (put_member(reinterpret_cast<const std::byte*>(&member), sizeof(Member)), ...);
+    const auto put_member = [&](std::span<const std::byte> bytes) {
+      std::memcpy(to + (bytes.data() - from), bytes.data(), bytes.size());
+    };
+    (put_member(std::as_bytes(std::span(&member, 1))), ...);
   }
   template <class T>
   void* room(std::size_t count) {
