@@ -1,6 +1,8 @@
 // The lee of an obstacle, and the vortices behind a wing, in their simplest form.
 #pragma once
 
+#include <initializer_list>
+
 #include "carom/math/elementary.h"
 #include "carom/math/vec.h"
 

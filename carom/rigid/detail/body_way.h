@@ -1,6 +1,7 @@
 // The ways of bodies in a step, for continuous collision.
 #pragma once
 
+#include "carom/geometry/compound.h"
 #include "carom/geometry/detail/passage.h"
 #include "carom/rigid/detail/fly_past.h"
 #include "carom/rigid/detail/rotation_step.h"
