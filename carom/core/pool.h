@@ -105,6 +105,19 @@ class SlotPool {
   std::size_t bytes() const {
     return generations_.capacity() * sizeof(std::uint16_t) + next_free_.capacity() * sizeof(std::uint32_t);
   }
+  /// For who restores one: is every slot used, retired or once in the list of free ones?
+  bool sound() const {
+    if (next_free_.size() != generations_.size()) return false;
+    std::size_t in_use = 0, free = 0;
+    for (const std::uint32_t next : next_free_)
+      if (next == used)
+        ++in_use;
+      else if (next != retired)
+        ++free;
+    std::uint32_t slot = first_free_;
+    for (; free > 0 && slot < next_free_.size(); --free) slot = next_free_[slot];
+    return free == 0 && slot == no_slot && size_ >= 0 && in_use == std::size_t(size_);
+  }
   /// Calls visit(member) for everything that changes: for who saves and restores the pool. `pool` may be const.
   template <class Pool, class Visit>
   static void visit_members(Pool& pool, Visit&& visit) {

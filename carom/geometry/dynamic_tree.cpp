@@ -485,25 +485,37 @@ double DynamicTree<V>::cost() const {
 
 template <class V>
 bool DynamicTree<V>::valid() const {
-  if (root_ < 0) return count_ == 0;
-  if (nodes_[std::size_t(root_)].parent != -1) return false;
-  int leaves = 0;
-  detail::TraversalStack stack;
-  stack.push(std::uint32_t(root_));
-  while (!stack.empty()) {
-    const std::uint32_t i = stack.pop();
-    const Node& node = nodes_[i];
-    if (node.child_b < 0) {
-      ++leaves;
-      continue;
-    }
-    for (const std::int32_t child : {node.child_a, node.child_b}) {
-      if (child < 0 || nodes_[std::size_t(child)].parent != std::int32_t(i)) return false;
-      if (!contains(node.box, nodes_[std::size_t(child)].box)) return false;
-      stack.push(std::uint32_t(child));
+  const auto is_node = [this](std::int32_t i) { return i >= 0 && std::size_t(i) < nodes_.size(); };
+  // Every node but the root is the child of its one parent, so what is reached is a tree.
+  std::size_t leaves = 0, reached = 0;
+  if (root_ >= 0) {
+    if (!is_node(root_) || nodes_[std::size_t(root_)].parent != -1) return false;
+    detail::TraversalStack stack;
+    stack.push(std::uint32_t(root_));
+    while (!stack.empty()) {
+      const std::uint32_t i = stack.pop();
+      const Node& node = nodes_[i];
+      ++reached;
+      if (node.child_b < 0) {
+        if (node.child_a < 0 || !contains(node.box, node.box)) return false;
+        ++leaves;
+        continue;
+      }
+      if (node.child_a == node.child_b) return false;
+      for (const std::int32_t child : {node.child_a, node.child_b}) {
+        if (!is_node(child) || nodes_[std::size_t(child)].parent != std::int32_t(i)) return false;
+        if (!contains(node.box, nodes_[std::size_t(child)].box)) return false;
+        stack.push(std::uint32_t(child));
+      }
     }
   }
-  return leaves == count_;
+  std::int32_t free = free_;
+  for (; reached < nodes_.size() && is_node(free); ++reached) {
+    const Node& node = nodes_[std::size_t(free)];
+    if (node.child_a != -1 || node.child_b != -1) return false;
+    free = node.parent;
+  }
+  return reached == nodes_.size() && free < 0 && count_ >= 0 && leaves == std::size_t(count_);
 }
 
 template class DynamicTree<Vec2d>;

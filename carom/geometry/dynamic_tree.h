@@ -197,6 +197,11 @@ class CAROM_API DynamicTree {
   int height() const;
   double cost() const;
   bool valid() const;
+  /// Whether there is such a leaf, of this item. Of a valid tree.
+  bool has_leaf(int leaf, std::uint32_t item) const {
+    return leaf >= 0 && std::size_t(leaf) < nodes_.size() && nodes_[std::size_t(leaf)].child_b < 0 &&
+           nodes_[std::size_t(leaf)].child_a >= 0 && this->item(leaf) == item;
+  }
 
  private:
   struct Node {

@@ -196,6 +196,7 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
   if (sections > most_sections || (base != nullptr && sections != base->sections.size())) return false;
   data.bodies_at = std::size_t(in.number());
   data.manifolds_at = std::size_t(in.number());
+  std::uint64_t more = 0;  // words than the base has
   // The differences first: zero where the base holds.
   for (std::uint64_t i = 0; i < sections && in.sound(); ++i) {
     SnapshotSection s;
@@ -205,6 +206,8 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
     if (s.count > most_words || s.element == 0 || s.element > 65536 || s.count * s.element > most_words) return false;
     const std::size_t count = word_count(s);
     const std::size_t common = std::min(count, base != nullptr ? word_count(base->sections[i]) : 0);
+    more += count - common;
+    if (!in.plausible(more)) return false;
     data.image.resize(data.image.size() + count);
     std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(data.image.data() + s.first);
     SectionModel model(std::size_t(s.element) / 4);

@@ -17,7 +17,8 @@ class World;
 namespace detail {
 template <class D>
 struct SnapshotData;
-}
+struct SnapshotAccess;  // of tests
+}  // namespace detail
 
 /// Made by World::snapshot, put back by World::restore: from there the world goes on with the same bits, warm starts,
 /// contact caches and sleep timers included, whatever was created, destroyed or set in between. What never changes
@@ -37,9 +38,10 @@ class CAROM_API Snapshot {
   std::size_t bytes() const;         ///< memory held
   std::uint64_t digest() const;      ///< of all the state; two snapshots of equal states may differ in unused bytes
 
-  /// The snapshot as bytes for a file or a packet, with a checksum, which guards against accidents and not against
-  /// forgers: authenticate what comes over a network. Shared geometry goes by its fingerprint, so the world that
-  /// restores it must hold the same hulls and meshes; a CustomEffector, likewise, must stand in the same slot.
+  /// The snapshot as bytes for a file or a packet, with a checksum against accidents. Whoever forges them can make a
+  /// world other than the sender's, but not a broken one (World::restore). Shared geometry goes by its fingerprint, so
+  /// the world that restores it must hold the same hulls and meshes; a CustomEffector, likewise, must stand in the same
+  /// slot.
   std::vector<std::byte> encode() const;
   /// Only what differs from `base`, which the receiver has: sleeping and fixed bodies cost nothing.
   std::vector<std::byte> encode(const Snapshot& base) const;
@@ -49,6 +51,7 @@ class CAROM_API Snapshot {
 
  private:
   friend class World<D>;
+  friend struct detail::SnapshotAccess;
   std::unique_ptr<detail::SnapshotData<D>> self_;
 };
 

@@ -212,9 +212,9 @@ class CAROM_API World {
   // Rollback (docs/snapshots.md).
   void snapshot(Snapshot<D>& into);  ///< keeps the memory of `into`
   Snapshot<D> snapshot();
-  /// Puts the state back; handles are valid again as they were, and a world of another process goes on as this one
-  /// would. Threads, scheduler and SIMD width stay this world's own, events of the last step are forgotten. Errors: an
-  /// empty snapshot, one whose shared geometry or functions this world does not have; then nothing changes.
+  /// Puts the state back; handles are valid again, and a world of another process goes on as this one would. Threads,
+  /// scheduler and SIMD width stay this world's own, events are forgotten. Errors, and nothing changes: an empty one,
+  /// one whose shared geometry or functions are not here, bytes that are not a world's state (which thing, and how).
   Status restore(const Snapshot<D>& snapshot);
 
   // Queries. Rays and casts go from `origin` by `translation`.

@@ -91,7 +91,7 @@ bool keep_face(const Pair& pair, const PairCache& cache, float small, Manifold3&
   const float shallow = 0.04f * small + 0.5f * pair.radius();
   const bool of_a = cache.kind == face_of_a;
   const Convex& c = of_a ? pair.a : pair.b;
-  if (int(cache.d) >= face_count(c)) return false;
+  if (cache.d >= std::uint32_t(face_count(c))) return false;
   const FacePlane plane = face_plane(c, int(cache.d));
   Vec3f corner = of_a ? pair.below_a(plane.normal) : pair.below_b(plane.normal);
   const float s = dot(plane.normal, corner) - plane.offset;

@@ -35,11 +35,6 @@ bool is_awake(const WorldImplementation<D>& world, std::int32_t body) {
 }
 
 template <class D>
-bool needs_extra(const ManifoldRecord<D>& m) {
-  return m.restitution > 0 || m.rolling_lever > 0;
-}
-
-template <class D>
 void enter_graph(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
@@ -143,6 +138,23 @@ bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, c
 }
 
 template <class D>
+void describe_contact(const WorldImplementation<D>& world, ContactRecord<D>& c) {
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  c.flags = contact_in_use;
+  const std::uint8_t flags = a.flags | b.flags;
+  if (flags & shape_sensor) c.flags |= contact_sensor;
+  if (flags & shape_many) c.flags |= contact_many;
+  if (flags & shape_contact_events) c.flags |= contact_events;
+  if (flags & shape_hit_events) c.flags |= contact_hit_events;
+  if (flags & shape_round) c.flags |= contact_round;
+  c.rolls = (flags & shape_round) != 0 || rolls(a) || rolls(b);
+  c.small = std::uint16_t(is_small(a.geometry) ? 1 : 0) | std::uint16_t(is_small(b.geometry) ? 2 : 0);
+  if (has_round_base(a.geometry) || has_round_base(b.geometry)) c.flags |= contact_on_disc;
+  if (a.at_origin && b.at_origin) c.flags |= contact_at_origin;
+  if (world.bodies.is_dynamic(a.body) && world.bodies.is_dynamic(b.body)) c.flags |= contact_dynamic;
+}
+
+template <class D>
 void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b) {
   const ShapeRecord<D>*a = &world.shapes.at(shape_a), *b = &world.shapes.at(shape_b);
   // A is the one in whose frame little changes: the surface of many parts, then the fixed body, then what does not turn
@@ -171,18 +183,7 @@ void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::in
   c.shape[1] = shape_b;
   c.body[0] = a->body;
   c.body[1] = b->body;
-  c.flags = contact_in_use;
-  const std::uint8_t flags = a->flags | b->flags;
-  if (flags & shape_sensor) c.flags |= contact_sensor;
-  if (flags & shape_many) c.flags |= contact_many;
-  if (flags & shape_contact_events) c.flags |= contact_events;
-  if (flags & shape_hit_events) c.flags |= contact_hit_events;
-  if (flags & shape_round) c.flags |= contact_round;
-  c.rolls = (flags & shape_round) != 0 || rolls(*a) || rolls(*b);
-  c.small = std::uint16_t(is_small(a->geometry) ? 1 : 0) | std::uint16_t(is_small(b->geometry) ? 2 : 0);
-  if (has_round_base(a->geometry) || has_round_base(b->geometry)) c.flags |= contact_on_disc;
-  if (a->at_origin && b->at_origin) c.flags |= contact_at_origin;
-  if (world.bodies.is_dynamic(a->body) && world.bodies.is_dynamic(b->body)) c.flags |= contact_dynamic;
+  describe_contact(world, c);
   update_contact_flags(world, index);
   c.extent = ball_about(*b).radius;
   const float inner = min(a->inner_extent, b->inner_extent);
@@ -400,6 +401,7 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
 
 #define CAROM_INSTANTIATE(D)                                                                                 \
   template bool may_collide<D>(const WorldImplementation<D>&, const ShapeRecord<D>&, const ShapeRecord<D>&); \
+  template void describe_contact<D>(const WorldImplementation<D>&, ContactRecord<D>&);                       \
   template void create_contact<D>(WorldImplementation<D>&, std::int32_t, std::int32_t);                      \
   template void destroy_contact<D>(WorldImplementation<D>&, std::int32_t, bool);                             \
   template void destroy_contacts_of_shape<D>(WorldImplementation<D>&, std::int32_t);                         \

@@ -37,6 +37,14 @@ inline float still_way(const WorldImplementation<D>& world, float dt) {
 template <class D>
 bool may_collide(const WorldImplementation<D>& world, const ShapeRecord<D>& a, const ShapeRecord<D>& b);
 
+/// Flags that follow from the shapes and bodies alone, and what else the record says of those.
+template <class D>
+void describe_contact(const WorldImplementation<D>& world, ContactRecord<D>& c);
+/// Does the solver hold more for it than for others?
+template <class D>
+inline bool needs_extra(const ManifoldRecord<D>& m) {
+  return m.restitution > 0 || m.rolling_lever > 0;
+}
 template <class D>
 void create_contact(WorldImplementation<D>& world, std::int32_t shape_a, std::int32_t shape_b);
 /// Sends the end event that is due. Wakes the bodies where `wake` and they touched.

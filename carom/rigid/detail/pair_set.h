@@ -55,6 +55,25 @@ class PairSet {
   void reserve(std::size_t count) {
     while (4 * count > 3 * keys_.size()) grow();
   }
+  /// For who restores one: does a search find every key, and end for every other?
+  bool sound() const {
+    if (keys_.empty()) return mask_ == 0 && count_ == 0;
+    if ((keys_.size() & (keys_.size() - 1)) != 0 || mask_ != keys_.size() - 1) return false;
+    std::size_t last = keys_.size();  // an empty place, from which to go round
+    for (std::size_t i = 0; i < keys_.size() && last == keys_.size(); ++i)
+      if (keys_[i] == empty) last = i;
+    if (last == keys_.size()) return false;
+    std::size_t found = 0;
+    for (std::size_t k = 1, run = 0; k <= mask_; ++k) {
+      const std::size_t i = (last + k) & mask_;
+      run = keys_[i] == empty ? 0 : run + 1;
+      if (run == 0) continue;
+      ++found;
+      if (((i - home(keys_[i])) & mask_) >= run) return false;  // its search ends before it
+    }
+    return found == count_;
+  }
+  std::size_t size() const { return count_; }
   /// Calls visit(member) for everything that changes. `set` may be const.
   template <class Set, class Visit>
   static void visit_members(Set& set, Visit&& visit) {

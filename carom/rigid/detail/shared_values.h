@@ -1,6 +1,7 @@
 // Values that many have in common, each kept once and named by a number.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -52,6 +53,16 @@ class SharedValues {
     for (std::size_t i = 0; i < values_.size(); ++i)
       if (users_[i] > 0) link(std::int32_t(i), values_[i].hash());
   }
+  /// Before link(), for who restores them: `users` counts those of each number (the rest is free), and is used up.
+  bool sound(std::vector<std::int32_t>& users) const {
+    if (users_.size() != values_.size() || users != users_) return false;
+    for (const std::int32_t number : free_) {
+      if (number < 0 || std::size_t(number) >= users.size() || users[std::size_t(number)] != 0) return false;
+      users[std::size_t(number)] = 1;
+    }
+    return std::find(users.begin(), users.end(), 0) == users.end();
+  }
+  std::size_t count() const { return values_.size(); }
   std::size_t bytes_of_links() const { return (first_.capacity() + next_.capacity()) * sizeof(std::int32_t); }
   /// Calls visit(member) for all that the links do not follow from.
   template <class Values, class Visit>

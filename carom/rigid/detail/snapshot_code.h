@@ -68,6 +68,9 @@ class ByteReader {
   bool at_end() const { return next_ == in_.size(); }
   std::size_t left() const { return in_.size() - next_; }
   void fail() { sound_ = false; }
+  /// Can so many words stand in what was written, runs of zeros and all? Keeps a few forged bytes from asking for all
+  /// the memory there is.
+  bool plausible(std::uint64_t words) const { return words <= (std::uint64_t{1} << 22) + (in_.size() << 16); }
   std::uint8_t byte() { return std::uint8_t(bits(8)); }
   std::uint64_t word() {
     const std::uint64_t low = bits(32);

@@ -86,8 +86,9 @@ template <class T>
 bool read_list(ByteReader& in, std::vector<T>& v, const std::vector<T>* base) {
   const std::uint64_t size = in.number();
   const bool against = in.byte() != 0;
-  if (!in.sound() || size > (std::uint64_t{1} << 31) || (against && (base == nullptr || base->size() != size)))
-    return false;
+  const bool fits = against ? base != nullptr && base->size() == size
+                            : size <= (std::uint64_t{1} << 31) && in.plausible(size * sizeof(T) / 4);
+  if (!in.sound() || !fits) return false;
   std::vector<std::uint32_t> w(std::size_t((size * sizeof(T) + 3) / 4));
   if (against && !base->empty()) std::memcpy(w.data(), base->data(), base->size() * sizeof(T));
   SectionModel model(1);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "carom/rigid/detail/check.h"
 #include "carom/rigid/detail/snapshot_data.h"
+#include "carom/rigid/detail/state_check.inl"
 #include "carom/rigid/detail/state_visitor.h"
 #include "carom/rigid/snapshot.h"
 
@@ -235,31 +235,6 @@ class SnapshotReader {
   std::size_t next_ = 0;
 };
 
-/// Handles inside the state name the world that they were made by.
-template <class D>
-void adopt_handles(WorldImplementation<D>& world) {
-  const std::uint16_t number = world.world_number;
-  const auto adopt = [number](auto& handle) {
-    if (!handle.is_null()) handle.world = number;
-  };
-  for (int slot = 0; slot < world.joints.slots.capacity(); ++slot)
-    if (world.joints.slots.in_use(slot)) {
-      JointFrames<D>& frames = world.joints.at(slot).frames();
-      adopt(frames.body_a), adopt(frames.body_b);
-    }
-  for (EffectorData<D>& effector : world.effectors.data)
-    std::visit(
-        [&](auto& d) {
-          if constexpr (requires { d.body_a; })
-            adopt(d.body_a), adopt(d.body_b);
-          else if constexpr (requires { d.body; })
-            adopt(d.body);
-        },
-        effector.definition);
-  for (ContactEndEvent& e : world.scratch.pending_contact_end) adopt(e.shape_a), adopt(e.shape_b);
-  for (SensorEvent& e : world.scratch.pending_sensor_end) adopt(e.sensor), adopt(e.visitor);
-}
-
 /// Whether it is something of the caller's that bytes did not carry.
 template <class D>
 bool lacks_own(const EffectorDef<D>& definition) {
@@ -296,6 +271,16 @@ Result<std::shared_ptr<const std::vector<typename D::Shape>>> find_geometry(cons
                                     "world has, expected a world with the same hulls and meshes")};
   }
   return std::shared_ptr<const std::vector<typename D::Shape>>(std::move(all));
+}
+
+/// Whether what came as bytes is the state of a world: taken apart in one that nobody else has.
+template <class D>
+Status check_state(const SnapshotData<D>& data, const std::vector<typename D::Shape>& geometry) {
+  WorldImplementation<D> trial(WorldDef<D>{});
+  SnapshotReader<D> reader(data);
+  visit_world(trial, reader);
+  for (std::size_t i = 0; i < geometry.size(); ++i) trial.shapes.record[i].geometry = geometry[i];
+  return StateCheck<D>(trial).run();
 }
 
 }  // namespace detail
@@ -340,6 +325,8 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
         "World::restore: the snapshot's sections are not those of a world, expected one of this version"};
   const auto geometry = find_geometry(world, data);
   if (!geometry.ok()) return geometry.error();
+  if (data.decoded)
+    if (const Status sound = check_state<D>(data, **geometry); !sound.ok()) return sound;
   std::vector<EffectorData<D>> kept;  // the caller's own functions and surroundings, where bytes could not carry them
   for (std::size_t i = 0; i < data.effectors.size(); ++i) {
     if (!data.decoded || !lacks_own<D>(data.effectors[i].definition)) continue;
@@ -370,7 +357,7 @@ Status World<D>::restore(const Snapshot<D>& snapshot) {
   }
   world.joints.trees.stale = true;
   world.shapes.terms.link();
-  if (data.world_number != world.world_number) adopt_handles(world);
+  if (data.decoded || data.world_number != world.world_number) adopt_handles(world);
   world.scratch.watches.clear();  // they speak of other contacts
   world.scratch.swept.clear();
   world.scratch.old_bounds.clear();
