@@ -35,16 +35,23 @@ void DestructionPicture::draw_guns(Stage<D>& stage, const scene::DestructionOf<D
     const float radius = float(math::max(0.5 * entry.thing.definition.weapon.ammunition.diameter, 0.002 * seen));
     stage.points(places_, radius, color | 0xff);
     for (const ballistics::BatchHit& hit : entry.thing.last) {
-      marks_.push_back({hit.point, now});
+      const auto struck = stage.world().state(hit.body);
+      marks_.push_back({hit.point, now, struck.ok() && struck->type == rigid::BodyType::fixed});
       // Their way within the step ends where they hit.
       stage.line(hit.point - hit.velocity * math::min(hit.time, 0.02), hit.point, color | 0xb0);
     }
   }
-  if (marks_.size() > 200) marks_.erase(marks_.begin(), marks_.end() - 200);
-  places_.clear();
-  for (const Mark& mark : marks_)
-    if (now - mark.time < 0.5) places_.push_back(math::Vec3f(mark.place));
-  if (!places_.empty()) stage.points(places_, float(0.004 * seen), 0xffe9a8ff);
+  draw_marks(stage, seen, now);
+}
+
+void DestructionPicture::draw_marks(StageBase& stage, double seen, double now) {
+  if (marks_.size() > 400) marks_.erase(marks_.begin(), marks_.end() - 400);
+  for (const bool fresh : {false, true}) {
+    places_.clear();
+    for (const Mark& mark : marks_)
+      if (fresh ? now - mark.time < 0.5 : mark.stays) places_.push_back(math::Vec3f(mark.place));
+    if (!places_.empty()) stage.points(places_, float((fresh ? 0.004 : 0.003) * seen), fresh ? 0xffe9a8ff : 0x181410ff);
+  }
 }
 
 template <class D>

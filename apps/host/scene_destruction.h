@@ -15,10 +15,12 @@ class DestructionPicture {
  private:
   struct Mark {
     math::Vec3d place{};
-    double time = 0;  // s, when something hit there
+    double time = 0;     // s, when something hit there
+    bool stays = false;  // in what does not move
   };
   template <class D>
   void draw_guns(Stage<D>& stage, const scene::DestructionOf<D>& all, double now);
+  void draw_marks(StageBase& stage, double seen, double now);
   template <class D>
   void draw_fronts(Stage<D>& stage, const scene::DestructionOf<D>& all, double now);
   template <class D>

@@ -36,12 +36,27 @@ struct Sightline {
     along = {s.cos, s.sin, 0};
     up = {-s.sin, s.cos, 0};
   }
+  explicit Sightline(Vec3d way) : along(way) {
+    const Vec3d across = math::cross(way, Vec3d{0, 1, 0});
+    const double level = math::length(across);
+    if (level > 1e-9) right = across / level;
+    up = math::cross(right, along);
+  }
+  /// Of a gun that leans to the right.
+  Vec3d top(double cant) const {
+    const math::SinCos<double> lean = math::sincos(cant);
+    return lean.cos * up + lean.sin * right;
+  }
 };
 
+Vec3d bore_of(const Aiming& aiming, const Sightline& line) {
+  const math::SinCos<double> elevation = math::sincos(aiming.elevation), windage = math::sincos(aiming.windage);
+  const Vec3d top = line.top(aiming.cant);
+  return elevation.cos * (windage.cos * line.along + windage.sin * math::cross(line.along, top)) + elevation.sin * top;
+}
+
 FlightPoint muzzle_of(const Gun& gun, const Aiming& aiming, const Sightline& line) {
-  const math::SinCos<double> cant = math::sincos(aiming.cant), elevation = math::sincos(aiming.elevation);
-  const Vec3d top = cant.cos * line.up + cant.sin * line.right;
-  return {-gun.sight_height * top, gun.muzzle_speed * (elevation.cos * line.along + elevation.sin * top)};
+  return {-gun.sight_height * line.top(aiming.cant), gun.muzzle_speed * bore_of(aiming, line)};
 }
 
 core::Result<Trajectory> fly_along(const Gun& gun, const Conditions& conditions, const Aiming& aiming,
@@ -51,6 +66,11 @@ core::Result<Trajectory> fly_along(const Gun& gun, const Conditions& conditions,
 }
 
 }  // namespace detail
+
+Vec3d swung(Vec3d way, double up, double right) {
+  return detail::bore_of({.elevation = up, .windage = right}, detail::Sightline(way));
+}
+Vec3d bore_direction(Vec3d line, const Aiming& aiming) { return detail::bore_of(aiming, detail::Sightline(line)); }
 
 core::Result<double> zero_elevation(const Gun& gun, const Conditions& conditions, double distance, double slant) {
   const core::Result<void> checked = detail::check(gun);

@@ -32,7 +32,14 @@ struct Aiming {
   double elevation = 0;  ///< rad, from the line of sight up to the bore, as `zero_elevation` gives it
   double slant = 0;      ///< rad, of the line of sight above the horizon
   double cant = 0;       ///< rad, the gun leaning to the right
+  double windage = 0;    ///< rad, from the line of sight to the right to the bore, as a turned sight gives it
 };
+/// A direction (unit vector, y up) turned by angles (rad) across it: up in the upright plane through it, and to the
+/// right. Straight up and down, x is taken for what lies ahead.
+CAROM_API math::Vec3d swung(math::Vec3d way, double up, double right);
+/// Where the bore points (unit vector) whose line of sight points along `line`, a unit vector of any frame with y up:
+/// raised, turned and canted. `line` stands for the slant.
+CAROM_API math::Vec3d bore_direction(math::Vec3d line, const Aiming& aiming);
 
 /// A point of the flight as the shooter sees it.
 struct SightedPoint {

@@ -1,5 +1,6 @@
 #include "carom/ballistics/sway.h"
 
+#include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
 
@@ -17,6 +18,29 @@ Sway sway_of(Stance stance, double skill, double fatigue) {
   sway.breath_frequency = 0.22 + 0.2 * math::clamp(fatigue, 0.0, 1.0);
   sway.heartbeat_frequency = 1.1 + 1.2 * math::clamp(fatigue, 0.0, 1.0);
   return sway;
+}
+
+core::Status check(const Sway& s) {
+  const struct {
+    const char* name;
+    double value, least, most;
+    const char* expected;
+  } fields[] = {
+      {"breath", s.breath, 0, 1, "0 to 1 rad"},
+      {"breath_frequency", s.breath_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"heartbeat", s.heartbeat, 0, 1, "0 to 1 rad"},
+      {"heartbeat_frequency", s.heartbeat_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"tremor", s.tremor, 0, 1, "0 to 1 rad"},
+      {"tremor_low", s.tremor_low, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"tremor_high", s.tremor_high, s.tremor_low, 1e3, "tremor_low to 1000 Hz"},
+      {"drift", s.drift, 0, 1, "0 to 1 rad"},
+      {"drift_low", s.drift_low, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"drift_high", s.drift_high, s.drift_low, 1e3, "drift_low to 1000 Hz"},
+  };
+  for (const auto& f : fields)
+    if (!(f.value >= f.least && f.value <= f.most))
+      return core::Error{core::text("sway: ", core::refused(f.name, f.value, f.expected))};
+  return {};
 }
 
 SwayMotion::SwayMotion(const Sway& sway, std::uint64_t seed) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/core/result.h"
 #include "carom/export.h"
 #include "carom/math/vec.h"
 
@@ -19,6 +20,8 @@ struct Sway {
   double tremor = 0.15e-3, tremor_low = 8, tremor_high = 12;  ///< rad, a band in Hz
   double drift = 0.8e-3, drift_low = 0.05, drift_high = 0.6;  ///< rad, of the body, a band in Hz
 };
+/// Errors name what is not finite or out of range: 0 to 1 rad, 10^-3 to 1000 Hz, bands that rise.
+CAROM_API core::Status check(const Sway& sway);
 /// A steadier or tired shooter: `skill` 0 (beginner) … 1 (expert), `fatigue` 0 … 1.
 CAROM_API Sway sway_of(Stance stance, double skill = 0.5, double fatigue = 0);
 

@@ -98,6 +98,13 @@ core::Result<Aiming> zeroed(const Weapon& w, const Conditions& conditions) {
   return Aiming{.elevation = *elevation};
 }
 
+Aiming turned(const Aiming& aiming, const Sight& sight, int up, int right) {
+  Aiming out = aiming;
+  out.elevation += up * sight.click;
+  out.windage += right * sight.click;
+  return out;
+}
+
 core::Result<Dial> dial(const Weapon& w, const Conditions& conditions, double distance) {
   const auto aiming = zeroed(w, conditions);
   if (!aiming) return aiming.error();

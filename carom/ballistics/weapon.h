@@ -53,6 +53,8 @@ CAROM_API Penetrator penetrator_of(const Weapon& weapon, double speed);
 CAROM_API ShotVariation variation_of(const Weapon& weapon, double aim = 0);
 /// Set for its zero. Errors: what cannot be; a zero out of reach.
 CAROM_API core::Result<Aiming> zeroed(const Weapon& weapon, const Conditions& conditions = {});
+/// With the sight turned by so many clicks: they move the strike up and to the right.
+CAROM_API Aiming turned(const Aiming& aiming, const Sight& sight, int up, int right);
 /// Turns of the sight, up and right, that put a shot at `distance` m on the mark. Errors as `zeroed`; out of reach.
 struct Dial {
   int up = 0, right = 0;                 ///< clicks

@@ -17,12 +17,6 @@ Vec3d turn(const math::Quatf& q, Vec3d v) { return rotate(math::Quatd(q), v); }
 Vec3d spin_of(float w) { return {0, 0, double(w)}; }
 Vec3d spin_of(math::Vec3f w) { return Vec3d(w); }
 
-/// Raised by `up` rad in the upright plane through it, and turned by `right` rad about the vertical.
-Vec3d swung(Vec3d way, double up, double right) {
-  const ballistics::Laying l = ballistics::laying(way);
-  return ballistics::direction(l.elevation + up, l.azimuth + right);
-}
-
 struct Muzzle {
   Vec3d place{}, bore{1, 0, 0}, velocity{};
 };
@@ -35,6 +29,14 @@ Result<Muzzle> muzzle_of(const GunDef& gun, const rigid::World<D>& world) {
   const Vec3d arm = place - in_space(state->center_of_mass);
   return Muzzle{place, turn(state->pose.rotation, gun.bore),
                 in_space(state->linear_velocity) + cross(spin_of(state->angular_velocity), arm)};
+}
+
+/// The bore as the hands hold it.
+template <class D>
+Vec3d held(const SceneGun& gun, Vec3d bore, double time) {
+  if (!gun.sway && !gun.definition.climbs) return bore;
+  const math::Vec2d swing = gun.swing(time);
+  return ballistics::swung(bore, swing.y, D::dimension == 3 ? swing.x : 0);
 }
 
 /// Where the barrel points for the next shot; empty: the target is out of reach.
@@ -52,14 +54,9 @@ Result<std::optional<Vec3d>> aimed(const SceneGun& gun, const rigid::World<D>& w
     if (!aims) return aims.error();
     const std::optional<ballistics::Shot>& shot = d.high_arc ? aims->high : aims->low;
     if (!shot) return std::optional<Vec3d>{};
-    return std::optional<Vec3d>(shot->direction);
+    return std::optional<Vec3d>(held<D>(gun, shot->direction, world.time()));
   }
-  if (!d.climbs) return std::optional<Vec3d>(muzzle.bore);
-  const double impulse = ballistics::recoil_impulse(ballistics::charge_of(d.weapon));
-  const std::size_t known = math::min<std::size_t>(gun.shot_times.size(), 64);  // what was long ago has died away
-  const std::span<const double> recent(gun.shot_times.data() + gun.shot_times.size() - known, known);
-  const ballistics::RecoilMotion motion = ballistics::recoil_at(d.weapon.mount, impulse, recent, world.time());
-  return std::optional<Vec3d>(swung(muzzle.bore, motion.rise, motion.swing));
+  return std::optional<Vec3d>(held<D>(gun, muzzle.bore, world.time()));
 }
 
 template <class D>
@@ -77,7 +74,7 @@ Status shoot(SceneGun& gun, rigid::World<D>& world) {
     const double speed = math::max(
         1.0, ballistics::gun_of(d.weapon).muzzle_speed + d.weapon.ammunition.speed_deviation * gun.random.normal());
     Vec3d bore = **way;
-    if (d.weapon.dispersion > 0) bore = swung(bore, up, D::dimension == 3 ? right : 0);
+    if (d.weapon.dispersion > 0) bore = ballistics::swung(bore, up, D::dimension == 3 ? right : 0);
     ballistics::BatchRound round = gun.round;
     round.tag = std::uint64_t(gun.shots);
     gun.batch.add({muzzle->place, muzzle->velocity + speed * bore}, round);
@@ -165,6 +162,18 @@ void forget_old(SceneGun& gun, double now) {
 }
 
 }  // namespace
+
+math::Vec2d SceneGun::swing(double time) const {
+  math::Vec2d sum = sway ? sway->at(time, definition.breath_held) : math::Vec2d{};
+  if (definition.climbs && !shot_times.empty()) {
+    const double impulse = ballistics::recoil_impulse(ballistics::charge_of(definition.weapon));
+    const std::size_t known = math::min<std::size_t>(shot_times.size(), 64);  // what was long ago has died away
+    const std::span<const double> recent(shot_times.data() + shot_times.size() - known, known);
+    const ballistics::RecoilMotion motion = ballistics::recoil_at(definition.weapon.mount, impulse, recent, time);
+    sum += math::Vec2d{motion.swing, motion.rise};
+  }
+  return sum;
+}
 
 template <class D>
 Status Destruction::before(rigid::World<D>& world, double dt, Matter* matter) {
@@ -268,6 +277,8 @@ enum DestructionField {
   energy,
   last_hit,
   hit_speed,
+  swing_up,
+  swing_right,
   parts,
   pieces,
   broken,
@@ -296,6 +307,8 @@ constexpr FieldName fields[] = {{explosion_list, "front", "m"},
                                 {gun_list, "energy", "J"},
                                 {gun_list, "last_hit", "m", true},
                                 {gun_list, "hit_speed", "m/s"},
+                                {gun_list, "swing_up", "rad"},
+                                {gun_list, "swing_right", "rad"},
                                 {structure_list, "parts", ""},
                                 {structure_list, "pieces", ""},
                                 {structure_list, "broken", ""},
@@ -321,7 +334,7 @@ void each_name(const Destruction& all, const See& see) {
   both(all.space);
 }
 
-double read_gun(const SceneGun& gun, const Probe::Source& s) {
+double read_gun(const SceneGun& gun, const Probe::Source& s, double time) {
   switch (s.field) {
     case shots:
       return gun.shots;
@@ -337,6 +350,10 @@ double read_gun(const SceneGun& gun, const Probe::Source& s) {
       return gun.energy;
     case hit_speed:
       return gun.hit_speed;
+    case swing_up:
+      return gun.swing(time).y;
+    case swing_right:
+      return gun.swing(time).x;
     default:
       return gun.last_hit[s.component];
   }
@@ -344,7 +361,7 @@ double read_gun(const SceneGun& gun, const Probe::Source& s) {
 template <class D>
 double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time) {
   const auto place = std::size_t(s.item);
-  if (s.list == gun_list) return read_gun(all.guns[place].thing, s);
+  if (s.list == gun_list) return read_gun(all.guns[place].thing, s, time);
   if (s.list == explosion_list) {
     const SceneExplosion<D>& e = all.explosions[place].thing;
     if (s.field == reached) return e.reached;

@@ -9,6 +9,7 @@
 #include "carom/ballistics/aim.h"
 #include "carom/ballistics/body_rocket.h"
 #include "carom/ballistics/hits.h"
+#include "carom/ballistics/sway.h"
 #include "carom/ballistics/weapon.h"
 #include "carom/blast/explosion.h"
 #include "carom/blast/structure.h"
@@ -29,17 +30,19 @@ struct SceneExplosion {
 struct GunDef {
   ballistics::Weapon weapon{};
   ballistics::Conditions conditions{};
-  rigid::BodyId body{};       ///< that carries it; null: it stands in the world
-  math::Vec3d muzzle{};       ///< m, of the body or of the world
-  math::Vec3d bore{1, 0, 0};  ///< unit vector, of the body or of the world
-  rigid::BodyId target{};     ///< aimed at before each shot; null: it shoots along the bore
-  bool high_arc = false;      ///< at a target
-  double start = 0;           ///< s, of the first shot
-  int rounds = 1;             ///< how many it has
-  double lifetime = 60;       ///< s that a projectile flies at most
-  bool climbs = false;        ///< the mount's motion turns the bore from shot to shot
-  bool recoils = true;        ///< its body takes the recoil
-  std::uint64_t seed = 1;     ///< of dispersion and muzzle speeds
+  rigid::BodyId body{};                    ///< that carries it; null: it stands in the world
+  math::Vec3d muzzle{};                    ///< m, of the body or of the world
+  math::Vec3d bore{1, 0, 0};               ///< unit vector, of the body or of the world
+  rigid::BodyId target{};                  ///< aimed at before each shot; null: it shoots along the bore
+  bool high_arc = false;                   ///< at a target
+  double start = 0;                        ///< s, of the first shot
+  int rounds = 1;                          ///< how many it has
+  double lifetime = 60;                    ///< s that a projectile flies at most
+  bool climbs = false;                     ///< the mount's motion turns the bore from shot to shot
+  bool recoils = true;                     ///< its body takes the recoil
+  std::uint64_t seed = 1;                  ///< of dispersion, muzzle speeds and sway
+  std::optional<ballistics::Sway> sway{};  ///< of the hands that hold it; none: it stands still
+  double breath_held = 0;                  ///< 0 … 1
 };
 struct SceneGun {
   SceneGun(const GunDef& definition, const ballistics::BatchRound& one)
@@ -47,11 +50,17 @@ struct SceneGun {
         round(one),
         batch(definition.weapon.ammunition.projectile.drag, definition.conditions),
         random(definition.seed),
-        next(definition.start) {}
+        next(definition.start) {
+    if (definition.sway) sway.emplace(*definition.sway, math::Random(definition.seed, 1).bits64());
+  }
   GunDef definition;
   ballistics::BatchRound round;
   ballistics::ProjectileBatch batch;
   math::Random random;
+  std::optional<ballistics::SwayMotion> sway{};
+  /// rad (x to the right, y up), by which the hands hold it beside its aim at a time (s) of the world: sway, and what
+  /// its shots raised it by if it climbs.
+  math::Vec2d swing(double time) const;
   double next = 0;  ///< s, the time of the next shot
   int shots = 0, hits = 0, passed = 0, ricochets = 0;
   bool no_solution = false;                ///< the target was out of reach when it last wanted to shoot

@@ -61,4 +61,26 @@ TEST(Sights, OutOfReachIsSaid) {
   EXPECT_FALSE(zero_elevation({.muzzle_speed = 0}, {}, 100));
 }
 
+// Turns of the bore against their own axes, in any direction.
+TEST(Sights, ABoreIsRaisedTurnedAndCantedAboutItsLine) {
+  const math::Vec3d lines[] = {{1, 0, 0}, {-0.6, 0, 0.8}, math::normalize(math::Vec3d{0.3, 0.5, -0.2}), {0, 1, 0}};
+  for (const math::Vec3d line : lines) {
+    const double e = 0.02, w = 0.013, c = 0.4;
+    const math::Vec3d up = ballistics::swung(line, math::pi / 2, 0), right = ballistics::swung(line, 0, math::pi / 2);
+    EXPECT_NEAR(math::dot(up, line), 0, 1e-15);
+    EXPECT_NEAR(math::dot(right, line), 0, 1e-15);
+    EXPECT_NEAR(right.y, 0, 1e-15);
+    EXPECT_GE(up.y, -1e-15);
+    EXPECT_NEAR(math::dot(math::cross(line, up), right), 1, 1e-14);
+    const math::Vec3d bore = ballistics::bore_direction(line, {.elevation = e, .cant = c, .windage = w});
+    EXPECT_NEAR(math::length(bore), 1, 1e-15);
+    // Seen along the line: raised by e and moved by w along axes that lean by c.
+    const double x = math::cos(e) * math::sin(w), y = math::sin(e);
+    EXPECT_NEAR(math::dot(bore, up), y * math::cos(c) - x * math::sin(c), 1e-15);
+    EXPECT_NEAR(math::dot(bore, right), x * math::cos(c) + y * math::sin(c), 1e-15);
+  }
+  EXPECT_NEAR(ballistics::swung({1, 0, 0}, 0.1, 0).y, math::sin(0.1), 1e-16);
+  EXPECT_NEAR(ballistics::swung({1, 0, 0}, 0, 0.1).z, math::sin(0.1), 1e-16);
+}
+
 }  // namespace ballistics_sights_test

@@ -222,6 +222,101 @@ TEST(SceneGuns, RecoilIsTheImpulseOfBulletAndGas) {
   }
 }
 
+// 168 SMK, zero 100 yd by 1.14214 mrad: 15.565 in low at 300 yd (reference solution), which is 4.954 minutes of arc, so
+// 20 quarters of one. Small angles add; what cant turns about the muzzle is what the bore is raised by.
+TEST(SceneGuns, SightsAreTurnedHeldAndCanted) {
+  constexpr double yard = 0.9144, inch = 0.0254, far = 300 * yard, low = 15.565 * inch, quarter = math::pi / 43200;
+  const auto strike = [&](const std::string& keys) {
+    SceneWorld world = start(R"({"step": "1/240 s",
+      "bodies": [{"name": "plate", "type": "fixed", "position": ["=300 yd + 5 mm", 0, 0],
+                  "shape": {"type": "box", "size": ["1 cm", "2 m", "2 m"]}}],
+      "guns": [{"name": "g", "preset": "gun/rifle_308", "dispersion": 0, "sighted": true, )" +
+                             keys + R"(, "ammunition": {"preset": "ammunition/308_168_smk", "speed_deviation": 0}}]})");
+    run(world, 0.5);
+    EXPECT_EQ(read(world, "gun.g.hits"), 1);
+    return math::Vec2d{read(world, "gun.g.last_hit.z"), read(world, "gun.g.last_hit.y") - 1.5 * inch};
+  };
+  const double lean = 10 * math::pi / 180, raised = far * 1.14214e-3;
+  struct Case {
+    const char* keys;
+    double right, up;
+  };
+  const Case cases[] = {
+      {R"("clicks_up": 0)", 0, -low},
+      {R"("clicks_up": 20)", 0, 20 * quarter * far - low},
+      {R"("dial": "300 yd")", 0, 20 * quarter * far - low},
+      {R"("dial": "300 yd", "clicks_up": -4, "clicks_right": 8)", 8 * quarter * far, 16 * quarter * far - low},
+      {R"("hold_up": "1.4412 mrad", "hold_right": "-1 mrad")", -1e-3 * far, 0},
+      {R"("cant": "10 deg")", raised * math::sin(lean), raised * (math::cos(lean) - 1) - low}};
+  for (const Case& c : cases) {
+    const math::Vec2d at = strike(c.keys);
+    EXPECT_NEAR(at.x, c.right, 1.5e-3) << c.keys;
+    EXPECT_NEAR(at.y, c.up, 3e-3) << c.keys;
+  }
+}
+
+// Walls at 10 m in vacuum and without gravity: every hole is where the hands held the bore.
+std::string swaying(const std::string& keys, int seed = 3) {
+  return R"({"step": "1/100 s", "gravity": [0, 0, 0], "environment": {"air": {"vacuum": true}},
+    "bodies": [{"name": "wall", "type": "fixed", "position": ["10.5 m", 0, 0], "shape": {"type": "box", "size": [1, 4, 4]}}],
+    "guns": [{"name": "g", "rounds": 400, "rounds_per_minute": 600, "seed": )" +
+         std::to_string(seed) + R"(, "ammunition": {"mass": "4 g", "diameter": "6 mm", "muzzle_speed": "900 m/s"}, )" +
+         keys + "}]}";
+}
+struct Scatter {
+  double right = 0, up = 0;  // rad, root mean square
+  double worst = 0;          // rad, of a hole beside where the bore pointed
+};
+Scatter scatter_of(const std::string& text) {
+  SceneWorld world = start(text);
+  Scatter s;
+  int shots = 0, holes = 0;
+  math::Vec2d pointed{};
+  while (holes < 400) {
+    const math::Vec2d now{read(world, "gun.g.swing_right"), read(world, "gun.g.swing_up")};
+    if (!world.step().ok()) break;
+    if (read(world, "gun.g.shots") > shots) pointed = now, ++shots;
+    const math::Vec2d hole{read(world, "gun.g.last_hit.z") / 10, read(world, "gun.g.last_hit.y") / 10};
+    if (read(world, "gun.g.hits") == holes) continue;
+    ++holes;
+    s.worst = math::max(s.worst, math::distance(hole, pointed));
+    s.right += math::square(pointed.x), s.up += math::square(pointed.y);
+  }
+  EXPECT_EQ(holes, 400);
+  return {math::sqrt(s.right / 400), math::sqrt(s.up / 400), s.worst};
+}
+
+TEST(SceneGuns, SwayInTheHands) {
+  // Alone, each part has the root mean square that it is told: sums of sines over 40 s.
+  const std::string still = R"("breath": 0, "heartbeat": 0, "tremor": 0, "drift": 0)";
+  const auto part = [&](const char* name) {
+    std::string keys = still;
+    const std::string zero = "\"" + std::string(name) + "\": 0";
+    keys.replace(keys.find(zero), zero.size(), "\"" + std::string(name) + "\": \"2 mrad\"");
+    return scatter_of(swaying("\"sway\": {" + keys + "}"));
+  };
+  const Scatter breath = part("breath"), drift = part("drift");
+  EXPECT_NEAR(breath.up, 2e-3, 0.05e-3);
+  EXPECT_NEAR(breath.right, 0.5e-3, 0.02e-3);
+  EXPECT_NEAR(drift.up, 2e-3, 0.4e-3);
+  EXPECT_LT(math::max(breath.worst, drift.worst), 1e-6);
+  EXPECT_EQ(scatter_of(swaying("\"sway\": {" + still + "}")).up, 0);
+  // Whoever stands, is tired or has never shot, scatters more.
+  const auto of = [](const char* keys, int seed = 3) {
+    return scatter_of(swaying("\"sway\": {" + std::string(keys) + "}", seed)).up;
+  };
+  const double standing = of(R"("stance": "offhand")");
+  EXPECT_GT(standing, 1e-3);
+  EXPECT_LT(standing, 3e-3);
+  EXPECT_LT(of(R"("stance": "supported")"), 0.3e-3);
+  EXPECT_LT(of(R"("stance": "kneeling")"), standing);
+  EXPECT_LT(of(R"("skill": 1)"), of(R"("skill": 0)"));
+  EXPECT_GT(of(R"("fatigue": 1)"), standing);
+  EXPECT_LT(of(R"("breath_held": 1)"), standing);
+  EXPECT_EQ(of(R"("stance": "offhand")"), standing) << "the same every time";
+  EXPECT_NE(of(R"("stance": "offhand")", 4), standing);
+}
+
 TEST(SceneGuns, EveryPresetShootsAndEveryWallHolds) {
   const auto guns = presets("gun"), rounds = presets("ammunition"), walls = presets("wall");
   EXPECT_GE(guns.size(), 5u);
@@ -322,6 +417,12 @@ TEST(SceneDestruction, ErrorsNameTheirPlace) {
     int dimension = 3;
   };
   const Case cases[] = {
+      {R"("guns": [{"ammunition": "9mm_115_fmj", "cant": "3 deg"}])", "only a gun that is \"sighted\" has it"},
+      {R"("guns": [{"ammunition": "9mm_115_fmj", "sway": {"skill": 2}}])",
+       "guns[0].sway.skill: found 2, expected 0 to 1"},
+      {R"("guns": [{"ammunition": "9mm_115_fmj", "sway": {"stance": "flying"}}])", "expected one of offhand, kneeling"},
+      {R"("guns": [{"ammunition": "9mm_115_fmj", "sway": {"tremor_low": "20 Hz"}}])", "tremor_high is 12"},
+      {R"("guns": [{"ammunition": "9mm_115_fmj", "sighted": true, "dial": "90 km"}])", "does not get 90000 m far"},
       {R"("explosions": 5)", "explosions: found 5, expected a list"},
       {R"("explosions": [{}])", "explosions[0]: the key \"mass\" is missing"},
       {R"("explosions": [{"mass": "-1 kg"}])", "mass is -1"},

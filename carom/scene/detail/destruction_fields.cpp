@@ -69,6 +69,24 @@ constexpr Field sight_fields[] = {
     {"spacing", T::quantity, M::angle, "between marks of the reticle"},
     {"magnification", T::quantity, M::plain},
 };
+constexpr std::string_view stances[] = {"offhand", "kneeling", "sitting", "prone", "supported"};
+constexpr Field sway_fields[] = {
+    {"description", T::text},
+    {"stance", T::choice, M::plain, "offhand unless given", nullptr, stances},
+    {"skill", T::quantity, M::plain, "0 (beginner) to 1 (expert), 0.5 unless given"},
+    {"fatigue", T::quantity, M::plain, "0 to 1"},
+    {"breath_held", T::quantity, M::plain, "0 to 1: without breath, and with half as much tremor again"},
+    {"breath", T::quantity, M::angle, "root mean square of an axis, instead of that of the stance"},
+    {"breath_frequency", T::quantity, M::frequency},
+    {"heartbeat", T::quantity, M::angle, "likewise"},
+    {"heartbeat_frequency", T::quantity, M::frequency},
+    {"tremor", T::quantity, M::angle, "likewise"},
+    {"tremor_low", T::quantity, M::frequency, "of its band"},
+    {"tremor_high", T::quantity, M::frequency},
+    {"drift", T::quantity, M::angle, "of the body, likewise"},
+    {"drift_low", T::quantity, M::frequency, "of its band"},
+    {"drift_high", T::quantity, M::frequency},
+};
 constexpr Field gun_fields[] = {
     {"preset", T::text, M::plain, "name of a preset file, such as gun/rifle_308"},
     {"name", T::text, M::plain, name_text},
@@ -83,6 +101,13 @@ constexpr Field gun_fields[] = {
     {"sight", T::reference, M::plain, "name of a preset of presets/sight, or written here", &sight_kind},
     {"sighted", T::flag, M::plain, "direction is the line of sight: the bore is raised for the zero"},
     {"zero", T::quantity, M::length, "distance at which a sighted gun meets the line of sight"},
+    {"dial", T::quantity, M::length, "sighted: the sight is raised from its zero by whole clicks for this distance"},
+    {"clicks_up", T::integer, M::plain, "sighted: turns of the sight, which move the strike; dial comes on top"},
+    {"clicks_right", T::integer, M::plain, "", nullptr, {}, false, 3},
+    {"hold_up", T::quantity, M::angle, "sighted: how much higher than direction it is held"},
+    {"hold_right", T::quantity, M::angle, "likewise, to the right", nullptr, {}, false, 3},
+    {"cant", T::quantity, M::angle, "sighted: it leans to the right", nullptr, {}, false, 3},
+    {"sway", T::object, M::plain, "of the hands that hold it; none unless given", &sway_kind},
     {"mass", T::quantity, M::mass, "of the gun"},
     {"muzzle_speed", T::quantity, M::speed, "from this barrel instead of that of the ammunition"},
     {"twist", T::quantity, M::length, "of a turn"},
@@ -101,7 +126,7 @@ constexpr Field gun_fields[] = {
     {"mount_push_damping", T::quantity, M::plain},
     {"mount_rise_frequency", T::quantity, M::frequency},
     {"mount_rise_damping", T::quantity, M::plain},
-    {"seed", T::integer, M::plain, "of dispersion and muzzle speeds"},
+    {"seed", T::integer, M::plain, "of dispersion, muzzle speeds and sway"},
     {"color", T::color, M::plain, "of its projectiles, as #rrggbb"},
 };
 
@@ -235,6 +260,7 @@ const ObjectKind explosion_kind{"explosion", "A charge that goes off.", explosio
 const ObjectKind case_kind{"case", "What is thrown as fragments.", case_fields};
 const ObjectKind ammunition_kind{"ammunition", "What a gun shoots.", ammunition_fields};
 const ObjectKind sight_kind{"sight", "What a gun is aimed with.", sight_fields};
+const ObjectKind sway_kind{"sway", "How a gun moves in the hands.", sway_fields};
 const ObjectKind gun_kind{"gun", "A gun that shoots.", gun_fields};
 const ObjectKind layer_kind{"layer", "A layer that projectiles go through.", layer_of_material_fields};
 const ObjectKind penetration_kind{"penetration", "What a material is for projectiles.", penetration_fields};

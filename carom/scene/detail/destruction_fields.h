@@ -5,7 +5,7 @@
 
 namespace carom::scene::detail {
 
-extern const ObjectKind explosion_kind, case_kind, gun_kind, ammunition_kind, sight_kind, penetration_kind, layer_kind,
-    structure_kind, rocket_kind, stage_kind, rocket_motor_kind;
+extern const ObjectKind explosion_kind, case_kind, gun_kind, sway_kind, ammunition_kind, sight_kind, penetration_kind,
+    layer_kind, structure_kind, rocket_kind, stage_kind, rocket_motor_kind;
 
 }  // namespace carom::scene::detail

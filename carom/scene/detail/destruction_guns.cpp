@@ -5,6 +5,7 @@
 
 namespace carom::scene::detail {
 namespace {
+using math::Vec3d;
 
 /// The object under a key that may name a preset. A name was replaced when the file was read.
 bool open_named(Reader& r, const Object& o, const char* key, const ObjectKind& kind, Object& out) {
@@ -82,6 +83,49 @@ ballistics::Weapon read_weapon(Reader& r, const Object& o) {
   return w;
 }
 
+bool read_sway(Reader& r, const Object& o, GunDef& gun) {
+  Object s;
+  if (!r.open(*o.find("sway"), o.path_of("sway"), sway_kind, s)) return false;
+  ballistics::Sway sway = ballistics::sway_of(ballistics::Stance(r.choice(s, "stance", 0)), r.number(s, "skill", 0.5),
+                                              r.number(s, "fatigue", 0));
+  sway.breath = r.number(s, "breath", sway.breath);
+  sway.breath_frequency = r.number(s, "breath_frequency", sway.breath_frequency);
+  sway.heartbeat = r.number(s, "heartbeat", sway.heartbeat);
+  sway.heartbeat_frequency = r.number(s, "heartbeat_frequency", sway.heartbeat_frequency);
+  sway.tremor = r.number(s, "tremor", sway.tremor);
+  sway.tremor_low = r.number(s, "tremor_low", sway.tremor_low);
+  sway.tremor_high = r.number(s, "tremor_high", sway.tremor_high);
+  sway.drift = r.number(s, "drift", sway.drift);
+  sway.drift_low = r.number(s, "drift_low", sway.drift_low);
+  sway.drift_high = r.number(s, "drift_high", sway.drift_high);
+  gun.breath_held = r.number(s, "breath_held", 0);
+  gun.sway = sway;
+  for (const char* share : {"skill", "fatigue", "breath_held"})
+    if (const double x = r.number(s, share, 0); !r.failed() && !(x >= 0 && x <= 1))
+      r.expected(*s.find(share), s.path_of(share), "0 to 1");
+  return !r.failed() && r.accept(ballistics::check(sway), *s.node, s.path);
+}
+
+/// The bore of a sighted gun, whose `bore` is the direction of its mark.
+Status set_sights(Reader& r, const Object& o, GunDef& gun) {
+  const ballistics::Sight& sight = gun.weapon.sight;
+  // A zero is shot in still air.
+  const ballistics::Conditions still{.air = gun.conditions.air, .gravity = gun.conditions.gravity};
+  auto aiming = ballistics::zeroed(gun.weapon, still);
+  if (!aiming.ok()) return aiming.error();
+  int up = r.integer(o, "clicks_up", 0, -100000, 100000);
+  if (o.has("dial")) {
+    const auto dialled = ballistics::dial(gun.weapon, still, r.number(o, "dial", 0));
+    if (!dialled.ok()) return dialled.error();
+    up += dialled->up;
+  }
+  ballistics::Aiming set = turned(*aiming, sight, up, r.integer(o, "clicks_right", 0, -100000, 100000));
+  set.cant = r.number(o, "cant", 0);
+  const Vec3d line = ballistics::swung(gun.bore, r.number(o, "hold_up", 0), r.number(o, "hold_right", 0));
+  gun.bore = ballistics::bore_direction(line, set);
+  return {};
+}
+
 /// Where a gun stands, and the air there.
 template <class D>
 ballistics::Conditions conditions_of(const GunDef& gun, const rigid::World<D>& world,
@@ -129,6 +173,9 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
   gun.climbs = r.flag(o, "climb", false);
   gun.seed = std::uint64_t(r.integer(o, "seed", 1, 0, 0x7FFFFFFF));
   const bool sighted = r.flag(o, "sighted", false);
+  if (o.has("sway") && !read_sway(r, o, gun)) return;
+  for (const char* key : {"dial", "clicks_up", "clicks_right", "hold_up", "hold_right", "cant"})
+    if (o.has(key) && !sighted) return r.fail(*o.find(key), o.path_of(key), "only a gun that is \"sighted\" has it");
   std::string name;
   std::uint32_t color = 0xffd27f;
   auto& list = place.out.template of<D>().guns;
@@ -142,13 +189,7 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
   if (!r.accept(ballistics::check(gun.weapon), *o.node, o.path)) return;
 
   gun.conditions = conditions_of(gun, place.world, place.around.get());
-  if (sighted) {
-    // A zero is shot in still air.
-    const auto aiming = ballistics::zeroed(gun.weapon, {.air = gun.conditions.air, .gravity = gun.conditions.gravity});
-    if (!r.accept(aiming.ok() ? core::Status{} : core::Status{aiming.error()}, *o.node, o.path)) return;
-    const ballistics::Laying l = ballistics::laying(gun.bore);
-    gun.bore = ballistics::direction(l.elevation + aiming->elevation, l.azimuth);
-  }
+  if (sighted && (!r.accept(set_sights(r, o, gun), *o.node, o.path) || r.failed())) return;
   const ballistics::Ammunition& a = gun.weapon.ammunition;
   const ballistics::BatchRound round{.area_per_mass = a.projectile.area_per_mass,
                                      .mass = a.mass,

@@ -4,9 +4,8 @@
 #include "apps/host/demos/ballistics/range.h"
 #include "carom/ballistics/dispersion.h"
 #include "carom/ballistics/hits.h"
-#include "carom/ballistics/recoil.h"
-#include "carom/ballistics/sights.h"
 #include "carom/ballistics/sway.h"
+#include "carom/ballistics/weapon.h"
 #include "carom/math/random.h"
 
 namespace carom::host::demo {
@@ -49,7 +48,8 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
         "The bullet leaves where the gun points at that moment, flies with drag and wind by its own curve, and is "
         "swept "
         "against the bodies of the world. The sights are zeroed for one distance; at another it strikes high or low by "
-        "what the range card says (grey cross), and downwind by w (T − T_vacuum). Half of the shots of a Gaussian "
+        "what the range card says (grey cross) until clicks of the sight bring it up, low and aside when the gun "
+        "leans, and downwind by w (T − T_vacuum). Half of the shots of a Gaussian "
         "spread lie "
         "within 1.1774 σ. Behind the paper hangs a steel plate of 5 kg: the bullet pushes it, and it does not fly "
         "away.";
@@ -60,6 +60,9 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
         {"weapon", "Weapon", "", "", "0: .308, 1: 5.56, 2: .22, 3: 9 mm pistol", 0, 3, 1, 0, false},
         {"distance", "Distance", "m", "m", "of the target", 25, 400, 5, 100, false},
         {"zero", "Zero of the sights", "m", "m", "", 25, 400, 5, 100, false},
+        {"clicks_up", "Clicks up", "", "", "of a quarter minute of arc", -120, 120, 1, 0, false},
+        {"clicks_right", "Clicks right", "", "", "", -120, 120, 1, 0, false},
+        {"cant", "Cant", "rad", "deg", "the gun leaning to the right", -0.7, 0.7, 0, 0, false},
         {"wind", "Wind across", "m/s", "m/s", "from the left", -10, 10, 0.5, 2, false},
         {"stance", "Stance", "", "", "0 standing, 1 kneeling, 2 sitting, 3 lying, 4 with a rest", 0, 4, 1, 3, false},
         {"skill", "Skill", "", "%", "", 0, 1, 0, 0.7, false},
@@ -99,8 +102,10 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
     still.wind = {};
     const auto zero = ballistics::zero_elevation(gun_, still, stage.value("zero"));
     if (!zero.ok()) return stage.fail(zero.error());
-    zero_ = *zero;
-    auto card = ballistics::SightedFlight::fire(gun_, air_, {.elevation = zero_}, distance_ + 5);
+    aiming_ = ballistics::turned(ballistics::Aiming{.elevation = *zero, .cant = stage.value("cant")},
+                                 {.click = 0.25 * ballistics::minute_of_angle}, stage.count("clicks_up"),
+                                 stage.count("clicks_right"));
+    auto card = ballistics::SightedFlight::fire(gun_, air_, aiming_, distance_ + 5);
     if (!card.ok()) return stage.fail(card.error());
     const auto point = card->at(distance_);
     if (!point) return stage.fail(core::Error{"the bullet does not get to the target"});
@@ -256,10 +261,13 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
   void fire(Stage3& stage, double t) {
     const double sigma = stage.value("spread");
     const Vec2d at = pointing(t) + sigma * Vec2d{random_.normal(), random_.normal()};
-    const Vec3d u = gun_.muzzle_speed * ballistics::direction(zero_ + at.y, at.x);
+    const Vec3d line = ballistics::swung({1, 0, 0}, at.y, at.x);
+    const Vec3d u = gun_.muzzle_speed * ballistics::bore_direction(line, aiming_);
+    const math::SinCos<double> cant = math::sincos(aiming_.cant);
+    const Vec3d muzzle{0, eye_ - gun_.sight_height * cant.cos, -gun_.sight_height * cant.sin};
     fired_[shot_ % fired_.size()] = distance_ * at;
     batch_.add(
-        {turned({0, eye_ - gun_.sight_height, 0}), turned(u)},
+        {turned(muzzle), turned(u)},
         {.area_per_mass = gun_.projectile.area_per_mass, .mass = gun_.mass, .frontal_area = area_, .tag = shot_});
     ++shot_;
     shots_.push_back(t);
@@ -285,6 +293,7 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
   }
 
   ballistics::Gun gun_{};
+  ballistics::Aiming aiming_{};
   ballistics::Conditions air_{};
   ballistics::Charge charge_{};
   ballistics::GunMount mount_{};
@@ -298,7 +307,7 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
   std::vector<double> shots_;
   std::array<Vec2d, 64> fired_{};
   Vec2d aim_{}, card_{}, sum_{}, last_{};
-  double distance_ = 100, zero_ = 0, half_ = 0.25, held_ = 0, next_ = 0.7, area_ = 0, told_ = 0;
+  double distance_ = 100, half_ = 0.25, held_ = 0, next_ = 0.7, area_ = 0, told_ = 0;
   std::uint64_t shot_ = 0;
   int count_ = 0;
 };
