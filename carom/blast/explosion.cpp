@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "carom/blast/detail/patches.h"
+#include "carom/blast/reflection.h"
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 
@@ -19,6 +20,7 @@ double scale_of(double mass, Burst burst) { return math::cbrt(burst == Burst::gr
 
 Vec2d up(Dim2*) { return {0, 1}; }
 Vec3d up(Dim3*) { return {0, 1, 0}; }
+constexpr int ground_parts = 256;
 /// A fireball on the ground sees over its roughness.
 constexpr double above_ground = 0.05;
 
@@ -32,6 +34,21 @@ double clearing_length_of(const geometry::Bounds3f& b) {
   const math::Vec3f e = b.extents();
   const float middle = e.x + e.y + e.z - math::max(e.x, math::max(e.y, e.z)) - math::min(e.x, math::min(e.y, e.z));
   return double(middle);
+}
+
+/// Of waves that come one after another: the most that they add up to as the front of one arrives.
+template <class D>
+double greatest_pressure(const WavesAt<D>& waves) {
+  double most = 0;
+  for (int k = 0; k < waves.count; ++k) {
+    double sum = 0;
+    for (int j = 0; j < waves.count; ++j) {
+      const Wave& w = waves.wave[j];
+      sum += friedlander(w.pressure, w.duration, w.decay, waves.wave[k].arrival - w.arrival);
+    }
+    most = math::max(most, sum);
+  }
+  return most;
 }
 
 }  // namespace
@@ -49,7 +66,32 @@ core::Result<Explosion<D>> Explosion<D>::make(const Charge<D>& c) {
   e.charge_ = c;
   const double most = greatest_scaled_distance * scale_of(c.mass, c.burst);
   e.reach_ = c.reach > 0 ? math::min(c.reach, most) : most;
-  const Wave last = e.wave_at(e.reach_);
+  if (c.burst == Burst::air) {
+    if (!math::is_finite(c.ground))
+      return core::Error{core::refused("Charge: ground", c.ground, "a finite height in m")};
+    const double height = e.height();
+    if (!(height > 0)) return core::Error{core::refused("Charge: ground", c.ground, "below a burst in the air")};
+    e.tangent_scale_ = ground_parts / math::log1p(e.reach_ / height);
+    double before = 0;
+    for (int i = 0; i <= ground_parts; ++i) {
+      const double along = height * math::expm1(i / e.tangent_scale_), slant = math::hypot(height, along),
+                   incident = e.wave_at(slant).pressure;
+      const auto found = reflect(incident, math::atan2(along, height));
+      if (!found) return found.error();
+      Ground here{found->factor, 0};
+      if (found->mach && i > 0) {
+        // A stem that has swallowed the wave is that of a charge on the ground.
+        const double scale = math::cbrt(c.mass);
+        const auto on_ground = blast_wave(c.mass, scale * math::clamp(slant / scale, least_scaled_distance * 1.001,
+                                                                      greatest_scaled_distance * 0.999));
+        if (on_ground.ok()) here.factor = math::max(here.factor, on_ground->pressure / incident);
+        here.stem = e.ground_.back().stem + (along - before) * math::tan(found->stem_angle);
+      }
+      before = along;
+      e.ground_.push_back(here);
+    }
+  }
+  const Wave last = e.wave_at(e.reach_ + (c.burst == Burst::air ? 2 * e.height() : 0));
   e.last_ = last.arrival + 2 * last.duration;
   return e;
 }
@@ -61,6 +103,56 @@ Wave Explosion<D>::wave_at(double distance) const {
       math::clamp(distance / scale, least_scaled_distance * (1 + 1e-12), greatest_scaled_distance * (1 - 1e-12));
   const auto wave = blast_wave(charge_.mass, z * scale, charge_.burst);
   return wave.ok() ? *wave : Wave{};
+}
+
+template <class D>
+double Explosion<D>::height() const {
+  return charge_.position.y - charge_.ground;
+}
+template <class D>
+typename Explosion<D>::Ground Explosion<D>::ground_at(double tangent) const {
+  if (ground_.empty()) return {};
+  const double at = math::clamp(tangent_scale_ * math::log1p(tangent), 0.0, double(ground_parts));
+  const std::size_t i = std::size_t(math::min(int(at), ground_parts - 1));
+  const double t = at - double(i);
+  const Ground &a = ground_[i], &b = ground_[i + 1];
+  return {a.factor + t * (b.factor - a.factor), a.stem + t * (b.stem - a.stem)};
+}
+template <class D>
+double Explosion<D>::stem_height(double ground_distance) const {
+  return ground_.empty() ? 0 : ground_at(ground_distance / height()).stem;
+}
+
+template <class D>
+WavesAt<D> Explosion<D>::waves_at(Position place) const {
+  WavesAt<D> out;
+  const Position way = charge_.position - place;
+  const double r = length(way);
+  if (r > reach_) return out;
+  const Position upward = up(static_cast<D*>(nullptr));
+  const auto add = [&](double far, double strength, Position toward) {
+    out.wave[out.count] = strength == 1 ? wave_at(far) : strengthened(wave_at(far), strength);
+    out.toward[out.count++] = toward;
+  };
+  const Position toward = r > 0 ? way / r : upward;
+  const double above = place.y - charge_.ground;
+  if (ground_.empty() || above < -0.01 * height()) {
+    add(r, 1, toward);
+    return out;
+  }
+  const Position level = way - way.y * upward;
+  const double along = length(level);
+  const Ground under = ground_at(along / height());
+  if (above <= under.stem && along > 0) {
+    add(math::hypot(height(), along), under.factor, level / along);
+    return out;
+  }
+  add(r, 1, toward);
+  // From the charge's image in the ground, as strong as where it was reflected.
+  const Position image = level - (height() + above) * upward;
+  const double strength = ground_at(along / (height() + math::max(above, 0.0))).factor - 1;
+  if (strength > 1e-3) add(length(image), strength, image / length(image));
+  return out;
 }
 
 template <class D>
@@ -81,16 +173,35 @@ double Explosion<D>::front_radius(double world_time) const {
 
 template <class D>
 double Explosion<D>::pressure_at(Position place, double world_time, const World* world) const {
-  const double r = distance(place, charge_.position);
-  if (r > reach_) return 0;
-  const Wave w = wave_at(r);
-  const double p = friedlander(w.pressure, w.duration, w.decay, world_time - charge_.time - w.arrival);
+  const WavesAt<D> waves = waves_at(place);
+  double p = 0;
+  for (int k = 0; k < waves.count; ++k) {
+    const Wave& w = waves.wave[k];
+    p += friedlander(w.pressure, w.duration, w.decay, world_time - charge_.time - w.arrival);
+  }
   if (p == 0 || world == nullptr) return p;
-  const Position from =
-      charge_.position + (charge_.burst == Burst::ground ? above_ground : 0) * up(static_cast<D*>(nullptr));
-  const auto hit = world->ray_cast(from, Vector(place - from), {.mask = charge_.obstacles, .ignore = charge_.casing});
+  const auto hit = world->ray_cast(eye(), Vector(place - eye()), {.mask = charge_.obstacles, .ignore = charge_.casing});
   const bool sheltered = hit.ok() && !hit->shape.is_null() && hit->fraction < 0.999f;
   return sheltered ? charge_.shelter * p : p;
+}
+
+template <class D>
+typename D::Position Explosion<D>::eye() const {
+  return charge_.position + (charge_.burst == Burst::ground ? above_ground : 0) * up(static_cast<D*>(nullptr));
+}
+
+template <class D>
+core::Status Explosion<D>::shares_at(const World& world, std::span<const Position> places,
+                                     std::vector<double>& shares) const {
+  const Position from = eye();
+  std::vector<rigid::RayQuery<D>> rays;
+  for (const Position& place : places)
+    rays.push_back({from, Vector(place - from), {.mask = charge_.obstacles, .ignore = charge_.casing}});
+  std::vector<rigid::RayHit<D>> hits(rays.size());
+  if (auto s = world.cast_rays(rays, hits); !s) return s;
+  shares.clear();
+  for (const auto& hit : hits) shares.push_back(!hit.shape.is_null() && hit.fraction < 0.999f ? charge_.shelter : 1);
+  return {};
 }
 
 template <class D>
@@ -102,22 +213,17 @@ void Explosion<D>::push_particles(std::span<const Vector> positions, std::span<V
     const Position way = origin + Position(positions[i]) - charge_.position;
     const double r = length(way);
     if (!(r > 1e-6) || r > farthest) continue;
-    const Wave w = wave_at(r);
-    if (to <= w.arrival || from >= w.arrival + w.duration) continue;
-    // Only the drag: q alone, as of a face that never reflects.
-    const double before = math::max(from - w.arrival, 0.0) / w.duration,
-                 after = math::min((to - w.arrival) / w.duration, 1.0);
-    // ∫ (1 − s)² e^{−2bs} ds by Simpson's rule in eight parts: particles need no more.
-    double sum = 0;
-    for (int k = 0; k <= 8; ++k) {
-      const double s = before + (after - before) * k / 8;
-      sum += (k == 0 || k == 8 ? 1 : (k % 2 == 1 ? 4 : 2)) * math::square(1 - s) * math::exp(-2 * w.decay * s);
+    const WavesAt<D> waves = waves_at(origin + Position(positions[i]));
+    for (int k = 0; k < waves.count; ++k) {
+      const Wave& w = waves.wave[k];
+      if (to <= w.arrival || from >= w.arrival + w.duration) continue;
+      // Only the drag: q alone, as of a face that never reflects.
+      const double q = wind_impulse(w, to) - wind_impulse(w, from);
+      const Position out = -waves.toward[k];
+      const double along = dot(Position(velocities[i]), out), wind = wind_speed(w.pressure);
+      const double gain = math::min(area_per_mass * q, math::max(wind - along, 0.0));
+      velocities[i] += Vector(gain * out);
     }
-    const double q = dynamic_pressure(w.pressure) * w.duration * (after - before) / 24 * sum;
-    const Position out = way / r;
-    const double along = dot(Position(velocities[i]), out), wind = wind_speed(w.pressure);
-    const double gain = math::min(area_per_mass * q, math::max(wind - along, 0.0));
-    velocities[i] += Vector(gain * out);
   }
 }
 
@@ -146,7 +252,7 @@ core::Status Explosion<D>::apply(World& world, double dt) {
   };
   struct Place {
     Position center, normal;
-    double area = 0, distance = 0, cosine = 0;
+    double area = 0, distance = 0;
     std::int32_t cover = -1;  // ray
   };
   std::vector<Seen> seen;
@@ -154,8 +260,7 @@ core::Status Explosion<D>::apply(World& world, double dt) {
   std::vector<rigid::RayQuery<D>> rays;
   std::vector<detail::SurfacePatch<D>> patches;
   std::vector<rigid::ShapeId> siblings;
-  const Position eye =
-      charge_.position + (charge_.burst == Burst::ground ? above_ground : 0) * up(static_cast<D*>(nullptr));
+  const Position eye = this->eye();
   const double band = math::max(0.0, front);
   for (const rigid::ShapeId id : shapes) {
     const auto geometry = world.shape_geometry(id);
@@ -171,7 +276,7 @@ core::Status Explosion<D>::apply(World& world, double dt) {
     const double middle = distance(world_point(pose, box.center()), charge_.position);
     if (middle - size > band) continue;
     // The wave has passed it all.
-    const Wave far = wave_at(middle + size);
+    const Wave far = wave_at(middle + size + (ground_.empty() ? 0 : 2 * height()));
     if (from > far.arrival + 2.5 * far.duration) continue;
     Seen s{id,
            *body,
@@ -188,9 +293,7 @@ core::Status Explosion<D>::apply(World& world, double dt) {
       p.center = world_point(pose, patch.center);
       p.normal = Position(rotate(pose.rotation, patch.normal));
       p.area = double(patch.area);
-      const Position way = charge_.position - p.center;
-      p.distance = length(way);
-      p.cosine = p.distance > 0 ? dot(p.normal, way) / p.distance : 1;
+      p.distance = distance(p.center, charge_.position);
       if (p.distance > reach_) continue;
       places.push_back(p);
     }
@@ -234,20 +337,24 @@ core::Status Explosion<D>::apply(World& world, double dt) {
         const auto owner = world.body_of(hit.shape);
         sheltered = !(owner.ok() && *owner == charge_.casing);
       }
-      const Wave wave = wave_at(p.distance);
-      const SurfaceLoad load(wave, p.cosine, s.clearing, sheltered ? charge_.shelter : 1);
-      if (p.distance < nearest) {
+      const double share = sheltered ? charge_.shelter : 1;
+      const WavesAt<D> waves = waves_at(p.center);
+      if (waves.count > 0 && p.distance < nearest) {
         nearest = p.distance;
-        event = {s.body, wave.arrival, p.distance, wave.pressure * (sheltered ? charge_.shelter : 1), sheltered, {}};
+        event = {s.body, waves.wave[0].arrival, p.distance, share * greatest_pressure(waves), sheltered, {}};
       }
-      const double impulse = p.area * (load.impulse(to) - load.impulse(from));
+      double impulse = 0;
+      for (int k = 0; k < waves.count; ++k) {
+        const SurfaceLoad load(waves.wave[k], dot(p.normal, waves.toward[k]), s.clearing, share);
+        impulse += p.area * (load.impulse(to) - load.impulse(from));
+        acted = math::max(acted, math::min(to, load.end()) - math::max(from, load.arrival()));
+      }
       if (impulse == 0) continue;
       const Position push = -impulse * p.normal;
       sum += push;
       torque = torque + cross(p.center - s.center_of_mass, push);
       moment_point += math::abs(impulse) * p.center;
       weight += math::abs(impulse);
-      acted = math::max(acted, math::min(to, load.end()) - math::max(from, load.arrival()));
     }
     if (event.time > from && event.time <= to) {
       event.damage = damage_of(event.pressure);

@@ -14,6 +14,7 @@ struct Charge {
   typename D::Position position{};
   double mass = 1;  ///< kg of TNT (or what is equivalent to it), > 0
   Burst burst = Burst::ground;
+  double ground = 0;                       ///< m, the height of the ground under a burst in the air
   double time = 0;                         ///< s, the world's time at which it goes off
   double reach = 0;                        ///< m, at most 40 W^{1/3}, which 0 stands for
   bool clearing = true;                    ///< edges of what is hit relieve the reflected pressure
@@ -43,6 +44,14 @@ struct ShapeLoad {
   double duration = 0;           ///< s of the step in which it acted
 };
 
+/// The waves that come to a place, each with the unit vector toward where it comes from.
+template <class D>
+struct WavesAt {
+  int count = 0;
+  Wave wave[2];
+  typename D::Position toward[2] = {};
+};
+
 /// The loads of bodies come from patches of their shapes: whether the charge sees a patch (rays), at what angle and how
 /// far away, gives its pressure; what is turned away feels the side-on pressure, what is sheltered part of it. Nothing
 /// is kept between steps but the charge, so that it copies, and goes on in a restored world. Nearer than Z = 0.2
@@ -67,8 +76,16 @@ class CAROM_API Explosion {
 
   /// The wave at a distance (m), clamped to where the fits hold.
   Wave wave_at(double distance) const;
+  /// What comes to a place within reach. Of a burst in the air over ground: under the triple point the Mach stem, which
+  /// runs along the ground; above it the charge's own wave and then the ground's, as if from the charge's image in it.
+  WavesAt<D> waves_at(Position place) const;
+  /// Of a burst in the air: where the triple point passes (m above the ground) at a distance along the ground (m); 0
+  /// where the reflection is regular, and of other bursts.
+  double stem_height(double ground_distance) const;
   /// Side-on pressure (Pa) at a place and a time of the world. With a world, obstacles count.
   double pressure_at(Position place, double world_time, const World* world = nullptr) const;
+  /// What share of the wave places get: 1 in sight of the charge, `shelter` behind what a ray meets.
+  core::Status shares_at(const World& world, std::span<const Position> places, std::vector<double>& shares) const;
   /// The wind of the wave on particles from t to t + dt (the world's time): their drag area by mass (m²/kg, C_D A/m).
   /// None becomes faster than the wind. Positions are relative to `origin`.
   void push_particles(std::span<const Vector> positions, std::span<Vector> velocities, Position origin,
@@ -79,10 +96,20 @@ class CAROM_API Explosion {
   /// What has been given to bodies that move so far: N·s, and its moment about the charge.
   Position impulse_given() const { return given_; }
   const Charge<D>& charge() const { return charge_; }
+  double reach() const { return reach_; }  ///< m
 
  private:
+  /// The ground's reflection by the tangent of the incidence, at nodes even in ln(1 + tan α).
+  struct Ground {
+    double factor = 1, stem = 0;  // m
+  };
+  Ground ground_at(double tangent) const;
+  double height() const;  // m, of the burst
+  Position eye() const;
   Charge<D> charge_{};
   double reach_ = 0, last_ = 0;
+  std::vector<Ground> ground_;  // of a burst in the air
+  double tangent_scale_ = 0;
   Position given_{};
   std::vector<FrontEvent<D>> events_;
   std::vector<ShapeLoad<D>> loads_;

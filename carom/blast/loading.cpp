@@ -82,6 +82,24 @@ double SurfaceLoad::pressure(double time) const {
   return sum;
 }
 
+double wind_impulse(const Wave& w, double time) {
+  const double s = math::clamp((time - w.arrival) / w.duration, 0.0, 1.0);
+  if (!(s > 0)) return 0;
+  double m[4];
+  moments(2 * w.decay, s, m);
+  return dynamic_pressure(w.pressure) * w.duration * (m[0] - 2 * m[1] + m[2]);
+}
+
+double sheet_impulse(double load, double mass, double speed, double wind) {
+  if (!(load > 0) || !(wind > speed)) return 0;
+  return -mass * (wind - speed) * math::expm1(-load / (mass * wind));
+}
+double drag_impulse(double load, double mass, double speed, double wind) {
+  if (!(load > 0) || !(wind > speed)) return 0;
+  const double past = wind - speed, lost = load * past / (mass * wind * wind);
+  return mass * past * lost / (1 + lost);
+}
+
 double SurfaceLoad::impulse(double time) const {
   double sum = 0;
   for (int i = 0; i < count_ && time > arrival_; ++i) {

@@ -40,6 +40,18 @@ class CAROM_API SurfaceLoad {
   double arrival_ = 0, end_ = 0, clearing_ = 0;
 };
 
+/// Pa·s of the wind's pressure q(t) from the arrival to t s after the detonation, in closed form.
+CAROM_API double wind_impulse(const Wave& wave, double time);
+
+/// What of an impulse `load` (N·s), as a thing at rest would get it, one takes that the air can carry along: its mass
+/// in kg, its speed along the push and that of the wind behind the front in m/s; none becomes faster than the wind.
+/// A sheet with air on both sides: its motion takes ρ c v off the pressure in front (G. I. Taylor, The pressure and
+/// impulse of submarine explosion waves on plates, 1941), and the difference of its sides vanishes where it moves as
+/// the air does: dv/dt = (load/m)(1 − v/u).
+CAROM_API double sheet_impulse(double load, double mass, double speed, double wind);
+/// Drag, by the square of the speed through the air: dv/dt = (load/m)(1 − v/u)².
+CAROM_API double drag_impulse(double load, double mass, double speed, double wind);
+
 /// The speed of the air behind a front: u = 5 P_s/(7 P₀) a₀/√(1 + 6 P_s/7 P₀).
 inline double wind_speed(double side_on, double ambient = 101325, double speed_of_sound = 340.294) {
   return 5 * side_on / (7 * ambient) * speed_of_sound / math::sqrt(1 + 6 * side_on / (7 * ambient));

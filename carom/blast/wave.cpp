@@ -62,16 +62,17 @@ core::Result<Wave> blast_wave(double charge, double distance, Burst burst) {
   wave.impulse = scale * detail::evaluate(detail::impulse, z);  // kPa·ms
   wave.reflected_impulse = scale * detail::evaluate(detail::reflected_impulse, z);
   wave.front_speed = kilo * detail::evaluate(detail::front_speed, z);
-  if (burst == Burst::free_air) {
-    const double before = wave.pressure;
-    wave.pressure = kinney_graham_pressure(charge, distance);
-    const double stronger = wave.pressure / before;
-    for (double* value : {&wave.reflected_pressure, &wave.impulse, &wave.reflected_impulse}) *value *= stronger;
-    wave.front_speed *= shock_speed(wave.pressure) / shock_speed(before);
-  }
+  if (burst != Burst::ground) wave = strengthened(wave, kinney_graham_pressure(charge, distance) / wave.pressure);
   wave.decay = friedlander_decay(wave.pressure, wave.duration, wave.impulse);
   wave.reflected_decay = friedlander_decay(wave.reflected_pressure, wave.duration, wave.reflected_impulse);
   return wave;
+}
+
+Wave strengthened(const Wave& wave, double by) {
+  Wave out = wave;
+  for (double* value : {&out.pressure, &out.reflected_pressure, &out.impulse, &out.reflected_impulse}) *value *= by;
+  out.front_speed *= shock_speed(out.pressure) / shock_speed(wave.pressure);
+  return out;
 }
 
 double kinney_graham_pressure(double charge, double distance, double ambient) {

@@ -25,6 +25,8 @@ enum class Burst {
   /// A sphere far from any surface: the peak by Kinney and Graham, arrival and duration of the ground's wave of a
   /// charge smaller by 1.8, the reflection factor, and its other pressures and impulses in proportion to the peak.
   free_air,
+  /// A sphere over ground that reflects it (reflection.h). By itself its wave is that of free air.
+  air,
 };
 
 /// The least and the most scaled distance Z = R/W^{1/3} (m/kg^{1/3}) of the fits. Nearer and farther ones are refused.
@@ -37,6 +39,9 @@ CAROM_API core::Result<Wave> blast_wave(double charge, double distance, Burst bu
 /// Peak side-on pressure (Pa) of a free-air burst by another fit: G. F. Kinney & K. J. Graham, Explosive Shocks in Air,
 /// 1985. Another geometry than `Burst::ground`; `ambient` in Pa.
 CAROM_API double kinney_graham_pressure(double charge, double distance, double ambient = 101325);
+
+/// The wave with so many times its pressures and impulses, and as fast as that makes it.
+CAROM_API Wave strengthened(const Wave& wave, double by);
 
 /// p(t) = P (1 − t/t_d) e^{−b t/t_d}, Pa, t s after the arrival; zero before and after the positive phase.
 CAROM_API double friedlander(double peak, double duration, double decay, double time);

@@ -165,6 +165,13 @@ Status Cloth::set_velocity(int vertex, Vec3d velocity) {
   return {};
 }
 
+Status Cloth::add_impulse(int vertex, Vec3d impulse, rigid::World3& world) {
+  if (vertex < 0 || vertex >= vertex_count())
+    return core::Error{core::refused("vertex", vertex, core::text("0 … ", vertex_count() - 1))};
+  if (!all_finite(impulse)) return core::Error{"impulse on a vertex is not finite, expected N s"};
+  return detail::push_vertex(state_->velocity, state_->touching(), state_->pin_of, vertex, impulse, world);
+}
+
 Status Cloth::set_substeps(int substeps) {
   if (substeps < 1 || substeps > 64) return core::Error{core::refused("substeps", substeps, "1 … 64")};
   state_->substeps = substeps;
@@ -180,6 +187,7 @@ Status Cloth::step(rigid::World3& world, double dt) {
 int Cloth::vertex_count() const { return int(state_->position.size()); }
 std::span<const Vec3d> Cloth::positions() const { return state_->position; }
 std::span<const Vec3f> Cloth::velocities() const { return state_->velocity; }
+std::span<const float> Cloth::masses() const { return state_->mass; }
 std::span<const std::uint32_t> Cloth::triangles() const { return state_->corners; }
 bool Cloth::torn() const { return state_->torn; }
 Vec3d Cloth::wind_force() const { return state_->wind_force; }

@@ -78,6 +78,8 @@ class CAROM_API Cloth {
   core::Status unpin(int vertex);
   core::Status set_air(double density, const environment::Wind& wind);
   core::Status set_velocity(int vertex, math::Vec3d velocity);
+  /// N·s. Of a pinned vertex the body that holds it takes it; the world's own pins take it away.
+  core::Status add_impulse(int vertex, math::Vec3d impulse, rigid::World3& world);
   core::Status set_substeps(int substeps);  ///< 1 … 64 implicit steps a step; more: less damping
 
   core::Status step(rigid::World3& world, double dt);
@@ -85,6 +87,7 @@ class CAROM_API Cloth {
   int vertex_count() const;
   std::span<const math::Vec3d> positions() const;
   std::span<const math::Vec3f> velocities() const;
+  std::span<const float> masses() const;             ///< kg
   std::span<const std::uint32_t> triangles() const;  ///< changes where it tears
   bool torn() const;                                 ///< in the last step: there are new vertices
   double mass() const;                               ///< kg

@@ -105,6 +105,8 @@ class CAROM_API Fluid {
   /// The same within a ball (plane: a disc).
   core::Status add_ball(Position center, float radius, Vector velocity = {}, std::uint32_t tag = 0);
   core::Status add_particle(Position position, Vector velocity = {}, std::uint32_t tag = 0);
+  /// m/s. Errors: no such particle, not finite.
+  core::Status set_velocity(int index, Vector velocity);
   void clear();
   /// Returns the number of the tap or drain.
   core::Result<int> add_tap(const FluidTap<D>& tap);

@@ -82,6 +82,8 @@ class CAROM_API Granular {
   core::Status add_box(Position lower, Position upper, Vector velocity = {}, std::uint32_t tag = 0);
   core::Status add_grain(Position position, Vector velocity = {}, std::uint32_t tag = 0, float radius = 0,
                          Angular spin = {});
+  /// m/s. Errors: no such grain, not finite.
+  core::Status set_velocity(int index, Vector velocity);
   void clear();
 
   /// Advances by dt seconds (0 < dt ≤ 0.1) among the bodies of `world`, which get their impulses as forces for the

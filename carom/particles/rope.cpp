@@ -242,6 +242,30 @@ Status RopeSet::set_velocity(int index, int node, Vec3d velocity) {
   return {};
 }
 
+namespace detail {
+namespace {
+double node_mass(const Rope& rope, int i) {
+  const double before = i > 0 ? rope.rest[std::size_t(i) - 1] : 0,
+               after = i + 1 < rope.count() ? rope.rest[std::size_t(i)] : 0;
+  return 0.5 * rope.material.mass_per_length * (before + after) + rope.lump[std::size_t(i)];
+}
+}  // namespace
+}  // namespace detail
+
+Status RopeSet::add_impulse(int index, int node, Vec3d impulse, rigid::World3& world) {
+  if (Status status = detail::check_node(ropes_, index, node); !status.ok()) return status;
+  if (!detail::finite_point(impulse)) return core::Error{"impulse on a particle is not finite, expected N s"};
+  Rope& rope = ropes_[std::size_t(index)];
+  for (const detail::RopeGrip& grip : rope.grips)
+    if (grip.attachment.node == node) {
+      const rigid::BodyId body = grip.attachment.body;
+      if (!world.contains(body)) return {};
+      return world.add_impulse_at(body, Vec3f(impulse), rope.position[std::size_t(node)]);
+    }
+  rope.velocity[std::size_t(node)] += impulse / detail::node_mass(rope, node);
+  return {};
+}
+
 Status RopeSet::cut(int index, int segment) {
   int node = 0;
   if (Status status = detail::check_node(ropes_, index, node); !status.ok()) return status;
@@ -290,6 +314,10 @@ double RopeSet::mass(int index) const {
   for (const double lump : detail::rope_at(ropes_, index).lump) sum += lump;
   return sum;
 }
+double RopeSet::mass(int index, int node) const {
+  const Rope& rope = detail::rope_at(ropes_, index);
+  return detail::node_mass(rope, math::clamp(node, 0, rope.count() - 1));
+}
 Vec3d RopeSet::attachment_force(int index, int node) const {
   const Rope& rope = detail::rope_at(ropes_, index);
   if (node == -1) node = rope.count() - 1;
@@ -305,16 +333,6 @@ int RopeSet::contact_count(int index) const {
     count += edge.contact.state != detail::RopeHold::none;
   return count;
 }
-
-namespace detail {
-namespace {
-double node_mass(const Rope& rope, int i) {
-  const double before = i > 0 ? rope.rest[std::size_t(i) - 1] : 0,
-               after = i + 1 < rope.count() ? rope.rest[std::size_t(i)] : 0;
-  return 0.5 * rope.material.mass_per_length * (before + after) + rope.lump[std::size_t(i)];
-}
-}  // namespace
-}  // namespace detail
 
 Vec3d RopeSet::momentum() const {
   Vec3d sum{};

@@ -115,6 +115,8 @@ class CAROM_API RopeSet {
   /// Turns the clamped last end by `angle` rad about the rope against the first.
   Status set_twist(int rope, double angle);
   Status set_velocity(int rope, int node, Vec3d velocity);
+  /// N·s. Of an attached node the body that holds it takes it; what holds it to the world takes it away.
+  Status add_impulse(int rope, int node, Vec3d impulse, rigid::World3& world);
   Status cut(int rope, int segment);
   void set_air(const RopeAir& air) { air_ = air; }
   /// Substeps of a step, 1 … 256; bending adds what it needs. More: less damping of fast swings.
@@ -128,11 +130,12 @@ class CAROM_API RopeSet {
   std::span<const Vec3d> velocities(int rope) const;
   std::span<const double> tensions(int rope) const;  ///< N by segment, at the end of the last step
   std::span<const std::uint8_t> broken(int rope) const;
-  double peak_tension(int rope) const;  ///< N, in any substep of the last step
-  double rest_length(int rope) const;   ///< m
-  double length(int rope) const;        ///< m, as it is now
-  double mass(int rope) const;          ///< kg
-  double twist(int rope) const;         ///< rad between the clamped ends, less what the curve takes up
+  double peak_tension(int rope) const;    ///< N, in any substep of the last step
+  double rest_length(int rope) const;     ///< m
+  double length(int rope) const;          ///< m, as it is now
+  double mass(int rope) const;            ///< kg
+  double mass(int rope, int node) const;  ///< kg, half of the segments beside it and its lump
+  double twist(int rope) const;           ///< rad between the clamped ends, less what the curve takes up
   const RopeMaterial& material(int rope) const;
   Vec3d attachment_force(int rope, int node) const;  ///< N on the body, over the last step
   int contact_count(int rope) const;

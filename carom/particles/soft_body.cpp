@@ -244,6 +244,11 @@ Status SoftBody::set_velocity(int vertex, Vec3d velocity) {
   state_->velocity[std::size_t(vertex)] = Vec3f(velocity);
   return {};
 }
+Status SoftBody::add_impulse(int vertex, Vec3d impulse, rigid::World3& world) {
+  if (Status status = check_vertex(vertex, vertex_count()); !status.ok()) return status;
+  if (!soft_finite(impulse)) return core::Error{"impulse on a vertex is not finite, expected N s"};
+  return detail::push_vertex(state_->velocity, state_->touching(), state_->pin_of, vertex, impulse, world);
+}
 Status SoftBody::set_force(int vertex, Vec3d force) {
   if (Status status = check_vertex(vertex, vertex_count()); !status.ok()) return status;
   if (!soft_finite(force)) return core::Error{"force on a vertex is not finite, expected N"};

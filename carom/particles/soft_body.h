@@ -62,6 +62,8 @@ class CAROM_API SoftBody {
   core::Status pin(int vertex, rigid::BodyId body, math::Vec3d point, const rigid::World3& world);
   core::Status unpin(int vertex);
   core::Status set_velocity(int vertex, math::Vec3d velocity);
+  /// N·s. Of a pinned vertex the body that holds it takes it; the world's own pins take it away.
+  core::Status add_impulse(int vertex, math::Vec3d impulse, rigid::World3& world);
   core::Status set_force(int vertex, math::Vec3d force);  ///< N, until it is set anew
   core::Status set_substeps(int substeps);                ///< 1 … 64
   core::Status set_pressure(double pressure);             ///< Pa from within on the surface, beside the solid's own

@@ -133,6 +133,34 @@ void push_particles(const blast::Explosion<D>& explosion, MatterOf<D>& matter, d
   }
 }
 
+template <class Given>
+Status take(const Given& given, Vec3d& sum) {
+  if (!given) return given.error();
+  sum += in_space(*given);
+  return {};
+}
+[[gnu::noinline]] Status push_ropes_and_cloth(SceneExplosion<Dim3>& e, Matter& matter, rigid::World3& world,
+                                              double dt) {
+  if (!matter.ropes.empty())
+    if (Status s = take(blast::push(e.explosion, world, dt, matter.rope_set), e.pushed); !s) return s;
+  for (auto& cloth : matter.cloths)
+    if (Status s = take(blast::push(e.explosion, world, dt, cloth.thing), e.pushed); !s) return s;
+  for (auto& body : matter.soft_bodies)
+    if (Status s = take(blast::push(e.explosion, world, dt, body.thing), e.pushed); !s) return s;
+  return {};
+}
+template <class D>
+[[gnu::noinline]] Status push_matter(SceneExplosion<D>& e, Matter& matter, rigid::World<D>& world, double dt) {
+  push_particles(e.explosion, matter.of<D>(), world.time(), dt);
+  if constexpr (D::dimension == 3)
+    if (Status s = push_ropes_and_cloth(e, matter, world, dt); !s) return s;
+  for (auto& liquid : matter.of<D>().liquids)
+    if (Status s = take(blast::push(e.explosion, world, dt, liquid.thing), e.pushed); !s) return s;
+  for (auto& grains : matter.of<D>().grains)
+    if (Status s = take(blast::push(e.explosion, world, dt, grains.thing), e.pushed); !s) return s;
+  return {};
+}
+
 /// The case flies apart in the step in which the charge goes off, with the velocity of the body that carries it.
 template <class D>
 Status throw_case(SceneExplosion<D>& e, const rigid::World<D>& world, double dt) {
@@ -187,7 +215,8 @@ Status Destruction::before(rigid::World<D>& world, double dt, Matter* matter) {
     SceneExplosion<D>& e = entry.thing;
     if (Status s = throw_case(e, world, dt); !s) return s;
     if (e.explosion.finished(world.time())) continue;
-    if (matter != nullptr) push_particles(e.explosion, matter->of<D>(), world.time(), dt);
+    if (matter != nullptr)
+      if (Status s = push_matter(e, *matter, world, dt); !s) return s;
     if (Status s = e.explosion.apply(world, dt); !s) return s;
     e.reached += int(e.explosion.events().size());
     for (const blast::ShapeLoad<D>& load : e.explosion.loads())
@@ -367,7 +396,8 @@ double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time)
     if (s.field == reached) return e.reached;
     if (s.field == fragments) return e.casing ? double(e.casing->batch().size()) : 0;
     if (s.field == fragment_hits) return e.casing ? e.casing->hits : 0;
-    return s.field == front ? e.explosion.front_radius(time) : in_space(e.explosion.impulse_given())[s.component];
+    return s.field == front ? e.explosion.front_radius(time)
+                            : (in_space(e.explosion.impulse_given()) + e.pushed)[s.component];
   }
   if (s.list == rocket_list) {
     const ballistics::BodyRocket& rocket = all.rockets[place].thing;

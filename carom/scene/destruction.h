@@ -11,7 +11,7 @@
 #include "carom/ballistics/hits.h"
 #include "carom/ballistics/sway.h"
 #include "carom/ballistics/weapon.h"
-#include "carom/blast/explosion.h"
+#include "carom/blast/matter.h"
 #include "carom/blast/structure.h"
 #include "carom/math/random.h"
 #include "carom/scene/case_fragments.h"
@@ -24,6 +24,7 @@ struct SceneExplosion {
   blast::Explosion<D> explosion;
   std::optional<CaseFragments> casing{};  ///< of space
   int reached = 0;                        ///< bodies that its front met so far
+  math::Vec3d pushed{};                   ///< N·s, given to matter so far, particles aside
 };
 
 /// A gun of a scene as it was read.
@@ -100,8 +101,7 @@ class CAROM_API Destruction {
     return const_cast<Destruction*>(this)->of<D>();
   }
 
-  /// Before a step of `dt` s: shots, and what blasts give to bodies and particles (those of `matter`, which may be
-  /// null).
+  /// Before a step of `dt` s: shots, and what blasts give to bodies and to `matter`, which may be null.
   template <class D>
   [[gnu::noinline]] Status before(rigid::World<D>& world, double dt, Matter* matter);
   /// In place of World::step: with breaking in it.

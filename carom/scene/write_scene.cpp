@@ -451,7 +451,10 @@ class SceneWriter {
       const blast::Charge<D>& c = e.charge();
       Fields f;
       f.put("name", quote(entry.name)).put("position", vector_text(c.position)).put("mass", c.mass);
-      f.put("burst", quote(c.burst == blast::Burst::ground ? "ground" : "free_air"));
+      f.put("burst", quote(c.burst == blast::Burst::ground     ? "ground"
+                           : c.burst == blast::Burst::free_air ? "free_air"
+                                                               : "air"));
+      if (c.burst == blast::Burst::air) f.put("ground", c.ground);
       f.put("time", c.time - world_.time()).put("reach", c.reach).flag("clearing", c.clearing, true);
       f.put("shelter", c.shelter);
       if (entry.thing.casing && !entry.thing.casing->thrown())

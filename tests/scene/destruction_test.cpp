@@ -152,6 +152,40 @@ TEST(SceneExplosions, DriveParticlesAlong) {
   EXPECT_GT(thrown(R"(, "explosions": [{"mass": "2 kg", "time": "20 ms"}])"), 4.2);
 }
 
+TEST(SceneExplosions, PushEverythingInReach) {
+  const std::string things = R"({"gravity": [0, 0, 0], "step": "1/240 s",
+    "cloths": [{"name": "sheet", "preset": "fabric/denim", "corner": [8, 0, 0], "along": [0, 1, 0], "across": [0, 0, 1], "columns": 5, "rows": 5, "collide": false}],
+    "ropes": [{"name": "line", "preset": "rope/static_11mm", "points": [[0, 0, 8], [0, 2, 8]], "segments": 6, "collide": false}],
+    "soft_bodies": [{"name": "block", "preset": "soft/gelatin", "box": {"corner": [-9, 0, 0], "size": [1, 1, 1], "cells": [3, 3, 3]}, "collide": false}],
+    "liquids": [{"name": "water", "lower": [-1, 0, -10], "upper": [1, 2, -8], "spacing": "0.1 m", "gravity": [0, 0, 0],
+                 "walls": "none", "boxes": [{"lower": [-0.5, 0, -9], "upper": [0.5, 1, -8]}]}])";
+  const auto scene = parse(things + R"(, "explosions": [{"name": "c", "mass": "3 kg"}]})");
+  if (!scene.ok()) GTEST_FAIL() << scene.error().message;
+  SceneWorld world = start(things + R"(, "explosions": [{"name": "c", "mass": "3 kg"}]})");
+  const char* names[] = {"cloth.sheet", "rope.line", "soft_body.block", "liquid.water"};
+  const char axes[] = {'x', 'z', 'x', 'z'};
+  double before[4];
+  for (int i = 0; i < 4; ++i) before[i] = read(world, std::string(names[i]) + ".center." + axes[i]);
+  run(world, 0.1);
+  const double signs[] = {1, 1, -1, -1};
+  for (int i = 0; i < 4; ++i)
+    EXPECT_GT(signs[i] * (read(world, std::string(names[i]) + ".center." + axes[i]) - before[i]), 1e-3) << names[i];
+}
+
+// The peak under a burst in the air is that of its reflection square on, and it goes on in a written scene.
+TEST(SceneExplosions, BurstInTheAir) {
+  SceneWorld world =
+      start(R"({"explosions": [{"name": "c", "mass": "10 kg", "position": [0, 7, 0], "burst": "air", "ground": "2 m"}]})");
+  const auto& e = world.destruction->space.explosions[0].thing.explosion;
+  const double expected = blast::ideal_reflected_pressure(e.wave_at(5).pressure);
+  EXPECT_NEAR(e.pressure_at({0, 2, 0}, e.wave_at(5).arrival + 1e-9), expected, 1e-3 * expected);
+  EXPECT_GT(e.stem_height(20), 0);
+  const auto text = scene::write_scene(world);
+  ASSERT_TRUE(text.ok()) << text.error().message;
+  EXPECT_EQ(start(*text).destruction->space.explosions[0].thing.explosion.charge().ground, 2);
+  EXPECT_NE(message(R"("explosions": [{"mass": 1, "burst": "air"}])").find("ground"), std::string::npos);
+}
+
 constexpr const char* range = R"({"step": "1/240 s",
   "bodies": [{"name": "plate", "type": "fixed", "position": ["=200 yd + 5 mm", 0, 0],
               "shape": {"type": "box", "size": ["1 cm", "2 m", "2 m"], "material": {"user_id": 4}}},

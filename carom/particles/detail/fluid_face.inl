@@ -224,6 +224,15 @@ typename Fluid<D>::Vector Fluid<D>::velocity(int index) const {
   return v;
 }
 template <class D>
+core::Status Fluid<D>::set_velocity(int index, Vector velocity) {
+  if (index < 0 || index >= size())
+    return core::Error{core::refused("particle", index, core::text("0 … ", size() - 1))};
+  if (!detail::fluid_finite(velocity, D::dimension))
+    return core::Error{"velocity of a particle is not finite, expected m/s"};
+  for (int a = 0; a < D::dimension; ++a) self_->state.particles[index].v[a] = velocity[a];
+  return {};
+}
+template <class D>
 std::uint32_t Fluid<D>::tag(int index) const {
   return self_->state.particles[index].tag;
 }

@@ -317,6 +317,14 @@ typename Granular<D>::Vector Granular<D>::velocity(int index) const {
   return self_->state.grains[index].v;
 }
 template <class D>
+core::Status Granular<D>::set_velocity(int index, Vector velocity) {
+  if (index < 0 || index >= size()) return core::Error{core::refused("grain", index, core::text("0 … ", size() - 1))};
+  if (!detail::grain_finite(velocity, D::dimension))
+    return core::Error{"velocity of a grain is not finite, expected m/s"};
+  self_->state.grains[index].v = velocity;
+  return {};
+}
+template <class D>
 typename Granular<D>::Angular Granular<D>::spin(int index) const {
   return self_->state.grains[index].spin;
 }

@@ -156,6 +156,17 @@ void place_pins(std::vector<SoftPin>& pins, std::vector<int>& pinned, std::vecto
   }
 }
 
+core::Status push_vertex(std::vector<Vec3f>& velocity, const SoftTouching& all, const std::vector<int>& pin_of,
+                         int vertex, Vec3d impulse, rigid::World3& world) {
+  const std::size_t i = std::size_t(vertex);
+  if (pin_of[i] < 0) {
+    velocity[i] += Vec3f(impulse / double(all.mass[i]));
+    return {};
+  }
+  const rigid::BodyId body = all.pins[std::size_t(pin_of[i])].body;
+  return world.contains(body) ? world.add_impulse_at(body, Vec3f(impulse), all.position[i]) : core::Status{};
+}
+
 void gather_near(double apart, double dt, rigid::World3& world, const rigid::Filter& filter,
                  const std::vector<SoftPin>& pins, const std::vector<Vec3d>& position,
                  const std::vector<Vec3f>& velocity, SoftObstacles& obstacles) {

@@ -51,6 +51,9 @@ void place_pins(std::vector<SoftPin>& pins, std::vector<int>& pinned, std::vecto
                 SoftObstacles& obstacles, std::vector<Vec3d>& position, std::vector<Vec3f>& velocity);
 /// Holds pinned vertices for a substep.
 void hold_pins(const SoftTouching& all, SoftSolver& solver);
+/// Gives a vertex an impulse (N·s), or the body that it is pinned to.
+core::Status push_vertex(std::vector<Vec3f>& velocity, const SoftTouching& all, const std::vector<int>& pin_of,
+                         int vertex, math::Vec3d impulse, rigid::World3& world);
 /// What is within reach of a step of the vertices, kept `apart` m from shapes.
 void gather_near(double apart, double dt, rigid::World3& world, const rigid::Filter& filter,
                  const std::vector<SoftPin>& pins, const std::vector<Vec3d>& position,

@@ -38,7 +38,8 @@ void read_explosion(DestructionPlace<D>& place, const Object& o) {
   blast::Charge<D> charge;
   charge.position = position_of(r.vector(o, "position"), static_cast<D*>(nullptr));
   charge.mass = r.number(o, "mass", 1);
-  charge.burst = r.choice(o, "burst", 0) == 1 ? blast::Burst::free_air : blast::Burst::ground;
+  charge.burst = blast::Burst(r.choice(o, "burst", 0));
+  charge.ground = r.number(o, "ground", 0);
   charge.time = r.number(o, "time", 0);
   charge.reach = r.number(o, "reach", 0);
   charge.clearing = r.flag(o, "clearing", charge.clearing);

@@ -5,7 +5,7 @@ namespace {
 using T = FieldType;
 using M = Measure;
 
-constexpr std::string_view bursts[] = {"ground", "free_air"};
+constexpr std::string_view bursts[] = {"ground", "free_air", "air"};
 constexpr std::string_view arcs[] = {"low", "high"};
 constexpr std::string_view patterns[] = {"voronoi", "even", "clustered", "radial", "slabs", "bricks"};
 constexpr std::string_view substances[] = {"glass", "brick_and_mortar", "concrete", "ceramic", "wood", "ice"};
@@ -18,7 +18,9 @@ constexpr Field explosion_fields[] = {
     {"position", T::vector, M::length},
     {"mass", T::quantity, M::mass, "of TNT, or of what is equivalent to it", nullptr, {}, true},
     {"time", T::quantity, M::time, "when it goes off"},
-    {"burst", T::choice, M::plain, "on the ground (unless given) or in free air", nullptr, bursts},
+    {"burst", T::choice, M::plain, "on the ground (unless given), in free air, or in the air over ground", nullptr,
+     bursts},
+    {"ground", T::quantity, M::length, "height of the ground under a burst in the air; 0 unless given"},
     {"reach", T::quantity, M::length, "at most 40 m/kg^(1/3), which 0 stands for"},
     {"clearing", T::flag, M::plain, "edges relieve the reflected pressure; true unless given"},
     {"shelter", T::quantity, M::plain, "0 to 1: share of the pressure that arrives behind an obstacle"},
