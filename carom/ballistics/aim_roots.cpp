@@ -10,7 +10,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
   // Rough paths as long as Newton's method has far to go. Then one whose own error is measured, step by step; what
   // little is left from there on is found by flying the same steps again, each corrected by what it was found to miss.
-  double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
+  double rough = math::min(1e-4 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
   double off = 0, last_off = 0;  // m, what the last measured paths erred
   const double finest = rough / 64;
@@ -126,13 +126,16 @@ AimSolver::Need AimSolver::need(Guess& guess) const {
   const double enough = 1e-4 * shooter_.muzzle_speed * guess.time + 1e-3, accuracy = 0.05 * enough;
   Inverse inverse;
   Vec3d last_u{}, last_x{}, best_u = guess.u, best_miss{};
-  double best = 1e300, part = 1;
+  const double away = math::length(target_(guess.time) - shooter_.muzzle);
+  double best = 1e300, part = 1, missed = away;
   for (int i = 0; i < 40; ++i) {
-    const Arrival end = propagate(guess.u, guess.time, i < 8 ? accuracy : 0.1 * accuracy);
+    const double roughly = i < 8 ? math::max(accuracy, 0.02 * missed) : 0.1 * accuracy;
+    const Arrival end = propagate(guess.u, guess.time, roughly);
     const Vec3d miss = target_(guess.time) - end.position;
-    const double speed = math::length(guess.u - shooter_.velocity), missed = math::length(miss);
+    const double speed = math::length(guess.u - shooter_.velocity);
+    missed = math::length(miss);
     if (!math::is_finite(speed)) return {};
-    if (missed < enough) return {true, shooter_.muzzle_speed - speed};
+    if (missed < enough && roughly <= 4 * accuracy) return {true, shooter_.muzzle_speed - speed};
     if (speed > 4 * shooter_.muzzle_speed && i > 2) return {true, shooter_.muzzle_speed - speed};
     // Secants while they serve; then the derivatives themselves, and shorter steps where one did not help.
     const bool better = missed < best || i == 8;
@@ -153,6 +156,11 @@ AimSolver::Need AimSolver::need(Guess& guess) const {
       part *= 0.4;
     }
     Vec3d du = part * inverse.apply(best_miss);
+    // Far more than the gun has, or less, and there is no doubt of it.
+    const double doubt = 2 * math::length(du), far = math::max(away, 0.1 * speed * guess.time);
+    if (i > 0 && i < 8 && missed < 0.05 * far &&
+        (speed - doubt > 1.5 * shooter_.muzzle_speed || speed + doubt < 0.95 * shooter_.muzzle_speed))
+      return {true, shooter_.muzzle_speed - speed};
     const double most = 0.5 * speed + 0.5 * shooter_.muzzle_speed;
     if (math::length(du) > most) du *= most / math::length(du);
     guess.u = best_u + du;

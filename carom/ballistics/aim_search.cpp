@@ -13,7 +13,7 @@ double fastest(const Shooter& shooter) { return 1.5 * (shooter.muzzle_speed + ma
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
     : pull_(projectile, conditions),
-      rough_(projectile, conditions, conditions.air.at(shooter.muzzle.y).speed_of_sound, fastest(shooter)),
+      rough_(projectile, conditions),
       projectile_(projectile),
       conditions_(conditions),
       shooter_(shooter),
@@ -83,9 +83,10 @@ bool AimSolver::two_arcs(Aims& aims, bool steady) const {
   }
   if (peaks + (rises ? 1 : 0) > 1) return false;
   const bool far = steady && looks_far();
-  if (far && out_of_reach()) return true;
+  if (far && (out_of_reach() || outranged())) return true;
   Root late;
-  return by_guesses(aims, late) || (steady && !far && !late.found && out_of_reach()) || by_peak(aims, late);
+  return by_guesses(aims, late) || (steady && !far && !late.found && (out_of_reach() || outranged())) ||
+         by_peak(aims, late);
 }
 
 /// Straight at the target, by the time of flight of quadratic drag.
@@ -147,7 +148,15 @@ bool AimSolver::by_guesses(Aims& aims, Root& late) const {
   const double climb = math::sqrt(speed * speed - level * level);
   guess.u = shooter_.velocity + Vec3d{level * way.x / flown, climb, level * way.z / flown};
   const Root high = refine(guess, 40, false, Start::falling);
-  if (!high.found || high.guess.time < 1.001 * low.guess.time) return false;  // two roots are all there are
+  if (!high.found) {
+    // Where the gun is more than fast enough for the longest time the high arc takes longer.
+    Guess last{guess.u, options_.longest_time};
+    const Need at_last = need(last);
+    if (!at_last.known || at_last.lack < 1e-3 * speed || last.time < 1.001 * low.guess.time) return false;
+    keep(aims, low);
+    return true;
+  }
+  if (high.guess.time < 1.001 * low.guess.time) return false;  // two roots are all there are
   keep(aims, low);
   keep(aims, high);
   return true;

@@ -58,7 +58,7 @@ void DragCurve::prepare(Interpolation interpolation) {
   pieces_[intervals + 1] = {last, points_.back().coefficient};
   pieces_.back().start = 1e308;
   Piece* between = pieces_.data() + 1;
-  const auto find_bends = [&] {
+  const auto finish = [&] {
     constexpr double least = 1e-3;  // of C_D, over the interval beside the node
     bends_ = false;
     for (std::size_t i = 0; i <= intervals && intervals > 0; ++i) {
@@ -69,11 +69,12 @@ void DragCurve::prepare(Interpolation interpolation) {
       pieces_[i + 1].bends = after.start > 0 && math::abs(jump) * beside > least * after.constant;
       bends_ = bends_ || pieces_[i + 1].bends;
     }
+    prepare_squares();
   };
   for (std::size_t i = 0; i < intervals; ++i)
     between[i] = {points_[i].mach, points_[i].coefficient,
                   (points_[i + 1].coefficient - points_[i].coefficient) / (points_[i + 1].mach - points_[i].mach)};
-  if (interpolation == Interpolation::linear || intervals < 2) return find_bends();
+  if (interpolation == Interpolation::linear || intervals < 2) return finish();
   // Slopes at the nodes: zero at peaks, else the harmonic mean of both sides, weighted by their lengths; at the ends
   // that of the line.
   std::vector<double> slope(points_.size());
@@ -91,7 +92,35 @@ void DragCurve::prepare(Interpolation interpolation) {
     between[i].square = (3 * line - 2 * slope[i] - slope[i + 1]) / h;
     between[i].cube = (slope[i] + slope[i + 1] - 2 * line) / (h * h);
   }
-  find_bends();
+  finish();
+}
+
+void DragCurve::prepare_squares() {
+  struct Node {
+    double place, coefficient, slope;  // M² + ½, and by M²
+  };
+  const auto node = [&](int i) {
+    // Curves are lines over M near 0, no cubics over M²: the first cell, to M = 1/8, has the cubic that is nearest to a
+    // line there, whose beginning has the value of M = .15/8 and the slope of M = .3125/8.
+    const double place = std::bit_cast<double>((first_square + std::uint64_t(i)) << square_shift);
+    const double mach = math::max(math::sqrt(place - lowest_square), 0.3125 / 8);
+    const Value value = with_slope(mach);
+    return Node{place, i > 0 ? value.coefficient : (*this)(0.15 / 8), 0.5 * value.slope / mach};
+  };
+  const std::uint64_t end = cell_of(math::square(points_.back().mach) + lowest_square) - first_square;
+  const int last = int(math::min(end, std::uint64_t(most_squares - 2)));
+  std::shared_ptr<SquareCell[]> cells(new SquareCell[std::size_t(last) + 2]);
+  Node here = node(0);
+  for (int i = 0; i <= last; ++i) {
+    const Node next = node(i + 1);
+    const double h = next.place - here.place, line = (next.coefficient - here.coefficient) / h;
+    cells[i] = {here.coefficient, here.slope, (3 * line - 2 * here.slope - next.slope) / h,
+                (here.slope + next.slope - 2 * line) / (h * h)};
+    here = next;
+  }
+  farthest_ = here.place;
+  cells[last + 1] = {here.coefficient, 0, 0, 0};
+  squares_ = std::move(cells);
 }
 
 DragCurve DragCurve::scaled(double factor) const {
@@ -99,6 +128,7 @@ DragCurve DragCurve::scaled(double factor) const {
   for (DragPoint& point : curve.points_) point.coefficient *= factor;
   for (Piece& p : curve.pieces_)
     p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube, p.bends};
+  curve.prepare_squares();
   return curve;
 }
 

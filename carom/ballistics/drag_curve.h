@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -58,6 +61,17 @@ class CAROM_API DragCurve {
             p.slope + x * (2 * p.square + x * (3 * p.cube))};
   }
 
+  /// C_D and dC_D/dM² by the square of the Mach number, within about a thousandth of the curve; constant from Mach 11
+  /// on: to find a cell takes a few bits, where the curve itself takes a root and a search.
+  Value roughly(double mach2) const {
+    const double place = math::min(farthest_, mach2 + lowest_square);  // in this order for what is no number
+    const std::uint64_t cell = cell_of(place);
+    const double x = place - std::bit_cast<double>(cell << square_shift);
+    const SquareCell& c = squares_[std::ptrdiff_t(cell - first_square)];
+    return {(c.constant + x * c.slope) + (x * x) * (c.square + x * c.cube),
+            c.slope + x * (2 * c.square + x * (3 * c.cube))};
+  }
+
   /// Has it nodes at which its slope jumps, by more than a smooth curve's?
   bool has_bends() const { return bends_; }
   /// Calls `f` with the Mach numbers of those between `low` and `high`, in rising order.
@@ -85,11 +99,21 @@ class CAROM_API DragCurve {
     while (p[1].start < mach) ++p;
     return *p;
   }
+  // Cubics between nodes at a thirty-second of a binary octave of M² + ½.
+  struct SquareCell {
+    double constant = 0, slope = 0, square = 0, cube = 0;
+  };
+  static constexpr double lowest_square = 0.5;
+  static constexpr int square_shift = 47, most_squares = 256;
+  static constexpr std::uint64_t cell_of(double place) { return std::bit_cast<std::uint64_t>(place) >> square_shift; }
+  static constexpr std::uint64_t first_square = std::bit_cast<std::uint64_t>(lowest_square) >> square_shift;
   void prepare(Interpolation interpolation);
+  void prepare_squares();
   std::vector<DragPoint> points_;
   std::vector<Piece> pieces_;  // before the first node, from each to the next, after the last, and one beyond all
   std::array<std::uint16_t, cells> first_{};
-  double cells_per_mach_ = 0;
+  std::shared_ptr<const SquareCell[]> squares_;  // shared by copies
+  double cells_per_mach_ = 0, farthest_ = 0;
   bool bends_ = false;
 };
 

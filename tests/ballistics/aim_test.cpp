@@ -166,6 +166,50 @@ TEST(Aim, NoSolutionIsSaid) {
   EXPECT_TRUE(aim(shot, {}, shooter, Target{{100, 0, 0}}).value());
 }
 
+// Light shots, of which the solver knows without a flight how far they can come: hit a fiftieth before the greatest
+// range of brute force over the elevations, out of reach a fiftieth beyond it.
+TEST(Aim, TheGreatestRangeOfLightShots) {
+  math::Random random(31);
+  for (int i = 0; i < 24; ++i) {
+    const Projectile shot = i % 2 == 0 ? projectile_from_terminal_speed(random.uniform(12.0, 60.0))
+                                       : projectile_from_size(DragCurve(DragFunction::gs), random.uniform(.002, .05),
+                                                              random.uniform(.02, .04));
+    Conditions air;
+    if (i % 3 == 0) air.wind = environment::WindColumn(Vec3d{random.uniform(-8.0, 8.0), 0, 0});
+    const double speed = random.uniform(100.0, 900.0), height = random.uniform(-40.0, 40.0);
+    double greatest = 0;
+    for (int k = 0; k < 200; ++k) {
+      const double elevation = -.3 + k * .008;
+      const auto flight = fly(shot, air, {{}, speed * direction(elevation)}, {.time = 120, .ground = -60});
+      const auto point = flight->falling_through(height);
+      if (point) greatest = math::max(greatest, point->position.x);
+    }
+    ASSERT_GT(greatest, 0);
+    const Shooter shooter{.muzzle_speed = speed};
+    EXPECT_TRUE(*aim(shot, air, shooter, Target{{.98 * greatest, height, 0}})) << i;
+    EXPECT_FALSE(*aim(shot, air, shooter, Target{{1.02 * greatest, height, 0}})) << i;
+    EXPECT_FALSE(*aim(shot, air, shooter, Target{{2 * greatest, height, 0}})) << i;
+    EXPECT_FALSE(*aim(shot, air, shooter, Target{{3 * greatest, height, 0}, {-1, 0, 2}, {}}, {.longest_time = 60}))
+        << i;
+  }
+}
+
+// Where the high arc would take longer than the longest time the low one is all there is.
+TEST(Aim, AHighArcBeyondTheLongestTimeIsNone) {
+  const Projectile shot = projectile_from_coefficient(DragFunction::g7, .3);
+  const Shooter shooter{.muzzle_speed = 400, .muzzle = {0, 2, 0}};
+  const Target target{{900, 30, 200}, {-20, 2, 30}, {}};
+  const Aims all = *aim(shot, {}, shooter, target);
+  ASSERT_TRUE(all.low && all.high);
+  ASSERT_GT(all.high->time, 10 * all.low->time);
+  for (const double share : {.2, .6, .98, 1.02}) {
+    const Aims aims = *aim(shot, {}, shooter, target, {.longest_time = share * all.high->time});
+    ASSERT_TRUE(aims.low && aims.high) << share;
+    EXPECT_NEAR(aims.low->time, all.low->time, 1e-5);
+    EXPECT_NEAR(aims.high->time, share > 1 ? all.high->time : all.low->time, 1e-3) << share;
+  }
+}
+
 // The target flees nearly as fast as the spent shot: the two meet, though every shot falls far behind in the end.
 TEST(Aim, SpentShotsMeetATargetThatFlees) {
   const Projectile shot = projectile_from_coefficient(DragFunction::g7, .58);

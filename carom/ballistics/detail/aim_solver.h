@@ -1,6 +1,6 @@
 // How AimSolver and its parts are divided: aim_flight.cpp flies, aim_path.cpp knows what a flight owes to its start,
 // aim_measure.cpp by how much it is off, aim_roots.cpp finds the shot near a guess, aim_search.cpp finds guesses, or
-// that there are none.
+// that there are none, aim_bounds.cpp knows what no shot can do.
 #pragma once
 
 #include "carom/ballistics/aim.h"
@@ -65,6 +65,9 @@ class AimSolver {
   void keep(Aims& aims, const Root& root) const;
   /// `late`: the root on the high side, where the search for the low one led there.
   bool by_guesses(Aims& aims, Root& late) const;
+  /// True: certainly no solution, for a target of steady velocity. No shot gets so far: where drag at every moment is
+  /// the least that it can be at that speed, every level distance grows at least as fast as with the drag that is.
+  bool outranged() const;
   /// True: certainly no solution. Shots at five elevations pass the target's distance below it, or fall through its
   /// height before they get there, and so does the best one between them, by a good margin.
   bool out_of_reach() const;
