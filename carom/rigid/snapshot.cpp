@@ -14,7 +14,7 @@ namespace detail {
 namespace {
 
 constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
-constexpr std::uint64_t format_version = 7;
+constexpr std::uint64_t format_version = 8;
 constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
 
 /// Where compilers and machines could lay out the plain bytes of a state differently.
@@ -144,6 +144,22 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
   const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
   const std::size_t common_bodies =
       base != nullptr ? std::min(bodies, std::size_t(base->sections[base->bodies_at].count)) : 0;
+  // What is foreseen goes out as unchanged.
+  std::vector<bool> foreseen;
+  if (base != nullptr) {
+    std::size_t contact = 0;
+    const SnapshotSection &now = data.sections[data.manifolds_at - 1], &before = base->sections[base->manifolds_at - 1];
+    const std::byte* const first = reinterpret_cast<const std::byte*>(image.data() + now.first);
+    ContactForesight<D>(data, *base, base_image).for_each(image, [&](std::byte* at, const typename D::Transform& pose) {
+      foreseen.push_back(std::memcmp(at, &pose, sizeof pose) == 0);
+      if (!foreseen.back()) return;
+      contact = std::size_t(at - first);
+      if (contact + sizeof pose <= before.count * before.element)
+        std::memcpy(at, reinterpret_cast<const std::byte*>(base_image.data() + before.first) + contact, sizeof pose);
+      else
+        std::memset(at, 0, sizeof pose);
+    });
+  }
   std::vector<bool> folded(bodies, true);
   for (std::size_t i = 0; i < common_bodies; ++i) folded[i] = body_differs(data, image, *base, base_image, i);
   fold_bodies(image, data, [&](std::size_t i) { return folded[i]; });
@@ -152,6 +168,7 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
   out.number(data.step_count);
   out.number(data.sections.size());
   out.number(data.bodies_at);
+  out.number(data.shapes_at);
   out.number(data.manifolds_at);
   for (std::size_t i = 0; i < data.sections.size(); ++i) {
     const SnapshotSection& s = data.sections[i];
@@ -163,6 +180,8 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
     out.difference(words_of(s, image), words_of(b, base_image), 2 * common, model);
     out.difference(words_of(s, image) + 2 * common, nullptr, 2 * (count - common), model);
   }
+  BitModel foresight;
+  for (const bool x : foreseen) out.bit(foresight, x);
   // Geometry by slot, where it is not as in the base.
   SectionModel geometry_model(std::size(GeometryRecord{}.value));
   const bool same = base != nullptr && base->geometry == data.geometry && base->missing.empty();
@@ -195,6 +214,7 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
   const std::uint64_t sections = in.number();
   if (sections > most_sections || (base != nullptr && sections != base->sections.size())) return false;
   data.bodies_at = std::size_t(in.number());
+  data.shapes_at = std::size_t(in.number());
   data.manifolds_at = std::size_t(in.number());
   std::uint64_t more = 0;  // words than the base has
   // The differences first: zero where the base holds.
@@ -220,9 +240,12 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
   };
   if (!in.sound() || data.bodies_at > sections || !is(data.bodies_at + 1, sizeof(typename D::Pose)) ||
       !is(data.bodies_at + 2, sizeof(BodyMotion<D>)) || !is(data.bodies_at + 3, sizeof(BodyRecord)) ||
-      !is(data.manifolds_at, sizeof(ManifoldRecord<D>)))
+      !is(data.shapes_at, sizeof(ShapeTraits<D>)) || data.manifolds_at < 1 ||
+      !is(data.manifolds_at - 1, sizeof(ContactRecord<D>)) || !is(data.manifolds_at, sizeof(ManifoldRecord<D>)))
     return false;
-  if (base != nullptr && (base->bodies_at != data.bodies_at || base->manifolds_at != data.manifolds_at)) return false;
+  if (base != nullptr && (base->bodies_at != data.bodies_at || base->manifolds_at != data.manifolds_at ||
+                          base->shapes_at != data.shapes_at))
+    return false;
   const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
   for (std::size_t k = 1; k < 4; ++k)
     if (data.sections[data.bodies_at + k].count != bodies) return false;
@@ -246,7 +269,14 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
     }
   }
   fold_bodies(data.image, data, [&](std::size_t i) { return folded[i]; });
-  return true;
+  if (base == nullptr) return true;
+  const std::vector<std::uint64_t> base_image = canonical_image(*base);
+  BitModel foresight;
+  ContactForesight<D>(data, *base, base_image)
+      .for_each(data.image, [&](std::byte* at, const typename D::Transform& pose) {
+        if (in.bit(foresight)) std::memcpy(at, &pose, sizeof pose);
+      });
+  return in.sound();
 }
 
 template <class D>

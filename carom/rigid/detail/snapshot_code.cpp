@@ -52,8 +52,8 @@ void ByteWriter::finish() {
   for (int i = 0; i < 5; ++i) shift_out();
 }
 
-void ByteWriter::changed_word(WordModel& model, std::uint32_t x) {
-  bit(model.changed, x != 0);
+void ByteWriter::changed_word(WordModel& model, std::uint32_t x, bool before) {
+  bit(model.changed[before ? 1 : 0], x != 0);
   if (x == 0) return;
   const int length = length_of(x), symbol = length - 1;
   for (int node = 1, k = 4; k >= 0; --k) {
@@ -80,9 +80,14 @@ void ByteWriter::difference(const std::uint32_t* now, const std::uint32_t* base,
     while (e + different < elements && differs(e + different)) ++different;
     changed_word(model.equal, std::uint32_t(equal));
     changed_word(model.different, std::uint32_t(different));
-    for (std::size_t k = 0; k < different; ++k, ++e)
-      for (std::size_t w = 0; w < size && e * size + w < count; ++w)
-        changed_word(model.words[w], changed(e * size + w));
+    for (std::size_t k = 0; k < different; ++k, ++e) {
+      bool before = false;
+      for (std::size_t w = 0; w < size && e * size + w < count; ++w) {
+        const std::uint32_t x = changed(e * size + w);
+        changed_word(model.words[w], x, before);
+        before = x != 0;
+      }
+    }
   }
 }
 
@@ -139,8 +144,8 @@ std::uint64_t ByteReader::number() {
   return 0;
 }
 
-std::uint32_t ByteReader::changed_word(WordModel& model) {
-  if (!bit(model.changed)) return 0;
+std::uint32_t ByteReader::changed_word(WordModel& model, bool before) {
+  if (!bit(model.changed[before ? 1 : 0])) return 0;
   int symbol = 0;
   for (int node = 1, k = 4; k >= 0; --k) {
     const bool b = bit(model.length[node]);
@@ -156,9 +161,14 @@ void ByteReader::difference(std::uint32_t* words, std::size_t count, SectionMode
     const std::size_t equal = changed_word(model.equal), different = changed_word(model.different);
     if (equal > elements - e || different > elements - e - equal || equal + different == 0) return fail();
     e += equal;
-    for (std::size_t k = 0; sound_ && k < different; ++k, ++e)
-      for (std::size_t w = 0; w < size && e * size + w < count; ++w)
-        words[e * size + w] ^= changed_word(model.words[w]);
+    for (std::size_t k = 0; sound_ && k < different; ++k, ++e) {
+      bool before = false;
+      for (std::size_t w = 0; w < size && e * size + w < count; ++w) {
+        const std::uint32_t x = changed_word(model.words[w], before);
+        words[e * size + w] ^= x;
+        before = x != 0;
+      }
+    }
   }
 }
 

@@ -16,9 +16,9 @@ struct BitModel {
   static constexpr int learning = 4;
 };
 
-/// For one word of a record: whether it changed, and if, its length in bits.
+/// For one word of a record: whether it changed, where the word before it did or not, and if, its length in bits.
 struct WordModel {
-  BitModel changed, length[32];
+  BitModel changed[2], length[32];
 };
 
 /// What is known of a section while it is coded.
@@ -44,12 +44,12 @@ class ByteWriter {
   }
   /// now ⊕ base, element by element of the model. A null base is zero.
   void difference(const std::uint32_t* now, const std::uint32_t* base, std::size_t count, SectionModel& model);
+  void bit(BitModel& model, bool x);
   void finish();
 
  private:
-  void bit(BitModel& model, bool x);
   void bits(std::uint32_t x, int count);
-  void changed_word(WordModel& model, std::uint32_t x);
+  void changed_word(WordModel& model, std::uint32_t x, bool before = false);
   void grow();
   void shift_out();
 
@@ -76,14 +76,14 @@ class ByteReader {
     const std::uint64_t low = bits(32);
     return low | std::uint64_t{bits(32)} << 32;
   }
+  bool bit(BitModel& model);
   std::uint64_t number();
   /// Turns `words`, which hold the base, into what was written.
   void difference(std::uint32_t* words, std::size_t count, SectionModel& model);
 
  private:
-  bool bit(BitModel& model);
   std::uint32_t bits(int count);
-  std::uint32_t changed_word(WordModel& model);
+  std::uint32_t changed_word(WordModel& model, bool before = false);
   void grow();
   std::uint8_t take();
 

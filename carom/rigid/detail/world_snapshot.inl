@@ -67,6 +67,7 @@ class SnapshotWriter {
                 move_events);
   }
   void shapes(const std::vector<ShapeRecord<D>>& v) {
+    to_.shapes_at = to_.sections.size();
     std::byte* to = static_cast<std::byte*>(room<ShapeTraits<D>>(v.size()));
     for (const ShapeTraits<D>& traits : v) {
       const auto& [local, body, next, leaf, tree, flags, at_origin, outer_extent, inner_extent, margin, terms] = traits;
