@@ -150,16 +150,21 @@ bool one_way(const WorldImplementation<D>& world, std::int32_t shape) {
   return extra != nullptr && extra->one_way != typename D::Vector{};
 }
 
-/// A mesh that moves goes on after a body was stopped at it: it takes the body along for the rest of the step, or its
-/// thin side would be past it.
+/// What moves goes on after a body was stopped at it, and a thin side would be past the body: a mesh, and what goes on
+/// by a good part of the thickness of either, takes the body along for the rest of the step.
 template <class D>
-void carry_on(WorldImplementation<D>& world, std::int32_t body, std::int32_t mesh_body, float fraction) {
+void carry_on(WorldImplementation<D>& world, std::int32_t own, std::int32_t at, float fraction) {
   using V = typename D::Vector;
-  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  const ShapeRecord<D>&shape = world.shapes.at(own), &other = world.shapes.at(at);
+  if (other.tree == tree_fixed) return;
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(shape.body)];
   const typename D::Position base = m.center;
-  const Sweep<D> way = way_of_body(world, mesh_body, base, fraction, 1);
-  m.center = base + typename D::Position(way.c1 + rotate(way.q1, inverse_rotate(way.q0, V{} - way.c0)));
-  pose_from_center(world, body);
+  const Sweep<D> way = way_of_body(world, other.body, base, fraction, 1);
+  const V rest = way.c1 + rotate(way.q1, inverse_rotate(way.q0, V{} - way.c0));
+  const float least = is_surface(other.geometry) ? 0 : 0.5f * min(shape.inner_extent, other.inner_extent);
+  if (!(math::length_squared(rest) > least * least)) return;
+  m.center = base + typename D::Position(rest);
+  pose_from_center(world, shape.body);
 }
 
 /// Does a fixed shape, whose bounds meet the box, come as near as its parts tell? The bounds of a chain may hold all
@@ -226,7 +231,7 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
   float fraction = 1;
-  std::int32_t at = none;  // the body of a mesh that moves, where that stops it
+  std::int32_t by = none, at = none;  // which of its shapes is stopped first, and at which
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
@@ -274,11 +279,11 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
           is_slow(shape, own, way_of_body(world, other.body, start.center), most_slow))
         return;
       const float t = meeting_time(world, shape, other, start.center, 0, 1, !one_way(world, o));
-      if (t < fraction) fraction = t, at = is_moving_surface(world, o) ? other.body : none;
+      if (t < fraction) fraction = t, by = s, at = o;
     });
   }
   stop_at(world, body, fraction);
-  if (at != none) carry_on(world, body, at, fraction);
+  if (at != none) carry_on(world, by, at, fraction);
 }
 
 /// Lists pairs of shapes that both left their bounds and whose ways come near each other: along x, in order.
@@ -359,16 +364,21 @@ void meet_in_order(StepContext<D>& context) {
     heap.pop_back();
     const BulletPair& pair = pairs[std::size_t(meeting.pair)];
     if (scratch.pair_meetings[std::size_t(meeting.pair)] != meeting.time) continue;  // another one came first
+    // Both are stopped before one is taken along: bullets that meet stay where they do.
+    bool stopped[2] = {};
     for (int side = 0; side < 2; ++side) {
       if (pair.place[side] == none) continue;
       const std::int32_t body = world.bodies.awake[std::size_t(pair.place[side])];
-      const std::uint16_t flags = world.bodies.record[std::size_t(body)].flags;
       const std::int32_t facing = side == 0 ? pair.other : pair.own;
-      const bool held = (flags & body_bullet) != 0 || is_surface(world.shapes.at(facing).geometry);
-      if (!held || scratch.swept[std::size_t(pair.place[side])].fraction <= meeting.time) continue;
-      stop_at(world, body, meeting.time);
-      if (is_surface(world.shapes.at(facing).geometry))
-        carry_on(world, body, world.shapes.at(facing).body, meeting.time);
+      const bool held = (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0 ||
+                        is_surface(world.shapes.at(facing).geometry);
+      stopped[side] = held && scratch.swept[std::size_t(pair.place[side])].fraction > meeting.time;
+      if (stopped[side]) stop_at(world, body, meeting.time);
+    }
+    if (stopped[0]) carry_on(world, pair.own, pair.other, meeting.time);
+    if (stopped[1]) carry_on(world, pair.other, pair.own, meeting.time);
+    for (int side = 0; side < 2; ++side) {
+      if (!stopped[side]) continue;
       for (std::int32_t key = scratch.first_bullet_pair[std::size_t(pair.place[side])]; key != none;) {
         const BulletPair& changed = pairs[std::size_t(key >> 1)];
         // What it would have met before now has come up before now.
