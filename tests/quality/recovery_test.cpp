@@ -43,7 +43,7 @@ TYPED_TEST(QualityRecovery, WithoutRestitutionNothingComesBack) {
           .at_most(double(back), 0.01);
     } else {
       Gate(15, "80 boxes, flat, likewise: come back at", D::dimension, "m/s")
-          .not_yet(D::dimension == 2 ? 18 : 0.06)
+          .not_yet(D::dimension == 2 ? -1 : 0.033)
           .at_most(double(back), 0.01);
     }
   }

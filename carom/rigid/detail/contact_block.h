@@ -10,6 +10,9 @@
 
 namespace carom::rigid::detail {
 
+/// ContactBlock::struck: a hard blow fell on it; it was pushed out of an overlap.
+inline constexpr float block_struck = 1, block_pushed = 2;
+
 /// Masses in 1/kg and 1/(kg·m²); r are vectors from the centres of mass to the contact, world axes at the step's start.
 /// One softness class bit per lane would do, but three floats keep the loop free of branches.
 template <class D, int W>
@@ -35,6 +38,7 @@ struct alignas(64) ContactBlock<Dim2, W> {
   float patch_r_a[2][W];  ///< where friction acts
   float tangent_mass[W], tangent_target[W], tangent_impulse[W], tangent_total[W];
   float settles[W];  ///< 1: takes part in the passes that settle what is pushed out
+  float struck[W];   ///< its points are solved together in this step: block_struck, block_pushed
 };
 
 template <int W>
@@ -60,7 +64,7 @@ struct alignas(64) ContactBlock<Dim3, W> {
   float tangent_target[2][W], tangent_impulse[2][W], tangent_total[2][W];
   float twist_mass[W], twist_radius[W], twist_impulse[W];
   float settles[W];
-  float struck[W];  ///< 1: a hard blow fell on it in this step
+  float struck[W];
 };
 
 /// What the preparation of a block starts from, as the records hold it; the points, the normal (both in A's shape

@@ -1,11 +1,13 @@
-// Hard blows: part of contact_kernel.inl. One round over the points of a manifold leaves some hundredths of a blow
-// between them, with which a body comes back from a wall though nothing of it bounces. Where a pass takes off much
-// speed at once, the points are therefore solved together.
+// Hard blows and pushes: part of contact_kernel.inl. One round over the points of a manifold leaves some hundredths of
+// a blow between them, with which a body comes back from a wall though nothing of it bounces; and as much of the speed
+// with which it is pushed out of the wall. Where a pass changes much speed at once, the points are therefore solved
+// together.
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
-/// m/s: what meets faster, and loses at least `least_change` of it in a pass, strikes hard.
-inline constexpr float hard_blow = 1, least_change = 0.05f;
+/// m/s: what meets faster, and loses at least `least_change` of it in a pass, strikes hard; what is given more than
+/// `least_push` though it does not close is pushed.
+inline constexpr float hard_blow = 1, least_change = 0.05f, least_push = 0.02f;
 
 /// What a pass over the normals of a manifold did, over its points: Σ λ before it, Σ Δλ, and the power that it took
 /// off, −Σ v Δλ.
@@ -14,18 +16,23 @@ struct PassBlow {
   WideFloat<W> before, change, power;
 };
 
-/// The lanes of `among` on which a hard blow fell, in this pass or earlier in the step: the next warm start gives it
-/// again. A blow is hard only where nothing pressed before, and more than one point has to share it: in a pile, where
-/// much presses already, contacts disagree more than the points of one.
+/// The lanes of `among` on which a hard blow or a push fell, in this pass or earlier in the step: the next warm start
+/// gives it again. It is one only where nothing pressed before, and more than one point has to share it: in a
+/// pile, where much presses already, contacts disagree more than the points of one.
 template <int W, class Block>
 CAROM_SIMD_INLINE WideMask<W> find_struck(Block& c, const PassBlow<W>& blow, WideMask<W> among) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), mobility = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
-  const auto now = (blow.power * mobility > F::splat(hard_blow) * max(blow.change * mobility, F::splat(least_change))) &
-                   (blow.before == zero) & (F::load(c.point[1].normal_mass) > zero);
+  const F change = blow.change * mobility, power = blow.power * mobility;
+  const auto fresh = (blow.before == zero) & (F::load(c.point[1].normal_mass) > zero);
+  const auto hard = fresh & (power > F::splat(hard_blow) * max(change, F::splat(least_change)));
+  // One point that is pushed turns others inward: that closes too, though far slower than it pushes.
+  const auto pushed = fresh & (change > F::splat(least_push)) & (power <= F::splat(0.3f) * change * change);
   const F earlier = F::load(c.struck);
-  const auto struck = among & (now | (earlier > zero));
-  if (any(struck)) select(struck, F::splat(1), earlier).store(c.struck);
+  const auto struck = among & (hard | pushed | (earlier > zero));
+  if (any(struck))
+    select(struck, max(earlier, select(pushed, F::splat(block_pushed), F::splat(block_struck))), earlier)
+        .store(c.struck);
   return struck;
 }
 

@@ -163,6 +163,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   select(firm, F::splat(hard.impulse_scale), F::splat(soft.impulse_scale)).store(c.impulse_scale);
   F::zero().store(c.tangent_total);
   F::zero().store(c.settles);
+  F::zero().store(c.struck);
   GatheredLanes result;
   const I anchored = I::load(anchor);
   result.anchored = bitmask(anchored != I::splat(int(Anchor::none)));

@@ -76,9 +76,10 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
 }
 
 template <int W, bool UseBias>
-CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
-                                      Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
-                                      WideFloat<W> push_speed, WideFloat<W> counted, WideFloat<W> share, int order) {
+CAROM_SIMD_INLINE PassBlow<W> solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
+                                             Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
+                                             WideFloat<W> push_speed, WideFloat<W> counted, WideFloat<W> share,
+                                             int order) {
   using F = WideFloat<W>;
   order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
@@ -91,6 +92,7 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
   gather<W>(bodies, c.read_b, 4, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
   const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+  PassBlow<W> blow = {zero, zero, zero};
   for (int k = 0; k < 2; ++k) {
     const int i = k ^ order;
     auto& point = c.point[i];
@@ -118,7 +120,61 @@ CAROM_SIMD_INLINE void solve_normals2(const SolverBody<Dim2>* bodies, ContactBlo
     const WideVec2<W> p = {delta * n.x, delta * n.y};
     push_back(a, ma, ia, p, delta * turn_a);
     push(b, mb, ib, p, delta * turn_b);
+    blow.before += old;
+    blow.change += delta;
+    blow.power -= vn * delta;
   }
+  return blow;
+}
+
+template <int W>
+struct VelocityPair2 {
+  Velocity2<W> a, b;
+};
+/// As share_blow3.
+template <int W, bool UseBias>
+[[gnu::noinline]] VelocityPair2<W> share_blow2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W> a,
+                                               Velocity2<W> b, WideMask<W> struck, float inverse_h, float push_speed,
+                                               float counted) {
+  using F = WideFloat<W>;
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
+  const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
+  const F offset_turn = cross(offset, n);
+  F pa[4], pb[4];
+  gather<W>(bodies, c.read_a, 4, pa);
+  gather<W>(bodies, c.read_b, 4, pb);
+  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
+  const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
+  TogetherRows<W, 2> rows;
+  F turn_a[2], turn_b[2];
+  for (int i = 0; i < 2; ++i) {
+    const auto& point = c.point[i];
+    const WideVec2<W> ra = load2<W>(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    turn_a[i] = cross(ra, n), turn_b[i] = turn_a[i] + offset_turn;
+    for (int j = 0; j <= i; ++j) rows.k[i][j] = ma + mb + ia * turn_a[i] * turn_a[j] + ib * turn_b[i] * turn_b[j];
+    const BlowRow<W> row = blow_row<W, UseBias>(c, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
+    rows.velocity[i] = dot(subtract(b.v, a.v), n) + b.w * turn_b[i] - a.w * turn_a[i] + row.bias;
+    rows.yield[i] = row.yield;
+    rows.impulse[i] = F::load(point.impulse);
+    rows.present[i] = F::load(point.normal_mass) > F::splat(0);
+  }
+  solve_together<W, 2>(rows);
+  F sum = F::splat(0), on_a = sum, on_b = sum;
+  for (int i = 0; i < 2; ++i) {
+    auto& point = c.point[i];
+    const F old = F::load(point.impulse), delta = keep(struck, rows.impulse[i] - old);
+    (old + delta).store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + delta * F::splat(counted)).store(point.total);
+    sum += delta;
+    on_a += turn_a[i] * delta;
+    on_b += turn_b[i] * delta;
+  }
+  const WideVec2<W> p = {sum * n.x, sum * n.y};
+  push_back(a, ma, ia, p, on_a);
+  push(b, mb, ib, p, on_b);
+  return {a, b};
 }
 
 template <int W>
@@ -127,8 +183,13 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed), F::splat(1),
-                            F::splat(1), order);
+    const PassBlow<W> normals = solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h),
+                                                        F::splat(push_speed), F::splat(1), F::splat(1), order);
+    const auto struck = find_struck<W>(c, normals, WideMask<W>::all());
+    if (any(struck)) [[unlikely]] {
+      const auto shared = share_blow2<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
+      a = shared.a, b = shared.b;
+    }
     write_velocity<W>(bodies, c.write_a, a);
     write_velocity<W>(bodies, c.write_b, b);
   }
@@ -147,6 +208,10 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
     const auto takes_part = share > F::splat(0);
     auto rubs = takes_part;
+    if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
+      const auto shared = share_blow2<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
+      a = shared.a, b = shared.b;
+    }
     F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
     for (bool struck = false;; struck = true) {  // a blow that falls only here rubs too, as in relax3
       if (extra != nullptr) {
@@ -169,9 +234,12 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
           rb = {rb.x - apart * n.x, rb.y - apart * n.y};
         }
         const F turn_a = cross(ra, t), turn_b = cross(rb, t);
+        F mass = F::load(c.tangent_mass);
+        // They may be far longer than those of the step's start, of which tangent_mass tells.
+        if (struck) mass = inverse_or_zero(F::splat(1), ma + mb + ia * turn_a * turn_a + ib * turn_b * turn_b);
         const F vt = dot(subtract(b.v, a.v), t) + b.w * turn_b - a.w * turn_a;
         const F old = F::load(c.tangent_impulse), limit = F::load(c.friction) * load;
-        const F wanted = old - F::load(c.tangent_mass) * (vt - F::load(c.tangent_target));
+        const F wanted = old - mass * (vt - F::load(c.tangent_target));
         const F lambda = select(rubs, clamp(wanted, F::splat(0) - limit, limit), old);
         const F delta = lambda - old;
         lambda.store(c.tangent_impulse);
@@ -180,7 +248,13 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
         push(b, mb, ib, p, delta * turn_b);
       }
       if (struck) break;
-      solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+      const PassBlow<W> normals =
+          solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+      const auto hard = find_struck<W>(c, normals, takes_part);
+      if (any(hard)) [[unlikely]] {
+        const auto shared = share_blow2<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
+        a = shared.a, b = shared.b;
+      }
       const F before = load;
       load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
       rubs = takes_part & ((load - before) * (ma + mb) > F::splat(least_blow));

@@ -266,6 +266,11 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
     const auto takes_part = share > F::splat(0);
     auto rubs = takes_part;
+    // A push is taken back as it was given, before friction can make something of it.
+    if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
+      const auto shared = share_blow3<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
+      a = shared.a, b = shared.b;
+    }
     F load = load_of<W>(c);
     // What keeps bodies apart has the last word. But a blow that falls only here would otherwise pass without friction:
     // what strikes the ground would go on along it.
