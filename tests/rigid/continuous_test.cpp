@@ -48,6 +48,28 @@ TYPED_TEST(Continuous, BulletStopsAtAMovingWall) {
   EXPECT_EQ(passed, 0);
 }
 
+// What it was stopped at goes on for the rest of the step: by more than the wall's thickness here.
+TYPED_TEST(Continuous, BulletStopsAtAWallThatComesToMeetIt) {
+  using D = TypeParam;
+  int passed = 0;
+  for (int i = 0; i < 30; ++i) {
+    World<D> world(world_with<D>(0));
+    const BodyId wall = add_body<D>(world, BodyType::dynamic, box_shape<D>(0.05f, 2, 2), at<D>(0, 0),
+                                    {0.6f, 0, 1000, 0}, along<D>(-40, 0));
+    BodyDef<D> d;
+    d.position = at<D>(-8 - 0.11 * i, 0);
+    d.linear_velocity = along<D>(200, 0);
+    d.bullet = true;
+    const BodyId bullet = world.create_body(d).value();
+    ShapeDef<D> s;
+    s.density = 10;
+    ASSERT_TRUE(world.add_shape(bullet, i % 2 == 0 ? ball_shape<D>(0.05f) : box_shape<D>(0.05f, 0.05f, 0.05f), s).ok());
+    run(world, 30);
+    if (world.state(bullet).value().pose.position.x > world.state(wall).value().pose.position.x) ++passed;
+  }
+  EXPECT_EQ(passed, 0);
+}
+
 TYPED_TEST(Continuous, ThinRodDoesNotTurnThroughTheGround) {
   using D = TypeParam;
   World<D> world(world_with<D>());
