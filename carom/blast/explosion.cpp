@@ -20,7 +20,7 @@ double scale_of(double mass, Burst burst) { return math::cbrt(burst == Burst::gr
 
 Vec2d up(Dim2*) { return {0, 1}; }
 Vec3d up(Dim3*) { return {0, 1, 0}; }
-constexpr int ground_parts = 256;
+constexpr int ground_parts = 128;
 /// A fireball on the ground sees over its roughness.
 constexpr double above_ground = 0.05;
 

@@ -53,7 +53,7 @@ std::optional<double> regular(double excess, double incidence) {
   const auto first = oblique(shock_mach(excess) / math::sin(incidence), incidence);
   if (!can_turn_back(first)) return {};
   double low = math::asin(1 / first->mach), high = strongest_turn(first->mach);
-  for (int i = 0; i < 60; ++i) {  // the weaker of the two shocks that turn it back
+  for (int i = 0; i < 45; ++i) {  // the weaker of the two shocks that turn it back
     const double middle = 0.5 * (low + high);
     const auto shock = oblique(first->mach, middle);
     (shock && shock->deflection >= first->deflection ? high : low) = middle;
@@ -64,7 +64,7 @@ std::optional<double> regular(double excess, double incidence) {
 
 double detachment(double excess) {
   double low = 0.1, high = 0.5 * math::pi;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
     (can_turn_back(oblique(shock_mach(excess) / math::sin(middle), middle)) ? low : high) = middle;
   }
@@ -93,14 +93,14 @@ std::optional<TriplePoint> triple_point(double mach, double incidence, double ch
 }
 std::optional<Stem> three_shocks(double excess, double incidence) {
   const double mach = shock_mach(excess);
-  constexpr int parts = 100;
+  constexpr int parts = 60;
   std::optional<TriplePoint> before;
   for (int k = 1; k < parts; ++k) {
     const double chi = incidence * k / parts;
     const auto here = triple_point(mach, incidence, chi);
     if (here && before && before->apart * here->apart <= 0) {
       double low = incidence * (k - 1) / parts, high = chi;
-      for (int i = 0; i < 40; ++i) {
+      for (int i = 0; i < 30; ++i) {
         const double middle = 0.5 * (low + high);
         const auto there = triple_point(mach, incidence, middle);
         (there && there->apart * before->apart > 0 ? low : high) = middle;
@@ -135,9 +135,9 @@ Stem ray_shock(double excess, double incidence) {
     const double r = stem / mach;
     return math::atan(math::sqrt(math::max(0.0, r * r - 1)) * math::sqrt(1 - area * area) / (area + r));
   };
-  double low = begin, sum = 0, step = 0.1;
+  double low = begin, sum = 0, step = 0.25;
   double stem = mach, area = 1;
-  for (int i = 0; i < 400 && step > 1e-9; ++i) {
+  for (int i = 0; i < 200 && step > 1e-7; ++i) {
     const double more = part(low, low + step), next = 1 + math::exp(low + step), tube = math::exp(sum + more);
     if (turn(next, tube) > wall) {
       step *= 0.25;

@@ -156,9 +156,9 @@ TEST(SceneExplosions, PushEverythingInReach) {
   const std::string things = R"({"gravity": [0, 0, 0], "step": "1/240 s",
     "cloths": [{"name": "sheet", "preset": "fabric/denim", "corner": [8, 0, 0], "along": [0, 1, 0], "across": [0, 0, 1], "columns": 5, "rows": 5, "collide": false}],
     "ropes": [{"name": "line", "preset": "rope/static_11mm", "points": [[0, 0, 8], [0, 2, 8]], "segments": 6, "collide": false}],
-    "soft_bodies": [{"name": "block", "preset": "soft/gelatin", "box": {"corner": [-9, 0, 0], "size": [1, 1, 1], "cells": [3, 3, 3]}, "collide": false}],
-    "liquids": [{"name": "water", "lower": [-1, 0, -10], "upper": [1, 2, -8], "spacing": "0.1 m", "gravity": [0, 0, 0],
-                 "walls": "none", "boxes": [{"lower": [-0.5, 0, -9], "upper": [0.5, 1, -8]}]}])";
+    "soft_bodies": [{"name": "block", "preset": "soft/gelatin", "corner": [-9, 0, 0], "size": [1, 1, 1], "cells": [3, 3, 3], "collide": false}],
+    "liquids": [{"name": "water", "lower": [-1, 0, -10], "upper": [1, 2, -8], "spacing": "0.1 m",
+                 "walls": [], "fill": [{"lower": [-0.5, 0, -9], "upper": [0.5, 1, -8]}]}])";
   const auto scene = parse(things + R"(, "explosions": [{"name": "c", "mass": "3 kg"}]})");
   if (!scene.ok()) GTEST_FAIL() << scene.error().message;
   SceneWorld world = start(things + R"(, "explosions": [{"name": "c", "mass": "3 kg"}]})");
@@ -174,8 +174,8 @@ TEST(SceneExplosions, PushEverythingInReach) {
 
 // The peak under a burst in the air is that of its reflection square on, and it goes on in a written scene.
 TEST(SceneExplosions, BurstInTheAir) {
-  SceneWorld world =
-      start(R"({"explosions": [{"name": "c", "mass": "10 kg", "position": [0, 7, 0], "burst": "air", "ground": "2 m"}]})");
+  SceneWorld world = start(
+      R"({"explosions": [{"name": "c", "mass": "10 kg", "position": [0, 7, 0], "burst": "air", "ground": "2 m"}]})");
   const auto& e = world.destruction->space.explosions[0].thing.explosion;
   const double expected = blast::ideal_reflected_pressure(e.wave_at(5).pressure);
   EXPECT_NEAR(e.pressure_at({0, 2, 0}, e.wave_at(5).arrival + 1e-9), expected, 1e-3 * expected);
