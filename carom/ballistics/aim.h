@@ -47,8 +47,9 @@ struct AimOptions {
 };
 
 /// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 13 µs, both 25 to
-/// 70 µs, a target out of reach, at rest or in flight, 10 to 12 µs; one that is only just in or out of reach a tenth of
-/// a millisecond, one with several arcs milliseconds. Errors: a field that is not finite, a muzzle speed ≤ 0.
+/// 70 µs, a target out of reach, at rest or in flight, 5 to 20 µs; one that is only just in or out of reach a tenth of
+/// a millisecond, one with several arcs, or beyond the reach of a light shot by so little that no bound tells,
+/// milliseconds. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
 
