@@ -31,6 +31,7 @@ constexpr DemoEntry engine[] = {
     {"ellipsoids", demo::make_ellipsoids},
     {"rounded", demo::make_rounded},
     {"decomposition", demo::make_decomposition},
+    {"decomposition-2d", demo::make_decomposition_plane},
     {"card-house", demo::make_card_house},
     {"events", demo::make_events},
     {"hooks", demo::make_hooks},

@@ -44,6 +44,7 @@ std::unique_ptr<Demo> make_moving_meshes();
 std::unique_ptr<Demo> make_ellipsoids();
 std::unique_ptr<Demo> make_rounded();
 std::unique_ptr<Demo> make_decomposition();
+std::unique_ptr<Demo> make_decomposition_plane();
 std::unique_ptr<Demo> make_card_house();
 std::unique_ptr<Demo> make_events();
 std::unique_ptr<Demo> make_hooks();

@@ -6,9 +6,9 @@ using T = FieldType;
 using M = Measure;
 
 constexpr std::string_view body_types[] = {"fixed", "kinematic", "dynamic"};
-constexpr std::string_view shape_types[] = {"sphere", "capsule", "box",     "cylinder",     "cone",   "ellipsoid",
-                                            "hull",   "plane",   "mesh",    "height_field", "voxels", "compound",
-                                            "circle", "polygon", "segment", "chain",        "tiles"};
+constexpr std::string_view shape_types[] = {
+    "sphere",       "capsule", "box",      "cylinder", "cone",    "ellipsoid", "hull",  "plane", "mesh",
+    "height_field", "voxels",  "compound", "circle",   "polygon", "segment",   "chain", "tiles", "concave_polygon"};
 constexpr std::string_view character_types[] = {"kinematic", "dynamic"};
 }  // namespace
 
@@ -74,7 +74,8 @@ constexpr Field shape_fields[] = {
     {"half_height", T::quantity, M::length, "instead of height"},
     {"radii", T::vector, M::length, "of an ellipsoid: its half axes", nullptr, {}, false, 3},
     {"normal", T::vector, M::plain, "of a plane", nullptr, {}, false, 3},
-    {"points", T::point_list, M::length, "of a hull, polygon, segment or chain"},
+    {"points", T::point_list, M::length,
+     "of a hull, polygon, segment or chain; of a concave polygon round its outline"},
     {"loop", T::flag, M::plain, "a chain that closes", nullptr, {}, false, 2},
     {"simplify", T::flag, M::plain, "drop the least important corners of a hull with too many", nullptr, {}, false, 3},
     {"max_corners",

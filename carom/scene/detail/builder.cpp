@@ -256,7 +256,7 @@ class Builder final : public BodyNames {
                  "this value changes how many " + std::string(what) + " there are: restart the scene");
   }
 
-  /// Tiles have several outlines: each is a shape of its own.
+  /// Tiles have several outlines, concave polygons several parts: each is a shape of its own.
   void spread(std::vector<ReadShape<D>>& shapes) {
     const std::vector<typename D::Shape> more = std::move(shapes.back().more);
     for (const typename D::Shape& shape : more) {

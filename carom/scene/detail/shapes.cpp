@@ -2,6 +2,7 @@
 
 #include "carom/core/spelling.h"
 #include "carom/geometry/compound.h"
+#include "carom/geometry/decomposition.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
@@ -35,7 +36,8 @@ enum ShapeChoice {
   polygon,
   segment,
   chain,
-  tiles
+  tiles,
+  concave_polygon
 };
 
 const Node* look_up(Reader& reader, const std::map<std::string, std::pair<const Node*, std::string>, std::less<>>& all,
@@ -177,6 +179,19 @@ bool read_tiles(Reader& reader, const Object& o, geometry::Shape2& out, std::vec
   return true;
 }
 
+/// Of convex parts, each a shape.
+bool read_concave_polygon(Reader& reader, const Object& o, geometry::Shape2& out, std::vector<geometry::Shape2>& more) {
+  if (!needs(reader, o, "points", "concave_polygon")) return false;
+  std::vector<Vec2f> points;
+  for (const Vec3d& p : reader.points(o, "points")) points.emplace_back(float(p.x), float(p.y));
+  if (reader.failed()) return false;
+  const auto parts = geometry::decompose_convex(points);
+  if (!parts.ok()) return reader.fail(*o.find("points"), o.path_of("points"), parts.error().message), false;
+  out = parts->front();
+  more.assign(parts->begin() + 1, parts->end());
+  return true;
+}
+
 bool read_geometry(Reader& reader, const Library&, const Object& o, int type, geometry::Shape2& out,
                    std::vector<geometry::Shape2>& more) {
   switch (type) {
@@ -221,6 +236,8 @@ bool read_geometry(Reader& reader, const Library&, const Object& o, int type, ge
     }
     case tiles:
       return read_tiles(reader, o, out, more);
+    case concave_polygon:
+      return read_concave_polygon(reader, o, out, more);
     default:
       return wrong_dimension(reader, o), false;
   }
@@ -434,7 +451,8 @@ bool read_shape(Reader& reader, const Library& library, const Node& node, const 
   out.density_given = o.has("density");
   if (o.has("mass")) {
     const double mass = reader.number(o, "mass", 0);
-    const double volume = geometry::mass_properties(out.shape, 1.0).mass;
+    double volume = geometry::mass_properties(out.shape, 1.0).mass;
+    for (const typename D::Shape& part : out.more) volume += geometry::mass_properties(part, 1.0).mass;
     if (!reader.failed() && !(volume > 0))
       reader.fail(*o.find("mass"), o.path_of("mass"), "this kind of shape has no volume, and so no mass");
     else
