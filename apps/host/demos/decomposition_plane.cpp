@@ -94,8 +94,8 @@ class DecompositionPlane final : public Repeatable<DecompositionPlane, Demo2> {
   }
 
   void expectations(Stage2& stage, std::vector<Expectation>& out) override {
-    out.push_back(
-        {"turn of the driven gear over the driver's", "", "−n₁/n₂", turned_[1] / turned_[0], -12.0 / 18, 0.01});
+    out.push_back({"turn of the driven gear over the driver's", "", "−n₁/n₂", turned_[1] / turned_[0],
+                   -stage.count("teeth") / 18.0, 0.01});
     out.push_back(
         {"area of all parts over that of the outlines", "", "they are the same", parts_ / outlines_, 1, 1e-5});
     out.push_back({"height of the ring's centre", "m", "the hole's side on the peg", stage.at(ring_).pose.position.y,
