@@ -10,7 +10,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
   // Rough paths as long as Newton's method has far to go. Then one whose own error is measured, step by step; what
   // little is left from there on is found by flying the same steps again, each corrected by what it was found to miss.
-  double rough = math::min(1e-4 * math::length(guess.u) * guess.time, 75 * allowed);
+  double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
   double off = 0, last_off = 0;  // m, what the last measured paths erred
   const double finest = rough / 64;
