@@ -151,7 +151,8 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
     const SnapshotSection &now = data.sections[data.manifolds_at - 1], &before = base->sections[base->manifolds_at - 1];
     const std::byte* const first = reinterpret_cast<const std::byte*>(image.data() + now.first);
     ContactForesight<D>(data, *base, base_image).for_each(image, [&](std::byte* at, const typename D::Transform& pose) {
-      foreseen.push_back(std::memcmp(at, &pose, sizeof pose) == 0);
+      const std::byte* const bytes_of_pose = reinterpret_cast<const std::byte*>(&pose);
+      foreseen.push_back(std::equal(bytes_of_pose, bytes_of_pose + sizeof pose, at));
       if (!foreseen.back()) return;
       contact = std::size_t(at - first);
       if (contact + sizeof pose <= before.count * before.element)

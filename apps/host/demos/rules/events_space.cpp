@@ -56,9 +56,10 @@ class EventsSpace final : public Repeatable<EventsSpace, Demo3> {
     stage.add(gate, geometry::Box{{1.9f, 0.06f, 1.9f}}, sensor, gold);
     const int crates = stage.count("crates");
     for (int i = 0; i < crates; ++i) {
+      const int row = i / 4 % 4, layer = i / 16;
       rigid::BodyDef<Dim3> body;
       body.name = "crate";
-      body.position = {-1.2 + 0.8 * (i % 4), 3.4 + 0.75 * (i / 16), -1.2 + 0.8 * (i / 4 % 4)};
+      body.position = {-1.2 + 0.8 * (i % 4), 3.4 + 0.75 * layer, -1.2 + 0.8 * row};
       rigid::ShapeDef<Dim3> shape;
       shape.hit_events = true;
       const float half = 0.18f + 0.02f * float(i * 5 % 7);
