@@ -70,6 +70,72 @@ TYPED_TEST(Continuous, BulletStopsAtAWallThatComesToMeetIt) {
   EXPECT_EQ(passed, 0);
 }
 
+// Nor does a wall that no force moves pass what flies at it, wherever the step ends.
+TYPED_TEST(Continuous, BallsStopAtADrivenWall) {
+  using D = TypeParam;
+  int passed = 0;
+  for (int i = 0; i < 100; ++i) {
+    World<D> world(world_with<D>(0));
+    const BodyId wall =
+        add_body<D>(world, BodyType::kinematic, box_shape<D>(0.05f, 2, 2), at<D>(0, 0), {}, along<D>(-40, 0));
+    const BodyId ball = add_ball<D>(world, at<D>(-6 - 0.04 * i, 0), 0.05f, {}, along<D>(200, 0));
+    run(world, 20);
+    if (world.state(ball).value().pose.position.x > world.state(wall).value().pose.position.x) ++passed;
+  }
+  EXPECT_EQ(passed, 0);
+}
+
+// The same of what stands in its way, asleep in every other case: it is pushed along.
+TYPED_TEST(Continuous, ADrivenWallPushesWhatStandsInItsWay) {
+  using D = TypeParam;
+  for (const float speed : {5.0f, 20.0f, 40.0f, 200.0f})
+    for (int i = 0; i < 40; ++i) {
+      World<D> world(world_with<D>(0));
+      const BodyId ball = add_ball<D>(world, at<D>(0.3 + 0.085 * i, 0), 0.05f, {}, along<D>(0, 0));
+      if (i % 2 == 0) run(world, 60);
+      EXPECT_EQ(world.state(ball).value().awake, i % 2 != 0);
+      const BodyId wall =
+          add_body<D>(world, BodyType::kinematic, box_shape<D>(0.05f, 1, 1), at<D>(0, 0), {}, along<D>(speed, 0));
+      run(world, 60);
+      const auto state = world.state(ball).value();
+      EXPECT_GT(state.pose.position.x, world.state(wall).value().pose.position.x) << speed << " m/s, ball " << i;
+      EXPECT_NEAR(state.linear_velocity.x, speed, 0.02f * speed);
+    }
+}
+
+// A thin bar that turns fast carries balls along: none is on its other side after a step.
+TYPED_TEST(Continuous, ADrivenBarTurnsThroughNothing) {
+  using D = TypeParam;
+  for (const float spin : {5.0f, 10.0f, 30.0f, 120.0f}) {
+    int passed = 0;
+    for (int i = 0; i < 40; ++i) {
+      World<D> world(world_with<D>(0));
+      const double angle = 0.2 + 0.068 * i, radius = 1 + 0.02 * i;
+      const BodyId ball =
+          add_ball<D>(world, at<D>(radius * math::cos(angle), radius * math::sin(angle)), 0.05f, {}, along<D>(0, 0));
+      BodyDef<D> d;
+      d.type = BodyType::kinematic;
+      if constexpr (D::dimension == 2)
+        d.angular_velocity = spin;
+      else
+        d.angular_velocity = {0, 0, spin};
+      const BodyId bar = world.create_body(d).value();
+      world.add_shape(bar, box_shape<D>(2, 0.03f, 1)).value();
+      float before = 1;
+      for (int step = 0; step < 30; ++step) {
+        world.step(frame).value();
+        const auto pose = world.state(bar).value().pose;
+        const auto place =
+            inverse_rotate(pose.rotation, typename D::Vector(world.state(ball).value().pose.position - pose.position));
+        // From before it to behind it, not round its end.
+        if (before > 0 && place.y <= 0 && place.y > -1 && std::abs(place.x) < 1.9f) ++passed;
+        before = std::abs(place.x) < 1.9f ? place.y : -1;
+      }
+    }
+    EXPECT_EQ(passed, 0) << spin << " rad/s";
+  }
+}
+
 TYPED_TEST(Continuous, ThinRodDoesNotTurnThroughTheGround) {
   using D = TypeParam;
   World<D> world(world_with<D>());

@@ -6,126 +6,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "carom/geometry/compound.h"
-#include "carom/geometry/detail/chain_tree.h"
-#include "carom/rigid/detail/body_way.h"
+#include "carom/rigid/detail/way_candidates.h"
 
 namespace carom::rigid::detail {
 namespace {
-
-/// A body with more contacts than so finds whom it may meet in the trees; what does not move is found there sooner than
-/// among contacts with all that does.
-constexpr int most_listed = 48, most_listed_for_still = 3;
-
-enum Kinds : unsigned { with_fixed = 1, with_kinematic = 2, with_dynamic = 4 };  ///< bits by TreeIndex
-
-/// May these two meet, as the broad phase would say?
-template <class D>
-bool may_meet(const WorldImplementation<D>& world, std::int32_t s, std::int32_t o) {
-  const ShapeRecord<D>&shape = world.shapes.at(s), &other = world.shapes.at(o);
-  if (other.body == shape.body || !may_collide(world, shape, other)) return false;
-  if (joints_forbid_collision(world, shape.body, other.body)) return false;
-  // Who has no contact may be one that the caller's filter refused.
-  return !world.contact_filter || world.pairs.contains(PairSet::key(s, o)) ||
-         world.contact_filter(world.shapes.slots.handle_at(s), world.shapes.slots.handle_at(o));
-}
-
-/// Calls visit(other shape) for what a shape may meet whose places of this step all lie in `box`. Where its fat bounds
-/// foresaw them, the pairs that the broad phase made of these are all there are.
-template <class D, class Visit>
-void for_candidates(const WorldImplementation<D>& world, std::int32_t s, const typename D::Bounds& box, bool foreseen,
-                    unsigned kinds, Visit&& visit) {
-  const ShapeRecord<D>& shape = world.shapes.at(s);
-  const BodyRecord& record = world.bodies.record[std::size_t(shape.body)];
-  // A filter or a one-way surface has left its answer with the contact.
-  const bool plain = !world.contact_filter && world.shapes.extras.empty();
-  const int most = plain && (kinds & with_dynamic) == 0 ? most_listed_for_still : most_listed;
-  if (record.contact_count <= most && foreseen) {
-    for (std::int32_t key = record.first_contact; key != none;) {
-      const ContactRecord<D>& c = world.contacts.at(key >> 1);
-      const int side = key & 1;
-      key = c.next[side];
-      if (key != none) __builtin_prefetch(&world.contacts.at(key >> 1));
-      if (c.shape[side] != s || (c.flags & contact_passing) != 0) continue;
-      const ShapeRecord<D>& other = world.shapes.at(c.shape[1 - side]);
-      if ((kinds >> other.tree & 1u) != 0 && overlaps(world.shapes.trees[other.tree].bounds(other.leaf), box))
-        visit(c.shape[1 - side]);
-    }
-    return;
-  }
-  for (int tree = 0; tree < 3; ++tree) {
-    if ((kinds >> tree & 1u) == 0) continue;
-    if constexpr (D::dimension == 3)
-      if (tree == tree_dynamic && world.scratch.sweep.holds(world.shapes.trees[tree])) {
-        world.scratch.sweep.query(box, [&](std::uint32_t item) {
-          const std::int32_t o = std::int32_t(item);
-          if (overlaps(world.shapes.trees[tree].bounds(world.shapes.at(o).leaf), box) && may_meet(world, s, o))
-            visit(o);
-        });
-        continue;
-      }
-    world.shapes.trees[tree].query(box, [&](std::uint32_t item) {
-      if (may_meet(world, s, std::int32_t(item))) visit(std::int32_t(item));
-      return true;
-    });
-  }
-}
-
-template <class D>
-typename D::Bounds way_bounds(const ShapeRecord<D>& shape, const Sweep<D>& own, const typename D::Position& base) {
-  using P = typename D::Position;
-  if constexpr (D::dimension == 3) {
-    if (!is_convex(shape.geometry)) {  // a compound
-      geometry::Bounds3f all{Vec3f{1e30f, 1e30f, 1e30f}, Vec3f{-1e30f, -1e30f, -1e30f}};
-      for_parts(shape, own, [&](const geometry::Shape3& part, const geometry::Sweep3& way, float) {
-        all = merge(all, geometry::detail::swept_bounds(part, way));
-      });
-      return {base + P(all.low), base + P(all.high)};
-    }
-  }
-  const auto box = geometry::detail::swept_bounds(shape.geometry, own);
-  return {base + P(box.low), base + P(box.high)};
-}
-
-float turn_of(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a.c) + square(b.s - a.s)); }
-float turn_of(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
-/// The way of a shape's middle, and how far the shape turns about it.
-template <class D>
-struct MiddleWay {
-  typename D::Vector begin, end;
-  float arm, radius, turn;
-
-  MiddleWay(const ShapeRecord<D>& shape, const Sweep<D>& own) : turn(turn_of(own.q0, own.q1)) {
-    const ShapeBall<D> ball = ball_about(shape);
-    const typename D::Vector from = ball.middle - own.local_center;
-    begin = own.c0 + rotate(own.q0, from), end = own.c1 + rotate(own.q1, from);
-    arm = math::length(from), radius = ball.radius;
-  }
-  /// Did no point of the shape come as far as a part of its thickness? Then it passed nothing.
-  bool is_slow(const ShapeRecord<D>& shape, float part) const {
-    return math::length(end - begin) + turn * radius <= part * shape.inner_extent;
-  }
-  /// A box that all of the shape stays in on its way, found sooner than way_bounds and larger.
-  typename D::Bounds box(const typename D::Position& base) const {
-    using P = typename D::Position;
-    // The arc of a point strays from its chord by less than its turn times the arm.
-    const double reach = double(radius) + double(turn) * double(arm) + 1e-5 * double(arm + radius);
-    return geometry::grow(typename D::Bounds{base + P(math::min(begin, end)), base + P(math::max(begin, end))}, reach);
-  }
-};
-
-/// The same as seen from what turns or slides along with it.
-template <class D>
-bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, const Sweep<D>& other, float part) {
-  using V = typename D::Vector;
-  const ShapeBall<D> ball = ball_about(shape);
-  const V arm = ball.middle - own.local_center;
-  const V begin = inverse_rotate(other.q0, own.c0 + rotate(own.q0, arm) - other.c0),
-          end = inverse_rotate(other.q1, own.c1 + rotate(own.q1, arm) - other.c1);
-  return math::length(end - begin) +
-             turn_of(conjugate(other.q0) * own.q0, conjugate(other.q1) * own.q1) * ball.radius <=
-         part * shape.inner_extent;
-}
 
 template <class D>
 bool is_fast_bullet(const WorldImplementation<D>& world, std::int32_t body) {
@@ -167,53 +51,6 @@ void carry_on(WorldImplementation<D>& world, std::int32_t own, std::int32_t at, 
   pose_from_center(world, shape.body);
 }
 
-/// Does a fixed shape, whose bounds meet the box, come as near as its parts tell? The bounds of a chain may hold all
-/// that there is.
-bool comes_near(const WorldImplementation<Dim3>&, const ShapeRecord<Dim3>&, const Dim3::Bounds&) { return true; }
-bool comes_near(const WorldImplementation<Dim2>& world, const ShapeRecord<Dim2>& shape, const Dim2::Bounds& box) {
-  if (shape.geometry.type != geometry::ShapeType2::chain) return true;
-  const Dim2::Pose pose = shape_pose(world, shape);
-  const Vec2f middle = inverse_rotate(pose.rotation, Vec2f(box.center() - pose.position));
-  const Vec2f half(box.extents()), c = math::abs(Vec2f{pose.rotation.c, pose.rotation.s});
-  const Vec2f reach = Vec2f{c.x * half.x + c.y * half.y, c.y * half.x + c.x * half.y} +
-                      1e-5f * (math::abs(middle) + half) + Vec2f{1e-3f, 1e-3f};
-  bool any = false;
-  geometry::detail::visit_segments(*shape.geometry.chain, {middle - reach, middle + reach}, [&](int) {
-    any = true;
-    return false;
-  });
-  return any;
-}
-
-/// What forces do not move and a body may meet on its way.
-template <class D>
-struct StillNear {
-  static constexpr int capacity = 8;
-  int most = 0;   ///< that are listed
-  int count = 0;  ///< above that: there are more
-  std::int32_t shape[capacity];
-  const typename D::Bounds* bounds[capacity];  ///< as they are in the tree
-
-  StillNear(const WorldImplementation<D>& world, const typename D::Bounds& box, int list = 0) : most(list) {
-    for (const int tree : {tree_fixed, tree_kinematic})
-      if (world.shapes.trees[tree].size() > 0)
-        world.shapes.trees[tree].query_boxes(box, [&](std::uint32_t item, const typename D::Bounds& other) {
-          if (tree == tree_fixed && !comes_near(world, world.shapes.at(std::int32_t(item)), box)) return true;
-          if (const std::size_t place = std::size_t(count); place < std::size_t(most))
-            shape[place] = std::int32_t(item), bounds[place] = &other;
-          return ++count <= most;
-        });
-  }
-  bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) const {
-    if (count > most) return StillNear(world, box).count == 0;
-    for (int i = 0; i < count; ++i)
-      if (overlaps(*bounds[i], box) &&
-          (world.shapes.at(shape[i]).tree != tree_fixed || comes_near(world, world.shapes.at(shape[i]), box)))
-        return false;
-    return true;
-  }
-};
-
 /// Stops a body at what is not moved by forces; lists what it may meet of the rest.
 template <class D>
 void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t place, bool any_bullets,
@@ -238,27 +75,22 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     const Sweep<D> own = way_of_shape(shape, sweep);
     const bool turns_far = start.turn != typename D::Angular{};
     const float most_slow = bullet ? 0.25f : 0.5f;
+    bool slow = false;  // by itself it passes nothing; what is driven may pass it
     if (!turns_far) {
       const MiddleWay<D> middle(shape, own);
-      if (middle.is_slow(shape, most_slow)) continue;
+      slow = middle.is_slow(shape, most_slow);
+      if (slow && world.scratch.driven.empty()) continue;
       if (list > 0 && alone && still->is_free(world, middle.box(start.center))) continue;
     }
-    typename D::Bounds box;
-    if (turns_far) {
-      const double reach = double(math::length(own.local_center) + shape.outer_extent);
-      box = geometry::grow(typename D::Bounds{math::min(start.center, start.center + typename D::Position(travel)),
-                                              math::max(start.center, start.center + typename D::Position(travel))},
-                           reach);
-    } else {
-      box = way_bounds(shape, own, start.center);
-    }
+    const typename D::Bounds box = bounds_of_way(world, shape, own, start);
     // Bullets look for all that moves where its bounds foresaw its way; what left them looks for bullets, and what of
     // both left them is looked through once more.
     const bool foreseen = geometry::contains(world.shapes.trees[shape.tree].bounds(shape.leaf), box);
-    const bool stray = any_bullets && !foreseen;
+    const bool stray = any_bullets && !foreseen && !slow;
     const bool looks = bullet || stray || world.shapes.moving_surfaces > 0;
     if (stray && (shape.flags & shape_sensor) == 0) strays.push_back({box, s});
-    const unsigned kinds = with_fixed | with_kinematic | (looks ? unsigned(with_dynamic) : 0u);
+    const unsigned kinds =
+        slow ? unsigned(with_kinematic) : with_fixed | with_kinematic | (looks ? unsigned(with_dynamic) : 0u);
     for_candidates(world, s, box, foreseen, kinds, [&](std::int32_t o) {
       const ShapeRecord<D>& other = world.shapes.at(o);
       if (((shape.flags | other.flags) & shape_sensor) != 0) {
@@ -453,10 +285,40 @@ void make_room(StepScratch<D>& scratch, std::size_t bodies) {
   for (auto& list : scratch.found_bullet_pairs) room(list);
   for (auto& list : scratch.found_strays) room(list);
   room(scratch.strays);
+  room(scratch.driven);
+  room(scratch.driven_over);
   room(scratch.bullet_pairs);
   room(scratch.bullet_meetings);
   room(scratch.pair_meetings);
   if (scratch.first_bullet_pair.capacity() < bodies) scratch.first_bullet_pair.reserve(bodies);
+}
+
+/// What is in the way of a wall that is driven fast is looked at like what is fast itself, however slow; who sleeps
+/// there wakes.
+template <class D>
+void add_who_is_driven_over(WorldImplementation<D>& world) {
+  StepScratch<D>& scratch = world.scratch;
+  if (scratch.driven.empty()) return;
+  std::vector<std::int32_t>& bodies = scratch.driven_over;
+  bodies.clear();
+  for (const StrayShape<D>& wall : scratch.driven)
+    for_candidates(world, wall.shape, wall.box, false, with_dynamic, [&](std::int32_t s) {
+      const std::int32_t body = world.shapes.at(s).body;
+      if ((world.bodies.record[std::size_t(body)].flags & body_fast) == 0) bodies.push_back(body);
+    });
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  for (const std::int32_t body : bodies) wake_body(world, body);
+  for (std::size_t place = scratch.swept.size(); place < world.bodies.awake.size(); ++place) {
+    const std::size_t body = std::size_t(world.bodies.awake[place]);
+    scratch.swept.push_back({world.bodies.pose[body].rotation, world.bodies.motion[body].center, {}, 1});
+    scratch.body_changes.push_back(0);
+  }
+  for (const std::int32_t body : bodies) {
+    world.bodies.record[std::size_t(body)].flags |= body_fast;
+    scratch.fast.push_back(world.bodies.record[std::size_t(body)].awake_index);
+  }
+  std::sort(scratch.fast.begin(), scratch.fast.end());
 }
 
 }  // namespace
@@ -474,8 +336,10 @@ void stop_fast_bodies(StepContext<D>& context) {
     const std::uint16_t flags = world.bodies.record[std::size_t(world.bodies.awake[i])].flags;
     any_bullets = any_bullets || (flags & body_bullet) != 0;
   }
+  if (!scratch.fast.empty() || world.shapes.trees[tree_kinematic].size() > 0)
+    make_room(scratch, world.bodies.awake.capacity());
+  if (world.definition.continuous) find_driven(world), add_who_is_driven_over(world);
   if (scratch.fast.empty()) return;
-  make_room(scratch, world.bodies.awake.capacity());
   for (std::vector<SensorMeeting>& list : scratch.met_sensors) list.clear();
   for (std::vector<BulletPair>& list : scratch.found_bullet_pairs) list.clear();
   for (std::vector<StrayShape<D>>& list : scratch.found_strays) list.clear();

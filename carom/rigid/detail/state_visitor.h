@@ -121,11 +121,12 @@ template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, loads, hits, flights, impacts, impact_queue, solver_stages, solver_loops, sweeps, sweeping, watches,
          old_bounds, moved_place, moved, sweep, outgrown, outgrown_places, new_bounds, found_pairs, met_sensors, pairs,
-         found_bullet_pairs, found_strays, strays, bullet_pairs, bullet_meetings, pair_meetings, first_bullet_pair,
-         swept, fast, broken, body_changes, contact_changes, found_manifolds, manifolds, island_parent, island_list,
-         island_bodies, island_ends, doomed_contacts, new_touches, new_manifolds, island_restless, island_substeps,
-         whole_awake, whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end, contact_hit,
-         sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break] = scratch;
+         found_bullet_pairs, found_strays, strays, driven, bullet_pairs, bullet_meetings, pair_meetings,
+         first_bullet_pair, swept, fast, driven_over, broken, body_changes, contact_changes, found_manifolds, manifolds,
+         island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches, new_manifolds,
+         island_restless, island_substeps, whole_awake, whole_trees, whole_colors, contact_begin, contact_end,
+         pending_contact_end, contact_hit, sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined,
+         body_moves, joint_break] = scratch;
   (void)blocks;
   visit.scratch(loads);
   visit.scratch(hits);
@@ -150,12 +151,14 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   for (auto& list : found_bullet_pairs) visit.scratch(list);
   for (auto& list : found_strays) visit.scratch(list);
   visit.scratch(strays);
+  visit.scratch(driven);
   visit.scratch(bullet_pairs);
   visit.scratch(bullet_meetings);
   visit.scratch(pair_meetings);
   visit.scratch(first_bullet_pair);
   visit.scratch(swept);
   visit.scratch(fast);
+  visit.scratch(driven_over);
   visit.scratch(broken);
   visit.scratch(body_changes);
   visit.scratch(contact_changes);

@@ -98,7 +98,7 @@ struct BulletPair {
   std::int32_t place[2];    ///< of the bullet and whom it may meet in BodyStore::awake; none: sleeps
   std::int32_t next[2];     ///< edge keys (2·pair + side) in the lists by place
 };
-/// A shape whose way left its fat bounds, which bullets may have missed.
+/// A shape whose way left its fat bounds, where others may have missed it.
 template <class D>
 struct StrayShape {
   typename D::Bounds box;  ///< of its way
@@ -144,12 +144,14 @@ struct StepScratch {
   std::vector<std::vector<BulletPair>> found_bullet_pairs;  ///< by worker
   std::vector<std::vector<StrayShape<D>>> found_strays;     ///< by worker
   std::vector<StrayShape<D>> strays;
+  std::vector<StrayShape<D>> driven;  ///< of bodies that no force moves
   std::vector<BulletPair> bullet_pairs;
   std::vector<BulletMeeting> bullet_meetings;                  ///< a heap, earliest first
   std::vector<float> pair_meetings;                            ///< by place in bullet_pairs, as the ways are known now
   std::vector<std::int32_t> first_bullet_pair;                 ///< by place in BodyStore::awake
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake
+  std::vector<std::int32_t> driven_over;                       ///< bodies
   std::vector<std::int32_t> broken;                            ///< bodies to be quarantined
   std::vector<std::uint8_t> body_changes;                      ///< by place in BodyStore::awake
   std::vector<std::uint8_t> contact_changes;                   ///< by place in ContactStore::awake
