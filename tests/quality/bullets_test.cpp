@@ -74,6 +74,23 @@ TYPED_TEST(QualityBullets, FixedWall) {
   Gate(15, "2 000 bodies at 400 m/s, fixed wall of .1 m: passed", D::dimension).exactly(passed, 0);
 }
 
+// No force moves the wall; it comes to meet them with a tenth of their speed.
+TYPED_TEST(QualityBullets, DrivenWall) {
+  using D = TypeParam;
+  int passed = 0;
+  for (int kind = 0; kind < 4; ++kind) {
+    World<D> world(world_with<D>(0));
+    const BodyId wall = add_body<D>(world, BodyType::kinematic, box_shape<D>(0.05f, 1100, 5), rigid::test::at<D>(0, 0),
+                                    {}, rigid::test::along<D>(-40, 0));
+    std::vector<BodyId> all;
+    for (int i = 0; i < lanes; ++i) all.push_back(fire<D>(world, kind, i, 1, false));
+    run(world, 30);
+    const double at = world.state(wall).value().pose.position.x;
+    for (const BodyId b : all) passed += world.state(b).value().pose.position.x > at;
+  }
+  Gate(15, "2 000 bodies at 400 m/s, driven wall of .1 m at 40 m/s: passed", D::dimension).exactly(passed, 0);
+}
+
 TYPED_TEST(QualityBullets, ThinMesh) {
   using D = TypeParam;
   int passed = 0;

@@ -17,14 +17,14 @@ struct PassBlow {
 };
 
 /// The lanes of `among` on which a hard blow or a push fell, in this pass or earlier in the step: the next warm start
-/// gives it again. It is one only where nothing pressed before, and more than one point has to share it: in a
-/// pile, where much presses already, contacts disagree more than the points of one.
+/// gives it again. It is one only where next to nothing pressed before, and more than one point has to share it:
+/// in a pile, where much presses already, contacts disagree more than the points of one.
 template <int W, class Block>
 CAROM_SIMD_INLINE WideMask<W> find_struck(Block& c, const PassBlow<W>& blow, WideMask<W> among) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), mobility = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
   const F change = blow.change * mobility, power = blow.power * mobility;
-  const auto fresh = (blow.before == zero) & (F::load(c.point[1].normal_mass) > zero);
+  const auto fresh = (blow.before <= F::splat(1e-3f) * blow.change) & (F::load(c.point[1].normal_mass) > zero);
   const auto hard = fresh & (power > F::splat(hard_blow) * max(change, F::splat(least_change)));
   // One point that is pushed turns others inward: that closes too, though far slower than it pushes.
   const auto pushed = fresh & (change > F::splat(least_push)) & (power <= F::splat(0.3f) * change * change);
