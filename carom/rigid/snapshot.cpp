@@ -14,7 +14,7 @@ namespace detail {
 namespace {
 
 constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
-constexpr std::uint64_t format_version = 8;
+constexpr std::uint64_t format_version = 9;
 constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
 
 /// Where compilers and machines could lay out the plain bytes of a state differently.
@@ -61,6 +61,28 @@ bool body_differs(const SnapshotData<D>& a, const std::vector<std::uint64_t>& im
     if (std::memcmp(&image_a[sa.first + slot * words], &image_b[sb.first + slot * words], words * 8) != 0) return true;
   }
   return false;
+}
+/// Codes the attitudes and centres of the bodies of `folded` as they differ from what is foreseen, in words that are
+/// exclusive-or'ed with the base's. `by_way`: whose centre is told by its way.
+template <class D>
+void foretell_bodies(std::vector<std::uint64_t>& image, const SnapshotData<D>& data, const SnapshotData<D>& base,
+                     std::vector<std::uint64_t>& base_image, const std::vector<bool>& folded, std::size_t common,
+                     std::vector<bool>& by_way, bool back) {
+  const BodyForesight<D> foresight(image, data, base, base_image);
+  auto* const pose = section_values<typename D::Pose>(image, data, data.bodies_at + 1);
+  auto* const motion = section_values<BodyMotion<D>>(image, data, data.bodies_at + 2);
+  auto* const base_pose = section_values<typename D::Pose>(base_image, base, base.bodies_at + 1);
+  auto* const base_motion = section_values<BodyMotion<D>>(base_image, base, base.bodies_at + 2);
+  for (std::size_t i = 0; i < common; ++i) {
+    if (!folded[i]) continue;
+    const typename D::Rotation& from = base_pose[i].rotation;
+    exclusive_or(pose[i].rotation, from);
+    exclusive_or(pose[i].rotation, foresight.rotation(i, from));
+    if (!back)
+      by_way[i] = tell_center_by_way(motion[i].center, base_motion[i].center, foresight.way(i));
+    else if (by_way[i])
+      center_by_way(motion[i].center, base_motion[i].center, foresight.way(i));
+  }
 }
 std::size_t word_count(const SnapshotSection& s) { return std::size_t((s.count * s.element + 7) / 8); }
 
@@ -165,12 +187,18 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
   for (std::size_t i = 0; i < common_bodies; ++i) folded[i] = body_differs(data, image, *base, base_image, i);
   fold_bodies(image, data, [&](std::size_t i) { return folded[i]; });
   if (base != nullptr) fold_bodies(base_image, *base, [&](std::size_t i) { return i < common_bodies && folded[i]; });
+  std::vector<bool> by_way(common_bodies);
+  if (base != nullptr) foretell_bodies(image, data, *base, base_image, folded, common_bodies, by_way, false);
+  fold_trees(image, data, false);
+  if (base != nullptr) fold_trees(base_image, *base, false);
   out.number(data.world_number);
   out.number(data.step_count);
   out.number(data.sections.size());
   out.number(data.bodies_at);
   out.number(data.shapes_at);
   out.number(data.manifolds_at);
+  out.number(data.trees_at);
+  out.number(data.pairs_at);
   for (std::size_t i = 0; i < data.sections.size(); ++i) {
     const SnapshotSection& s = data.sections[i];
     const SnapshotSection b = base != nullptr ? base->sections[i] : SnapshotSection{};
@@ -181,7 +209,12 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
     out.difference(words_of(s, image), words_of(b, base_image), 2 * common, model);
     out.difference(words_of(s, image) + 2 * common, nullptr, 2 * (count - common), model);
   }
-  BitModel foresight;
+  BitModel differs, foresight;
+  for (std::size_t i = 0; i < common_bodies; ++i) {
+    out.bit(differs, folded[i]);
+    if (folded[i]) out.bit(foresight, by_way[i]);
+  }
+  foresight = {};
   for (const bool x : foreseen) out.bit(foresight, x);
   // Geometry by slot, where it is not as in the base.
   SectionModel geometry_model(std::size(GeometryRecord{}.value));
@@ -217,6 +250,8 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
   data.bodies_at = std::size_t(in.number());
   data.shapes_at = std::size_t(in.number());
   data.manifolds_at = std::size_t(in.number());
+  data.trees_at = std::size_t(in.number());
+  data.pairs_at = std::size_t(in.number());
   std::uint64_t more = 0;  // words than the base has
   // The differences first: zero where the base holds.
   for (std::uint64_t i = 0; i < sections && in.sound(); ++i) {
@@ -242,38 +277,50 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
   if (!in.sound() || data.bodies_at > sections || !is(data.bodies_at + 1, sizeof(typename D::Pose)) ||
       !is(data.bodies_at + 2, sizeof(BodyMotion<D>)) || !is(data.bodies_at + 3, sizeof(BodyRecord)) ||
       !is(data.shapes_at, sizeof(ShapeTraits<D>)) || data.manifolds_at < 1 ||
-      !is(data.manifolds_at - 1, sizeof(ContactRecord<D>)) || !is(data.manifolds_at, sizeof(ManifoldRecord<D>)))
+      !is(data.manifolds_at - 1, sizeof(ContactRecord<D>)) || !is(data.manifolds_at, sizeof(ManifoldRecord<D>)) ||
+      !is(data.pairs_at, sizeof(std::uint64_t)) || data.trees_at > sections)
     return false;
-  if (base != nullptr && (base->bodies_at != data.bodies_at || base->manifolds_at != data.manifolds_at ||
-                          base->shapes_at != data.shapes_at))
+  for (std::size_t tree = 0; tree < 3; ++tree) {
+    const std::size_t at = data.trees_at + 5 * tree;
+    if (!is(at, sizeof(TreeNodeImage<D>)) || !is(at + 1, sizeof(std::int32_t)) || data.sections[at + 1].count != 1)
+      return false;
+  }
+  const SnapshotSection& time = data.sections[data.sections.size() - 2];
+  if (time.element != sizeof(double) || time.count != 1) return false;
+  if (base != nullptr &&
+      (base->bodies_at != data.bodies_at || base->manifolds_at != data.manifolds_at ||
+       base->shapes_at != data.shapes_at || base->trees_at != data.trees_at || base->pairs_at != data.pairs_at))
     return false;
   const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
   for (std::size_t k = 1; k < 4; ++k)
     if (data.sections[data.bodies_at + k].count != bodies) return false;
   std::vector<bool> folded(bodies, true);
-  if (base != nullptr) {
-    const std::size_t common_bodies = std::min(bodies, std::size_t(base->sections[base->bodies_at].count));
-    for (std::size_t i = 0; i < common_bodies; ++i) {
-      folded[i] = false;
-      for (std::size_t k = 1; k < 4 && !folded[i]; ++k) {
-        const SnapshotSection& s = data.sections[data.bodies_at + k];
-        for (std::size_t w = 0; w < s.element / 8 && !folded[i]; ++w)
-          folded[i] = data.image[s.first + i * (s.element / 8) + w] != 0;
-      }
-    }
-    std::vector<std::uint64_t> base_image = canonical_image(*base);
-    fold_bodies(base_image, *base, [&](std::size_t i) { return i < common_bodies && folded[i]; });
-    for (std::size_t i = 0; i < sections; ++i) {
-      const SnapshotSection &s = data.sections[i], &b = base->sections[i];
-      const std::size_t common = std::min(word_count(s), word_count(b));
-      for (std::size_t w = 0; w < common; ++w) data.image[s.first + w] ^= base_image[b.first + w];
-    }
+  if (base == nullptr) {
+    fold_trees(data.image, data, true);
+    fold_bodies(data.image, data, [&](std::size_t i) { return folded[i]; });
+    return true;
   }
+  const std::size_t common_bodies = std::min(bodies, std::size_t(base->sections[base->bodies_at].count));
+  std::vector<bool> by_way(common_bodies);
+  BitModel differs, foresight;
+  for (std::size_t i = 0; i < common_bodies; ++i) {
+    folded[i] = in.bit(differs);
+    if (folded[i]) by_way[i] = in.bit(foresight);
+  }
+  const std::vector<std::uint64_t> plain_base = canonical_image(*base);
+  std::vector<std::uint64_t> base_image = plain_base;
+  fold_bodies(base_image, *base, [&](std::size_t i) { return i < common_bodies && folded[i]; });
+  fold_trees(base_image, *base, false);
+  for (std::uint64_t i = 0; i < sections; ++i) {
+    const SnapshotSection &s = data.sections[i], &b = base->sections[i];
+    const std::size_t common = std::min(word_count(s), word_count(b));
+    for (std::size_t w = 0; w < common; ++w) data.image[s.first + w] ^= base_image[b.first + w];
+  }
+  fold_trees(data.image, data, true);
+  foretell_bodies(data.image, data, *base, base_image, folded, common_bodies, by_way, true);
   fold_bodies(data.image, data, [&](std::size_t i) { return folded[i]; });
-  if (base == nullptr) return true;
-  const std::vector<std::uint64_t> base_image = canonical_image(*base);
-  BitModel foresight;
-  ContactForesight<D>(data, *base, base_image)
+  foresight = {};
+  ContactForesight<D>(data, *base, plain_base)
       .for_each(data.image, [&](std::byte* at, const typename D::Transform& pose) {
         if (in.bit(foresight)) std::memcpy(at, &pose, sizeof pose);
       });
@@ -426,6 +473,7 @@ core::Result<Snapshot<D>> Snapshot<D>::decode(std::span<const std::byte> bytes, 
       !read_effectors<D>(in, data) || !in.at_end())
     return fault("the data is not what a snapshot holds");
   if (hash_words(data.image) != digest) return fault("the state does not match its digest, expected whole data");
+  if (!write_pairs(data)) return fault("the contacts do not make a set of pairs of the size that is told");
   return result;
 }
 

@@ -23,6 +23,7 @@ struct ByteCounter {
               const core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
+  void begins(StatePart) {}
   template <class T>
   void manifolds(const core::Column<T>& v) {
     state(v);

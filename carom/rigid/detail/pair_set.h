@@ -2,6 +2,7 @@
 // of its slots has no influence on anything.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -74,6 +75,12 @@ class PairSet {
     return found == count_;
   }
   std::size_t size() const { return count_; }
+  /// Keeps the room.
+  void clear() {
+    std::fill(keys_.begin(), keys_.end(), empty);
+    mask_ = keys_.empty() ? 0 : keys_.size() - 1;
+    count_ = 0;
+  }
   /// Calls visit(member) for everything that changes. `set` may be const.
   template <class Set, class Visit>
   static void visit_members(Set& set, Visit&& visit) {

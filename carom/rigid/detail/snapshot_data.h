@@ -33,6 +33,8 @@ struct SnapshotData {
   std::size_t bodies_at = 0;     ///< section of solver bodies; poses, motions and records follow
   std::size_t shapes_at = 0;     ///< section of shapes
   std::size_t manifolds_at = 0;  ///< section of manifolds; that of contacts is before it
+  std::size_t trees_at = 0;      ///< section of the first tree's nodes; its root follows
+  std::size_t pairs_at = 0;      ///< section of the keys of PairSet
   std::shared_ptr<const std::vector<typename D::Shape>> geometry;  ///< by slot of the shape
   std::vector<GeometryRecord> missing;  ///< after decoding: by slot, where `geometry` has no value yet
   std::vector<EffectorData<D>> effectors;

@@ -11,8 +11,12 @@ namespace carom::rigid::detail {
 //   scratch(v)     a vector of the step, whose content may be forgotten between steps;
 //   events(v)      what the last step told;
 //   bodies(v, v, v, v), manifolds(v)                     state of which a part follows from the rest;
+//   begins(part)   the state of such a part comes next;
 //   definition(d), shapes(v), names(v), effectors(v)     state that is not plain bytes.
 // Store types are deduced, so that all of this serves constant worlds too.
+
+/// What a visitor may want to know the place of: the trees of shapes, the set of pairs.
+enum class StatePart { trees, pairs };
 
 template <class Slots, class Visit>
 void visit_slots(Slots& slots, Visit& visit) {
@@ -44,6 +48,7 @@ void visit_shapes(Shapes& store, Visit& visit) {
   visit.state(extras);
   visit.state(surfaces);
   visit.state(moving_surfaces);
+  visit.begins(StatePart::trees);
   for (auto& tree : trees) visit_slots(tree, visit);
 }
 
@@ -207,6 +212,7 @@ void visit_world(World& world, Visit&& visit) {
   visit_joints(joints, visit);
   visit_effectors(effectors, visit);
   visit_contacts(contacts, visit);
+  visit.begins(StatePart::pairs);
   visit_slots(pairs, visit);
   visit_graph(graph, visit);
   {

@@ -114,6 +114,7 @@ struct MemoryRelease {
               core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
+  void begins(StatePart) {}
   template <class T>
   void manifolds(core::Column<T>& v) {
     state(v);

@@ -46,6 +46,7 @@ class SnapshotWriter {
     to_.bodies_at = to_.sections.size();
     state(solver), state(pose), state(motion), state(record);
   }
+  void begins(StatePart part) { (part == StatePart::trees ? to_.trees_at : to_.pairs_at) = to_.sections.size(); }
   void manifolds(const core::Column<ManifoldRecord<D>>& v) {
     to_.manifolds_at = to_.sections.size();
     state(v);
@@ -133,6 +134,7 @@ class SnapshotChecker {
               const core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
+  void begins(StatePart) {}
   template <class T>
   void manifolds(const core::Column<T>& v) {
     state(v);
@@ -190,6 +192,7 @@ class SnapshotReader {
               core::Column<BodyRecord>& record) {
     state(solver), state(pose), state(motion), state(record);
   }
+  void begins(StatePart) {}
   template <class T>
   void manifolds(core::Column<T>& v) {
     state(v);
