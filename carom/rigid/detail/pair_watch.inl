@@ -90,12 +90,6 @@ void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, fl
   if (!(w.most_way > 0 && w.cap < 0)) w.body[0] = none;
 }
 
-/// A gap without the lower half of its bits, which a bound does not need and a difference of snapshots would carry.
-inline float rounded_down(float gap) {
-  if (!(gap > 0)) return gap;
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(gap) & 0xFFFFF000u);
-}
-
 /// Do two that slid past each other, apart along an axis, have their bounds still meet and that axis still between
 /// them? Then they go on from here, without being asked how far they are.
 template <class D>
@@ -106,7 +100,7 @@ bool slides_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D
   if (!(look_ahead(world, c, sweep, c.axis) < gap - c.margin())) return false;
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf))) return false;
-  c.gap = rounded_down(gap);
+  c.gap = coarse(gap);
   c.base = now;
   watch_apart(world, c, Moved<D>(c, b, now));
   return true;
@@ -144,7 +138,7 @@ template <class D>
 std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
                   const ShapeRecord<D>& b) {
   std::uint8_t change = 0;
-  c.gap = rounded_down(c.gap);
+  c.gap = coarse(c.gap);
   if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf)))
     change = change_apart;
   else if (c.first_manifold != none)

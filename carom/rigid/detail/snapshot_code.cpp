@@ -31,7 +31,7 @@ void ByteWriter::grow() {
 }
 
 void ByteWriter::bit(BitModel& model, bool x) {
-  const std::uint32_t bound = (range_ >> 12) * model.zero;
+  const std::uint32_t bound = (range_ >> 12) * model.chance();
   if (x)
     low_ += bound, range_ -= bound;
   else
@@ -61,7 +61,9 @@ void ByteWriter::changed_word(WordModel& model, std::uint32_t x, bool before) {
     bit(model.length[node], b);
     node = 2 * node + (b ? 1 : 0);
   }
-  bits(x, length - 1);  // the highest is 1
+  const bool halved = length > 16 && (x & 0xFFFFu) == 0;
+  if (length > 16) bit(model.halved, halved);
+  bits(halved ? x >> 16 : x, length - 1 - (halved ? 16 : 0));  // the highest is 1
 }
 
 void ByteWriter::difference(const std::uint32_t* now, const std::uint32_t* base, std::size_t count,
@@ -110,7 +112,7 @@ void ByteReader::grow() {
 
 bool ByteReader::bit(BitModel& model) {
   if (!sound_) return false;
-  const std::uint32_t bound = (range_ >> 12) * model.zero;
+  const std::uint32_t bound = (range_ >> 12) * model.chance();
   const bool x = code_ >= bound;
   if (x)
     code_ -= bound, range_ -= bound;
@@ -152,7 +154,8 @@ std::uint32_t ByteReader::changed_word(WordModel& model, bool before) {
     symbol = 2 * symbol + (b ? 1 : 0);
     node = 2 * node + (b ? 1 : 0);
   }
-  return 1u << symbol | bits(symbol);
+  const bool halved = symbol > 15 && bit(model.halved);
+  return 1u << symbol | (halved ? bits(symbol - 16) << 16 : bits(symbol));
 }
 
 void ByteReader::difference(std::uint32_t* words, std::size_t count, SectionModel& model) {

@@ -2,6 +2,7 @@
 // bits each word of a kind of record is wont to change (Martin 1979; carry propagation after Schindler 1998).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,16 +10,30 @@
 
 namespace carom::rigid::detail {
 
-/// The chance that a bit is 0, in 1/4096.
-struct BitModel {
-  std::uint16_t zero = 2048;
-  void learn(bool bit) { zero = std::uint16_t(bit ? zero - (zero >> learning) : zero + ((4096 - zero) >> learning)); }
-  static constexpr int learning = 4;
+/// The chance that a bit is 0: the mean of those before at first, of the last thirty or so later.
+class BitModel {
+ public:
+  std::uint32_t chance() const { return zero_ >> 4; }  ///< 1/4096, never 0 or 1
+  void learn(bool bit) {
+    const int target = bit ? 48 : 65536 - 48;
+    zero_ = std::uint16_t(zero_ + (target - zero_) * rates[seen_] / 65536);
+    if (seen_ + 1u < rates.size()) ++seen_;
+  }
+
+ private:
+  static constexpr std::array<int, 30> rates = [] {
+    std::array<int, 30> all{};
+    for (int n = 0; n < 30; ++n) all[std::size_t(n)] = n == 0 ? 32767 : int(65536 / (n + 1.6));
+    return all;
+  }();
+  std::uint16_t zero_ = 32768;  ///< 1/65536
+  std::uint16_t seen_ = 0;
 };
 
-/// For one word of a record: whether it changed, where the word before it did or not, and if, its length in bits.
+/// For one word of a record: whether it changed, where the word before it did or not, and if, its length in bits; and
+/// of a long one, whether its lower half is zero.
 struct WordModel {
-  BitModel changed[2], length[32];
+  BitModel changed[2], length[32], halved;
 };
 
 /// What is known of a section while it is coded.

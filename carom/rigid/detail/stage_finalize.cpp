@@ -2,6 +2,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "carom/rigid/detail/coarse.h"
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -151,7 +152,7 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
     shape.flags |= shape_outgrown;
     any = true;
   }
-  world.bodies.motion[std::size_t(body)].slack = any ? 0 : 0.98f * float(slack);
+  world.bodies.motion[std::size_t(body)].slack = any ? 0 : coarse(0.98f * float(slack));
   return any;
 }
 
@@ -231,7 +232,7 @@ void finalize_bodies(StepContext<D>& context) {
       if (record.flags & body_fast) continue;  // its bounds wait for the end of its way
       if constexpr (D::dimension == 3) update_world_inertia(world, body);
       // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
-      m.slack = turned < 0.2f ? m.slack - (travel + surface_way) : 0;
+      m.slack = turned < 0.2f ? coarse(m.slack - (travel + surface_way)) : 0;
       const bool quick = travel > quick_share * m.inner_extent;
       if ((m.slack <= 0 || quick) && leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "carom/rigid/detail/coarse.h"
 #include "carom/rigid/detail/fly_past.h"
 #include "carom/rigid/detail/found_contacts.h"
 #include "carom/rigid/detail/shape_manifolds.h"
