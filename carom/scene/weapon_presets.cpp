@@ -10,10 +10,6 @@ namespace {
 using detail::PresetValues;
 using sports::NumberName;
 
-core::Error told_of(std::string_view file, const core::Error& error) {
-  return core::Error{core::text(file, ": ", error.message)};
-}
-
 /// The number of that name into `into`, where the file has it.
 void take(const PresetValues& values, std::string_view name, double& into) { into = values.number(name, into); }
 
@@ -68,7 +64,7 @@ core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std
   if (!projectile)
     return detail::preset_error(file, *values->root.find("values"), "values", projectile.error().message);
   a.projectile = std::move(projectile).value();
-  if (auto s = ballistics::check(a); !s) return told_of(file, s.error());
+  if (auto s = ballistics::check(a); !s) return detail::in_file(file, s.error());
   return a;
 }
 
@@ -81,7 +77,7 @@ core::Result<ballistics::Sight> parse_sight(std::string_view text, std::string_v
   take(*values, "click", s.click);
   take(*values, "spacing", s.spacing);
   take(*values, "magnification", s.magnification);
-  if (auto checked = ballistics::check(s); !checked) return told_of(file, checked.error());
+  if (auto checked = ballistics::check(s); !checked) return detail::in_file(file, checked.error());
   return s;
 }
 
@@ -143,7 +139,7 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
   take(*values, "mount_push_damping", w.mount.push_damping);
   take(*values, "mount_rise_frequency", w.mount.rise_frequency);
   take(*values, "mount_rise_damping", w.mount.rise_damping);
-  if (auto s = ballistics::check(w); !s) return told_of(file, s.error());
+  if (auto s = ballistics::check(w); !s) return detail::in_file(file, s.error());
   return w;
 }
 
@@ -180,7 +176,7 @@ core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, s
     }
     layers.push_back(layer);
   }
-  if (auto s = ballistics::check_layers(layers); !s) return told_of(file, s.error());
+  if (auto s = ballistics::check_layers(layers); !s) return detail::in_file(file, s.error());
   return layers;
 }
 
