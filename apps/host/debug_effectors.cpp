@@ -28,7 +28,9 @@ constexpr EffectorKind effector_kinds[] = {{"gravity of a point mass", 0x4a8fe7}
                                            {"drag by flow", 0xb5651d},
                                            {"Magnus lift", 0xd1495b},
                                            {"turning frame", 0x7d6bd0},
-                                           {"electromagnetic field", 0xc2b800}};
+                                           {"electromagnetic field", 0xc2b800},
+                                           {"lifting surfaces", 0x3f8efc},
+                                           {"drag of cylinders", 0xc46f3a}};
 template <class D>
 constexpr std::size_t effector_kind_count = std::variant_size_v<rigid::EffectorDef<D>>;
 

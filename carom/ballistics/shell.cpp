@@ -65,6 +65,51 @@ Shell m107() {
                            {2, .294, 3.460, 2.747, -.767, -.021, 3.013, -15.3, .388}}};
 }
 
+std::span<const ShellPreset> shell_presets() {
+  static const std::vector<ShellPreset> list = {
+      {"155mm_m107",
+       "155 mm high explosive shell M107, 95.8 lb, spin-stabilised; charges 4, 6 and 8.",
+       "mass, inertia and aerodynamics: BRL MR-1582 (AD0454925), table 11 of Lim, NPS thesis AD1029824",
+       m107(),
+       {337, 474, 684}}};
+  return list;
+}
+
+core::Status check(const Shell& shell) {
+  const struct {
+    const char* name;
+    double value;
+  } positive[] = {{"mass", shell.mass},
+                  {"diameter", shell.diameter},
+                  {"axial_inertia", shell.axial_inertia},
+                  {"transverse_inertia", shell.transverse_inertia}};
+  for (const auto& field : positive)
+    if (!(field.value > 0) || !math::is_finite(field.value))
+      return core::Error{core::text("shell: ", core::refused(field.name, field.value, "a finite number > 0"))};
+  if (!math::is_finite(shell.twist) || shell.twist == 0)
+    return core::Error{core::text("shell: ", core::refused("twist", shell.twist, "calibres a turn, not zero"))};
+  if (shell.aerodynamics.empty()) return core::Error{"shell: no aerodynamic coefficients, expected at least one row"};
+  for (std::size_t i = 0; i < shell.aerodynamics.size(); ++i) {
+    const ShellCoefficients& row = shell.aerodynamics[i];
+    const auto refuse = [&](const char* name, double value, const char* expected) {
+      return core::Error{core::text("shell: aerodynamics row ", i + 1, ": ", core::refused(name, value, expected))};
+    };
+    if (!(row.mach >= 0) || (i > 0 && !(row.mach > shell.aerodynamics[i - 1].mach)))
+      return refuse("mach", row.mach, "Mach numbers from 0, rising");
+    if (!(row.overturning != 0) || !math::is_finite(row.overturning))
+      return refuse("overturning", row.overturning, "a finite number, not zero");
+    for (const auto& [name, value] : {std::pair{"axial", row.axial},
+                                      {"axial_yaw", row.axial_yaw},
+                                      {"normal", row.normal},
+                                      {"magnus_force", row.magnus_force},
+                                      {"roll_damping", row.roll_damping},
+                                      {"pitch_damping", row.pitch_damping},
+                                      {"magnus_moment", row.magnus_moment}})
+      if (!math::is_finite(value)) return refuse(name, value, "a finite number");
+  }
+  return {};
+}
+
 ShellCoefficients coefficients_at(const Shell& shell, double mach) {
   const auto& rows = shell.aerodynamics;
   if (rows.empty()) return {};
@@ -160,32 +205,16 @@ SymmetricBody six_degrees(const Shell& shell, const Conditions& conditions, doub
   return {s.velocity, g + force / shell.mass, turn, moment};
 }
 
-core::Result<void> check(const Shell& shell, const FlightPoint& start, const FlightLimits& limits) {
+core::Status check(const FlightPoint& start, const FlightLimits& limits) {
   const struct {
     const char* name;
     double value;
-  } positive[] = {{"mass", shell.mass},
-                  {"diameter", shell.diameter},
-                  {"axial_inertia", shell.axial_inertia},
-                  {"transverse_inertia", shell.transverse_inertia},
-                  {"speed at the muzzle", math::length(start.velocity)},
+  } positive[] = {{"speed at the muzzle", math::length(start.velocity)},
                   {"time limit", limits.time},
                   {"tolerance", limits.tolerance}};
   for (const auto& field : positive)
     if (!(field.value > 0) || !math::is_finite(field.value))
       return core::Error{core::text("shell: ", core::refused(field.name, field.value, "a finite number > 0"))};
-  if (!math::is_finite(shell.twist) || shell.twist == 0)
-    return core::Error{core::text("shell: ", core::refused("twist", shell.twist, "calibres a turn, not zero"))};
-  if (shell.aerodynamics.empty()) return core::Error{"shell: no aerodynamic coefficients, expected at least one row"};
-  for (std::size_t i = 0; i < shell.aerodynamics.size(); ++i) {
-    const ShellCoefficients& row = shell.aerodynamics[i];
-    if (!(row.mach >= 0) || (i > 0 && !(row.mach > shell.aerodynamics[i - 1].mach)))
-      return core::Error{core::text("shell: aerodynamics row ", i + 1, ": ",
-                                    core::refused("mach", row.mach, "Mach numbers from 0, rising"))};
-    if (!(row.overturning != 0) || !math::is_finite(row.overturning))
-      return core::Error{core::text("shell: aerodynamics row ", i + 1, ": ",
-                                    core::refused("overturning", row.overturning, "a finite number, not zero"))};
-  }
   return {};
 }
 
@@ -226,8 +255,8 @@ core::Result<ShellFlight> integrate(const S& first, const FlightPoint& start, co
 
 core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& conditions, const FlightPoint& start,
                                     ShellModel model, const FlightLimits& limits, Vec3d tip) {
-  const core::Result<void> checked = detail::check(shell, start, limits);
-  if (!checked.ok()) return checked.error();
+  if (const core::Status good = check(shell); !good) return good.error();
+  if (const core::Status good = detail::check(start, limits); !good) return good.error();
   const double spin = muzzle_spin(shell, math::length(start.velocity));
   const auto longest = [&](double step) {
     return conditions.field ? math::min(step, detail::longest_field_step) : step;

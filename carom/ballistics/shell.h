@@ -1,6 +1,8 @@
 // Spinning shells: the modified point mass of STANAG 4355 and the full motion of a symmetric body (chapter 18.1).
 #pragma once
 
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "carom/ballistics/flight.h"
@@ -28,6 +30,16 @@ struct Shell {
   double twist = 20;                            ///< calibres a turn, right-handed; negative: left-handed
   std::vector<ShellCoefficients> aerodynamics;  ///< rows by rising Mach number, linear between
 };
+/// Errors name what cannot be: masses, inertias, rows of coefficients.
+CAROM_API core::Status check(const Shell& shell);
+/// A shell with what it is fired with.
+struct ShellPreset {
+  std::string_view name, description, source;
+  Shell shell{};
+  std::vector<double> muzzle_speeds;  ///< m/s, by charge
+};
+/// 155mm_m107. Files: presets/shell.
+CAROM_API std::span<const ShellPreset> shell_presets();
 /// The 155 mm M107. Mass, inertia and aerodynamics: BRL MR-1582 (AD0454925) as tabulated in table 11 of Lim, NPS thesis
 /// AD1029824.
 CAROM_API Shell m107();

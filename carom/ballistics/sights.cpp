@@ -179,6 +179,68 @@ double SightedFlight::point_blank_range(double radius) const {
   return math::dot((point ? point->position : trajectory_.end().position), along_);
 }
 
+std::optional<SightedFlight::Stretch> SightedFlight::danger_space(double distance, double height) const {
+  const auto middle = at(distance);
+  if (!middle || !(height > 0)) return std::nullopt;
+  const double last = math::dot(trajectory_.end().position, along_);
+  const auto within = [&](double d) {
+    const auto point = at(d);
+    return point && math::abs(point->height - middle->height) <= 0.5 * height;
+  };
+  // Outward in steps, then by halves.
+  const auto edge = [&](double limit) {
+    constexpr int steps = 400;
+    double inside = distance;
+    for (int i = 1; i <= steps; ++i) {
+      double outside = distance + (limit - distance) * i / steps;
+      if (within(outside)) {
+        inside = outside;
+        continue;
+      }
+      for (int k = 0; k < 50; ++k) {
+        const double d = 0.5 * (inside + outside);
+        (within(d) ? inside : outside) = d;
+      }
+      return inside;
+    }
+    return limit;
+  };
+  return Stretch{edge(0), edge(last)};
+}
+
+core::Result<GreatestRange> greatest_range(const Gun& gun, const Conditions& conditions) {
+  const auto shoot = [&](double elevation) -> core::Result<GreatestRange> {
+    const auto flight =
+        fly(gun.projectile, conditions, {{}, gun.muzzle_speed * direction(elevation)}, {.time = 3600, .ground = 0});
+    if (!flight) return flight.error();
+    const Trajectory::Point end = flight->end();
+    return GreatestRange{elevation, math::hypot(end.position.x, end.position.z), end.time};
+  };
+  // The golden section: over level ground the range has one peak.
+  constexpr double golden = 0.6180339887498949;
+  double low = 0.02, high = 1.55;
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  auto at_a = shoot(a), at_b = shoot(b);
+  for (int i = 0; i < 40; ++i) {
+    if (!at_a) return at_a.error();
+    if (!at_b) return at_b.error();
+    if (at_a->range > at_b->range) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - golden * (high - low);
+      at_a = shoot(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + golden * (high - low);
+      at_b = shoot(b);
+    }
+  }
+  return shoot(0.5 * (low + high));
+}
+
 core::Result<PointBlank> best_point_blank(const Gun& gun, const Conditions& conditions, double radius) {
   if (!(radius > 0) || !math::is_finite(radius))
     return core::Error{core::refused("radius of the target", radius, "a finite number of metres > 0")};

@@ -70,6 +70,13 @@ class CAROM_API SightedFlight {
   std::vector<double> zeros() const;
   /// The farthest distance (m) up to which it stays within `radius` m of the line of sight: point-blank range.
   double point_blank_range(double radius) const;
+  /// The stretch of distances (m) about `distance` over which the shot stays within `height`/2 m of where it is there:
+  /// a target of that height, aimed at its middle, is hit anywhere on it. Cut off at the end of the flight. Empty
+  /// beyond it. (Danger space; as long as wrongly judged distances may be.)
+  struct Stretch {
+    double from = 0, to = 0;
+  };
+  std::optional<Stretch> danger_space(double distance, double height) const;
   const Trajectory& trajectory() const { return trajectory_; }
 
  private:
@@ -87,6 +94,13 @@ struct PointBlank {
   double range = 0;
 };
 CAROM_API core::Result<PointBlank> best_point_blank(const Gun& gun, const Conditions& conditions, double radius);
+
+/// The elevation (rad) over the horizon that carries farthest over level ground, and how far (m). Errors as
+/// `zero_elevation`.
+struct GreatestRange {
+  double elevation = 0, range = 0, time = 0;
+};
+CAROM_API core::Result<GreatestRange> greatest_range(const Gun& gun, const Conditions& conditions);
 
 /// Whole clicks of `click` rad nearest to the angle.
 inline int clicks(double angle, double click) { return int(math::round(angle / click)); }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <variant>
 
+#include "carom/forces/attitude.h"
 #include "carom/forces/drag_law.h"
 #include "carom/rigid/state.h"
 
@@ -76,6 +77,35 @@ struct MagnusLift : EffectorTarget {
   double radius = 0.5;     ///< m
   double density = 1.225;  ///< kg/m³, where the world has no Surroundings
 };
+template <class D>
+constexpr typename D::Vector unit_x() {
+  typename D::Vector v{};
+  v.x = 1;
+  return v;
+}
+/// A wing, fin, sail or plate fixed to a body: lift and drag by its angle of attack, all the way round, at its centre
+/// of pressure (forces/attitude.h). In the plane it is a metre deep.
+template <class D>
+struct LiftingSurface : EffectorTarget {
+  forces::WingLaw law{};
+  typename D::Vector point{};                ///< body frame, from the origin: the middle of the surface
+  typename D::Vector forward = unit_x<D>();  ///< body frame: to its leading edge
+  Vec3f up{0, 1, 0};                         ///< body frame, 3D only: out of its upper side
+  double area = 1;                           ///< m²
+  double chord = 1;                          ///< m
+  double density = 1.225;                    ///< kg/m³, where the world has no Surroundings
+};
+/// A cylinder, such as a mast, an arrow, a pole, a rocket's body, that feels the flow along and across itself apart
+/// (forces/attitude.h). In the plane it lies in it.
+template <class D>
+struct CylinderDrag : EffectorTarget {
+  typename D::Vector point{};             ///< body frame, from the origin: its middle
+  typename D::Vector axis = unit_x<D>();  ///< body frame
+  double diameter = 0.1;                  ///< m
+  double length = 1;                      ///< m
+  double density = 1.225;                 ///< kg/m³, where the world has no Surroundings
+  double viscosity = 1.7894e-5;           ///< Pa·s, likewise
+};
 /// The world stands in a frame that turns: −2 Ω × v, and the centrifugal Ω² r on request. The Earth's: environment::
 /// earth_rate. Coriolis' force does no work here either, whatever the step.
 template <class D>
@@ -102,6 +132,7 @@ struct SpringDamper {
   double rest_length = 1;          ///< m
   double stiffness = 100;          ///< N/m
   double damping = 0;              ///< N·s/m
+  double break_force = 0;          ///< N, 0: never. Above it after a step the spring is gone and told of in an event.
 };
 /// Archimedes: ρ g times the submerged volume, at its centre, with drag of the wet part. The surface is
 /// y = level + Σ a sin(k x − ω t + φ) in x (deep water: ω² = g k). Where the world has Surroundings with water, that is
@@ -169,8 +200,9 @@ struct CustomEffector : EffectorTarget {
 };
 
 template <class D>
-using EffectorDef = std::variant<SphericalGravity<D>, LinearDrag<D>, QuadraticDrag<D>, Wind<D>, SpringDamper<D>,
-                                 Buoyancy<D>, Thrust<D>, RadialField<D>, VortexField<D>, CustomEffector<D>,
-                                 Surroundings<D>, BodyDrag<D>, MagnusLift<D>, TurningFrame<D>, ElectromagneticField<D>>;
+using EffectorDef =
+    std::variant<SphericalGravity<D>, LinearDrag<D>, QuadraticDrag<D>, Wind<D>, SpringDamper<D>, Buoyancy<D>, Thrust<D>,
+                 RadialField<D>, VortexField<D>, CustomEffector<D>, Surroundings<D>, BodyDrag<D>, MagnusLift<D>,
+                 TurningFrame<D>, ElectromagneticField<D>, LiftingSurface<D>, CylinderDrag<D>>;
 
 }  // namespace carom::rigid

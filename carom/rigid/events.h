@@ -62,6 +62,13 @@ struct JointBreakEvent {
   typename D::Vector force{};    ///< N, on B, in the last substep
   typename D::Angular torque{};  ///< N·m, on B
 };
+/// A spring gave way (SpringDamper::break_force) and is gone.
+template <class D>
+struct SpringBreakEvent {
+  EffectorId spring;  ///< no longer exists
+  BodyId body_a, body_b;
+  typename D::Vector force{};  ///< N, on A, in the last substep
+};
 
 template <class D>
 struct Events {
@@ -74,6 +81,7 @@ struct Events {
   std::span<const SleepEvent> quarantined;  ///< bodies whose state became NaN or infinite: frozen, and named here
   std::span<const MoveEvent<D>> moved;      ///< of all bodies that were awake, if WorldDef::move_events
   std::span<const JointBreakEvent<D>> joint_break;
+  std::span<const SpringBreakEvent<D>> spring_break;
 };
 
 }  // namespace carom::rigid

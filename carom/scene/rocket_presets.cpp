@@ -44,6 +44,30 @@ core::Result<void> read_rocket_numbers(const Node& node, std::span<const RocketN
   return {};
 }
 
+/// Mach number, C_D, Mach number, C_D … under `key`, instead of the number under `other`.
+core::Status read_drag_table(const Node& values, std::string_view key, std::string_view other, std::string_view file,
+                             ballistics::DragCurve& out) {
+  const Node* const table = values.find(key);
+  const std::string where = core::text("values.", key);
+  if (table == nullptr) return {};
+  if (values.find(other) != nullptr)
+    return preset_error(file, *table, where, core::text("found it beside ", other, ", expected one of them"));
+  if (!table->is_array() || table->children.empty() || table->children.size() % 2 != 0)
+    return preset_error(file, *table, where, "expected pairs of Mach number and C_D, one after another");
+  std::vector<ballistics::DragPoint> points;
+  for (std::size_t i = 0; i < table->children.size(); i += 2) {
+    const auto mach = detail::read_preset_quantity(table->children[i], "", file, where),
+               coefficient = detail::read_preset_quantity(table->children[i + 1], "", file, where);
+    if (!mach) return mach.error();
+    if (!coefficient) return coefficient.error();
+    points.push_back({*mach, *coefficient});
+  }
+  auto curve = ballistics::DragCurve::from_points(points);
+  if (!curve) return preset_error(file, *table, where, curve.error().message);
+  out = std::move(*curve);
+  return {};
+}
+
 core::Result<ballistics::Motor> read_motor(const Node& stage, std::string_view file, const std::string& at,
                                            const PresetResolver& resolver) {
   const Node* const name = stage.find("motor");
@@ -87,10 +111,16 @@ core::Result<ballistics::Rocket> parse_rocket(std::string_view text, std::string
                                  {"parachute_drag_area", "m^2", &rocket.parachute.drag_area},
                                  {"parachute_height", "m", &rocket.parachute.deploy_height},
                                  {"parachute_delay", "s", &rocket.parachute.deploy_delay}};
-  static constexpr std::string_view lists[] = {"stages"};
+  static constexpr std::string_view lists[] = {"stages", "drag_table", "coasting_drag_table"};
   if (auto s = read_rocket_numbers(values, fields, lists, file, "values"); !s) return s.error();
   rocket.drag = ballistics::DragCurve(drag);
-  rocket.coasting_drag = ballistics::DragCurve(coasting < 0 ? drag : coasting);
+  if (const core::Status s = read_drag_table(values, "drag_table", "drag_coefficient", file, rocket.drag); !s)
+    return s.error();
+  rocket.coasting_drag = coasting < 0 ? rocket.drag : ballistics::DragCurve(coasting);
+  if (const core::Status s =
+          read_drag_table(values, "coasting_drag_table", "coasting_drag_coefficient", file, rocket.coasting_drag);
+      !s)
+    return s.error();
   rocket.fins.count = int(math::min(fins, 100.0));
   if (double(rocket.fins.count) != fins || fins > 16)
     return preset_error(file, *values.find("fin_count"), "values.fin_count",

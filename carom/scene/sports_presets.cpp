@@ -5,12 +5,7 @@
 
 namespace carom::scene {
 namespace {
-
 using detail::read_preset;
-
-core::Error in_file(std::string_view file, const core::Error& error) {
-  return core::Error{core::text(file, ": ", error.message)};
-}
 
 }  // namespace
 
@@ -20,21 +15,21 @@ core::Result<sports::Ball> parse_ball(std::string_view text, std::string_view fi
   if (!values) return values.error();
   auto ball = sports::ball_from_numbers(values->numbers, values->text("side_kind", "none"),
                                         values->text("lift_shape", "rational"));
-  return ball ? std::move(ball) : core::Result<sports::Ball>(in_file(file, ball.error()));
+  return ball ? std::move(ball) : core::Result<sports::Ball>(detail::in_file(file, ball.error()));
 }
 
 core::Result<sports::Surface> parse_surface(std::string_view text, std::string_view file) {
   const auto values = read_preset(text, file, sports::surface_number_names(), {});
   if (!values) return values.error();
   auto surface = sports::surface_from_numbers(values->numbers);
-  return surface ? std::move(surface) : core::Result<sports::Surface>(in_file(file, surface.error()));
+  return surface ? std::move(surface) : core::Result<sports::Surface>(detail::in_file(file, surface.error()));
 }
 
 core::Result<sports::ClubHead> parse_club(std::string_view text, std::string_view file) {
   const auto values = read_preset(text, file, sports::club_number_names(), {});
   if (!values) return values.error();
   auto head = sports::club_from_numbers(values->numbers);
-  return head ? std::move(head) : core::Result<sports::ClubHead>(in_file(file, head.error()));
+  return head ? std::move(head) : core::Result<sports::ClubHead>(detail::in_file(file, head.error()));
 }
 
 }  // namespace carom::scene

@@ -10,10 +10,6 @@ namespace {
 using detail::PresetValues;
 using sports::NumberName;
 
-core::Error told_of(std::string_view file, const core::Error& error) {
-  return core::Error{core::text(file, ": ", error.message)};
-}
-
 /// The number of that name into `into`, where the file has it.
 void take(const PresetValues& values, std::string_view name, double& into) { into = values.number(name, into); }
 
@@ -68,7 +64,7 @@ core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std
   if (!projectile)
     return detail::preset_error(file, *values->root.find("values"), "values", projectile.error().message);
   a.projectile = std::move(projectile).value();
-  if (auto s = ballistics::check(a); !s) return told_of(file, s.error());
+  if (auto s = ballistics::check(a); !s) return detail::in_file(file, s.error());
   return a;
 }
 
@@ -81,7 +77,7 @@ core::Result<ballistics::Sight> parse_sight(std::string_view text, std::string_v
   take(*values, "click", s.click);
   take(*values, "spacing", s.spacing);
   take(*values, "magnification", s.magnification);
-  if (auto checked = ballistics::check(s); !checked) return told_of(file, checked.error());
+  if (auto checked = ballistics::check(s); !checked) return detail::in_file(file, checked.error());
   return s;
 }
 
@@ -143,8 +139,67 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
   take(*values, "mount_push_damping", w.mount.push_damping);
   take(*values, "mount_rise_frequency", w.mount.rise_frequency);
   take(*values, "mount_rise_damping", w.mount.rise_damping);
-  if (auto s = ballistics::check(w); !s) return told_of(file, s.error());
+  if (auto s = ballistics::check(w); !s) return detail::in_file(file, s.error());
   return w;
+}
+
+core::Result<ballistics::Shell> parse_shell(std::string_view text, std::string_view file) {
+  const auto tree = detail::read_preset_tree(text, file, false);
+  if (!tree) return tree.error();
+  const detail::Node& values = *tree->find("values");
+  ballistics::Shell shell;
+  struct Number {
+    std::string_view name, unit;
+    double* value;
+  };
+  const auto read = [&](const detail::Node& node, std::span<const Number> fields, std::string_view other,
+                        const std::string& at) -> core::Status {
+    if (!node.is_object())
+      return detail::preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
+    for (std::size_t k = 0; k < node.keys.size(); ++k) {
+      const std::string where = core::text(at, ".", node.keys[k]);
+      const Number* known = nullptr;
+      for (const Number& field : fields)
+        if (field.name == node.keys[k]) known = &field;
+      if (known == nullptr && node.keys[k] == other) continue;
+      if (known == nullptr)
+        return detail::preset_error(file, node.children[k], where, "found a name that is not known here");
+      const auto quantity = detail::read_preset_quantity(node.children[k], known->unit, file, where);
+      if (!quantity) return quantity.error();
+      *known->value = *quantity;
+    }
+    return {};
+  };
+  const Number whole[] = {{"mass", "kg", &shell.mass},
+                          {"diameter", "m", &shell.diameter},
+                          {"axial_inertia", "kg*m^2", &shell.axial_inertia},
+                          {"transverse_inertia", "kg*m^2", &shell.transverse_inertia},
+                          {"twist", "", &shell.twist}};
+  if (const core::Status s = read(values, whole, "aerodynamics", "values"); !s) return s.error();
+  for (const Number& field : whole)
+    if (values.find(field.name) == nullptr)
+      return detail::preset_error(file, values, core::text("values.", field.name), "is missing");
+  const detail::Node* const rows = values.find("aerodynamics");
+  if (rows == nullptr || !rows->is_array() || rows->children.empty() || rows->children.size() > 200)
+    return detail::preset_error(file, rows != nullptr ? *rows : values, "values.aerodynamics",
+                                "expected a list of 1 to 200 rows");
+  for (std::size_t i = 0; i < rows->children.size(); ++i) {
+    ballistics::ShellCoefficients row;
+    const Number numbers[] = {{"mach", "", &row.mach},
+                              {"axial", "", &row.axial},
+                              {"axial_yaw", "", &row.axial_yaw},
+                              {"normal", "", &row.normal},
+                              {"magnus_force", "", &row.magnus_force},
+                              {"roll_damping", "", &row.roll_damping},
+                              {"overturning", "", &row.overturning},
+                              {"pitch_damping", "", &row.pitch_damping},
+                              {"magnus_moment", "", &row.magnus_moment}};
+    if (const core::Status s = read(rows->children[i], numbers, {}, core::text("values.aerodynamics[", i, "]")); !s)
+      return s.error();
+    shell.aerodynamics.push_back(row);
+  }
+  if (const core::Status s = ballistics::check(shell); !s) return detail::in_file(file, s.error());
+  return shell;
 }
 
 core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, std::string_view file) {
@@ -180,7 +235,7 @@ core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, s
     }
     layers.push_back(layer);
   }
-  if (auto s = ballistics::check_layers(layers); !s) return told_of(file, s.error());
+  if (auto s = ballistics::check_layers(layers); !s) return detail::in_file(file, s.error());
   return layers;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/ballistics/shell.h"
 #include "carom/ballistics/weapon.h"
 #include "carom/core/result.h"
 #include "carom/export.h"
@@ -28,6 +29,10 @@ CAROM_API core::Result<ballistics::Sight> parse_sight(std::string_view text, std
 /// numbers of a Weapon and, as "mount_…", of its mount.
 CAROM_API core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_view file,
                                                      const PresetResolver& resolver);
+/// presets/shell/NAME.json: "mass", "diameter", "axial_inertia", "transverse_inertia", "twist" (calibres a turn), and
+/// "aerodynamics", a list of rows by rising Mach number: "mach" and the coefficients by their names in a
+/// ShellCoefficients, 0 where they are not given (but for "overturning").
+CAROM_API core::Result<ballistics::Shell> parse_shell(std::string_view text, std::string_view file);
 /// presets/wall/NAME.json: layers from the side of the shooter.
 CAROM_API core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, std::string_view file);
 

@@ -362,7 +362,7 @@ class SceneWriter {
     f.put("body_a", quoted_name(e.body_a));
     if (!e.body_b.is_null()) f.put("body_b", quoted_name(e.body_b));
     f.put("point_a", vector_text(e.point_a)).put("point_b", vector_text(e.point_b)).put("rest_length", e.rest_length);
-    return f.put("stiffness", e.stiffness).put("damping", e.damping).object();
+    return f.put("stiffness", e.stiffness).put("damping", e.damping).unless("break_force", e.break_force, 0.0).object();
   }
   std::string effector_text(const Buoyancy<D>& e) const {
     Fields f = effector_fields("buoyancy", e.body);
@@ -419,6 +419,22 @@ class SceneWriter {
         .put("radius", e.radius)
         .put("density", e.density)
         .object();
+  }
+  std::string effector_text(const LiftingSurface<D>& e) const {
+    Fields f = effector_fields("lifting_surface", e.body);
+    f.put("aspect_ratio", e.law.aspect_ratio)
+        .put("zero_lift_angle", e.law.zero_lift_angle)
+        .put("stall_angle", e.law.stall_angle)
+        .put("profile_drag", e.law.profile_drag)
+        .put("efficiency", e.law.efficiency);
+    f.put("point", vector_text(e.point)).put("forward", vector_text(e.forward));
+    if (D::dimension == 3) f.put("up", vector_text(e.up));
+    return f.put("area", e.area).put("chord", e.chord).put("density", e.density).object();
+  }
+  std::string effector_text(const CylinderDrag<D>& e) const {
+    Fields f = effector_fields("cylinder_drag", e.body);
+    f.put("point", vector_text(e.point)).put("axis", vector_text(e.axis)).put("diameter", e.diameter);
+    return f.put("length", e.length).put("density", e.density).put("viscosity", e.viscosity).object();
   }
   std::string effector_text(const TurningFrame<D>& e) const {
     return effector_fields("turning_frame", e.body)

@@ -3,6 +3,7 @@
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/ode/dormand_prince.h"
+#include "carom/sports/detail/number_fields.h"
 #include "carom/sports/detail/sport_units.h"
 
 namespace carom::sports {
@@ -79,6 +80,7 @@ core::Result<CalculatorResult> trajectory_calculator(const CalculatorInput& in, 
 }
 
 core::Result<PitchResult> pitch(const Ball& ball, const Conditions& conditions, const Pitch& p, double distance) {
+  if (const core::Status good = detail::check_fields(p, "a pitch"); !good) return good.error();
   const auto thrown = [&](double spin) {
     return fly_until(ball, conditions,
                      launch_state({.speed = p.speed,
@@ -105,18 +107,28 @@ core::Result<PitchResult> pitch(const Ball& ball, const Conditions& conditions, 
                      .run = end.position.z - plain.position.z};
 }
 
+core::Result<Pitch> aimed(const Ball& ball, const Conditions& conditions, const Pitch& start, double height,
+                          double side, double distance) {
+  Pitch p = start;
+  for (int i = 0; i < 30; ++i) {
+    const auto path = pitch(ball, conditions, p, distance);
+    if (!path) return path.error();
+    const double up = height - path->height, right = side - path->side;
+    if (math::abs(up) < 1e-3 && math::abs(right) < 1e-3) return p;
+    p.elevation = math::clamp(p.elevation + up / distance, -1.0, 1.0);
+    p.azimuth = math::clamp(p.azimuth + right / distance, -1.0, 1.0);
+  }
+  return core::Error{core::text("no pitch of ", p.speed, " m/s was found that crosses the plate ", height, " m high")};
+}
+
 core::Result<BallState> hit(const Ball& ball, const Bat& bat, const BatSwing& swing, const BallState& pitch) {
   if (const core::Status good = check(ball); !good) return good.error();
+  if (const core::Status good = detail::check_fields(bat, "a bat"); !good) return good.error();
   const double reach = bat.radius + ball.radius;
   const struct {
     const char* name;
     double value, low, high;
-  } rules[] = {{"effective_mass of a bat", bat.effective_mass, 1e-3, 100},
-               {"radius of a bat", bat.radius, 1e-4, 1},
-               {"restitution of a bat", bat.restitution, 0, 1},
-               {"friction of a bat", bat.friction, 0, 100},
-               {"tangential_restitution of a bat", bat.tangential_restitution, -1, 1},
-               {"speed of a swing", swing.speed, 0, 1000},
+  } rules[] = {{"speed of a swing", swing.speed, 0, 1000},
                {"attack of a swing", swing.attack, -1.5, 1.5},
                {"spray of a swing", swing.spray, -1.5, 1.5},
                {"offset of a swing", swing.offset, -0.999 * reach, 0.999 * reach}};

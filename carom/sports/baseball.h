@@ -47,6 +47,11 @@ struct PitchResult {
 CAROM_API core::Result<PitchResult> pitch(const Ball& ball, const Conditions& conditions, const Pitch& pitch,
                                           double distance = 16.764);
 
+/// The same pitch aimed so that it crosses the front of the plate `height` m up and `side` m to the right, to a
+/// millimetre. Errors as `pitch`; a place out of reach.
+CAROM_API core::Result<Pitch> aimed(const Ball& ball, const Conditions& conditions, const Pitch& pitch, double height,
+                                    double side, double distance = 16.764);
+
 /// A bat, swung level or up, as its point of impact sees it.
 struct Bat {
   double effective_mass = 0.70;  ///< kg, what a ball meets at the sweet spot

@@ -3,29 +3,12 @@
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/math/vec.h"
+#include "carom/sports/detail/number_fields.h"
 
 namespace carom::sports {
-namespace {
 
-core::Status check(const BowlingBall& ball, const Lane& lane, const Delivery& d) {
-  const struct {
-    const char* name;
-    double value, low, high;
-  } rules[] = {{"mass of a bowling ball", ball.mass, 1e-3, 1e3},
-               {"radius of a bowling ball", ball.radius, 1e-3, 10},
-               {"gyration of a bowling ball", ball.gyration, 1e-4, 10},
-               {"length of a lane", lane.length, 1e-3, 1e4},
-               {"width of a lane", lane.width, 1e-3, 1e4},
-               {"gravity of a lane", lane.gravity, 1e-6, 1e4},
-               {"speed of a delivery", d.speed, 1e-3, 1e3},
-               {"angle of a delivery", d.angle, -1.5, 1.5},
-               {"spin of a delivery", d.spin, -1e4, 1e4},
-               {"axis_rotation of a delivery", d.axis_rotation, -7, 7},
-               {"start of a delivery", d.start, -1e3, 1e3}};
-  for (const auto& rule : rules)
-    if (!(rule.value >= rule.low && rule.value <= rule.high))
-      return core::Error{
-          core::text(rule.name, " is ", rule.value, ", expected a number in [", rule.low, ", ", rule.high, "]")};
+core::Status check(const Lane& lane) {
+  if (const core::Status good = detail::check_fields(lane, "a lane"); !good) return good;
   if (lane.stretches.empty()) return core::Error{"a lane has no stretches, expected at least one"};
   double before = 0;
   for (std::size_t i = 0; i < lane.stretches.size(); ++i) {
@@ -39,6 +22,14 @@ core::Status check(const BowlingBall& ball, const Lane& lane, const Delivery& d)
     before = s.end;
   }
   return {};
+}
+
+namespace {
+
+core::Status check(const BowlingBall& ball, const Lane& lane, const Delivery& d) {
+  if (const core::Status good = detail::check_fields(ball, "a bowling ball"); !good) return good;
+  if (const core::Status good = sports::check(lane); !good) return good;
+  return detail::check_fields(d, "a delivery");
 }
 
 /// The first time in (0, limit) at which p + v t + ½ a t² reaches q, or `limit`.
@@ -110,7 +101,7 @@ core::Result<LanePath> bowl(const BowlingBall& ball, const Lane& lane, const Del
       path.gutter = true;
       break;
     }
-    const double friction = lane.stretches[stretch].friction;
+    const double friction = ball.cover * lane.stretches[stretch].friction;
     const bool last = stretch + 1 == lane.stretches.size();
     const double border = last ? lane.length : math::min(lane.stretches[stretch].end, lane.length);
     const double a = p.rolls ? 0 : friction * lane.gravity;

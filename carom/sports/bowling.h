@@ -12,6 +12,7 @@ struct BowlingBall {
   double mass = 6.8;         ///< kg
   double radius = 0.1085;    ///< m
   double gyration = 0.0635;  ///< m, radius of gyration; USBC: 2.46 to 2.80 in
+  double cover = 1;          ///< times the lane's friction: hard plastic grips less than what lanes are measured with
 };
 /// Stretches of the lane with their friction, one after another; beyond the last its friction goes on.
 struct Lane {
@@ -24,6 +25,8 @@ struct Lane {
   double width = 1.0668;                                           ///< m, between the gutters
   double gravity = 9.80665;
 };
+/// Errors name what cannot be: sizes, stretches that do not follow one another.
+CAROM_API core::Status check(const Lane& lane);
 /// How it is let go: direction and turning of the axis. With axis rotation 0 it rolls end over end, with 90° the spin
 /// is about the way itself and carries to the left (a right-hander's hook: positive).
 struct Delivery {

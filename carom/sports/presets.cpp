@@ -138,6 +138,14 @@ std::vector<BallPreset> make_presets() {
        0,
        {.mass = .0182, .radius = .00275, .inertia_factor = .4, .drag = {.fast = 1.56}}});
   list.push_back(
+      {"arrow_large_vanes",
+       "A target arrow with large vanes, by the cross-section of its shaft.",
+       "C_D 2.05 (large vanes; 1.56 short) on the shaft's section at Re 1.2e4: MDPI Proceedings 49 (2020) 56; "
+       "mass and diameter of a target arrow: class values",
+       .1,
+       0,
+       {.mass = .0182, .radius = .00275, .inertia_factor = .4, .drag = {.fast = 2.05}}});
+  list.push_back(
       {"shuttlecock",
        "A feather shuttlecock, nose first.",
        "falls at 6.7 m/s at the end, drag with the square of the speed: Cohen et al., New J. Phys. 17 (2015) "

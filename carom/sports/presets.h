@@ -16,8 +16,8 @@ struct BallPreset {
   double lift_band = 0;  ///< and of C_L; 0 where there is none
   Ball ball{};
 };
-/// golf, baseball, soccer, tennis, table_tennis, basketball, cricket, bowling, arrow, shuttlecock, knuckleball,
-/// floating_soccer, sphere.
+/// golf, baseball, soccer, tennis, table_tennis, basketball, cricket, bowling, arrow, arrow_large_vanes, shuttlecock,
+/// knuckleball, floating_soccer, sphere.
 CAROM_API std::span<const BallPreset> ball_presets();
 /// Errors name the presets there are.
 CAROM_API core::Result<Ball> ball_preset(std::string_view name);

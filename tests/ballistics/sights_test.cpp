@@ -52,6 +52,39 @@ TEST(Sights, FieldCoriolisIsTheFormOfTheTables) {
   EXPECT_EQ(clicks(1.26 * milliradian, .1 * milliradian), 13);
 }
 
+// In vacuum a target of height h at range R is passed over Δ = h/(2 tan γ) to either side, γ the angle of fall; the
+// shot carries v²/g at 45°. In air lower and less: quadratic drag with v = v_t carries a little more than the .5890 of
+// 45° in units of v_t²/g (reference "ballistics", 2.7).
+TEST(Sights, DangerSpaceAndGreatestRange) {
+  const Gun gun{.muzzle_speed = 300, .sight_height = 0};
+  const Conditions vacuum{.air = environment::AirColumn::uniform(0), .gravity = 9.80665};
+  const auto elevation = zero_elevation(gun, vacuum, 2000);
+  ASSERT_TRUE(elevation);
+  const auto flight = SightedFlight::fire(gun, vacuum, {.elevation = *elevation}, 3000);
+  ASSERT_TRUE(flight);
+  const auto stretch = flight->danger_space(2000, 1.8);
+  ASSERT_TRUE(stretch);
+  const double fall = math::tan(*elevation);  // as steep down as up
+  EXPECT_NEAR(2000 - stretch->from, .9 / fall, .02 * .9 / fall);
+  EXPECT_NEAR(stretch->to - 2000, .9 / fall, .02 * .9 / fall);
+  EXPECT_NEAR(flight->at(stretch->to)->height, -.9, 1e-6);
+  EXPECT_FALSE(flight->danger_space(1e6, 1.8));
+  // A flat shot stays within the height all the way from the muzzle.
+  const auto near = SightedFlight::fire(gun, vacuum, {.elevation = *zero_elevation(gun, vacuum, 50)}, 100);
+  EXPECT_NEAR(near->danger_space(50, 1.8)->from, 0, 1e-12);
+  const auto far = greatest_range(gun, vacuum);
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->range, 300 * 300 / 9.80665, 1e-3);
+  EXPECT_NEAR(far->elevation, math::pi / 4, 1e-4);
+  const Gun slow{.projectile = projectile_from_terminal_speed(50), .muzzle_speed = 50};
+  const auto carried = greatest_range(slow, {.air = environment::AirColumn::uniform(1.225)});
+  ASSERT_TRUE(carried);
+  EXPECT_GT(carried->range / (50 * 50 / 9.80665), .589011800);
+  EXPECT_LT(carried->range / (50 * 50 / 9.80665), .60);
+  EXPECT_LT(carried->elevation, math::radians(45.0));
+  EXPECT_GT(carried->elevation, math::radians(39.0));
+}
+
 TEST(Sights, OutOfReachIsSaid) {
   const Gun gun{.projectile = projectile_from_coefficient(DragFunction::g1, .1), .muzzle_speed = 100};
   const auto zero = zero_elevation(gun, {}, 3000);

@@ -38,6 +38,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ballistics::recoil_at(gun->mount, ballistics::recoil_impulse(ballistics::charge_of(*gun)), shots, 0.3);
     require(math::is_finite(motion.back) && math::is_finite(motion.rise), "a motion that is not finite");
   }
+  const auto shell = scene::parse_shell(text, "f");
+  if (named(shell)) {
+    require(ballistics::check(*shell).ok(), "a shell that cannot be");
+    const auto flight =
+        ballistics::fly_shell(*shell, {}, {{}, {300, 100, 0}}, ballistics::ShellModel::modified_point_mass,
+                              {.time = 0.05, .tolerance = 1e-6});
+    require(!flight.ok() || math::is_finite(math::length(flight->path.end().velocity)), "a flight that is not finite");
+  }
   const auto wall = scene::parse_wall(text, "f");
   if (named(wall)) {
     const auto passages = ballistics::penetrate({}, *wall);

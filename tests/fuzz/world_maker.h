@@ -260,7 +260,24 @@ struct Maker {
     }
   }
   EffectorDef<D> any_effector() {
-    switch (in.byte() % 12) {
+    switch (in.byte() % 14) {
+      case 12: {
+        LiftingSurface<D> e;
+        e.body = body();
+        e.law.aspect_ratio = double(in.number(20));
+        e.law.stall_angle = double(in.number(1));
+        e.point = vector();
+        e.forward = vector();
+        e.area = double(in.number(5));
+        return e;
+      }
+      case 13: {
+        CylinderDrag<D> e;
+        e.body = body();
+        e.axis = vector();
+        e.length = double(in.number(5));
+        return e;
+      }
       case 0: {
         LinearDrag<D> e;
         e.body = in.flag() ? body() : BodyId{};
@@ -276,6 +293,7 @@ struct Maker {
         e.point_b = position();
         e.stiffness = double(in.number(1000));
         e.damping = double(in.number(10));
+        e.break_force = in.flag() ? double(in.number(100)) : 0;
         return e;
       }
       case 3: {

@@ -200,6 +200,12 @@ TEST(Chapter19, OtherBalls) {
   const double loss = 1 - math::length(flight->end().velocity) / 56.4;
   EXPECT_GT(loss, .06);
   EXPECT_LT(loss, .10);
+  const Ball vaned = *ball_preset("arrow_large_vanes");
+  EXPECT_NEAR(coefficients(vaned, {}, 56.4, 0).drag, 2.05, 1e-12);
+  const auto slower = fly_until(vaned, {}, launch_state({.speed = 56.4, .elevation = .05}),
+                                [](double, const BallState& s) { return 70 - s.position.x; });
+  ASSERT_TRUE(slower);
+  EXPECT_NEAR((1 - math::length(slower->end().velocity) / 56.4) / loss, 2.05 / 1.56, .05);
 }
 
 // A shuttlecock is quadratic drag with v_t = 6.7 m/s: the canonical case of quadratic drag at v/v_t = 8 (2.7):

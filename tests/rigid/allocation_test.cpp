@@ -249,6 +249,12 @@ TYPED_TEST(WarmStep, OfEffectorsSensorsAndEvents) {
   world.add_effector(carried).value();
   world.add_effector(BodyDrag<D>{}).value();
   world.add_effector(MagnusLift<D>{}).value();
+  LiftingSurface<D> wing;
+  wing.body = bodies[0];
+  world.add_effector(wing).value();
+  CylinderDrag<D> pole;
+  pole.body = bodies[1];
+  world.add_effector(pole).value();
   ElectromagneticField<D> charged;
   charged.charge = 0.1;
   charged.magnetic = {0, 0, 1};

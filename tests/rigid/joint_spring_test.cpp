@@ -142,6 +142,46 @@ TYPED_TEST(JointSprings, TwoFreeMassesSwingWithTheReducedMass) {
   EXPECT_FALSE(world.effector_definition(id).ok());
 }
 
+// Above its force a spring gives way: of a mass that runs away from it with v it takes F²/2k of the energy, no more.
+TYPED_TEST(JointSprings, SpringsGiveWay) {
+  using D = TypeParam;
+  for (const bool to_the_world : {true, false})
+    for (const double speed : {2.0, 4.0}) {  // √(m k) v: 20 and 40 N at most
+      World<D> world(weightless<D>());
+      SpringDamper<D> spring;
+      spring.body_a = add_mass(world, 1, 0, 1, 1);
+      if (!to_the_world) spring.body_b = add_mass(world, 0, 0, 1e9, 1e9);
+      spring.stiffness = 100;
+      spring.break_force = 25;
+      const EffectorId id = world.add_effector(spring).value();
+      world.set_velocity(spring.body_a, vec<D>(float(speed), 0), {}).value();
+      int breaks = 0;
+      double force = 0;
+      for (int i = 0; i < 60; ++i) {
+        world.step(frame).value();
+        for (const SpringBreakEvent<D>& event : world.events().spring_break) {
+          ++breaks;
+          EXPECT_EQ(event.spring, id);
+          EXPECT_EQ(event.body_a, spring.body_a);
+          EXPECT_EQ(event.body_b, spring.body_b);
+          EXPECT_LT(event.force.x, -25) << "it pulls A back";
+          EXPECT_GT(event.force.x, -32) << "a step later at most";
+          force = double(event.force.x);
+        }
+        EXPECT_TRUE(world.events().joint_break.empty());
+      }
+      EXPECT_EQ(breaks, speed > 3 ? 1 : 0);
+      EXPECT_EQ(world.effector_definition(id).ok(), breaks == 0);
+      if (breaks > 0)
+        EXPECT_NEAR(state_of(world, spring.body_a).linear_velocity.x, std::sqrt(16 - force * force / 100), 0.12);
+    }
+  World<D> world(weightless<D>());
+  SpringDamper<D> spring;
+  spring.body_a = add_mass(world, 1, 0, 1, 1);
+  spring.break_force = -1;
+  EXPECT_NE(world.add_effector(spring).error().message.find("break_force"), std::string::npos);
+}
+
 TYPED_TEST(JointSprings, SpringToTheWorldWithDampingRatio) {
   using D = TypeParam;
   // c = 2ζ√(k m): k = 50, m = 2, ζ = .1 → c = 2.

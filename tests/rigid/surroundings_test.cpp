@@ -284,6 +284,138 @@ TEST(MagnusLift3, LiftsASpinningBall) {
   EXPECT_NEAR(state_of(world, body).linear_velocity.y * 0.145 / double(frame), 0.889, 2e-3);
 }
 
+// --- attitude --------------------------------------------------------------------------------------------------------
+
+// A wing of 1 m² that may not turn, let go: it glides where lift and drag carry its weight, tan γ = C_D/C_L at the
+// angle of attack that its fixed attitude makes with the way, in the plane as in space.
+template <class D>
+class Attitude : public testing::Test {};
+TYPED_TEST_SUITE(Attitude, Dimensions);
+
+TYPED_TEST(Attitude, AWingGlidesAtItsRatioOfDragToLift) {
+  using D = TypeParam;
+  WorldDef<D> definition = weightless<D>();
+  definition.gravity = vec<D>(0, -9.80665f);
+  World<D> world(definition);
+  BodyDef<D> def;
+  def.linear_velocity = vec<D>(14, -1);
+  const BodyId body = add_mass(world, def, 8, 1e12);  // as good as never turned
+  LiftingSurface<D> wing;
+  wing.body = body;
+  wing.law.aspect_ratio = 10;
+  world.add_effector(wing).value();
+  for (int i = 0; i < 12000; ++i) world.step(frame).value();
+  const auto v = state_of(world, body).linear_velocity;
+  const double angle = std::atan2(-double(v.y), double(v.x));  // the wing lies level: attack is the angle of descent
+  const forces::LiftAndDrag c = forces::lift_and_drag(wing.law, angle);
+  EXPECT_NEAR(std::tan(angle), c.drag / c.lift, 1e-3);
+  const double speed = std::hypot(double(v.x), double(v.y));
+  const double force = 0.5 * 1.225 * speed * speed * std::hypot(c.lift, c.drag);
+  EXPECT_NEAR(force / (8 * 9.80665), 1, 2e-3);
+  EXPECT_LT(angle, 0.15) << "it is a glider";
+}
+
+// Across the flow a mast has the drag of its Reynolds number; along it hardly any.
+TYPED_TEST(Attitude, ACylinderFallsBySides) {
+  using D = TypeParam;
+  double speed[2];
+  for (const bool upright : {false, true}) {
+    WorldDef<D> definition = weightless<D>();
+    definition.gravity = vec<D>(0, -9.80665f);
+    World<D> world(definition);
+    const BodyId body = add_mass(world, BodyDef<D>{}, 0.2, 1e9);
+    CylinderDrag<D> drag;
+    drag.body = body;
+    drag.diameter = 0.02;
+    drag.length = 1.5;
+    drag.axis = upright ? vec<D>(0, 1) : vec<D>(1, 0);
+    world.add_effector(drag).value();
+    for (int i = 0; i < 6000; ++i) world.step(frame).value();
+    const double v = -double(state_of(world, body).linear_velocity.y);
+    const math::Vec3d axis = upright ? math::Vec3d{0, 1, 0} : math::Vec3d{1, 0, 0};
+    EXPECT_NEAR(forces::cylinder_force(1.225, 1.7894e-5, 0.02, 1.5, axis, {0, -v, 0}).y / (0.2 * 9.80665), 1, 2e-3);
+    speed[upright] = v;
+  }
+  EXPECT_GT(speed[1], 5 * speed[0]);
+}
+
+// A plate that the wind meets behind its pivot turns into it and stays; its motion dies down (the three-quarter chord).
+TEST(Attitude3, AWeathervaneTurnsIntoTheWind) {
+  World3 world(weightless<Dim3>());
+  BodyDef<Dim3> def;
+  def.type = BodyType::fixed;
+  const BodyId post = world.create_body(def).value();
+  def.type = BodyType::dynamic;
+  def.rotation = {float(std::cos(0.4)), 0, float(std::sin(0.4)), 0};
+  const BodyId vane = add_mass(world, def, 1, 0.05);
+  HingeJointDef<Dim3> hinge;
+  hinge.body_a = post;
+  hinge.body_b = vane;
+  hinge.frame_a.q = hinge.frame_b.q = {float(std::sqrt(0.5)), float(-std::sqrt(0.5)), 0, 0};  // z upright
+  world.create_joint(hinge).value();
+  world.add_effector(Wind<Dim3>{{-8, 0, 0}}).value();  // it comes from +x
+  LiftingSurface<Dim3> fin;
+  fin.body = vane;
+  fin.law = forces::flat_plate(1);
+  fin.point = {-0.6f, 0, 0};
+  fin.up = {0, 0, 1};
+  fin.area = 0.09;
+  fin.chord = 0.3;
+  world.add_effector(fin).value();
+  double early = 0, late = 0;
+  for (int i = 0; i < 900; ++i) {
+    world.step(frame).value();
+    const auto q = state_of(world, vane).pose.rotation;
+    const double yaw = std::abs(2 * std::atan2(double(q.y), double(q.w)));
+    (i < 200 ? early : late) = std::max(i == 700 ? 0.0 : (i < 200 ? early : late), yaw);
+  }
+  EXPECT_GT(early, 0.5);
+  EXPECT_LT(late, 0.02);
+}
+
+// However light and large, a plate in the wind is only carried along.
+TYPED_TEST(Attitude, ALeafIsStable) {
+  using D = TypeParam;
+  World<D> world(weightless<D>());
+  const BodyId leaf = add_mass(world, BodyDef<D>{}, 1e-3, 1e-4);
+  world.add_effector(Wind<D>{vec<D>(5, 12)}).value();
+  LiftingSurface<D> plate;
+  plate.body = leaf;
+  plate.law = forces::flat_plate(1);
+  plate.area = 0.5;
+  plate.chord = 0.7;
+  world.add_effector(plate).value();
+  for (int i = 0; i < 2000; ++i) {
+    world.step(frame).value();
+    const auto v = state_of(world, leaf).linear_velocity;
+    ASSERT_LT(std::hypot(double(v.x), double(v.y)), 40);
+  }
+}
+
+TYPED_TEST(Attitude, BadInputIsNamed) {
+  using D = TypeParam;
+  World<D> world(weightless<D>());
+  const BodyId body = add_mass(world, BodyDef<D>{}, 1, 1);
+  const auto message = [&](const EffectorDef<D>& e) {
+    const auto made = world.add_effector(e);
+    return made.ok() ? std::string() : made.error().message;
+  };
+  LiftingSurface<D> wing;
+  EXPECT_NE(message(wing).find("body"), std::string::npos) << "it is fixed to one";
+  wing.body = body;
+  EXPECT_EQ(message(wing), "");
+  wing.forward = {};
+  EXPECT_NE(message(wing).find("forward is zero"), std::string::npos);
+  wing = {};
+  wing.body = body;
+  wing.law.aspect_ratio = -1;
+  EXPECT_NE(message(wing).find("aspect_ratio"), std::string::npos);
+  CylinderDrag<D> pole;
+  pole.body = body;
+  pole.diameter = 0;
+  EXPECT_NE(message(pole).find("diameter"), std::string::npos);
+}
+
 // --- water ----------------------------------------------------------------------------------------------------------
 
 // A sphere let go under water speeds up by (m − m_w) g/(m + m_w/2): added mass (reference "mechanics", Lamb art. 92).

@@ -73,7 +73,10 @@ TEST(BilliardPresets, AllFilesCanBeRead) {
         EXPECT_TRUE(read.ok()) << read.error().message;
       }
     }
-  EXPECT_GE(files, 14);
+  EXPECT_GE(files, 15);
+  const auto heated = scene::read_cloth(preset("cloth/heated_carom.json"), "heated");
+  EXPECT_EQ(heated->sliding_friction, .126) << "tailuge/billiards";
+  EXPECT_EQ(heated->rolling_friction, .0055);
   sports::Cloth worn;
   worn.spinning_friction = .02;
   EXPECT_EQ(scene::read_cloth(preset("cloth/fast.json"), "fast", worn)->spinning_friction, .02)

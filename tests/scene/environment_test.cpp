@@ -78,9 +78,11 @@ TEST(SceneEnvironment, ComesBackTheSame) {
   const Result<SceneWorld> plane =
       start(R"({"dimension": 2, "environment": {"frame": {"rate": "1 rad/s", "centrifugal": true},
     "wind": {"velocity": [3, 0], "turbulence": {"strength": 1, "size": 20}}, "water": {"waves": [{"height": 1, "period": 6}]}},
+    "bodies": [{"name": "b", "shape": {"type": "circle"}}],
     "effectors": [{"type": "electromagnetic_field", "charge": 2, "electric": [1, 0], "magnetic": 0.3},
                   {"type": "turning_frame", "angular_velocity": 0.2}, {"type": "magnus_lift", "ball": "tennis_ball"},
-                  {"type": "body_drag", "law": "cylinder"}, {"type": "buoyancy", "added_mass": [0, 1], "added_inertia": 0.1}]})");
+                  {"type": "body_drag", "law": "cylinder"},
+                  {"type": "lifting_surface", "body": "b", "point": [0.2, 0]}, {"type": "cylinder_drag", "body": "b"}, {"type": "buoyancy", "added_mass": [0, 1], "added_inertia": 0.1}]})");
   ASSERT_TRUE(plane.ok()) << plane.error().message;
   const std::string text = write_scene(*plane).value();
   const Result<SceneWorld> flat = start(text);
@@ -94,6 +96,8 @@ TEST(SceneEnvironment, EffectorsComeBackTheSame) {
     {"type": "body_drag", "law": "by_reynolds", "table": [1, 30, 1000, 0.4], "logarithmic": true, "area": "2 m^2"},
     {"type": "magnus_lift", "ball": "baseball", "radius": "36.6 mm"},
     {"type": "turning_frame", "latitude": "48 deg"},
+    {"type": "lifting_surface", "body": "a", "aspect_ratio": 8, "stall_angle": "14 deg", "area": "2 m^2", "chord": "0.5 m", "forward": [0, 0, 1], "up": [0, 1, 0]},
+    {"type": "cylinder_drag", "body": "a", "axis": [0, 1, 0], "diameter": "3 cm", "length": "2 m"},
     {"type": "electromagnetic_field", "body": "a", "charge": "2 mC", "electric": ["100 V/m", 0, 0], "magnetic": [0, 0, "0.5 T"]},
     {"type": "buoyancy", "added_mass": [0.5, 0.5, 0.5], "added_inertia": [0, 0.1, 0.1]}]})");
   ASSERT_TRUE(world.ok()) << world.error().message;
@@ -107,6 +111,54 @@ TEST(SceneEnvironment, EffectorsComeBackTheSame) {
   const Result<SceneWorld> again = start(*written);
   ASSERT_TRUE(again.ok()) << again.error().message;
   EXPECT_EQ(write_scene(*again).value(), *written);
+}
+
+// A force by formulas: the oscillator of k = 8 N/m and 2 kg comes back after π s; an acceleration acts on any mass;
+// time and parameters count.
+TEST(SceneForceField, ActsByItsFormulas) {
+  const Result<Scene> scene = parse_scene(
+      R"j({"parameters": {"k": {"value": "8 N/m", "minimum": "1 N/m", "maximum": "9 N/m"}, "w": {"value": "2 rad/s", "minimum": "1 rad/s", "maximum": "3 rad/s"}}, "gravity": [0, 0, 0], "step": "1/240 s",
+    "bodies": [{"name": "a", "mass": "2 kg", "position": [1, 0, 0], "shape": {"type": "sphere", "radius": 0.1}},
+               {"name": "b", "mass": "5 kg", "position": [0, 9, 0], "shape": {"type": "sphere", "radius": 0.1}},
+               {"name": "c", "mass": "3 kg", "position": [0, 0, 9], "velocity": ["4 m/s", 0, 0], "shape": {"type": "sphere", "radius": 0.1}}],
+    "effectors": [{"type": "force_field", "body": "a", "formula": ["-k*x", "0 N", 0]},
+                  {"type": "force_field", "body": "b", "formula": ["0 N", "=-9.81 m/s^2", "3 m/s^2*sin(w*t)"]},
+                  {"type": "force_field", "body": "c", "formula": ["-m*vx*0.5 Hz", "0 N", "0 N"]}]})j",
+      "s", {});
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  SceneWorld world = scene->instantiate().value();
+  const int steps = 754;
+  for (int i = 0; i < steps; ++i) world.world3->step(1.0f / 240).value();
+  const double t = steps / 240.0;  // within 1 ms of π
+  const auto at = [&](int i) { return world.world3->state(world.bodies[std::size_t(i)].id).value(); };
+  EXPECT_NEAR(at(0).pose.position.x, 1, 1e-3);
+  EXPECT_NEAR(at(0).pose.position.y, 0, 1e-6);
+  EXPECT_NEAR(at(1).pose.position.y, 9 - 0.5 * 9.81 * t * t, 2e-3);
+  EXPECT_NEAR(at(1).linear_velocity.z, 1.5 * (1 - math::cos(2 * t)), 2e-3);
+  EXPECT_NEAR(at(2).linear_velocity.x, 4 * math::exp(-0.5 * t), 4e-3);
+  // Where a formula has no value there is no force.
+  const Result<SceneWorld> hole =
+      start(R"({"dimension": 2, "gravity": [0, 0], "bodies": [{"name": "a", "shape": {"type": "circle"}}],
+    "effectors": [{"type": "force_field", "formula": ["1 N*m/x", 0]}]})");
+  ASSERT_TRUE(hole.ok()) << hole.error().message;
+  hole->world2->step(1.0f / 60).value();
+  EXPECT_EQ(hole->world2->state(hole->bodies[0].id)->linear_velocity.x, 0);
+  EXPECT_TRUE(hole->world2->events().quarantined.empty());
+}
+
+TEST(SceneForceField, ErrorsNameThePlace) {
+  const auto message = [](const std::string& formula) {
+    const auto world = start(R"({"effectors": [{"type": "force_field", "formula": )" + formula + "}]}");
+    return world.ok() ? std::string() : world.error().message;
+  };
+  EXPECT_EQ(message(R"(["1 N", "2 N", "m*9.81 m/s^2"])"), "");
+  EXPECT_NE(message(R"(["1 N", "2 N"])").find("three formulas"), std::string::npos);
+  EXPECT_NE(message(R"(["1 N", "2 m", "0 N"])").find("effectors[0].formula[1]"), std::string::npos);
+  EXPECT_NE(message(R"(["1 N", "2 m", "0 N"])").find("expected a force or an acceleration"), std::string::npos);
+  EXPECT_NE(message(R"(["vq*1 N", 0, 0])").find("found the name \"vq\""), std::string::npos);
+  EXPECT_NE(message(R"(["1 N +", 0, 0])").find("formula[0]"), std::string::npos);
+  EXPECT_NE(message("[5, 0, 0]").find("expected a formula"), std::string::npos);
+  EXPECT_NE(message("3").find("three formulas"), std::string::npos);
 }
 
 // A live parameter may blow the wind up while the world runs.

@@ -60,6 +60,44 @@ TEST(RocketPresets, HoldsWhatTheFileSays) {
   EXPECT_GT(flight->first(RocketEvent::apex)->position.y, 2 * separation->position.y);
 }
 
+// C_D by Mach number, with and without a motor that burns.
+TEST(RocketPresets, DragTables) {
+  const std::string path = "presets/rocket/two_stage_c6.json";
+  std::string text = read_source(path).value();
+  const std::string number = "\"drag_coefficient\": 0.55";
+  const std::size_t at = text.find(number);
+  ASSERT_NE(at, std::string::npos);
+  const auto with = [&](const std::string& drag) {
+    std::string other = text;
+    other.replace(at, number.size(), drag);
+    return scene::parse_rocket(other, "r.json", read_source);
+  };
+  const auto rocket =
+      with(R"("drag_table": [0, 0.5, 0.9, 0.55, 1.1, 0.9, 3, 0.4], "coasting_drag_table": [0, 0.6, 2, 0.7])");
+  ASSERT_TRUE(rocket) << rocket.error().message;
+  EXPECT_EQ(rocket->drag(0), .5);
+  EXPECT_NEAR(rocket->drag(1.1), .9, 1e-12);
+  EXPECT_NEAR(rocket->drag(9), .4, 1e-12);
+  EXPECT_NEAR(rocket->coasting_drag(2), .7, 1e-12);
+  const auto same = with(R"("drag_table": [0, 0.5, 3, 0.4])");
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->coasting_drag(0), .5) << "the same without a motor unless given";
+  // A constant table flies as the number does.
+  const auto flat = with(R"("drag_table": [0, 0.55, 5, 0.55])"),
+             plain = scene::parse_rocket(text, "r.json", read_source);
+  ASSERT_TRUE(flat && plain);
+  const auto apex = [](const Rocket& r) {
+    return fly_rocket(r, {}, {.rail_length = 1.2}, RocketModel::point_mass, {.time = 600, .ground = 0})
+        ->first(RocketEvent::apex)
+        ->position.y;
+  };
+  EXPECT_NEAR(apex(*flat), apex(*plain), 1e-6);
+  EXPECT_NE(with(R"("drag_table": [0, 0.5, 0, 0.4])").error().message.find("values.drag_table"), std::string::npos);
+  EXPECT_NE(with(R"("drag_table": [0, 0.5, 1])").error().message.find("pairs"), std::string::npos);
+  EXPECT_NE(with(R"("drag_table": [0, 0.5], "drag_coefficient": 1)").error().message.find("one of them"),
+            std::string::npos);
+}
+
 TEST(RocketPresets, ErrorsNameThePlace) {
   const auto error = [](const std::string& values) {
     const auto rocket = scene::parse_rocket("{\"values\": {" + values + "}}", "r.json", read_source);

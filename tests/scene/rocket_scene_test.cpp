@@ -28,6 +28,29 @@ struct Case {
   double tilt, wind;  // rad, m/s
 };
 
+// C_D by Mach number, written out or as a file of presets/drag: a rocket with little drag rises higher.
+TEST(RocketScene, DragTables) {
+  const auto apex = [](const std::string& drag) {
+    SceneWorld world = start(R"("step": "1/60 s", "rockets": [{"name": "alpha", "preset": "rocket/two_stage_c6", )" +
+                             drag + R"("position": [0, 0, 0]}])");
+    if (world.world3 == nullptr) return 0.0;
+    for (int i = 0; i < 60 * 14; ++i) EXPECT_TRUE(world.step().ok());
+    return read(world, "rocket.alpha.apex");
+  };
+  const double plain = apex("");
+  EXPECT_NEAR(apex(R"("coasting_drag_table": [0, 0.55, 3, 0.55], )"), plain, 1e-3 * plain);
+  EXPECT_GT(apex(R"("coasting_drag_table": "308_168_smk", )"), 1.2 * plain);
+  const auto error = [](const std::string& drag) {
+    const auto scene = scene::parse_scene(R"({"rockets": [{"name": "a", "diameter": 0.1, "length": 1, )" + drag +
+                                              R"(, "stages": [{"dry_mass": 1, "motor": "black_powder"}]}]})",
+                                          "s.json", read_source);
+    return scene.ok() ? std::string("none") : scene.error().message;
+  };
+  EXPECT_NE(error(R"("drag_table": [0, 1], "drag_coefficient": 1)").find("rockets[0].drag_table"), std::string::npos);
+  EXPECT_NE(error(R"("drag_table": [0, 1, 2])").find("pairs of Mach number"), std::string::npos);
+  EXPECT_NE(error(R"("drag_table": [1, 1, 0, 2])").find("rockets[0].drag_table"), std::string::npos);
+}
+
 TEST(RocketScene, BodyOfAWorldFliesAsTheModelAlone) {
   for (const Case& c : {Case{"two_stage_c6", 0, 0}, Case{"two_stage_c6", .1, 4}, Case{"payload_d12", .15, 3}}) {
     const std::string path = std::string("presets/rocket/") + c.preset + ".json";

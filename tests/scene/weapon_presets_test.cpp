@@ -63,6 +63,60 @@ TEST(WeaponPresets, TheRifleIsTheReferencesRifle) {
   EXPECT_FALSE(dial(w, air, 1e7));
 }
 
+// Shells: a table in the library, files, and both the same numbers. The howitzer flies its shell by the same drag: with
+// charge 6 to the reference's point mass at 258.4 mil.
+TEST(WeaponPresets, ShellsAreTheLibrarysNumbers) {
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(CAROM_SOURCE_DIR) + "/presets/shell"))
+    files += entry.path().extension() == ".json";
+  EXPECT_EQ(files, shell_presets().size());
+  for (const ShellPreset& preset : shell_presets()) {
+    const std::string path = "presets/shell/" + std::string(preset.name) + ".json";
+    const std::string text = read_source(path).value();
+    EXPECT_NE(text.find(preset.source), std::string::npos);
+    const auto shell = scene::parse_shell(text, path);
+    ASSERT_TRUE(shell) << shell.error().message;
+    EXPECT_EQ(shell->mass, preset.shell.mass);
+    EXPECT_EQ(shell->diameter, preset.shell.diameter);
+    EXPECT_EQ(shell->axial_inertia, preset.shell.axial_inertia);
+    EXPECT_EQ(shell->transverse_inertia, preset.shell.transverse_inertia);
+    EXPECT_EQ(shell->twist, preset.shell.twist);
+    ASSERT_EQ(shell->aerodynamics.size(), preset.shell.aerodynamics.size());
+    for (std::size_t i = 0; i < shell->aerodynamics.size(); ++i) {
+      const ShellCoefficients &a = shell->aerodynamics[i], &b = preset.shell.aerodynamics[i];
+      EXPECT_EQ(a.mach, b.mach);
+      EXPECT_EQ(a.axial, b.axial);
+      EXPECT_EQ(a.axial_yaw, b.axial_yaw);
+      EXPECT_EQ(a.normal, b.normal);
+      EXPECT_EQ(a.magnus_force, b.magnus_force);
+      EXPECT_EQ(a.roll_damping, b.roll_damping);
+      EXPECT_EQ(a.overturning, b.overturning);
+      EXPECT_EQ(a.pitch_damping, b.pitch_damping);
+      EXPECT_EQ(a.magnus_moment, b.magnus_moment);
+    }
+  }
+  const Weapon howitzer = gun("howitzer_155mm");
+  EXPECT_EQ(howitzer.ammunition.muzzle_speed, 474);
+  const auto flight = fly(gun_of(howitzer).projectile, {}, {{}, 474 * direction(258.4 * 2 * math::pi / 6400)},
+                          {.time = 60, .ground = 0});
+  ASSERT_TRUE(flight);
+  EXPECT_NEAR(flight->end().position.x, 7036.0, .004 * 7036) << "smooth between the rows, and uniform gravity";
+  const auto error = [](std::string_view text) {
+    const auto shell = scene::parse_shell(text, "s.json");
+    return shell ? std::string() : shell.error().message;
+  };
+  EXPECT_NE(error(R"({"values": {"mass": "4 kg"}})").find("values.diameter: is missing"), std::string::npos);
+  EXPECT_NE(error(R"({"values": {"weight": "4 kg"}})").find("values.weight: found a name"), std::string::npos);
+  const std::string whole =
+      R"("mass": "4 kg", "diameter": "9 cm", "axial_inertia": "1 kg*m^2", "transverse_inertia": "1 kg*m^2", "twist": 20)";
+  EXPECT_NE(error("{\"values\": {" + whole + "}}").find("values.aerodynamics: expected a list"), std::string::npos);
+  EXPECT_NE(error("{\"values\": {" + whole + R"(, "aerodynamics": [{"mach": 0}]}})").find("row 1: overturning"),
+            std::string::npos);
+  EXPECT_NE(error("{\"values\": {" + whole + R"(, "aerodynamics": [{"mach": 0, "drag": 1}]}})")
+                .find("values.aerodynamics[0].drag"),
+            std::string::npos);
+}
+
 TEST(WeaponPresets, CarbineAndCannon) {
   const Weapon carbine = gun("carbine_556");
   EXPECT_NEAR(zeroed(carbine, {.air = environment::AirColumn::uniform(1.225)})->elevation, .00126231, 1e-6);

@@ -169,17 +169,21 @@ struct Resistances {
            part_of(around->wind(place_of(body.center + arm), world.time + 0.5 * dt), static_cast<D*>(nullptr));
   }
 
+  /// How fast a torque of 1 N m at most changes the spin, 1/(kg m²): at least the largest eigenvalue, by row sums.
+  double turning_mobility(const EffectorBody<D>& body) const {
+    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body.slot)];
+    if constexpr (D::dimension == 2) {
+      return double(motion.world_inverse_inertia);
+    } else {
+      const Mat3f& m = motion.world_inverse_inertia;
+      const Vec3f rows = math::abs(m.cx) + math::abs(m.cy) + math::abs(m.cz);
+      return double(math::max(rows.x, math::max(rows.y, rows.z)));
+    }
+  }
   /// −c ω averaged over the step, for the most agile axis: stable for any c.
   void slow_spin(const EffectorBody<D>& body, double c) const {
     BodyMotion<D>& motion = world.bodies.motion[std::size_t(body.slot)];
-    double mobility;
-    if constexpr (D::dimension == 2) {
-      mobility = double(motion.world_inverse_inertia);
-    } else {  // at least the largest eigenvalue, by row sums
-      const Mat3f& m = motion.world_inverse_inertia;
-      const Vec3f rows = math::abs(m.cx) + math::abs(m.cy) + math::abs(m.cz);
-      mobility = double(math::max(rows.x, math::max(rows.y, rows.z)));
-    }
+    const double mobility = turning_mobility(body);
     motion.torque += typename D::Angular(body.spin * (-c * mean_decay(c * mobility * body.dt)));
   }
 
@@ -238,6 +242,98 @@ struct Resistances {
     for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
       const double density = around != nullptr ? around->thin_air(place_of(body.center)).density : e.density;
       push(world, body, forces::magnus_force(e.law, density, e.radius, body.spin, body.velocity - wind_at(body)));
+    });
+  }
+  /// A force of the flow that hangs on attitude, at the point `arm` from the centre; `load` makes it of the velocity
+  /// there. What of it lies along the way decays like other drag, what lies across turns the way without doing work:
+  /// both stable for any load. `lever` (m) is how far from the point it acts at most.
+  template <class Load>
+  void flow(const EffectorBody<D>& body, Position arm, double lever, Load&& load) const {
+    const Position v = forces::relative_velocity(body.velocity, body.spin, arm, wind_at(body, arm));
+    struct Split {
+      double decay = 0, turn = 0;  // 1/s
+      Vec3d across{};              // unit vector
+    };
+    const auto split = [&](Vec3d u, Vec3d force) {
+      Split out;
+      const double speed2 = math::length_squared(u);
+      if (!(speed2 > 1e-18)) return out;
+      const double along = math::dot(force, u) / speed2;
+      const Vec3d rest = force - along * u;
+      const double size = math::length(rest);
+      out.decay = math::max(0.0, -along * body.inverse_mass);
+      out.turn = size * body.inverse_mass / math::sqrt(speed2);
+      if (size > 0) out.across = rest / size;
+      return out;
+    };
+    const Vec3d first = place_of(v);
+    const Split early = split(first, load(first).force);
+    const double half = 0.5 * body.dt;
+    Vec3d middle =
+        place_of(v + (other_acceleration(world, body) - early.decay * v) * (half * mean_decay(early.decay * half)));
+    const math::SinCos<double> part = math::sincos(math::min(early.turn * half, 0.5));
+    middle = part.cos * middle + (part.sin * math::length(middle)) * early.across;
+    const forces::Wrench3 w = load(middle);
+    const Split late = split(middle, w.force);
+    const double chord = 2 * math::length(middle) * math::sin(math::min(late.turn * half, 0.5)) * body.mass / body.dt;
+    const Position lift = part_of(chord * late.across, static_cast<D*>(nullptr));
+    push_at(world, body, resist(world, body, late.decay, v) + lift, arm);
+    // Of the moment the mean over the step of what dies down with the turning.
+    const double rate = math::length(w.force) / math::max(math::length(middle), 1e-9) *
+                        math::max(body.inverse_mass, lever * lever * turning_mobility(body));
+    const double held = mean_decay(math::max(0.0, rate * body.dt - 0.5));
+    BodyMotion<D>& motion = world.bodies.motion[std::size_t(body.slot)];
+    if constexpr (D::dimension == 2)
+      motion.torque += float(w.moment.z * held);
+    else
+      motion.torque += Vec3f(w.moment * held);
+  }
+  void operator()(const LiftingSurface<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const auto& motion = world.bodies.motion[std::size_t(body.slot)];
+      const Position arm(rotate(body.pose.rotation, e.point - motion.local_center));
+      const Vec3d forward = normalize(place_of(Position(rotate(body.pose.rotation, e.forward))));
+      Vec3d up, spin;
+      if constexpr (D::dimension == 2) {
+        up = {-forward.y, forward.x, 0};
+        spin = {0, 0, body.spin};
+      } else {
+        const Vec3d told(rotate(body.pose.rotation, e.up));
+        up = normalize(told - dot(told, forward) * forward);
+        spin = body.spin;
+      }
+      const double density = around != nullptr ? around->thin_air(place_of(body.center)).density : e.density;
+      flow(body, arm, 0.5 * e.chord,
+           [&](Vec3d v) { return forces::lifting_surface(e.law, density, e.area, e.chord, forward, up, v, spin); });
+    });
+  }
+  void operator()(const CylinderDrag<D>& e) const {
+    for_each_target(world, e.body, dt, [&](const EffectorBody<D>& body) {
+      const auto& motion = world.bodies.motion[std::size_t(body.slot)];
+      const Position middle(rotate(body.pose.rotation, e.point - motion.local_center));
+      const Vec3d axis = normalize(place_of(Position(rotate(body.pose.rotation, e.axis))));
+      double density = e.density, viscosity = e.viscosity;
+      if (around != nullptr) {
+        const environment::AirState air = around->air(place_of(body.center));
+        density = air.density, viscosity = air.viscosity;
+      }
+      Vec3d spin;
+      if constexpr (D::dimension == 2)
+        spin = {0, 0, body.spin};
+      else
+        spin = body.spin;
+      // Two halves, each at its point of Gauss: so that turning is resisted too.
+      const double place = 0.2886751345948129 * e.length;
+      flow(body, middle, place, [&](Vec3d v) {
+        forces::Wrench3 both;
+        for (const double side : {-place, place}) {
+          const Vec3d arm = side * axis;
+          const Vec3d force =
+              0.5 * forces::cylinder_force(density, viscosity, e.diameter, e.length, axis, v + math::cross(spin, arm));
+          both = both + forces::Wrench3{force, math::cross(arm, force)};
+        }
+        return both;
+      });
     });
   }
   void operator()(const VortexField<D>& e) const {

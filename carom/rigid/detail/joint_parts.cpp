@@ -1,4 +1,5 @@
 // What joints are made of, and when they break.
+#include "carom/rigid/detail/effector_act.h"
 #include "carom/rigid/detail/joint_place.h"
 
 namespace carom::rigid::detail {
@@ -68,9 +69,21 @@ void test_joints(WorldImplementation<D>& world) {
     const JointData<D>& data = joints.at(joint);
     const JointFrames<D>& frames = data.frames();
     const auto above = [](float x, float limit) { return limit > 0 && x > limit; };
-    if (above(math::length(data.force), frames.break_force) || above(magnitude(data.torque), frames.break_torque))
+    if (!above(math::length(data.force), frames.break_force) && !above(magnitude(data.torque), frames.break_torque))
+      return;
+    if (!data.internal) {
       world.scratch.joint_break.push_back(
           {joints.slots.handle_at(joint), frames.body_a, frames.body_b, data.force, data.torque});
+      return;
+    }
+    // A spring's own: the force on its A, which is the joint's B where its other end is in the world.
+    for (const std::int32_t slot : world.effectors.in_order) {
+      const EffectorData<D>& effector = world.effectors.data[std::size_t(slot)];
+      if (effector.joint != joint) continue;
+      const auto& spring = std::get<SpringDamper<D>>(effector.definition);
+      world.scratch.spring_break.push_back({world.effectors.slots.handle_at(slot), spring.body_a, spring.body_b,
+                                            spring.body_b.is_null() ? data.force : -data.force});
+    }
   };
   for (const std::int32_t joint : joints.order) test(joint);
   for (const std::int32_t joint : joints.pins)
@@ -83,6 +96,9 @@ void break_joints(WorldImplementation<D>& world) {
   for (const JointBreakEvent<D>& event : world.scratch.joint_break)
     if (world.joints.slots.contains(event.joint))
       release_joint(world, std::int32_t(world.joints.slots.slot(event.joint)));
+  for (const SpringBreakEvent<D>& event : world.scratch.spring_break)
+    if (world.effectors.slots.contains(event.spring))
+      release_effector(world, std::int32_t(world.effectors.slots.slot(event.spring)));
 }
 
 template void find_parts(JointData<Dim2>&);

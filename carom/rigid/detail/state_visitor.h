@@ -131,7 +131,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
          island_parent, island_list, island_bodies, island_ends, doomed_contacts, new_touches, new_manifolds,
          island_restless, island_substeps, whole_awake, whole_trees, whole_colors, contact_begin, contact_end,
          pending_contact_end, contact_hit, sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined,
-         body_moves, joint_break] = scratch;
+         body_moves, joint_break, spring_break] = scratch;
   (void)blocks;
   visit.scratch(loads);
   visit.scratch(hits);
@@ -195,6 +195,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.events(quarantined);
   visit.events(body_moves);
   visit.events(joint_break);
+  visit.events(spring_break);
 }
 
 /// `world` is a WorldImplementation, constant or not.

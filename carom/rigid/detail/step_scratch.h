@@ -173,6 +173,7 @@ struct StepScratch {
   std::vector<SleepEvent> fell_asleep, quarantined;
   std::vector<MoveEvent<D>> body_moves;
   std::vector<JointBreakEvent<D>> joint_break;
+  std::vector<SpringBreakEvent<D>> spring_break;
 };
 
 /// Events of the last step are gone; those that wait for the next one stay.
@@ -187,6 +188,7 @@ void forget_events(StepScratch<D>& s) {
   s.quarantined.clear();
   s.body_moves.clear();
   s.joint_break.clear();
+  s.spring_break.clear();
 }
 
 }  // namespace carom::rigid::detail

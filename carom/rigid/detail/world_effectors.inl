@@ -49,6 +49,7 @@ struct EffectorCheck {
     c.not_negative("rest_length", e.rest_length);
     c.not_negative("stiffness", e.stiffness);
     c.not_negative("damping", e.damping);
+    c.not_negative("break_force", e.break_force);
   }
   void operator()(const Buoyancy<D>& e) {
     target(e);
@@ -123,6 +124,33 @@ struct EffectorCheck {
     c.positive("radius", e.radius);
     c.not_negative("density", e.density);
   }
+  void direction(const char* name, const auto& v) {
+    c.vector(name, v);
+    if (c.none_yet() && !(math::length(v) > 1e-6f)) c.say(core::text(name, " is zero, expected a direction"));
+  }
+  void operator()(const LiftingSurface<D>& e) {
+    c.status(world.bodies.slots.check(e.body, "body"));
+    if (c.none_yet()) c.status(forces::validate(e.law));
+    c.vector("point", e.point);
+    direction("forward", e.forward);
+    if constexpr (D::dimension == 3) {
+      direction("up", e.up);
+      if (c.none_yet() && !(math::length(math::cross(normalize(e.forward), normalize(e.up))) > 1e-3f))
+        c.say("forward and up are parallel, expected two directions");
+    }
+    c.not_negative("area", e.area);
+    c.not_negative("chord", e.chord);
+    c.not_negative("density", e.density);
+  }
+  void operator()(const CylinderDrag<D>& e) {
+    c.status(world.bodies.slots.check(e.body, "body"));
+    c.vector("point", e.point);
+    direction("axis", e.axis);
+    c.positive("diameter", e.diameter);
+    c.positive("length", e.length);
+    c.not_negative("density", e.density);
+    c.positive("viscosity", e.viscosity);
+  }
   void operator()(const TurningFrame<D>& e) {
     target(e);
     if constexpr (D::dimension == 2)
@@ -164,6 +192,7 @@ void install_effector(WorldImplementation<D>& world, std::int32_t slot, const Ef
     const std::int32_t joint = joints.slots.slot(id);
     DistanceJointDef<D> def;
     def.length = float(spring->rest_length);
+    def.break_force = float(spring->break_force);
     def.collide_connected = true;
     if (spring->body_b.is_null()) {
       def.body_b = spring->body_a;
@@ -185,6 +214,7 @@ void install_effector(WorldImplementation<D>& world, std::int32_t slot, const Ef
     header.body[0] = spring->body_b.is_null() ? none : world.bodies.slots.slot(def.body_a);
     header.body[1] = world.bodies.slots.slot(def.body_b);
     ++joints.internal_count;
+    if (may_break(data.frames())) ++joints.breakable_count;
     effector.joint = joint;
     attach_joint(world, joint);
     return;

@@ -134,6 +134,7 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.quarantined.reserve(bodies);
   if (world.definition.move_events) s.body_moves.reserve(bodies);
   s.joint_break.reserve(joints);
+  s.spring_break.reserve(joints);
   // Blocks of the solver: a lane a manifold, and for every colour one that is not full.
   using Block = ContactBlock<D, 16>;
   using Extra = ContactExtra<D, 16>;
@@ -264,7 +265,7 @@ template <class D>
 Events<D> World<D>::events() const {
   const detail::StepScratch<D>& s = self_->scratch;
   return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin, s.sensor_end,
-          s.fell_asleep,   s.quarantined, s.body_moves,  s.joint_break};
+          s.fell_asleep,   s.quarantined, s.body_moves,  s.joint_break, s.spring_break};
 }
 
 template <class D>

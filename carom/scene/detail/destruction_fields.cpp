@@ -237,6 +237,10 @@ constexpr Field rocket_fields[] = {
     {"nose_length", T::quantity, M::length, "of an ogive"},
     {"drag_coefficient", T::quantity, M::plain, "on the frontal area, while a motor burns"},
     {"coasting_drag_coefficient", T::quantity, M::plain, "without; the same unless given"},
+    {"drag_table", T::any, M::plain,
+     "Mach number, C_D, Mach number, C_D … instead, smooth between; or a file of such: of presets/drag, or beside the "
+     "scene"},
+    {"coasting_drag_table", T::any, M::plain, "likewise, without a motor that burns"},
     {"fin_count", T::integer, M::plain, "0 to 16"},
     {"fin_root_chord", T::quantity, M::length},
     {"fin_tip_chord", T::quantity, M::length},

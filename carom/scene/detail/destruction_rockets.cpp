@@ -40,14 +40,32 @@ ballistics::Motor read_motor(Reader& r, const Object& o) {
   return motor;
 }
 
+/// C_D at every speed, or by Mach number.
+ballistics::DragCurve read_drag(Reader& r, const Object& o, const char* number, const char* table,
+                                ballistics::DragCurve otherwise) {
+  if (!o.has(table)) return o.has(number) ? ballistics::DragCurve(size(r, o, number, 0)) : otherwise;
+  if (o.has(number))
+    r.fail(*o.find(table), o.path_of(table), core::text("found it beside ", number, ", expected one of them"));
+  const std::vector<double> numbers = r.numbers(o, table);
+  if (r.failed()) return otherwise;
+  std::vector<ballistics::DragPoint> points;
+  for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) points.push_back({numbers[i], numbers[i + 1]});
+  if (points.empty() || numbers.size() % 2 != 0) {
+    r.expected(*o.find(table), o.path_of(table), "pairs of Mach number and C_D, one after another");
+    return otherwise;
+  }
+  auto curve = ballistics::DragCurve::from_points(points);
+  if (!curve) return r.fail(*o.find(table), o.path_of(table), curve.error().message), otherwise;
+  return std::move(*curve);
+}
+
 ballistics::Rocket read_rocket_itself(Reader& r, const Object& o) {
   ballistics::Rocket rocket;
   rocket.diameter = size(r, o, "diameter", 0, true);
   rocket.length = size(r, o, "length", 0, true);
   rocket.nose_length = size(r, o, "nose_length", 0);
-  const double drag = size(r, o, "drag_coefficient", 0.5);
-  rocket.drag = ballistics::DragCurve(drag);
-  rocket.coasting_drag = ballistics::DragCurve(size(r, o, "coasting_drag_coefficient", drag));
+  rocket.drag = read_drag(r, o, "drag_coefficient", "drag_table", ballistics::DragCurve(0.5));
+  rocket.coasting_drag = read_drag(r, o, "coasting_drag_coefficient", "coasting_drag_table", rocket.drag);
   rocket.fins.count = r.integer(o, "fin_count", 0, 0, 16);
   rocket.fins.root_chord = size(r, o, "fin_root_chord", rocket.fins.root_chord);
   rocket.fins.tip_chord = size(r, o, "fin_tip_chord", rocket.fins.tip_chord);

@@ -127,7 +127,7 @@ class PartReader {
       if (const core::Status read = read_wall(node); !read) return read;
     if (node.is_object() && list == "stages")
       if (const core::Status read = read_motor(node, from); !read) return read;
-    if (node.is_object() && list == "ammunition")
+    if (node.is_object() && (list == "ammunition" || list == "rockets"))
       if (const core::Status read = read_drag(node, from); !read) return read;
     for (std::size_t i = 0; i < node.children.size(); ++i) {
       const std::string_view within = node.is_object() ? std::string_view(node.keys[i]) : list;
@@ -179,16 +179,17 @@ class PartReader {
     return text;
   }
 
-  /// "drag_table": "308_168_smk" stands for the numbers of presets/drag/308_168_smk.txt.
-  core::Status read_drag(Node& ammunition, const std::string& from) {
-    for (std::size_t i = 0; i < ammunition.keys.size(); ++i) {
-      if (ammunition.keys[i] != "drag_table" || !ammunition.children[i].is_text()) continue;
-      Node& at = ammunition.children[i];
+  /// "drag_table": "308_168_smk" stands for the numbers of presets/drag/308_168_smk.txt; of rockets too.
+  core::Status read_drag(Node& owner, const std::string& from) {
+    for (std::size_t i = 0; i < owner.keys.size(); ++i) {
+      const std::string& key = owner.keys[i];
+      if ((key != "drag_table" && key != "coasting_drag_table") || !owner.children[i].is_text()) continue;
+      Node& at = owner.children[i];
       std::string path;
-      const auto text = named_file(at, "drag_table", from, "drag", "txt", path);
+      const auto text = named_file(at, key, from, "drag", "txt", path);
       if (!text) return text.error();
       const auto curve = ballistics::read_drag_table(*text, path);
-      if (!curve) return error(at, "drag_table", curve.error().message);
+      if (!curve) return error(at, key, curve.error().message);
       Node numbers = node_at(at, NodeKind::array);
       for (const ballistics::DragPoint& p : curve->points())
         for (const double x : {p.mach, p.coefficient}) numbers.children.push_back(number_at(at, x));

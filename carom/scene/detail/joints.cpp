@@ -2,6 +2,7 @@
 
 #include "carom/environment/frame.h"
 #include "carom/scene/detail/ball_flight.h"
+#include "carom/scene/detail/force_field.h"
 #include "carom/scene/detail/projectile.h"
 
 namespace carom::scene::detail {
@@ -404,6 +405,7 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       e.rest_length = reader.number(o, "rest_length", e.rest_length);
       e.stiffness = reader.number(o, "stiffness", e.stiffness);
       e.damping = reader.number(o, "damping", e.damping);
+      e.break_force = reader.number(o, "break_force", e.break_force);
       return e;
     }
     case 5: {
@@ -505,6 +507,35 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       e.magnetic = math::Vec3f(reader.angular(o, "magnetic"));
       return e;
     }
+    case 15: {
+      LiftingSurface<D> e;
+      e.body = target.body;
+      e.law.aspect_ratio = reader.number(o, "aspect_ratio", e.law.aspect_ratio);
+      e.law.zero_lift_angle = reader.number(o, "zero_lift_angle", e.law.zero_lift_angle);
+      e.law.stall_angle = reader.number(o, "stall_angle", e.law.stall_angle);
+      e.law.profile_drag = reader.number(o, "profile_drag", e.law.profile_drag);
+      e.law.efficiency = reader.number(o, "efficiency", e.law.efficiency);
+      e.point = vector_for(reader.vector(o, "point"), d);
+      e.forward = vector_for(reader.vector(o, "forward", {1, 0, 0}), d);
+      if (D::dimension == 3) e.up = math::Vec3f(reader.vector(o, "up", {0, 1, 0}));
+      e.area = reader.number(o, "area", e.area);
+      e.chord = reader.number(o, "chord", e.chord);
+      e.density = reader.number(o, "density", e.density);
+      return e;
+    }
+    case 16: {
+      CylinderDrag<D> e;
+      e.body = target.body;
+      e.point = vector_for(reader.vector(o, "point"), d);
+      e.axis = vector_for(reader.vector(o, "axis", {1, 0, 0}), d);
+      e.diameter = reader.number(o, "diameter", e.diameter);
+      e.length = reader.number(o, "length", e.length);
+      e.density = reader.number(o, "density", e.density);
+      e.viscosity = reader.number(o, "viscosity", e.viscosity);
+      return e;
+    }
+    case 17:
+      return read_force_field<D>(reader, o, target.body);
     case 13:
       return read_projectile<D>(reader, o, target.body);
     case 14:

@@ -35,6 +35,10 @@ core::Error preset_error(std::string_view file, const Node& at, std::string_view
   return core::Error{core::text(file, ":", at.line, ": ", where, ": ", message)};
 }
 
+core::Error in_file(std::string_view file, const core::Error& error) {
+  return core::Error{core::text(file, ": ", error.message)};
+}
+
 core::Result<Node> read_preset_tree(std::string_view text, std::string_view file, bool array) {
   auto document = parse_document(text, file, 0, {.bytes = 1u << 20, .nodes = 4096, .depth = 8});
   if (!document) return document.error();

@@ -34,6 +34,8 @@ struct PresetValues {
 
 /// "file:line: values.mass: found …, expected …"
 core::Error preset_error(std::string_view file, const Node& at, std::string_view where, const std::string& message);
+/// "file: …", for what is known of the whole alone.
+core::Error in_file(std::string_view file, const core::Error& error);
 /// Quantities of these names, texts of those, and lists of plain numbers; others, and what is named twice, are errors.
 core::Result<PresetValues> read_preset(std::string_view text, std::string_view file,
                                        std::span<const sports::NumberName> names,

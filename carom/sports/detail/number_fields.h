@@ -1,10 +1,14 @@
-// Every number of a ball, a surface and a club head once: its name and unit in files, and what it may be.
+// Every number of a ball, a surface, a club head and of how games are played once: its name and unit in files, and what
+// it may be.
 #pragma once
 
 #include <vector>
 
 #include "carom/core/string.h"
+#include "carom/sports/baseball.h"
 #include "carom/sports/bounce.h"
+#include "carom/sports/bowling.h"
+#include "carom/sports/cricket.h"
 #include "carom/sports/golf_impact.h"
 #include "carom/sports/numbers.h"
 
@@ -65,6 +69,70 @@ void visit_fields(H& h, Visitor&& field) {
   field("friction", "", h.friction, 0.0, 100.0);
   field("bulge", "1/m", h.bulge, -100.0, 100.0);
   field("roll", "1/m", h.roll, -100.0, 100.0);
+}
+
+template <class P, class Visitor>
+  requires std::is_same_v<std::remove_const_t<P>, Pitch>
+void visit_fields(P& p, Visitor&& field) {
+  field("speed", "m/s", p.speed, 0.1, 1e3);
+  field("elevation", "rad", p.elevation, -1.5, 1.5);
+  field("azimuth", "rad", p.azimuth, -1.5, 1.5);
+  field("spin", "rad/s", p.spin, -1e4, 1e4);
+  field("tilt", "rad", p.tilt, -7.0, 7.0);
+  field("gyro", "rad/s", p.gyro, -1e4, 1e4);
+  field("release_height", "m", p.release.y, 0.0, 10.0);
+  field("release_side", "m", p.release.z, -10.0, 10.0);
+}
+
+template <class B, class Visitor>
+  requires std::is_same_v<std::remove_const_t<B>, Bat>
+void visit_fields(B& b, Visitor&& field) {
+  field("effective_mass", "kg", b.effective_mass, 1e-3, 100.0);
+  field("radius", "m", b.radius, 1e-4, 1.0);
+  field("restitution", "", b.restitution, 0.0, 1.0);
+  field("friction", "", b.friction, 0.0, 100.0);
+  field("tangential_restitution", "", b.tangential_restitution, -1.0, 1.0);
+}
+
+template <class C, class Visitor>
+  requires std::is_same_v<std::remove_const_t<C>, CricketDelivery>
+void visit_fields(C& c, Visitor&& field) {
+  field("speed", "m/s", c.speed, 1.0, 1e3);
+  field("elevation", "rad", c.elevation, -1.5, 1.5);
+  field("azimuth", "rad", c.azimuth, -1.5, 1.5);
+  field("spin", "rad/s", c.spin, -1e4, 1e4);
+  field("tilt", "rad", c.tilt, -7.0, 7.0);
+  field("gyro", "rad/s", c.gyro, -1e4, 1e4);
+  field("seam", "rad", c.seam, -1.5, 1.5);
+  field("height", "m", c.height, 0.1, 10.0);
+  field("side", "m", c.side, -10.0, 10.0);
+}
+
+template <class B, class Visitor>
+  requires std::is_same_v<std::remove_const_t<B>, BowlingBall>
+void visit_fields(B& b, Visitor&& field) {
+  field("mass", "kg", b.mass, 1e-3, 1e3);
+  field("radius", "m", b.radius, 1e-3, 10.0);
+  field("gyration", "m", b.gyration, 1e-4, 10.0);
+  field("cover", "", b.cover, 0.0, 10.0);
+}
+
+template <class L, class Visitor>
+  requires std::is_same_v<std::remove_const_t<L>, Lane>
+void visit_fields(L& l, Visitor&& field) {
+  field("length", "m", l.length, 1e-3, 1e4);
+  field("width", "m", l.width, 1e-3, 1e4);
+  field("gravity", "m/s^2", l.gravity, 1e-6, 1e4);
+}
+
+template <class D, class Visitor>
+  requires std::is_same_v<std::remove_const_t<D>, Delivery>
+void visit_fields(D& d, Visitor&& field) {
+  field("speed", "m/s", d.speed, 1e-3, 1e3);
+  field("angle", "rad", d.angle, -1.5, 1.5);
+  field("spin", "rad/s", d.spin, -1e4, 1e4);
+  field("axis_rotation", "rad", d.axis_rotation, -7.0, 7.0);
+  field("start", "m", d.start, -1e3, 1e3);
 }
 
 template <class T>

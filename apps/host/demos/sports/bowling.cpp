@@ -1,9 +1,9 @@
 // Ten pins: a ball that skids through oil, hooks on dry boards and rolls into rigid bodies (chapter 19).
-#include "carom/sports/bowling.h"
 #include "apps/host/demos/sports/list.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/math/elementary.h"
+#include "carom/sports/game_presets.h"
 
 namespace carom::host::demo {
 namespace {
@@ -35,6 +35,9 @@ class Bowling final : public Repeatable<Bowling, Demo3> {
     d.camera = {{9.6, 2.5, 1.9}, {16.6, 0.1, 0.02}, 0.62};
     d.ground = -0.7;
     d.parameters = {
+        {"player", "Player", "", "",
+         "0: as set below; 1 straight, 2 stroker, 3 tweener, 4 cranker, 5 two-handed, 6 backup, 7 spinner", 0, 7, 1, 0,
+         false},
         {"speed", "Speed", "m/s", "mph", "", 4, 12, 0, 8, false},
         {"spin", "Spin", "rad/s", "rpm", "", 0, 60, 0, 300 * pi / 30, false},
         {"axis", "Axis rotation", "rad", "deg", "0: end over end, 90°: all side spin", -1.5708, 1.5708, 0,
@@ -118,6 +121,8 @@ class Bowling final : public Repeatable<Bowling, Demo3> {
                  .spin = stage.value("spin"),
                  .axis_rotation = stage.value("axis"),
                  .start = stage.value("start")};
+    if (const int player = int(stage.value("player")); player > 0)
+      delivery_ = sports::bowling_presets()[std::size_t(player - 1)].value;
     path_ = stage.keep(sports::bowl(ball, lane_, delivery_));
     rigid::BodyDef<Dim3> thrown;
     thrown.name = "ball";

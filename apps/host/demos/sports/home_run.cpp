@@ -1,7 +1,7 @@
 // Pitch and hit: a curve ball, a bat that meets it a little low, and a fence (chapters 6.3 and 19).
 #include "apps/host/demos/sports/list.h"
 #include "carom/math/elementary.h"
-#include "carom/sports/baseball.h"
+#include "carom/sports/game_presets.h"
 #include "carom/sports/presets.h"
 
 namespace carom::host::demo {
@@ -38,6 +38,9 @@ class HomeRun final : public Repeatable<HomeRun, Demo3> {
     d.camera = {{-20, 10, 6}, {45, 12, -2}, 0.8};
     d.ground = -0.05;
     d.parameters = {
+        {"kind", "Kind of pitch", "", "",
+         "0: as set below; 1 four-seam, 2 sinker, 3 cutter, 4 slider, 5 sweeper, 6 curveball, 7 changeup, 8 splitter",
+         0, 8, 1, 0, false},
         {"pitch", "Pitch", "m/s", "mph", "at release", 25, 47, 0, 92 * ball_mph, false},
         {"pitch_spin", "Its spin", "rad/s", "rpm", "", 0, 320, 0, 2200 * pi / 30, false},
         {"tilt", "Tilt of its axis", "rad", "deg", "0 backspin (fastball), 180 topspin (curve), 90 sideways", -3.1416,
@@ -72,12 +75,11 @@ class HomeRun final : public Repeatable<HomeRun, Demo3> {
     sports::Conditions thrown = conditions_;
     thrown.wind = environment::WindColumn(turned(Vec3d{stage.value("wind"), 0, 0}));
     sports::Pitch pitch{.speed = stage.value("pitch"), .spin = stage.value("pitch_spin"), .tilt = stage.value("tilt")};
-    // The pitcher aims at the middle of the zone: two corrections are enough.
-    for (int i = 0; i < 3; ++i) {
-      pitch_ = stage.keep(sports::pitch(ball, thrown, pitch, plate_distance));
-      pitch.elevation += (0.75 - pitch_.height) / plate_distance;
-      pitch.azimuth -= pitch_.side / plate_distance;
-    }
+    if (const int kind = int(stage.value("kind")); kind > 0)
+      pitch = sports::pitch_presets()[std::size_t(kind - 1)].value;
+    // The pitcher aims at the middle of the zone.
+    pitch = stage.keep(sports::aimed(ball, thrown, pitch, 0.75, 0, plate_distance));
+    pitch_ = stage.keep(sports::pitch(ball, thrown, pitch, plate_distance));
     if (pitch_.path.nodes().empty()) return;
     const sports::Bat bat;
     const sports::BatSwing swing{.speed = stage.value("bat"),
@@ -120,7 +122,7 @@ class HomeRun final : public Repeatable<HomeRun, Demo3> {
           1, 1, fence({cos(pi / 4 * (i / 20.0 - 1)), 0, sin(pi / 4 * (i / 20.0 - 1))}) * cos(pi / 4 * (i / 20.0 - 1)),
           fence({cos(pi / 4 * (i / 20.0 - 1)), 0, sin(pi / 4 * (i / 20.0 - 1))}) * sin(pi / 4 * (1 - i / 20.0)));
     }
-    pitch.spin = 0;
+    pitch.spin = pitch.gyro = 0;
     if (const auto straight = sports::pitch(ball, thrown, pitch, plate_distance))
       for (int i = 0; i <= 40; ++i) {
         const auto p = straight->path.at(straight->time * i / 40);
