@@ -242,8 +242,7 @@ Status Matter::set_wind(const environment::Environment* around) {
     for (auto& entry : many.particles) {
       particles::Air air{.turbulence = entry.thing.turbulence};
       if (around != nullptr) {
-        air.wind = around->definition().wind.mean;
-        air.layers = around->definition().wind.layers;
+        air.field = around->definition().wind;
         air.ground = around->definition().ground;
       }
       if (Status s = entry.thing.system.set_air(air); !s) return s;

@@ -211,4 +211,17 @@ TEST(OneEnvironment, ParticlesFeelLayers) {
   EXPECT_LT(math::length(place("high") - high - Vec3d{-4, 0, -9}), .05);
 }
 
+// Smoke in the middle of a gust that stands still goes with its peak.
+TEST(OneEnvironment, ParticlesFeelGusts) {
+  SceneWorld world = start(R"({"gravity": [0, 0, 0], "environment": {"wind": {"velocity": [1, 0, 0],
+      "gusts": [{"velocity": [0, 0, 4], "front": "100 m", "gradient_distance": "100 m"}]}},
+      "particles": [{"name": "smoke", "radius": "5 um", "density": "1000 kg/m^3",
+        "emitters": [{"burst": 10, "position": [0, 40, 0], "speed": 0, "lifetime": "10 s"}]}]})");
+  const auto z = [&] { return scene::test::read(world, "particles.smoke.center.z"); };
+  run(world, 30);
+  const double before = z();
+  run(world, 60);
+  EXPECT_NEAR(z() - before, 4, .02);
+}
+
 }  // namespace scene_one_environment_test
