@@ -63,9 +63,7 @@ void WindField::beyond_mean(const WindGrid& grid, double time, double ground, st
   turbulence.add_at(grid, time, out);
 }
 
-void WindPatch::set(const WindField& field, Vec3d low, Vec3d high, double time, double ground, int nodes) {
-  nodes_.clear();
-  if (field.steady()) return;
+void WindPatch::place(Vec3d low, Vec3d high, int nodes) {
   nodes_.reserve(std::size_t(nodes));
   const auto count = [&](double spacing, int axis) {
     return math::floor(high[axis] / spacing) - math::floor(low[axis] / spacing) + 2;
@@ -80,7 +78,23 @@ void WindPatch::set(const WindField& field, Vec3d low, Vec3d high, double time, 
   grid_.layers = int(count(spacing, 1));
   grid_.rows = int(count(spacing, 2));
   nodes_.resize(std::size_t(grid_.size()));
+}
+
+void WindPatch::set(const WindField& field, Vec3d low, Vec3d high, double time, double ground, int nodes) {
+  nodes_.clear();
+  if (field.steady()) return;
+  place(low, high, nodes);
   field.beyond_mean(grid_, time, ground, nodes_);
+}
+
+void WindPatch::set_whole(const WindField& field, Vec3d low, Vec3d high, double time, double ground, int nodes) {
+  place(low, high, nodes);
+  field.beyond_mean(grid_, time, ground, nodes_);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::size_t layer = i / std::size_t(grid_.columns) % std::size_t(grid_.layers);
+    const double height = grid_.corner.y + double(layer) * grid_.spacing - ground;
+    nodes_[i] += math::Vec3f(field.mean_at(math::max(height, 0.0)));
+  }
 }
 
 Vec3d WindPatch::at(Vec3d point) const {

@@ -51,6 +51,10 @@ class CAROM_API WindPatch {
   /// 8. The grid lies at multiples of its spacing, so that it does not creep along with the box. No allocation once
   /// warm.
   void set(const WindField& field, math::Vec3d low, math::Vec3d high, double time, double ground = 0, int nodes = 4096);
+  /// Likewise for the whole wind, steady part and all: for small things, which ask where they are.
+  void set_whole(const WindField& field, math::Vec3d low, math::Vec3d high, double time, double ground = 0,
+                 int nodes = 512);
+  void clear() { nodes_.clear(); }
   /// m/s; none where the wind is steady.
   math::Vec3d at(math::Vec3d point) const;
 
@@ -58,6 +62,7 @@ class CAROM_API WindPatch {
   std::span<const math::Vec3f> nodes() const { return nodes_; }  ///< m/s; none where the wind is steady
 
  private:
+  void place(math::Vec3d low, math::Vec3d high, int nodes);
   WindGrid grid_{};
   std::vector<math::Vec3f> nodes_;
 };

@@ -226,4 +226,21 @@ TEST(OneEnvironment, ParticlesFeelGusts) {
   EXPECT_NEAR((along("z") - z) / (along("x") - x), 4, .01);
 }
 
+// Of two halves of one cloth, and of two ropes, one is in a gust and one is not.
+TEST(OneEnvironment, ClothAndRopesFeelTheGustWhereTheyAre) {
+  SceneWorld world = start(R"({"gravity": [0, 0, 0], "environment": {"wind": {"velocity": [0, 0, 0],
+      "gusts": [{"velocity": [0, 0, 6], "front": "0 m", "gradient_distance": "2 m"}]}},
+      "ropes": [{"name": "in", "points": [[-2, 1, 0], [-2, 2, 0]], "segments": 5},
+                {"name": "out", "points": [[2, 1, 0], [2, 2, 0]], "segments": 5}],
+      "cloths": [{"name": "c", "corner": [-2, 3, 0], "along": [4, 0, 0], "across": [0, 1, 0], "columns": 33,
+                  "rows": 9, "mass_per_area": "100 g/m^2"}]})");
+  run(world, 6);
+  const auto z = [&](int rope) { return world.matter->rope_set.positions(rope)[2].z; };
+  EXPECT_GT(z(0), 1e-3);
+  EXPECT_LT(math::abs(z(1)), 1e-2 * z(0));
+  const auto places = world.matter->cloths[0].thing.positions();
+  EXPECT_GT(places[4].z, .05);
+  EXPECT_LT(math::abs(places[28].z), 1e-3);
+}
+
 }  // namespace scene_one_environment_test
