@@ -68,12 +68,19 @@ void soft_body_step(benchmark::State& state) {
   const int cells = int(state.range(0));
   const SoftMesh mesh = make_soft_box({0, .02, 0}, {.5, .5, .5}, cells, cells, cells);
   auto body = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
-  for (int i = 0; i < 30; ++i) body.step(world, 1.0 / 60).value();
+  for (int i = 0; i < 90; ++i) body.step(world, 1.0 / 60).value();
   double iterations = 0;
   for (auto _ : state) {
     body.step(world, 1.0 / 60).value();
     iterations += body.iterations();
   }
+  double low = 1, high = 0;
+  for (const math::Vec3d& p : body.positions()) {
+    low = math::min(low, p.y);
+    high = math::max(high, p.y);
+  }
+  state.counters["volume %"] = 100 * body.volume() / .125;
+  state.counters["height %"] = 100 * (high - low) / .5;
   state.counters["iterations"] = iterations / double(state.iterations());
 }
 

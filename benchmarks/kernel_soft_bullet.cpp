@@ -1,5 +1,5 @@
-// Bullet's cloth and rope on the scenes of kernel_ropes.cpp, at several numbers of its position iterations: what a step
-// costs, and how far things stretch that should not.
+// Bullet's cloth, rope and soft body on the scenes of kernel_ropes.cpp, at several numbers of its position iterations:
+// what a step costs, and how far things stretch that should not.
 #ifdef CAROM_WITH_BULLET
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
@@ -8,6 +8,10 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
+
+#include "carom/particles/soft_body.h"
 
 namespace {
 
@@ -86,7 +90,52 @@ void bullet_rope(benchmark::State& state) {
   delete rope;
 }
 
+/// A cube of half a metre, 125 kg, of the same tetrahedra, on the ground: its edges are links.
+void bullet_soft_body(benchmark::State& state) {
+  SoftWorld soft;
+  btStaticPlaneShape plane({0, 1, 0}, 0);
+  btRigidBody ground(0, nullptr, &plane);
+  soft.world.addRigidBody(&ground);
+  const int cells = int(state.range(0));
+  const auto mesh = carom::particles::make_soft_box({0, .02, 0}, {.5, .5, .5}, cells, cells, cells);
+  btAlignedObjectArray<btVector3> points;
+  for (const auto& p : mesh.points) points.push_back({btScalar(p.x), btScalar(p.y), btScalar(p.z)});
+  btSoftBody* const body = new btSoftBody(&soft.world.getWorldInfo(), points.size(), &points[0], nullptr);
+  std::set<std::pair<int, int>> edges;
+  for (std::size_t k = 0; k < mesh.tetrahedra.size(); k += 4) {
+    int corner[4];
+    for (std::size_t c = 0; c < 4; ++c) corner[c] = int(mesh.tetrahedra[k + c]);
+    body->appendTetra(corner[0], corner[1], corner[2], corner[3]);
+    for (int a = 0; a < 4; ++a)
+      for (int b = a + 1; b < 4; ++b) edges.insert({std::min(corner[a], corner[b]), std::max(corner[a], corner[b])});
+  }
+  for (const auto& [a, b] : edges) body->appendLink(a, b);
+  body->m_cfg.piterations = int(state.range(1));
+  body->m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
+  body->setTotalMass(125);
+  soft.world.addSoftBody(body);
+  for (int i = 0; i < 90; ++i) soft.step();
+  for (auto _ : state) soft.step();
+  btScalar low = 1e9f, high = -1e9f;
+  for (int i = 0; i < body->m_nodes.size(); ++i) {
+    low = std::min(low, body->m_nodes[i].m_x.y());
+    high = std::max(high, body->m_nodes[i].m_x.y());
+  }
+  double volume = 0;
+  for (int i = 0; i < body->m_tetras.size(); ++i) {
+    const btSoftBody::Tetra& t = body->m_tetras[i];
+    const btVector3 o = t.m_n[0]->m_x;
+    volume += double(btFabs((t.m_n[1]->m_x - o).dot((t.m_n[2]->m_x - o).cross(t.m_n[3]->m_x - o)))) / 6;
+  }
+  state.counters["volume %"] = 100 * volume / .125;
+  state.counters["height %"] = 100 * double(high - low) / .5;
+  soft.world.removeSoftBody(body);
+  soft.world.removeRigidBody(&ground);
+  delete body;
+}
+
 BENCHMARK(bullet_flag)->Args({64, 10})->Args({64, 50})->Args({64, 200})->Iterations(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(bullet_soft_body)->Args({8, 10})->Args({8, 50})->Iterations(100)->Unit(benchmark::kMillisecond);
 BENCHMARK(bullet_rope)->Args({100, 10})->Args({100, 1000})->Iterations(100)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
+#include "carom/math/simd.h"
 
 namespace carom::environment {
 using math::Vec3d;
+using math::Vec3f;
 namespace {
 
 constexpr double feet = 0.3048, von_karman_scale = 1.339;
@@ -153,33 +155,80 @@ core::Result<Turbulence> Turbulence::make(const TurbulenceDef& def) {
                               amplitude * ((hand * start.cos) * q - start.sin * p)});
     }
   }
+  // Each component is a component of the unit field with its own length.
+  const Vec3d axes_of[3] = {field.along_, {0, 1, 0}, field.across_};
+  const double sigma[3] = {def.scales.intensity.x, def.scales.intensity.z, def.scales.intensity.y};
+  const double length[3] = {def.scales.length.x, def.scales.length.z, def.scales.length.y};  // of u, w (up), v
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0 && (length[i] == length[0] || length[i] == length[i - 1])) continue;
+    for (const Mode& mode : field.modes_) {
+      Mode wave;
+      for (int j = 0; j < 3; ++j) {
+        wave.wave_number += axes_of[j] * (mode.wave_number[j] / length[i]);
+        if (length[j] != length[i]) continue;
+        wave.cosine += axes_of[j] * (sigma[j] * mode.cosine[j]);
+        wave.sine += axes_of[j] * (sigma[j] * mode.sine[j]);
+      }
+      field.waves_.push_back(wave);
+    }
+  }
   return field;
 }
 
 Vec3d Turbulence::at(Vec3d point, double time) const {
-  if (modes_.empty()) return {};
   const Vec3d moved = point - definition_.mean_wind * time;
-  const Vec3d local{math::dot(moved, along_), moved.y, math::dot(moved, across_)};
-  const TurbulenceScales& s = definition_.scales;
-  // Each component is a component of the unit field with its own length: one pass for each length that differs.
   Vec3d sum{};
-  const double lengths[3] = {s.length.x, s.length.z, s.length.y};  // of u, w (up), v
-  bool done[3] = {};
-  for (int i = 0; i < 3; ++i) {
-    if (done[i]) continue;
-    const Vec3d x = local / lengths[i];
-    Vec3d pass{};
-    for (const Mode& mode : modes_) {
-      const math::SinCos<double> turn = math::sincos(math::dot(mode.wave_number, x));
-      pass += turn.cos * mode.cosine + turn.sin * mode.sine;
-    }
-    for (int j = i; j < 3; ++j)
-      if (lengths[j] == lengths[i]) {
-        sum[j] = pass[j];
-        done[j] = true;
-      }
+  for (const Mode& wave : waves_) {
+    const math::SinCos<double> turn = math::sincos(math::dot(wave.wave_number, moved));
+    sum += turn.cos * wave.cosine + turn.sin * wave.sine;
   }
-  return along_ * (s.intensity.x * sum.x) + Vec3d{0, s.intensity.z * sum.y, 0} + across_ * (s.intensity.y * sum.z);
+  return sum;
+}
+
+void Turbulence::add_at(const WindGrid& grid, double time, std::span<Vec3f> out) const {
+  using F = math::WideFloat<4>;
+  constexpr int most = 64;  // waves at a time
+  const Vec3d corner = grid.corner - definition_.mean_wind * time;
+  for (std::size_t first = 0; first < waves_.size(); first += most) {
+    const int count = int(math::min(waves_.size() - first, std::size_t(most)));
+    alignas(16) float cosine[3][most] = {}, sine[3][most] = {}, turn_cos[most] = {}, turn_sin[most] = {};
+    math::SinCos<double> up[most], at[most];
+    for (int i = 0; i < count; ++i) {
+      const Mode& wave = waves_[first + std::size_t(i)];
+      for (int k = 0; k < 3; ++k) {
+        cosine[k][i] = float(wave.cosine[k]);
+        sine[k][i] = float(wave.sine[k]);
+      }
+      const math::SinCos<double> turn = math::sincos(wave.wave_number.x * grid.spacing);
+      turn_cos[i] = float(turn.cos);
+      turn_sin[i] = float(turn.sin);
+      up[i] = math::sincos(wave.wave_number.y * grid.spacing);
+    }
+    std::size_t node = 0;
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int i = 0; i < count; ++i)
+        at[i] = math::sincos(
+            math::dot(waves_[first + std::size_t(i)].wave_number, corner + Vec3d{0, 0, row * grid.spacing}));
+      for (int layer = 0; layer < grid.layers; ++layer) {
+        alignas(16) float c[most] = {}, s[most] = {};
+        for (int i = 0; i < count; ++i) {
+          c[i] = float(at[i].cos);
+          s[i] = float(at[i].sin);
+          at[i] = {at[i].cos * up[i].sin + at[i].sin * up[i].cos, at[i].cos * up[i].cos - at[i].sin * up[i].sin};
+        }
+        for (int column = 0; column < grid.columns; ++column, ++node) {
+          F sum[3] = {F::zero(), F::zero(), F::zero()};
+          for (int i = 0; i < count; i += 4) {
+            const F ci = F::load(c + i), si = F::load(s + i), tc = F::load(turn_cos + i), ts = F::load(turn_sin + i);
+            for (int k = 0; k < 3; ++k) sum[k] = sum[k] + (ci * F::load(cosine[k] + i) + si * F::load(sine[k] + i));
+            (ci * tc - si * ts).store(c + i);
+            (ci * ts + si * tc).store(s + i);
+          }
+          for (int k = 0; k < 3; ++k) out[node][k] += (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace carom::environment

@@ -57,6 +57,14 @@ struct TurbulenceDef {
   std::uint64_t seed = 1;
 };
 
+/// Nodes of a lattice of cubes.
+struct WindGrid {
+  math::Vec3d corner{};                   ///< m, the lowest
+  double spacing = 1;                     ///< m
+  int columns = 2, layers = 2, rows = 2;  ///< along x, y, z
+  int size() const { return columns * layers * rows; }
+};
+
 /// Random Fourier modes (Kraichnan, Phys. Fluids 13 (1970) 22): shells of wave number with the energy of the isotropic
 /// spectrum E(k), six directions each (the axes of an icosahedron, turned at random) and both polarisations, so that
 /// every component has exactly its variance over space. Where the three lengths and intensities are equal the field has
@@ -69,6 +77,9 @@ class CAROM_API Turbulence {
 
   /// The part of the wind (m/s) at a place and time.
   math::Vec3d at(math::Vec3d point, double time) const;
+  /// Adds the same, to 1e-5 of the intensity, at the nodes of a grid: x fastest, then y, then z. The modes are turned
+  /// from node to node instead of taken anew, which is ten times as fast.
+  void add_at(const WindGrid& grid, double time, std::span<math::Vec3f> out) const;
   const TurbulenceDef& definition() const { return definition_; }
   bool calm() const { return modes_.empty(); }
 
@@ -82,6 +93,7 @@ class CAROM_API Turbulence {
   TurbulenceDef definition_{};
   math::Vec3d along_{1, 0, 0}, across_{0, 0, 1};
   std::vector<Mode> modes_;
+  std::vector<Mode> waves_;  ///< the same in the world's axes and units: modes for each length that differs
 };
 
 }  // namespace carom::environment

@@ -10,6 +10,10 @@ bool WindField::calm() const {
          wakes.empty();
 }
 
+bool WindField::steady() const {
+  return turbulence.calm() && gusts.empty() && thermals.empty() && obstacles.empty() && wakes.empty();
+}
+
 Vec3d WindField::mean_at(double height) const {
   if (layers.empty()) return wind_at(mean, height);
   if (!(height > layers.front().height)) return layers.front().velocity;
@@ -20,11 +24,8 @@ Vec3d WindField::mean_at(double height) const {
   return a.velocity + ((height - a.height) / (b.height - a.height)) * (b.velocity - a.velocity);
 }
 
-Vec3d WindField::at(Vec3d point, double time, double ground) const {
-  const double height = point.y - ground;
-  Vec3d wind = mean_at(height);
-  const bool underground = height <= 0;
-  if (underground) return wind;
+Vec3d WindField::without_turbulence(Vec3d point, double time, Vec3d mean) const {
+  Vec3d wind = mean;
   for (const Gust& gust : gusts) wind += gust_at(gust, point, time);
   if (!obstacles.empty()) {
     const Vec3d flat{wind.x, 0, wind.z};
@@ -35,10 +36,89 @@ Vec3d WindField::at(Vec3d point, double time, double ground) const {
       wind = {left * wind.x, wind.y, left * wind.z};
     }
   }
-  wind += turbulence.at(point, time);
   for (const Thermal& thermal : thermals) wind += thermal_at(thermal, point);
   for (const WakeVortexPair& pair : wakes) wind += wake_vortices_at(pair, point, time);
   return wind;
+}
+
+Vec3d WindField::at(Vec3d point, double time, double ground) const {
+  const double height = point.y - ground;
+  const Vec3d mean = mean_at(height);
+  if (height <= 0) return mean;
+  return without_turbulence(point, time, mean) + turbulence.at(point, time);
+}
+
+void WindField::beyond_mean(const WindGrid& grid, double time, double ground, std::span<math::Vec3f> out) const {
+  const bool eddies_only = gusts.empty() && obstacles.empty() && thermals.empty() && wakes.empty();
+  std::size_t node = 0;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int layer = 0; layer < grid.layers; ++layer) {
+      const double y = math::max(layer * grid.spacing + grid.corner.y, ground);
+      const Vec3d mean = mean_at(y - ground);
+      for (int column = 0; column < grid.columns; ++column, ++node) {
+        const Vec3d point{column * grid.spacing + grid.corner.x, y, row * grid.spacing + grid.corner.z};
+        out[node] = eddies_only ? math::Vec3f{} : math::Vec3f(without_turbulence(point, time, mean) - mean);
+      }
+    }
+  turbulence.add_at(grid, time, out);
+}
+
+void WindPatch::place(Vec3d low, Vec3d high, int nodes) {
+  nodes_.reserve(std::size_t(nodes));
+  const auto count = [&](double spacing, int axis) {
+    return math::floor(high[axis] / spacing) - math::floor(low[axis] / spacing) + 2;
+  };
+  // The least spacing of 1, 1.5, 2, 3, 4 … times a power of two.
+  double spacing = 1.0 / 64;
+  for (bool half = true; count(spacing, 0) * count(spacing, 1) * count(spacing, 2) > nodes; half = !half)
+    spacing *= half ? 1.5 : 4.0 / 3;
+  grid_.spacing = spacing;
+  for (int axis = 0; axis < 3; ++axis) grid_.corner[axis] = math::floor(low[axis] / spacing) * spacing;
+  grid_.columns = int(count(spacing, 0));
+  grid_.layers = int(count(spacing, 1));
+  grid_.rows = int(count(spacing, 2));
+  nodes_.resize(std::size_t(grid_.size()));
+}
+
+void WindPatch::set(const WindField& field, Vec3d low, Vec3d high, double time, double ground, int nodes) {
+  nodes_.clear();
+  if (field.steady()) return;
+  place(low, high, nodes);
+  field.beyond_mean(grid_, time, ground, nodes_);
+}
+
+void WindPatch::set_whole(const WindField& field, Vec3d low, Vec3d high, double time, double ground, int nodes) {
+  place(low, high, nodes);
+  field.beyond_mean(grid_, time, ground, nodes_);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::size_t layer = i / std::size_t(grid_.columns) % std::size_t(grid_.layers);
+    const double height = grid_.corner.y + double(layer) * grid_.spacing - ground;
+    nodes_[i] += math::Vec3f(field.mean_at(math::max(height, 0.0)));
+  }
+}
+
+Vec3d WindPatch::at(Vec3d point) const {
+  if (nodes_.empty()) return {};
+  const int counts[3] = {grid_.columns, grid_.layers, grid_.rows};
+  int cell[3];
+  float part[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = math::clamp((point[axis] - grid_.corner[axis]) / grid_.spacing, 0.0, counts[axis] - 1.0);
+    cell[axis] = math::min(int(place), counts[axis] - 2);
+    part[axis] = float(place - cell[axis]);
+  }
+  const auto along = [&](int layer, int row) {
+    const std::size_t i =
+        (std::size_t(row) * std::size_t(grid_.layers) + std::size_t(layer)) * std::size_t(grid_.columns) +
+        std::size_t(cell[0]);
+    return nodes_[i] + part[0] * (nodes_[i + 1] - nodes_[i]);
+  };
+  const auto above = [&](int row) {
+    const math::Vec3f low = along(cell[1], row);
+    return low + part[1] * (along(cell[1] + 1, row) - low);
+  };
+  const math::Vec3f near = above(cell[2]);
+  return Vec3d(near + part[2] * (above(cell[2] + 1) - near));
 }
 
 WindColumn column_of(const WindField& field, double ground) {

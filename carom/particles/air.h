@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "carom/core/result.h"
-#include "carom/environment/column.h"
+#include "carom/environment/wind_field.h"
 #include "carom/export.h"
 #include "carom/forces/fields.h"
 
@@ -39,11 +40,14 @@ struct Whirl {
   math::Vec3d axis{0, 1, 0};  ///< unit
   forces::Vortex vortex{};
 };
-/// Velocity of the medium is wind (or layers) + turbulence + whirls.
+/// Velocity of the medium is wind (or layers, or field) + turbulence + whirls.
 struct Air {
   environment::Wind wind{};
   /// Where there are any they stand for `wind`; by rising height, constant beyond.
   std::vector<environment::WindColumn::Level> layers{};
+  /// The wind of an environment: where there is one it stands for `wind` and `layers`. Its steady part is felt as it is,
+  /// what else blows as environment::WindPatch has it, of up to 8192 nodes round all but stray particles.
+  std::optional<environment::WindField> field{};
   double ground = 0;  ///< m: heights of the wind's profile and of the layers are above this
   Turbulence turbulence{};
   std::vector<Whirl> whirls{};

@@ -148,12 +148,13 @@ Status Cloth::unpin(int vertex) {
   return {};
 }
 
-Status Cloth::set_air(double density, const environment::Wind& wind) {
+Status Cloth::set_air(double density, const environment::Wind& wind, const environment::WindPatch& beyond) {
   if (!math::is_finite(density) || density < 0)
     return core::Error{core::refused("density of the air", density, "a finite number ≥ 0 in kg/m³")};
   if (!all_finite(wind.velocity)) return core::Error{"Wind::velocity is not finite, expected m/s"};
   state_->air_density = density;
   state_->wind = wind;
+  state_->beyond = beyond;
   return {};
 }
 

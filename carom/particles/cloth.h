@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "carom/core/scheduler.h"
-#include "carom/environment/wind.h"
+#include "carom/environment/wind_field.h"
 #include "carom/rigid/world.h"
 
 namespace carom::particles {
@@ -76,7 +76,8 @@ class CAROM_API Cloth {
   /// Holds a vertex where it is.
   core::Status pin(int vertex);
   core::Status unpin(int vertex);
-  core::Status set_air(double density, const environment::Wind& wind);
+  /// `beyond`: what blows beyond the wind, by place.
+  core::Status set_air(double density, const environment::Wind& wind, const environment::WindPatch& beyond = {});
   core::Status set_velocity(int vertex, math::Vec3d velocity);
   /// N·s. Of a pinned vertex the body that holds it takes it; the world's own pins take it away.
   core::Status add_impulse(int vertex, math::Vec3d impulse, rigid::World3& world);

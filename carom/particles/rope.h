@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "carom/environment/wind.h"
+#include "carom/environment/wind_field.h"
 #include "carom/math/mat.h"
 #include "carom/rigid/world.h"
 
@@ -79,6 +79,7 @@ struct RopeCrossing {
 struct RopeAir {
   double density = 1.225;  ///< kg/m³, ≥ 0
   environment::Wind wind{};
+  environment::WindPatch beyond{};  ///< what blows beyond it, by place
 };
 
 namespace detail {

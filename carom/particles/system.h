@@ -152,6 +152,7 @@ class CAROM_API ParticleSystem {
   bool bear_one(Emitter& emitter, double before_end);
   detail::Arrays pointers();
   void prepare_move(double dt);
+  void prepare_wind(double time);
   void prepare_surfaces(double dt);
   void prepare_chunks();
   void run_chunk(int begin, int end, const detail::Kernels& kernels);
@@ -191,6 +192,8 @@ class CAROM_API ParticleSystem {
   std::vector<detail::Wave> wave_shapes_, waves_;
   std::vector<double> wave_rates_;
   std::vector<detail::WhirlData> whirl_data_;
+  environment::WindPatch patch_;
+  detail::AlignedFloats wind_nodes_;
   std::vector<detail::AttractorData> attractor_data_;
   std::vector<float> wind_table_, drag_table_;
   double wind_base_ = 0, wind_height_ = 1;  // m: where the table begins, and how high it is

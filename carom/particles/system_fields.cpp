@@ -13,6 +13,7 @@ namespace {
 constexpr int wind_nodes = 256;
 constexpr double wind_top = 500;  // m above the ground; constant beyond
 constexpr int max_fields = 256;
+constexpr int patch_nodes = 8192, fewest_nodes = 512;
 
 /// The part of a number of turns beyond the nearest whole one.
 float part_turn(double turns) { return float(turns - math::floor(turns + 0.5)); }
@@ -35,6 +36,8 @@ core::Status check(const Air& air) {
     if (!(math::abs(height) <= 1e6) || (i > 0 && !(height > air.layers[i - 1].height)))
       return detail::bad("air", "height of a layer", height, "more than that of the layer before, within 10^6 m");
   }
+  if (air.field)
+    if (const core::Status status = environment::validate(*air.field); !status) return status;
   const Turbulence& t = air.turbulence;
   if (!(t.speed >= 0 && t.speed <= 1e4f)) return detail::bad("turbulence", "speed", t.speed, "0 to 10^4 m/s");
   if (!(t.length > 0 && t.length <= 1e6f)) return detail::bad("turbulence", "length", t.length, "above 0 to 10^6 m");
@@ -66,6 +69,10 @@ core::Status check(const Attractor& a) {
 core::Status ParticleSystem::set_air(const Air& air) {
   if (const core::Status status = particles::check(air); !status) return status;
   air_ = air;
+  if (air_.field) {
+    air_.wind = air_.field->mean;
+    air_.layers = air_.field->layers;
+  }
   if (definition_.planar) air_.wind.velocity.z = 0;
   wind_table_.clear();
   wind_base_ = air_.ground;
@@ -149,6 +156,44 @@ core::Status ParticleSystem::set_attractors(std::span<const Attractor> attractor
   return {};
 }
 
+/// The box of a sample of the particles, but no more than three deviations about their mean: some that flew off do not
+/// make the grid coarse for all.
+void ParticleSystem::prepare_wind(double time) {
+  if (!air_.field || air_.field->steady() || count_ == 0) return;
+  const std::size_t stride = std::size_t(count_) / 16384 + 1;
+  Vec3d low, high;
+  for (int k = 0; k < 3; ++k) {
+    double sum = 0, squares = 0, least = 1e30, most = -1e30;
+    int sampled = 0;
+    for (std::size_t i = 0; i < std::size_t(count_); i += stride, ++sampled) {
+      const double x = double(arrays_[k][i]);
+      sum += x;
+      squares += x * x;
+      least = math::min(least, x);
+      most = math::max(most, x);
+    }
+    const double mean = sum / sampled, reach = 3 * math::sqrt(math::max(squares / sampled - mean * mean, 0.0));
+    low[k] = math::max(least, mean - reach) + definition_.anchor[k];
+    high[k] = math::min(most, mean + reach) + definition_.anchor[k];
+  }
+  patch_.set(*air_.field, low, high, time, air_.ground, math::clamp(16 * count_, fewest_nodes, patch_nodes));
+  const environment::WindGrid& grid = patch_.grid();
+  if (wind_nodes_.size() == 0) wind_nodes_ = detail::AlignedFloats(4 * patch_nodes);
+  const std::span<const math::Vec3f> nodes = patch_.nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (int k = 0; k < (definition_.planar ? 2 : 3); ++k) wind_nodes_[4 * i + std::size_t(k)] = nodes[i][k];
+  detail::WindNodes& to = move_.nodes;
+  const int counts[3] = {grid.columns, grid.layers, grid.rows};
+  to.node = wind_nodes_.data();
+  to.inverse_spacing = float(1 / grid.spacing);
+  to.layer = 4 * grid.columns;
+  to.row = to.layer * grid.layers;
+  for (int k = 0; k < 3; ++k) {
+    to.corner[k] = float(grid.corner[k] - definition_.anchor[k]);
+    to.last[k] = float(counts[k]) - 1.001f;
+  }
+}
+
 void ParticleSystem::prepare_move(double dt) {
   detail::MoveData& m = move_;
   const SystemDef& d = definition_;
@@ -168,6 +213,7 @@ void ParticleSystem::prepare_move(double dt) {
     m.wind_scale = float(wind_nodes * wind_nodes / wind_height_);
     m.wind_last = float(wind_nodes) - 0.001f;
   }
+  prepare_wind(time_ - 0.5 * dt);
   // The waves are carried along by the wind at its reference height (Taylor's frozen turbulence) and turn over.
   for (std::size_t i = 0; i < waves_.size(); ++i) {
     const detail::Wave& shape = wave_shapes_[i];

@@ -168,9 +168,16 @@ double read_many(const MatterOf<D>& m, const Probe::Source& s) {
   return component(extent_of_many(system), s);
 }
 
-/// A steady wind as the environment has it at a place now.
-environment::Wind wind_near(const environment::Environment& around, Vec3d place, double time) {
-  return {.velocity = around.wind(place, time)};
+/// The wind of the environment round something now: where it is the same everywhere, as that, else as a patch.
+environment::Wind wind_round(const environment::Environment& around, const Extent& extent, double time,
+                             environment::WindPatch& patch) {
+  const environment::WindField& field = around.definition().wind;
+  patch.clear();
+  if (field.steady() && field.layers.empty() && field.mean.profile == environment::WindProfile::uniform)
+    return {.velocity = field.mean.velocity};
+  const Vec3d middle = extent.middle();
+  patch.set_whole(field, extent.low, extent.high, time, around.ground(middle.x, middle.z));
+  return {};
 }
 
 // By kind, each apart: in the page a scene without ropes does not fetch what moves them.
@@ -182,15 +189,17 @@ environment::Wind wind_near(const environment::Environment& around, Vec3d place,
       Extent all;
       for (int r = 0; r < matter.rope_set.size(); ++r)
         for (const Vec3d& p : matter.rope_set.positions(r)) all.add(p);
-      matter.rope_set.set_air(
-          {.density = around->air(all.middle()).density, .wind = wind_near(*around, all.middle(), time)});
+      matter.rope_air.density = around->air(all.middle()).density;
+      matter.rope_air.wind = wind_round(*around, all, time, matter.rope_air.beyond);
+      matter.rope_set.set_air(matter.rope_air);
     }
     if (Status s = matter.rope_set.step(world, dt); !s) return s;
   }
   for (auto& cloth : matter.cloths) {
     if (around != nullptr) {
-      const Vec3d middle = extent_of(cloth.thing.positions()).middle();
-      if (Status s = cloth.thing.set_air(around->air(middle).density, wind_near(*around, middle, time)); !s) return s;
+      const Extent extent = extent_of(cloth.thing.positions());
+      const environment::Wind wind = wind_round(*around, extent, time, matter.cloth_patch);
+      if (Status s = cloth.thing.set_air(around->air(extent.middle()).density, wind, matter.cloth_patch); !s) return s;
     }
     if (Status s = cloth.thing.step(world, dt); !s) return s;
   }
@@ -242,8 +251,7 @@ Status Matter::set_wind(const environment::Environment* around) {
     for (auto& entry : many.particles) {
       particles::Air air{.turbulence = entry.thing.turbulence};
       if (around != nullptr) {
-        air.wind = around->definition().wind.mean;
-        air.layers = around->definition().wind.layers;
+        air.field = around->definition().wind;
         air.ground = around->definition().ground;
       }
       if (Status s = entry.thing.system.set_air(air); !s) return s;

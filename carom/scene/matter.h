@@ -56,6 +56,9 @@ struct MatterOf {
 class CAROM_API Matter {
  public:
   particles::RopeSet rope_set;
+  // Kept for their memory alone.
+  particles::RopeAir rope_air;
+  environment::WindPatch cloth_patch;
   std::vector<Named<int>> ropes;  ///< numbers in `rope_set`
   int rope_substeps = 0;          ///< the most that a rope asked for; 0: as the set has them
   std::vector<Named<particles::Cloth>> cloths;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "carom/environment/environment.h"
+#include "carom/math/random.h"
 
 namespace wind_field_test {
 using namespace carom;
@@ -334,6 +335,67 @@ TEST(Environment, AnswersForAll) {
   d.air.relative_humidity = 2;
   EXPECT_EQ(environment::Environment::make(d).error().message,
             "Environment::make: air.relative_humidity is 2, expected 0 … 1");
+}
+
+Turbulence eddies(TurbulenceSpectrum spectrum, Vec3d length) {
+  return Turbulence::make({.spectrum = spectrum,
+                           .scales = {.intensity = {2, 1.5, 1}, .length = length},
+                           .mean_wind = {6, 0, 2},
+                           .seed = 5})
+      .value();
+}
+
+TEST(WindPatch, EddiesAtItsNodesAreTheField) {
+  for (const Vec3d length : {Vec3d{60, 60, 60}, Vec3d{60, 40, 20}}) {
+    const Turbulence field = eddies(TurbulenceSpectrum::von_karman, length);
+    const environment::WindGrid grid{.corner = {-70, 3, 1e4}, .spacing = 1.5, .columns = 33, .layers = 9, .rows = 4};
+    std::vector<math::Vec3f> nodes(std::size_t(grid.size()));
+    field.add_at(grid, 1234.5, nodes);
+    std::size_t node = 0;
+    for (int row = 0; row < grid.rows; ++row)
+      for (int layer = 0; layer < grid.layers; ++layer)
+        for (int column = 0; column < grid.columns; ++column, ++node)
+          EXPECT_LT(math::length(Vec3d(nodes[node]) -
+                                 field.at(grid.corner + grid.spacing * Vec3d(column, layer, row), 1234.5)),
+                    2e-5);
+  }
+}
+
+// With 8192 nodes in a box of 100 m by 50, a fortieth of a gust; a quarter of eddies that are a hundred and fifty
+// metres long and down to a hundredth of that, for what is smaller than a cell is somewhere else; a tenth with 64 times
+// as many.
+TEST(WindPatch, IsAsGoodAsItsSpacing) {
+  WindField field{.mean = {.velocity = {8, 0, 0}, .profile = environment::WindProfile::power},
+                  .gusts = {{.velocity = {5, 1, 0}, .front = -20, .gradient_distance = 20, .speed = 8}},
+                  .thermals = {{.base = {10, 0, 10}, .strength = 2, .radius = 30, .depth = 200}},
+                  .obstacles = {{.center = {-30, 5, 0}, .area = 80}}};
+  math::Random random(3);
+  const auto error = [&](int nodes, double& spacing) {
+    environment::WindPatch patch;
+    patch.set(field, {-50, 0, -50}, {50, 50, 50}, 4, 0, nodes);
+    EXPECT_LE(patch.grid().size(), nodes);
+    spacing = patch.grid().spacing;
+    double squares = 0;
+    constexpr int places = 2000;
+    for (int i = 0; i < places; ++i) {
+      const Vec3d p{random.uniform(-50.0, 50.0), random.uniform(0.1, 50.0), random.uniform(-50.0, 50.0)};
+      squares += math::length_squared(field.mean_at(p.y) + patch.at(p) - field.at(p, 4)) / places;
+    }
+    return std::sqrt(squares);
+  };
+  double coarse_spacing = 0, fine_spacing = 0;
+  const double coarse = error(1 << 13, coarse_spacing), fine = error(1 << 19, fine_spacing);
+  EXPECT_LT(coarse, 0.15) << "of gusts of 5 m/s, at " << coarse_spacing << " m";
+  EXPECT_LT(fine, coarse * fine_spacing / coarse_spacing * 1.3);
+
+  field = {.turbulence = Turbulence::make({.scales = {.length = {150, 150, 150}}}).value()};
+  const double eddies_coarse = error(1 << 13, coarse_spacing), eddies_fine = error(1 << 19, fine_spacing);
+  EXPECT_LT(eddies_coarse, 0.3 * std::sqrt(3.0)) << "of 1 m/s in each component, at " << coarse_spacing << " m";
+  EXPECT_LT(eddies_fine, 0.12 * std::sqrt(3.0)) << "at " << fine_spacing << " m";
+  environment::WindPatch calm;
+  calm.set({.mean = {.velocity = {8, 0, 0}}}, {}, {1, 1, 1}, 0);
+  EXPECT_TRUE(calm.nodes().empty());
+  EXPECT_EQ(calm.at({3, 4, 5}), Vec3d{});
 }
 
 }  // namespace wind_field_test

@@ -37,7 +37,7 @@ TEST(Cloth, HangingStripStretchesByItsStiffness) {
     const auto bar = world.create_body(def).value();
     world.set_mass_properties(bar, {1, {}, Mat3d::diagonal({0.01, 0.01, 0.01})}).value();
     for (int i = 0; i < 5; ++i) cloth.pin(100 + i, bar, {0.05 * i - 0.1, 0, 0}, world).value();
-    for (int i = 0; i < 900; ++i) {
+    for (int i = 0; i < 420; ++i) {
       cloth.step(world, dt).value();
       world.step(float(dt)).value();
     }
@@ -191,7 +191,7 @@ TEST(Cloth, LanesOfAnyWidthGiveTheSameBits) {
   const auto hash = [](int lanes) {
     Draped draped(nullptr, true, lanes);
     draped.cloth.set_air(1.225, {.velocity = {2, -6, 1}}).value();
-    draped.run(50);
+    draped.run(25);
     return draped.cloth.state_hash();
   };
   const std::uint64_t first = hash(4);
@@ -278,7 +278,7 @@ TEST(Cloth, SilkHeldAtItsMiddleStreamsInAGaleAndKeepsItsSize) {
   // A scarf that is held at one point above a ball: the wind presses eighty times its weight, and its folds, of cells
   // of 5 cm, cross near the pin. Where folds that cross are pushed apart, whatever the side, the cloth is drawn through
   // itself to a lump of thousands of joules.
-  for (const double speed : {0.0, 3.0, 9.0}) {
+  for (const double speed : {0.0, 9.0}) {
     World3 world;
     rigid::BodyDef<Dim3> def;
     def.type = rigid::BodyType::fixed;
@@ -297,7 +297,7 @@ TEST(Cloth, SilkHeldAtItsMiddleStreamsInAGaleAndKeepsItsSize) {
     Cloth cloth = Cloth::make({.fabric = silk, .points = sheet.points, .triangles = sheet.triangles}).value();
     cloth.pin(side / 2 * side + side / 2).value();
     cloth.set_air(1.225, {.velocity = {speed, 0, 0.05 * speed}}).value();
-    for (int second = 1; second <= 8; ++second) {
+    for (int second = 1; second <= 5; ++second) {
       for (int i = 0; i < 60; ++i) {
         cloth.step(world, dt).value();
         world.step(float(dt)).value();

@@ -112,7 +112,7 @@ TEST(ParticleMotion, StiffDragStaysStable) {
   }
 }
 
-ParticleSystem busy(int lanes, core::TaskScheduler* scheduler) {
+ParticleSystem busy(int lanes, core::TaskScheduler* scheduler, bool field) {
   SystemDef d;
   d.capacity = 20'000;
   d.radius = 0.02f;
@@ -125,6 +125,11 @@ ParticleSystem busy(int lanes, core::TaskScheduler* scheduler) {
   air.wind = {.velocity = {4, 0, 1}, .profile = environment::WindProfile::logarithmic};
   air.turbulence = {.speed = 2, .length = 3};
   air.whirls.push_back({.center = {2, 0, 0}});
+  if (field) {
+    air.field = environment::WindField{.mean = air.wind};
+    air.field->turbulence = environment::Turbulence::make({.mean_wind = {4, 0, 1}}).value();
+    air.field->gusts = {{.velocity = {2, 0, 0}, .front = -3, .gradient_distance = 2, .speed = 2}};
+  }
   EXPECT_TRUE(system.set_air(air).ok());
   const Attractor attractor{.center = {0, 4, 3},
                             .radial = {.strength = -3, .reference = 1, .exponent = -1.5, .range = 8}};
@@ -159,18 +164,57 @@ ParticleSystem busy(int lanes, core::TaskScheduler* scheduler) {
 }
 
 TEST(ParticleMotion, SameBitsForAnyWidthAndThreadCount) {
-  const ParticleSystem first = busy(4, nullptr);
-  EXPECT_GT(first.size(), 5000);
-  EXPECT_GT(first.hits().size(), 10u);
-  EXPECT_GT(first.exchanges()[1].touching, 0);
   const auto pool = core::make_thread_pool(3);
-  for (const int lanes : {4, 8, 16}) {
-    const ParticleSystem other = busy(lanes, lanes == 8 ? nullptr : pool.get());
-    EXPECT_EQ(first.state_hash(), other.state_hash()) << lanes;
-    ASSERT_EQ(first.hits().size(), other.hits().size());
-    EXPECT_EQ(first.exchanges()[1].impulse, other.exchanges()[1].impulse);
-    EXPECT_EQ(first.exchanges()[1].angular_impulse, other.exchanges()[1].angular_impulse);
+  for (const bool field : {false, true}) {
+    const ParticleSystem first = busy(4, nullptr, field);
+    EXPECT_GT(first.size(), 5000);
+    EXPECT_GT(first.hits().size(), 10u);
+    EXPECT_GT(first.exchanges()[1].touching, 0);
+    for (const int lanes : {8, 16}) {
+      const ParticleSystem other = busy(lanes, lanes == 8 ? nullptr : pool.get(), field);
+      EXPECT_EQ(first.state_hash(), other.state_hash()) << lanes;
+      ASSERT_EQ(first.hits().size(), other.hits().size());
+      EXPECT_EQ(first.exchanges()[1].impulse, other.exchanges()[1].impulse);
+      EXPECT_EQ(first.exchanges()[1].angular_impulse, other.exchanges()[1].angular_impulse);
+    }
   }
+}
+
+// Smoke goes with the air: in a gust, in eddies and in a thermal that are asked of the environment, at 10 000 km from
+// the world's origin, as the field says itself; on the steady wind alone, exactly.
+TEST(ParticleMotion, SmokeGoesWithTheWindOfTheField) {
+  SystemDef d;
+  d.capacity = 2000;
+  d.radius = 1e-6f;
+  d.mass = 4e-15f;
+  d.gravity = {0, 0, 0};
+  d.drag = {.law = DragLaw::stokes};
+  d.anchor = {1e7, 0, 0};
+  environment::WindField wind{.mean = {.velocity = {6, 0, 0}, .profile = environment::WindProfile::power}};
+  const auto worst_of = [&](double bound) {
+    ParticleSystem smoke = ParticleSystem::create(d).value();
+    EXPECT_TRUE(smoke.set_air({.field = wind}).ok());
+    math::Random random(1);
+    for (int i = 0; i < 2000; ++i)
+      EXPECT_TRUE(smoke
+                      .add({.position = d.anchor + Vec3d{random.uniform(-20.0, 20.0), random.uniform(1.0, 20.0),
+                                                         random.uniform(-20.0, 20.0)}})
+                      .value());
+    run(smoke, 1.0 / 60, 30);
+    double squares = 0;
+    for (int i = 0; i < smoke.size(); ++i) {
+      // Where it was half a step before.
+      const Vec3d v = smoke.velocity(i), place = smoke.position(i) - v / 120;
+      squares += math::length_squared(v - wind.at(place, smoke.time() - 1.0 / 120)) / smoke.size();
+    }
+    EXPECT_LT(std::sqrt(squares), bound);
+  };
+  worst_of(0.01);
+  wind.gusts = {{.velocity = {4, 0, 2}, .direction = {-1, 0, 0}, .front = -1e7 - 20, .gradient_distance = 15}};
+  wind.thermals = {{.base = d.anchor, .strength = 3, .radius = 30, .depth = 200}};
+  worst_of(0.06);
+  wind.turbulence = environment::Turbulence::make({.scales = {.length = {80, 80, 80}}, .mean_wind = {6, 0, 0}}).value();
+  worst_of(0.4);
 }
 
 }  // namespace particles_motion_test

@@ -68,12 +68,12 @@ TEST(RopeCrossings, ARopeThrownOverATautOneRestsOnIt) {
   ropes.attach(line, {.node = -1, .point = {1, 0, 0}}, world).value();
   const int thrown = lay(ropes, {0.03, 0.1, -0.5}, {0.03, 0.1, 0.5}, 25, RopeTouch::others, soft);
   double deepest = 1, borne = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 360; ++i) {
     ropes.step(world, dt).value();
     world.step(float(dt)).value();
     if (i % 10 == 0) deepest = math::min(deepest, nearest(ropes, line, thrown));
-    if (i >= 420)
-      for (const RopeCrossing& c : ropes.crossings()) borne += c.force.y / 180;
+    if (i >= 240)
+      for (const RopeCrossing& c : ropes.crossings()) borne += c.force.y / 120;
   }
   EXPECT_GT(deepest, 0.8 * 0.02);  // the sum of the radii
   EXPECT_LT(ropes.positions(thrown).front().y, -0.4);

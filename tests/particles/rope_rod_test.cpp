@@ -89,7 +89,7 @@ TEST(RopeRod, TwistedRodWrithesAtGreenhillsMoment) {
     ropes.attach(0, {.node = -1, .body = end, .clamped = true}, world).value();
     ropes.set_air({.density = 0});
     double widest = 0;
-    for (int i = 0; i < 900; ++i) {
+    for (int i = 0; i < 420; ++i) {
       ropes.set_twist(0, share * critical * min(1.0, i / 120.0)).value();
       ropes.step(world, dt).value();
       world.step(float(dt)).value();

@@ -28,7 +28,7 @@ void add_ground(World3& world) {
 }
 
 SoftBody make_foam(double modulus, Vec3d corner = {-0.25, 0.005, -0.25}) {
-  const SoftMesh mesh = make_soft_box(corner, {0.5, 0.25, 0.5}, 8, 3, 8);
+  const SoftMesh mesh = make_soft_box(corner, {0.5, 0.25, 0.5}, 6, 3, 6);
   return SoftBody::make({.material = {.density = 50, .youngs_modulus = modulus, .poisson_ratio = 0.2, .damping = 0.02},
                          .points = mesh.points,
                          .tetrahedra = mesh.tetrahedra})
@@ -42,14 +42,14 @@ double energy_of(const World3& world, rigid::BodyId id, double mass) {
 
 TEST(SoftLoad, BoxOnStiffFoamStaysAtSixtyHertz) {
   // k Δt² from less than the box's mass to ten thousand times it.
-  for (const double modulus : {1e5, 3e5, 1e6, 1e7})
-    for (const double mass : {0.2, 2.0, 40.0}) {
+  for (const double modulus : {1e5, 1e6, 1e7})
+    for (const double mass : {0.2, 40.0}) {
       World3 world;
       add_ground(world);
       SoftBody foam = make_foam(modulus);
       const auto box = add_body(world, {0, 0.365, 0}, geometry::Box{{0.1f, 0.1f, 0.1f}}, mass, 0.008);
       double highest = 0, fastest = 0;
-      for (int i = 0; i < 300; ++i) {
+      for (int i = 0; i < 180; ++i) {
         foam.step(world, dt).value();
         world.step(float(dt)).value();
         const auto state = world.state(box);
@@ -74,7 +74,7 @@ TEST(SoftLoad, BoxDroppedOnFoamNeverGainsEnergy) {
       const auto box = add_body(world, {0, 0.86, 0}, geometry::Box{{0.1f, 0.1f, 0.1f}}, mass, 0.008);
       const double before = energy_of(world, box, mass);
       double highest = 0;
-      for (int i = 0; i < 360; ++i) {
+      for (int i = 0; i < 240; ++i) {
         foam.step(world, dt).value();
         world.step(float(dt)).value();
         highest = max(highest, energy_of(world, box, mass) / before);
@@ -111,7 +111,7 @@ TEST(SoftLoad, FoamBearsTheWeightOfWhatLiesOnIt) {
 
 TEST(SoftLoad, HeavyBallOnATrampoline) {
   // A ball of a thousand times the cloth's mass falls into it and comes up no higher than it fell from.
-  for (const double ratio : {1.0, 100.0, 1000.0}) {
+  for (const double ratio : {1.0, 1000.0}) {
     World3 world;
     const int n = 21;
     const ClothSheet sheet = make_cloth_sheet({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, n, n);
@@ -133,7 +133,7 @@ TEST(SoftLoad, HeavyBallOnATrampoline) {
                                4.0 / 3 * 3.14159265358979 * radius * radius * radius);
     const double before = energy_of(world, ball, mass);
     double lowest = 2, highest = 0;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 420; ++i) {
       cloth.step(world, dt).value();
       world.step(float(dt)).value();
       lowest = min(lowest, world.state(ball)->center_of_mass.y);

@@ -211,4 +211,36 @@ TEST(OneEnvironment, ParticlesFeelLayers) {
   EXPECT_LT(math::length(place("high") - high - Vec3d{-4, 0, -9}), .05);
 }
 
+// Smoke in the middle of a gust that stands still goes with its peak.
+TEST(OneEnvironment, ParticlesFeelGusts) {
+  SceneWorld world = start(R"({"gravity": [0, 0, 0], "environment": {"wind": {"velocity": [1, 0, 0],
+      "gusts": [{"velocity": [0, 0, 4], "front": "100 m", "gradient_distance": "100 m"}]}},
+      "particles": [{"name": "smoke", "radius": "5 um", "density": "1000 kg/m^3",
+        "emitters": [{"burst": 10, "position": [0, 40, 0], "speed": 0, "lifetime": "10 s"}]}]})");
+  const auto along = [&](const char* axis) {
+    return scene::test::read(world, std::string("particles.smoke.center.") + axis);
+  };
+  run(world, 30);
+  const double x = along("x"), z = along("z");
+  run(world, 60);
+  EXPECT_NEAR((along("z") - z) / (along("x") - x), 4, .01);
+}
+
+// Of two halves of one cloth, and of two ropes, one is in a gust and one is not.
+TEST(OneEnvironment, ClothAndRopesFeelTheGustWhereTheyAre) {
+  SceneWorld world = start(R"({"gravity": [0, 0, 0], "environment": {"wind": {"velocity": [0, 0, 0],
+      "gusts": [{"velocity": [0, 0, 6], "front": "0 m", "gradient_distance": "2 m"}]}},
+      "ropes": [{"name": "in", "points": [[-2, 1, 0], [-2, 2, 0]], "segments": 5},
+                {"name": "out", "points": [[2, 1, 0], [2, 2, 0]], "segments": 5}],
+      "cloths": [{"name": "c", "corner": [-2, 3, 0], "along": [4, 0, 0], "across": [0, 1, 0], "columns": 33,
+                  "rows": 9, "mass_per_area": "100 g/m^2"}]})");
+  run(world, 6);
+  const auto z = [&](int rope) { return world.matter->rope_set.positions(rope)[2].z; };
+  EXPECT_GT(z(0), 1e-3);
+  EXPECT_LT(math::abs(z(1)), 1e-2 * z(0));
+  const auto places = world.matter->cloths[0].thing.positions();
+  EXPECT_GT(places[4].z, .05);
+  EXPECT_LT(math::abs(places[28].z), 1e-3);
+}
+
 }  // namespace scene_one_environment_test

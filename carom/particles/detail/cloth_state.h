@@ -36,6 +36,7 @@ struct ClothState {
   int substeps = 2;
   double air_density = 1.225;
   environment::Wind wind{};
+  environment::WindPatch beyond{};
 
   std::vector<math::Vec3d> position;
   std::vector<Vec3f> velocity;

@@ -40,7 +40,7 @@ void ClothState::stretch() {
     }
   });
   const ClothLaw law = this->law();
-  const bool same = wind.profile == environment::WindProfile::uniform;
+  const bool same = wind.profile == environment::WindProfile::uniform && beyond.nodes().empty();
   const Vec3f everywhere(wind.velocity);
   tasks.parallel_for(int(tiles.size()), cloth_chunk / cloth_lanes, [&](int from, int to, int) {
     for (int k = from; k < to; ++k) {
@@ -48,9 +48,10 @@ void ClothState::stretch() {
       for (std::size_t lane = 0; lane < cloth_lanes; ++lane) {
         Vec3f air = everywhere;
         if (!same) {
-          double height = 0;
-          for (const auto& corner : tile.corner) height += position[std::size_t(corner[lane])].y;
-          air = Vec3f(environment::wind_at(wind, height / 3));
+          Vec3d middle{};
+          for (const auto& corner : tile.corner) middle += position[std::size_t(corner[lane])];
+          middle = middle / 3.0;
+          air = Vec3f(environment::wind_at(wind, middle.y) + beyond.at(middle));
         }
         for (int axis = 0; axis < 3; ++axis) tile.air[axis][lane] = air[axis];
       }

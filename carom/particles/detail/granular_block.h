@@ -6,8 +6,8 @@
 namespace carom::particles::detail {
 
 inline constexpr int grain_lanes = 16;  ///< of a block, whatever the width: no grain is in a block twice
-/// Floats of a grain's motion: velocity, inverse mass, and the speed of its rim (spin times radius); in space a vector,
-/// and with it the inverse radius.
+/// Floats of a grain's motion: in the plane velocity, speed of its rim (spin times radius) and inverse radius; in space
+/// velocity, inverse mass, velocity of its rim and inverse radius.
 template <int N>
 inline constexpr int grain_motion = N == 2 ? 4 : 8;
 inline constexpr int grain_place = 4;  ///< floats: place, at the last radius
@@ -15,17 +15,10 @@ inline constexpr int grain_place = 4;  ///< floats: place, at the last radius
 template <int N>
 inline constexpr int grain_held = N == 2 ? 4 : 8;
 
-template <int N>
-struct GrainCurves {};
-template <>
-struct GrainCurves<2> {
-  float curve[2][grain_lanes];  ///< 1/m, inverse radii of a and b, for which a motion in the plane has no room
-};
-
 /// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
 /// twice a grain that is none.
 template <int N>
-struct alignas(64) GrainBlock : GrainCurves<N> {
+struct alignas(64) GrainBlock {
   static constexpr int turns = N == 2 ? 1 : 3;
   std::uint32_t a[grain_lanes] = {}, b[grain_lanes] = {};  ///< grain_place × the grain's number
   float normal[N][grain_lanes] = {};                       ///< from a to b
@@ -41,9 +34,11 @@ struct alignas(64) GrainBlock : GrainCurves<N> {
 
 struct GrainPass {
   float inverse_h = 0;  ///< 1/s
+  float lightness = 0;  ///< m²/kg in the plane: inverse mass over squared inverse radius
   float friction = 0, rolling = 0;
-  float slop = 0;  ///< m of overlap that stays
-  float part = 0;  ///< of the rest, that is taken out
+  float slop = 0;    ///< m of overlap that stays
+  float part = 0;    ///< of the rest, that is taken out
+  float up[3] = {};  ///< against gravity: what is added to the weight of the lower of two, straight below
 };
 
 /// Grains in the order of their cells, places and then radii in columns that may be read a block of lanes too far.
@@ -75,7 +70,8 @@ struct GrainKernels {
               int at);
   /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1. And
   /// what their masses and radii come to.
-  void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale, float* motion);
+  void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale, float* motion,
+                 const GrainPass& pass);
   void (*keep)(const Block* blocks, int first, int last, const int* pair, float* held);
   /// Takes a part of overlaps out of the places alone, so that no speed comes of them; normals and gaps there; and
   /// gives the impulses that the contacts hold.

@@ -80,6 +80,9 @@ void GranularState<D>::make_grid() {
   const int count = wanted < 3 ? math::max(wanted, 1) : 4 * ((wanted + 2) / 4);
   slab_cells = (across + count - 1) / count;
   slabs.resize(std::size_t((across + slab_cells - 1) / slab_cells));
+  const int row = N == 2 ? 1 : cells[0];
+  column_start.resize(std::size_t(across));
+  for (int k = 0; k < across; ++k) column_start[k] = (k / slab_cells * cells[1] * slab_cells + k % slab_cells) * row;
   size = int(slabs.size()) * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
   cell_start.assign(std::size_t(size) + 1, 0);
   haste.assign(std::size_t(size), {});

@@ -14,9 +14,9 @@ namespace carom::particles::detail {
 template <class D>
 int GranularState<D>::cell_at(int x, int y, int z) const {
   if constexpr (N == 2)
-    return (x / slab_cells * cells[1] + y) * slab_cells + x % slab_cells;
+    return column_start[std::size_t(x)] + y * slab_cells;
   else
-    return ((z / slab_cells * cells[1] + y) * slab_cells + z % slab_cells) * cells[0] + x;
+    return column_start[std::size_t(z)] + y * slab_cells * cells[0] + x;
 }
 
 /// By cell, without those that left through an open side.
@@ -115,74 +115,65 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   slab.pair_count = kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.pair_count);
 }
 
-/// Of a pair of the slab's grain `a`; `end`: of its grains; `none`: a grain that is none. The first block that has room
-/// and comes after all in which one of the two is: solved block by block the pairs give what they would one after the
-/// other.
-template <class D>
-int GranularState<D>::place_pair(GrainSlab<N>& slab, int a, int b, int end, int none) {
-  int& last_of_b = b < end ? last_block[b] : last_across[b];
-  int block = math::max(last_block[a], last_of_b) + 1;
-  std::vector<int>& open_block = slab.open_block;
-  while (block < slab.block_count && open_block[block] != block) {
-    const int next = open_block[block];
-    if (next < slab.block_count) open_block[block] = open_block[next];
+/// The first block that has room and comes after `last`, in which one of the pair is: solved block by block the pairs
+/// give what they would one after the other.
+template <int N>
+int GrainSlab<N>::block_after(int last, std::uint32_t none) {
+  int* const open = open_block.data();
+  int block = last + 1;
+  while (block < block_count && open[block] != block) {
+    const int next = open[block];
+    if (next < block_count) open[block] = open[next];
     block = next;
   }
-  if (block >= slab.block_count) {
-    block = slab.block_count++;
-    if (block == int(slab.blocks.size())) slab.blocks.emplace_back();
-    open_block.push_back(block);
-    slab.filled.push_back(0);
-    slab.pair_of.resize(slab.pair_of.size() + grain_lanes, -1);
-    slab.was.resize(slab.was.size() + grain_lanes, -1);
-    for (int lane = 0; lane < grain_lanes; ++lane)
-      slab.blocks[block].a[lane] = slab.blocks[block].b[lane] = std::uint32_t(none * grain_place);
-  }
-  last_block[a] = last_of_b = block;
-  const int lane = slab.filled[block]++;
-  if (lane == grain_lanes - 1) open_block[block] = block + 1;
-  Block& to = slab.blocks[block];
-  to.a[lane] = std::uint32_t(a * grain_place);
-  to.b[lane] = std::uint32_t(b * grain_place);
-  if constexpr (N == 2) {
-    to.curve[0][lane] = grains[a].curve;
-    to.curve[1][lane] = grains[b].curve;
-  }
-  return block * grain_lanes + lane;
+  if (block < block_count) return block;
+  block = block_count++;
+  if (block == int(blocks.size())) blocks.emplace_back();
+  open_block.push_back(block);
+  filled.push_back(0);
+  pair_of.resize(pair_of.size() + grain_lanes, -1);
+  was.resize(was.size() + grain_lanes, -1);
+  for (int lane = 0; lane < grain_lanes; ++lane) blocks[block].a[lane] = blocks[block].b[lane] = none;
+  return block;
 }
 
-/// Gives a grain's pairs their blocks, and finds which they were when last looked for: mostly the same in turn.
+/// Gives the pairs of the slab's grains, which end at `end`, their blocks, and finds which they were when last looked
+/// for: mostly the same in turn. `none`: a grain that is none.
 template <class D>
-void GranularState<D>::place_pairs(GrainSlab<N>& slab, int grain, int end, int none) {
-  const auto range = [&](int place) {
-    const bool known = place + 1 < int(old_first_pair.size());
-    return std::pair{known ? old_first_pair[place] : 0, known ? old_first_pair[place + 1] : 0};
-  };
-  const int own = old_place[grain];
-  const auto [old_begin, old_end] = range(own);
-  int next = old_begin;
-  for (int k = first_pair[grain]; k < first_pair[grain + 1]; ++k) {
-    const int other = old_place[pairs[k]];
-    int old = next;
-    if (old >= old_end || old_pairs[old] != other) {
-      old = old_begin;
-      while (old < old_end && old_pairs[old] != other) ++old;
+void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end, int none) {
+  const int known = int(old_first_pair.size()) - 1;
+  const int *const old_first = old_first_pair.data(), *const others = old_pairs.data(),
+                   *const places = old_place.data();
+  for (int grain = begin; grain < end; ++grain) {
+    const int own = places[grain];
+    const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
+    int next = old_begin, last = last_block[grain];
+    for (int k = first_pair[grain], to = first_pair[grain + 1]; k < to; ++k) {
+      const int b = pairs[k], other = places[b];
+      int old = next, was = -1;
+      if (old >= old_end || others[old] != other) {
+        old = old_begin;
+        while (old < old_end && others[old] != other) ++old;
+      }
+      if (old < old_end) {
+        next = old + 1;
+        was = 2 * old;
+      } else if (other < known) {
+        for (old = old_first[other]; old < old_first[other + 1]; ++old)
+          if (others[old] == own) was = 2 * old + 1;
+      }
+      int& last_of_b = b < end ? last_block[b] : last_across[b];
+      const int block = slab.block_after(math::max(last, last_of_b), std::uint32_t(none * grain_place));
+      last = last_of_b = block;
+      const int lane = slab.filled[block]++, at = block * grain_lanes + lane;
+      if (lane == grain_lanes - 1) slab.open_block[block] = block + 1;
+      GrainBlock<N>& to_block = slab.blocks[block];
+      to_block.a[lane] = std::uint32_t(grain * grain_place);
+      to_block.b[lane] = std::uint32_t(b * grain_place);
+      slab.pair_of[at] = k;
+      slab.was[at] = was;
     }
-    bool swapped = false;
-    if (old < old_end) {
-      next = old + 1;
-    } else {
-      const auto [from, to] = range(other);
-      old = from;
-      while (old < to && old_pairs[old] != own) ++old;
-      if (old == to)
-        old = -1;
-      else
-        swapped = true;
-    }
-    const int at = place_pair(slab, grain, pairs[k], end, none);
-    slab.pair_of[at] = k;
-    slab.was[at] = old < 0 ? -1 : 2 * old + int(swapped);
+    last_block[grain] = last;
   }
 }
 
@@ -217,8 +208,7 @@ void GranularState<D>::find_pairs(float dt) {
     slab.was.clear();
     slab.open_block.clear();
     slab.filled.clear();
-    const int end = slab_begin(index + 1);
-    for (int i = slab_begin(index); i < end; ++i) place_pairs(slab, i, end, count + index);
+    place_pairs(slab, slab_begin(index), slab_begin(index + 1), count + index);
   });
 }
 
@@ -259,7 +249,6 @@ void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float sc
   }
   Block& now = wall_blocks[filling];
   now.a[lane] = std::uint32_t(grain * grain_place);
-  if constexpr (N == 2) now.curve[0][lane] = grains[grain].curve;
   if (old && old->lane >= 0) {
     const Block& then = old_wall_blocks[old->lane / grain_lanes];
     const int from = old->lane % grain_lanes;

@@ -98,14 +98,14 @@ struct Side {
   Lanes<turns> u;
   F inverse_mass, curve;
 
-  CAROM_SIMD_INLINE void read(const Records<grain_motion<N>>& records, const GrainBlock<N>& block, int side, int lane) {
+  CAROM_SIMD_INLINE void read(const Records<grain_motion<N>>& records, const GrainPass& pass) {
     F row[grain_motion<N>];
     math::gather_records<width>(records.row, row);
     if constexpr (N == 2) {
       v = {{row[0], row[1]}};
       u = {{row[2]}};
-      inverse_mass = row[3];
-      curve = F::load(block.curve[side] + lane);
+      curve = row[3];
+      inverse_mass = splat(pass.lightness) * (curve * curve);
     } else {
       v = {{row[0], row[1], row[2]}};
       u = {{row[4], row[5], row[6]}};
@@ -115,7 +115,7 @@ struct Side {
   }
   CAROM_SIMD_INLINE void write(const Records<grain_motion<N>>& records) const {
     if constexpr (N == 2) {
-      const F row[4] = {v.k[0], v.k[1], u.k[0], inverse_mass};
+      const F row[4] = {v.k[0], v.k[1], u.k[0], curve};
       math::scatter_records<width>(records.row, row);
     } else {
       const F row[8] = {v.k[0], v.k[1], v.k[2], inverse_mass, u.k[0], u.k[1], u.k[2], curve};
@@ -123,6 +123,9 @@ struct Side {
     }
   }
 };
+
+/// Of pushes: they then go through a heap in fewer sweeps. A pair alone is as good as solved after the usual four.
+constexpr float over_relaxation = 1.3f;
 
 template <int N>
 constexpr float turning = N == 2 ? 2.0f : 2.5f;  ///< k
@@ -169,7 +172,8 @@ int find(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<
 }
 
 template <int N>
-void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const float* held, float scale, float* motion) {
+void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const float* held, float scale, float* motion,
+            const GrainPass& pass) {
   constexpr int K = GrainBlock<N>::turns;
   static const float nothing[grain_held<N>] = {};
   for (int i = first; i < last; ++i)
@@ -188,8 +192,8 @@ void recall(GrainBlock<N>* blocks, int first, int last, const int* was, const fl
         (side * row[1 + K + k]).store(blocks[i].roll[k] + lane);
       }
       Side<N> a, b;
-      a.read({motion, blocks[i].a + lane}, blocks[i], 0, lane);
-      b.read({motion, blocks[i].b + lane}, blocks[i], 1, lane);
+      a.read({motion, blocks[i].a + lane}, pass);
+      b.read({motion, blocks[i].b + lane}, pass);
       const F curves = a.curve + b.curve;
       const F lightness = a.inverse_mass * (a.curve * a.curve) + b.inverse_mass * (b.curve * b.curve);
       (splat(1) / (a.inverse_mass + b.inverse_mass)).store(blocks[i].ease + lane);
@@ -232,7 +236,11 @@ CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place, c
   if (math::any(deep > F::zero())) {
     const F out = splat(pass.part) * math::max(deep, F::zero());
     // Masses of one density go with r² and r³; a grain that is none has no radius.
-    const F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
+    F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
+    F upward = F::zero();  // b above a
+    for (int k = 0; k < N; ++k) upward = upward + splat(pass.up[k]) * d.k[k];
+    ma = ma * (splat(1) + math::max(upward, F::zero()));
+    mb = mb * (splat(1) - math::min(upward, F::zero()));
     const F masses = ma + mb, each = out / math::select(masses > F::zero(), masses, splat(1));
     for (int k = 0; k < N; ++k) {
       a[k] = a[k] - (mb * each) * d.k[k];
@@ -261,8 +269,8 @@ void press(GrainBlock<N>* blocks, int first, int last, float* place, float* moti
       }
       Side<N> a, b;
       const Records<grain_motion<N>> ra(motion, c.a + lane), rb(motion, c.b + lane);
-      a.read(ra, c, 0, lane);
-      if constexpr (pair) b.read(rb, c, 1, lane);
+      a.read(ra, pass);
+      if constexpr (pair) b.read(rb, pass);
       give<N, pair>(a, b, n, push * n + vector_of(grip, n), grip, load(c.roll, lane));
       a.write(ra);
       if constexpr (pair) b.write(rb);
@@ -276,8 +284,8 @@ template <int N, bool pair>
 CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, const GrainPass& pass) {
   Side<N> a, b;
   const Records<grain_motion<N>> ra(motion, c.a + lane), rb(motion, c.b + lane);
-  a.read(ra, c, 0, lane);
-  if constexpr (pair) b.read(rb, c, 1, lane);
+  a.read(ra, pass);
+  if constexpr (pair) b.read(rb, pass);
   const auto n = load(c.normal, lane);
   const F easy = pair ? F::load(c.ease + lane) : splat(1) / a.inverse_mass;
   const F before = F::load(c.push + lane);
@@ -288,7 +296,8 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
     across = b.v - a.v;
     u = a.u + b.u;
   }
-  const F along = dot(across, n), push = math::max(before - (along + bias) * easy, F::zero());
+  const F along = dot(across, n),
+          push = math::max(before - (along + bias) * (splat(over_relaxation) * easy), F::zero());
   if (math::none((push > F::zero()) | (before > F::zero()))) return;
   push.store(c.push + lane);
   // What the push changes is along n: the slip does not ask for it.

@@ -8,6 +8,9 @@
 namespace carom::particles::detail {
 
 constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
+/// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
+/// layer by layer, and not pushed into it.
+constexpr float grain_settle = 2;
 
 /// Of a lane of a surface's block; −1: none, nor in those behind it.
 template <class D>
@@ -32,7 +35,7 @@ void GranularState<D>::to_rows() {
     p[3] = g.radius;
     if constexpr (N == 2) {
       m[2] = g.radius * g.spin;
-      m[3] = g.inverse_mass;
+      m[3] = g.curve;
     } else {
       m[3] = g.inverse_mass;
       for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
@@ -242,7 +245,9 @@ void GranularState<D>::for_grains(int count, F&& f) {
 /// are; and the impulses of the last substep, to begin with.
 template <class D>
 void GranularState<D>::press() {
-  const GrainPass pass{.slop = grain_slop * definition.radius, .part = grain_part};
+  GrainPass pass{.lightness = lightness(), .slop = grain_slop * definition.radius, .part = grain_part};
+  const float pull = length(definition.gravity);
+  for (int k = 0; k < N && pull > 0; ++k) pass.up[k] = -grain_settle * definition.gravity[k] / pull;
   measure_surfaces(pass);
   for_slabs_in_turn(false, [&](GrainSlab<N>& slab) {
     kernels->press(slab.blocks.data(), 0, slab.block_count, place.data(), motion.data(), pass);
@@ -257,7 +262,7 @@ void GranularState<D>::press() {
 /// Back and forth by turns: weight goes down through a heap in the one direction, what the ground answers in the other.
 template <class D>
 void GranularState<D>::sweep(float h, bool back) {
-  GrainPass pass{.inverse_h = 1 / h, .rolling = definition.rolling_friction};
+  GrainPass pass{.inverse_h = 1 / h, .lightness = lightness(), .rolling = definition.rolling_friction};
   const auto surfaces = [&] {
     for (int i = 0; i < int(wall_blocks.size()); ++i) {
       pass.friction = wall_of[i] < 2 * N ? definition.wall_friction : solids[wall_of[i] - 2 * N].friction;
@@ -289,7 +294,7 @@ void GranularState<D>::sum_walls() {
 }
 
 template <class D>
-void GranularState<D>::round(float h, int parts) {
+void GranularState<D>::round(float h, int parts, int sweeps) {
   const float dt = h * float(parts);
   const float scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with the substep
   last_h = h;
@@ -297,24 +302,31 @@ void GranularState<D>::round(float h, int parts) {
   find_pairs(dt);
   find_surfaces(dt, scale);
   to_rows();
+  const GrainPass pass{.lightness = lightness()};
   for_slabs([&](GrainSlab<N>& slab, int) {
-    kernels->recall(slab.blocks.data(), 0, slab.block_count, slab.was.data(), held.data(), scale, motion.data());
+    kernels->recall(slab.blocks.data(), 0, slab.block_count, slab.was.data(), held.data(), scale, motion.data(), pass);
   });
   const int count = int(grains.size());
-  for (int part = 0; part < parts; ++part) {
-    const Vector gained = h * definition.gravity;
+  // A row begins with what a place or a velocity is.
+  using Four = math::WideFloat<4>;
+  float row[4] = {};
+  for (int k = 0; k < N; ++k) row[k] = h;
+  const Four time = Four::load(row);
+  for (int k = 0; k < N; ++k) row[k] = h * definition.gravity[k];
+  const Four gained = Four::load(row);
+  for (int part = 0, swept = 0; part < parts; ++part) {
     for_grains(count, [&](int i) {
-      for (int k = 0; k < N; ++k) motion[std::size_t(i) * grain_motion<N> + std::size_t(k)] += gained[k];
+      float* const m = motion.data() + std::size_t(i) * grain_motion<N>;
+      (Four::load(m) + gained).store(m);
     });
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
     press();
-    for (int k = 0; k < definition.iterations; ++k) sweep(h, k % 2 == 0);
+    for (const int end = (part + 1) * sweeps / parts; swept < end; ++swept) sweep(h, swept % 2 == 0);
     sum_walls();
     for_grains(count, [&](int i) {
-      for (int k = 0; k < N; ++k)
-        place[std::size_t(i) * grain_place + std::size_t(k)] +=
-            h * motion[std::size_t(i) * grain_motion<N> + std::size_t(k)];
+      float* const p = place.data() + std::size_t(i) * grain_place;
+      (Four::load(p) + time * Four::load(motion.data() + std::size_t(i) * grain_motion<N>)).store(p);
     });
   }
   from_rows();
@@ -348,7 +360,11 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
     return ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;
   };
   const int parts = math::max(definition.substeps, times(0.5f)), rounds = math::min(times(search_way), parts);
-  for (int k = 0; k < rounds; ++k) round(dt / float(parts), (k + 1) * parts / rounds - k * parts / rounds);
+  // What moves fast takes more substeps; they share the sweeps, but have one there and one back.
+  const int sweeps =
+      math::max(math::min(definition.iterations, 2) * parts, definition.substeps * definition.iterations);
+  const auto share = [&](int all, int k) { return (k + 1) * all / rounds - k * all / rounds; };
+  for (int k = 0; k < rounds; ++k) round(dt / float(parts), share(parts, k), share(sweeps, k));
   for (const GrainSlab<N>& slab : slabs)
     statistics.max_overlap =
         math::max(statistics.max_overlap, kernels->deepest(slab.blocks.data(), 0, slab.block_count, place.data()));

@@ -86,6 +86,8 @@ struct GrainSlab {
   std::vector<int> pair_of, was;     ///< by block and lane: the pair's number, and its old one (GrainKernels)
   std::vector<std::uint8_t> filled;  ///< lanes by block
   std::vector<int> open_block;       ///< the next that has room, by block
+
+  int block_after(int last, std::uint32_t none);
 };
 
 template <class D>
@@ -93,7 +95,7 @@ struct GranularState {
   static constexpr int N = D::dimension;
   static constexpr float cell_radii = N == 2 ? 4 : 3;  ///< width of a cell in the largest radii
   /// Largest radii that the fastest grain moves from search to search: no more than cells have room for.
-  static constexpr float search_way = N == 2 ? 1.5f : 1;
+  static constexpr float search_way = N == 2 ? 1.9f : 1;
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   using Position = typename D::Position;
@@ -105,6 +107,7 @@ struct GranularState {
   const GrainKernels<N>* kernels = nullptr;
   float inverse_cell = 0;
   int cells[3] = {1, 1, 1}, slab_cells = 1, size = 0;
+  std::vector<int> column_start;  ///< number of the first cell of a slab's column
   Vector extent{};
   std::vector<Grain<D>> grains, sorted;
   std::uint64_t added = 0;  ///< in all, the stream of the next one's radius
@@ -135,6 +138,7 @@ struct GranularState {
   GranularStatistics statistics{};
   core::TaskScheduler* scheduler = nullptr;
 
+  float lightness() const { return 1 / (definition.density * math::pi_f); }  ///< GrainPass
   void make_grid();
   void reserve();
   core::Status add(Position at, Vector velocity, std::uint32_t tag, float radius, Angular spin, const char* call);
@@ -148,8 +152,7 @@ struct GranularState {
   void find_pairs(float dt);
   Vector fastest_near(int x, int y, int z) const;
   void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
-  int place_pair(GrainSlab<N>& slab, int a, int b, int end, int none);
-  void place_pairs(GrainSlab<N>& slab, int grain, int end, int none);
+  void place_pairs(GrainSlab<N>& slab, int begin, int end, int none);
   int slab_begin(int slab) const { return cell_start[std::size_t(slab) * (std::size_t(size) / slabs.size())]; }
   void find_surfaces(float dt, float scale);
   void touch(int grain, int surface, std::uint32_t key, float scale);
@@ -168,7 +171,7 @@ struct GranularState {
   void solve_body(Contact& contact, float h);
   void apply_body(const Contact& contact, float normal, Vector friction, Angular rolling);
   void sum_walls();
-  void round(float h, int parts);
+  void round(float h, int parts, int sweeps);
   core::Status step(rigid::World<D>* world, float dt);
 };
 

@@ -2,6 +2,36 @@
 
 namespace carom::particles::detail::CAROM_PARTICLE_NAMESPACE {
 
+CAROM_SIMD_INLINE V between_nodes(const WindNodes& d, const V& p) {
+  const F scale = splat(d.inverse_spacing);
+  // In this order a place that is no number gives a node of the grid.
+  const auto place = [&](F x, int axis) __attribute__((always_inline)) {
+    return math::min(splat(d.last[axis]), math::max(F::zero(), (x - splat(d.corner[axis])) * scale));
+  };
+  const V at{place(p.x, 0), place(p.y, 1), place(p.z, 2)};
+  const I column = math::to_int(at.x), layer = math::to_int(at.y), row = math::to_int(at.z);
+  const V part{at.x - math::to_float(column), at.y - math::to_float(layer), at.z - math::to_float(row)};
+  const float* from[width];
+  for (int i = 0; i < width; ++i) from[i] = d.node + (4 * column[i] + d.layer * layer[i] + d.row * row[i]);
+  const auto along = [&](int more) __attribute__((always_inline)) {
+    const float *low[width], *high[width];
+    for (int i = 0; i < width; ++i) {
+      low[i] = from[i] + more;
+      high[i] = low[i] + 4;
+    }
+    F a[4], b[4];
+    math::gather_rows<4, width>(low, a);
+    math::gather_rows<4, width>(high, b);
+    return V{a[0] + part.x * (b[0] - a[0]), a[1] + part.x * (b[1] - a[1]), a[2] + part.x * (b[2] - a[2])};
+  };
+  const auto above = [&](int more) __attribute__((always_inline)) {
+    const V low = along(more), high = along(more + d.layer);
+    return low + part.y * (high - low);
+  };
+  const V near = above(0), far = above(d.row);
+  return near + part.z * (far - near);
+}
+
 CAROM_SIMD_INLINE V air_at(const MoveData& d, const V& p) {
   V u = splat(d.wind);
   if (d.wind_table != nullptr) {
@@ -14,6 +44,7 @@ CAROM_SIMD_INLINE V air_at(const MoveData& d, const V& p) {
     else
       u = look_up(d.wind_table, place) * u;
   }
+  if (d.nodes.node != nullptr) u = u + between_nodes(d.nodes, p);
   for (int w = 0; w < d.waves; ++w) {
     const Wave& wave = d.wave[w];
     const F c = cos_turns(dot(splat(wave.k), p) + splat(wave.phase));
@@ -129,7 +160,7 @@ CAROM_SIMD_INLINE void move_by_rate(const MoveData& d, const Arrays& arrays, int
 }
 
 void move(const MoveData& d, const Arrays& arrays, int from, int to, Path& path) {
-  if (d.wind_table != nullptr || d.waves > 0 || d.whirls > 0 || d.attractors > 0)
+  if (d.wind_table != nullptr || d.nodes.node != nullptr || d.waves > 0 || d.whirls > 0 || d.attractors > 0)
     move_by_rate<true>(d, arrays, from, to, path);
   else
     move_by_rate<false>(d, arrays, from, to, path);

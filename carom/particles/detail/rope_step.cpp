@@ -95,7 +95,8 @@ void RopeSolver::forces(Rope& rope) {
     rope.pull[i] = math::max(rope.tension[i], 0.0);
     if (density == 0 || (m.drag_coefficient == 0 && m.skin_coefficient == 0)) continue;
     const Vec3d middle = 0.5 * (rope.position[i] + rope.position[i + 1]);
-    const Vec3d air = environment::wind_at(set.air_.wind, middle.y) - 0.5 * (rope.velocity[i] + rope.velocity[i + 1]);
+    const Vec3d air = environment::wind_at(set.air_.wind, middle.y) + set.air_.beyond.at(middle) -
+                      0.5 * (rope.velocity[i] + rope.velocity[i + 1]);
     const Vec3d t = normalize(d), along = dot(air, t) * t, across = air - along;
     const double surface = density * m.radius * l;
     const double c = surface * m.drag_coefficient * length(across);

@@ -37,6 +37,13 @@ struct WhirlData {
   float center[3], axis[3];
   float inside, outside, core2;  ///< Γ/(2π r_c²), Γ/(2π), r_c²
 };
+/// Velocities at the nodes of a grid: four floats a node, x fastest, then y, then z.
+struct WindNodes {
+  const float* node;  ///< null: none
+  float corner[3], inverse_spacing;
+  float last[3];   ///< places along an axis are below
+  int layer, row;  ///< floats from a node to the next above, and along z
+};
 struct AttractorData {
   float center[3];
   float strength, inverse_reference, exponent, range2, core;
@@ -52,6 +59,7 @@ struct MoveData {
   const float* wind_table;  ///< null: the same everywhere; else factors by the root of the height, and differences
   int wind_layers;          ///< 0; or the floats from one to the next of three such tables of velocities, not factors
   float wind_floor, wind_scale, wind_last;
+  WindNodes nodes;
   int waves, whirls, attractors;
   const Wave* wave;
   const WhirlData* whirl;
