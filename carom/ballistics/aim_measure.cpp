@@ -37,7 +37,7 @@ struct Interpolant {
 struct Cuts {
   static constexpr int most = 40;
   int count = 0;
-  bool layers = false, lands = false;
+  bool lands = false;
   double s[most + 1];
 
   /// `layered`: there are such bends of the wind, by more than `least` m/s; `bent`: of the drag curve.
@@ -57,7 +57,6 @@ struct Cuts {
       };
       between(bends, height, 0, turn);
       if (turn < 1) between(bends, height, turn, 1);
-      layers = count > 1;
     }
     if (bent) {
       const auto mach = [&](double at) {
@@ -75,15 +74,15 @@ struct Cuts {
   }
 
  private:
-  /// To a thousandth: secants, with every third step a bisection.
+  /// To a hundred-thousandth: secants, with every third step a bisection.
   template <class F>
   static double root(F&& f, double low, double high) {
     double at_low = f(low), at_high = f(high);
-    for (int i = 0; i < 12 && high - low > 1e-3; ++i) {
+    for (int i = 0; i < 20 && high - low > 1e-5; ++i) {
       const double chord = low - at_low * (high - low) / (at_high - at_low);
       const double s = i % 3 == 2 || !(chord > low && chord < high) ? 0.5 * (low + high) : chord;
       const double at = f(s);
-      if (math::abs(at) < 1e-3 * math::abs(at_high - at_low)) return s;
+      if (math::abs(at) < 1e-5 * math::abs(at_high - at_low)) return s;
       if ((at > 0) == (at_low > 0)) {
         low = s;
         at_low = at;
@@ -122,8 +121,16 @@ void AimSolver::measure(Path& path) const {
   for (int n = 0; n < path.count; ++n) {
     const double reach = path.reach(n), rest = of.rest[n] * reach;
     const bool lands = (path.x[1][n] > ground_) != (path.x[1][n + 1] > ground_), cut = lands || layered_ || bent_;
-    if (!cut && rest < options_.tolerance) continue;
     const double h = path.t[n + 1] - path.t[n];
+    path.lands = path.lands || lands;
+    // What an error of the height within the element does there; at its beginning there is none.
+    if (medium_.wind.count > 0) {
+      const auto rise = [&](int i) {
+        return math::abs(path.rise[0][i]) + math::abs(path.rise[1][i]) + math::abs(path.rise[2][i]);
+      };
+      path.steep += (lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 * path.carried(n);
+    }
+    if (!cut && rest < 0.4 * options_.tolerance) continue;
     double s[Cuts::most + 1] = {0, 0.5, 1};
     int parts = 2;
     bool bends = false;
@@ -131,13 +138,7 @@ void AimSolver::measure(Path& path) const {
       const Cuts cuts(projectile_, conditions_, layered_, bent_, least_bend, Interpolant(path, n), path, n);
       bends = cuts.count > 1;
       path.bends = path.bends || bends;
-      path.layers = path.layers || cuts.layers;
-      // What an error of the height within the element does there; at its beginning there is none.
-      const auto rise = [&](int i) {
-        return math::abs(path.rise[0][i]) + math::abs(path.rise[1][i]) + math::abs(path.rise[2][i]);
-      };
-      path.steep += (lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 * of.defect[n] * reach;
-      if (!bends && rest < options_.tolerance) continue;
+      if (!bends && rest < 0.4 * options_.tolerance) continue;
       if (bends) {
         parts = cuts.count;
         for (int i = 0; i <= parts; ++i) s[i] = cuts.s[i];
@@ -145,7 +146,7 @@ void AimSolver::measure(Path& path) const {
     }
     if (waits + parts > most_waiting) break;
     // Smooth elements err independently of each other.
-    hard[hards] = {n, (bends ? 1 : 2) * 0.8 * options_.tolerance / (3 * h * reach), {}};
+    hard[hards] = {n, (bends ? 1 : 2) * 0.4 * options_.tolerance / (3 * h * reach), {}};
     for (int i = parts - 1; i >= 0; --i) waiting[waits++] = {hards, s[i], s[i + 1]};
     ++hards;
   }
@@ -196,6 +197,12 @@ void AimSolver::measure(Path& path) const {
       of.v[j][n] = float(more_v[j]);
     }
   }
+#if defined(__x86_64__)
+  if (wide_)
+    aim_avx2::settle(path);
+  else
+#endif
+    aim_baseline::settle(path);
 }
 
 }  // namespace carom::ballistics::detail

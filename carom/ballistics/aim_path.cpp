@@ -4,31 +4,6 @@
 
 namespace carom::ballistics::detail {
 
-namespace {
-
-using Four = math::WideFloat<4>;
-using Debt = FlightPath::Debt;
-
-/// What the debt at the end of an element owes before it.
-[[gnu::always_inline]] inline Debt before(const FlightPath::Elements& of, int n, const Debt& after) {
-  const auto sum = [&](const float(&k)[3][FlightPath::padded]) __attribute__((always_inline)) {
-    return Four::splat(k[0][n]) * after.v[0] + Four::splat(k[1][n]) * after.v[1] + Four::splat(k[2][n]) * after.v[2];
-  };
-  const Four e{{of.e[0][n], of.e[1][n], of.e[2][n], 0}}, q{{of.q[0][n], of.q[1][n], of.q[2][n], 0}};
-  const float a = of.a[n], c = of.c[n], d = of.d[n], h = of.h[n];
-  const Four ahead = Four::splat(d) * (e + Four::splat(of.e[1][n]) * after.y) + Four::splat(of.b[n]) * sum(of.e);
-  const Four pushed = sum(of.q), half = Four::splat(0.5f * h);
-  Debt r;
-  for (int i = 0; i < 3; ++i) r.v[i] = Four::splat(a) * after.v[i] + Four::splat(of.e[i][n]) * ahead;
-  r.v[0] = r.v[0] + Four{{c, 0, 0, 0}};
-  r.v[1] = r.v[1] + Four{{0, c, 0, 0}} + Four::splat(c) * after.y + half * (pushed + Four::splat(h * (1.0f / 3)) * q);
-  r.v[2] = r.v[2] + Four{{0, 0, c, 0}};
-  r.y = after.y + pushed + half * q;
-  return r;
-}
-
-}  // namespace
-
 void AimSolver::linearize(Path& path, bool finely) const {
 #if defined(__x86_64__)
   if (wide_)
@@ -36,52 +11,31 @@ void AimSolver::linearize(Path& path, bool finely) const {
   else
 #endif
     aim_baseline::linearize(medium_, path, finely);
-  const Path::Elements& of = path.elements;
-  Debt debt{};
-  path.debt[path.count] = debt;
-  for (int n = path.count - 1; n >= 0; --n) path.debt[n] = debt = before(of, n, debt);
-  for (int i = 0; i < 3; ++i) path.by_velocity[i] = {debt.v[0].v[i], debt.v[1].v[i], debt.v[2].v[i]};
-  path.layers = path.bends = false;
+  path.lands = path.bends = false;
   path.steep = 0;
-  settle(path);
-}
-
-void AimSolver::settle(Path& path) {
-  const Path::Elements& of = path.elements;
-  path.total = path.most_carried = path.leaps = 0;
-  Four off{};
-  for (int n = 0; n < path.count; ++n) {
-    const Debt& after = path.debt[n + 1];
-    const Four moved = Four{{of.x[0][n], of.x[1][n], of.x[2][n], 0}} + Four::splat(of.x[1][n]) * after.y +
-                       Four::splat(of.v[0][n]) * after.v[0] + Four::splat(of.v[1][n]) * after.v[1] +
-                       Four::splat(of.v[2][n]) * after.v[2];
-    off = off + moved;
-    path.leaps += math::abs(moved.v[0]) + math::abs(moved.v[1]) + math::abs(moved.v[2]);
-    const double carried = of.defect[n] * path.reach(n);
-    path.total += carried;
-    path.most_carried = math::max(path.most_carried, carried);
-  }
-  const Vec3d moved{off.v[0], off.v[1], off.v[2]};
-  path.arrival = {Path::at(path.x, path.count) + moved, Path::at(path.v, path.count)};
 }
 
 void AimSolver::move(Path& path, Vec3d du, double dt) {
-  Vec3d dx{}, dv = du;
+  const Path::Elements& of = path.elements;
+  float dx[3] = {}, dv[3] = {float(du.x), float(du.y), float(du.z)};
   const double later = dt / path.time();
   for (int n = 0; n <= path.count; ++n) {
     const double stretch = later * path.t[n];
     path.t[n] += stretch;
     for (int i = 0; i < 3; ++i) {
-      path.x[i][n] += dx[i] + stretch * path.v[i][n];
-      path.v[i][n] += dv[i] + stretch * path.k[i][n];
+      path.x[i][n] += double(dx[i]) + stretch * path.v[i][n];
+      path.v[i][n] += double(dv[i]) + stretch * path.k[i][n];
+    }
+    if (n == 0) {  // exactly
+      for (int i = 0; i < 3; ++i) path.v[i][0] += du[i] - double(dv[i]);
     }
     if (n == path.count) break;
-    const Path::Elements& of = path.elements;
-    const double ahead = of.e[0][n] * dv.x + of.e[1][n] * dv.y + of.e[2][n] * dv.z;
-    const double half = 0.5 * of.h[n], height = dx.y + half * dv.y, sunk = half * (dx.y + (2.0 / 3) * half * dv.y);
+    const float ahead = of.e[0][n] * dv[0] + of.e[1][n] * dv[1] + of.e[2][n] * dv[2];
+    const float half = 0.5f * of.h[n], height = dx[1] + half * dv[1], sunk = half * (dx[1] + (2.0f / 3) * half * dv[1]);
+    const float d = of.d[n] * ahead, b = of.b[n] * ahead, c = of.c[n], a = of.a[n];
     for (int i = 0; i < 3; ++i) {
-      dx[i] += of.c[n] * dv[i] + of.d[n] * ahead * of.e[i][n] + sunk * of.q[i][n] + of.x[i][n];
-      dv[i] = of.a[n] * dv[i] + of.b[n] * ahead * of.e[i][n] + height * of.q[i][n] + of.v[i][n];
+      dx[i] += c * dv[i] + d * of.e[i][n] + sunk * of.q[i][n] + of.x[i][n];
+      dv[i] = a * dv[i] + b * of.e[i][n] + height * of.q[i][n] + of.v[i][n];
     }
   }
 }
@@ -90,7 +44,7 @@ int AimSolver::cut(const Path& path, double enough, double bend, Cut* cuts) cons
   int count = 0;
   const double slow = 0.85 * sound_, fast = 1.15 * sound_;
   for (int n = 0; n < path.count; ++n) {
-    const double carries = path.elements.defect[n] * path.reach(n);
+    const double carries = path.carried(n);
     int parts = 1;  // the defect falls as the fourth power of the length
     while (parts < 8 && math::square(math::square(double(parts))) * parts * enough < carries) ++parts;
     // In the barrier, where drag bends too sharply for that, no longer than it takes to lose so much speed.

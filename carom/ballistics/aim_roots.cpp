@@ -3,6 +3,21 @@
 
 namespace carom::ballistics::detail {
 
+namespace {
+
+bool none_carries(const FlightPath& path, double too_much) {
+  for (int n = 0; n < path.count; ++n)
+    if (path.carried(n) > too_much) return false;
+  return true;
+}
+double all_carry(const FlightPath& path) {
+  double sum = 0;
+  for (int n = 0; n < path.count; ++n) sum += path.carried(n);
+  return sum;
+}
+
+}  // namespace
+
 AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const {
   Newton to;
   const Inverse inverse = inverse_of(path.by_velocity);
@@ -22,7 +37,8 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   to.scale = math::max(math::length(target_(guess.time) - shooter_.muzzle), 0.5 * end_speed * guess.time);
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
-  to.left = to.moved * (6e-3 + 3 * to.moved / to.scale);
+  // The leap of a wind profile at its beginning they do not know.
+  to.left = to.moved * ((path.lands ? 0.1 : 6e-3) + 3 * to.moved / to.scale);
   return to;
 }
 
@@ -34,7 +50,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   // in the few elements of that flight, then in as many as the tolerance wants, at last by more points of them.
   double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = math::max(0.02 * away, rough);
-  double last_missed = 1e300, first_missed = 1e300, piece = 80 * allowed;
+  double last_missed = 1e300, first_missed = 1e300, piece = 16 * allowed;
   int divisions = 0;
   enum class Stage { fly, rough, fine, measured } stage = Stage::fly;
   for (int i = 0; i < most; ++i) {
@@ -50,12 +66,11 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
     }
     linearize(path, stage == Stage::measured);
     Newton to = newton(path, guess);
-    bool fine = stage == Stage::measured && (path.most_carried < 600 * allowed || divisions > 3);
+    bool fine = stage == Stage::measured && (divisions > 3 || none_carries(path, 300 * allowed));
     if (fine && to.left < allowed) {
       measure(path);
-      settle(path);
       to = newton(path, guess);
-      fine = (path.steep < allowed && (!path.bends || path.total < 200 * allowed)) || divisions > 3;
+      fine = (path.steep < allowed && (!path.bends || all_carry(path) < 200 * allowed)) || divisions > 3;
       if (!fine) piece *= 0.1;
     }
     if (!to.known) return root;

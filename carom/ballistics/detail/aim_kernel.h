@@ -45,11 +45,13 @@ struct AimPart {
 namespace aim_baseline {
 void linearize(const AimMedium& medium, FlightPath& path, bool finely);
 void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
+void settle(FlightPath& path);
 }  // namespace aim_baseline
 #if defined(__x86_64__)
 namespace aim_avx2 {
 void linearize(const AimMedium& medium, FlightPath& path, bool finely);
 void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
+void settle(FlightPath& path);
 }  // namespace aim_avx2
 #endif
 

@@ -309,6 +309,56 @@ void feel_elements(const AimMedium& medium, FlightPath& path) {
   }
 }
 
+typedef float Four __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+CAROM_SIMD_INLINE Four four(float x) { return Four{x, x, x, x}; }
+
+/// What the arrival owes, backward along the path, and where it is by what the elements owe. `Again`: what is owed is
+/// known.
+template <bool Again>
+void owe(FlightPath& path) {
+  const FlightPath::Elements& of = path.elements;
+  Four x{}, y{}, z{}, up{}, off{}, leaps{};
+  for (int n = path.count;; --n) {
+    FlightPath::Debt& debt = path.debt[n];
+    if constexpr (Again) {
+      __builtin_memcpy(&x, debt.v[0], 16);
+      __builtin_memcpy(&y, debt.v[1], 16);
+      __builtin_memcpy(&z, debt.v[2], 16);
+      __builtin_memcpy(&up, debt.y, 16);
+    } else {
+      __builtin_memcpy(debt.v[0], &x, 16);
+      __builtin_memcpy(debt.v[1], &y, 16);
+      __builtin_memcpy(debt.v[2], &z, 16);
+      __builtin_memcpy(debt.y, &up, 16);
+    }
+    if (n == 0) break;
+    const int i = n - 1;
+    const Four moved = Four{of.x[0][i], of.x[1][i], of.x[2][i], 0} + of.x[1][i] * up + of.v[0][i] * x + of.v[1][i] * y +
+                       of.v[2][i] * z;
+    off += moved;
+    leaps += moved > Four{} ? moved : -moved;
+    if constexpr (Again) continue;
+    const Four e{of.e[0][i], of.e[1][i], of.e[2][i], 0}, q{of.q[0][i], of.q[1][i], of.q[2][i], 0};
+    const float a = of.a[i], c = of.c[i], half = 0.5f * of.h[i];
+    const Four ahead = of.d[i] * (e + of.e[1][i] * up) + of.b[i] * (of.e[0][i] * x + of.e[1][i] * y + of.e[2][i] * z);
+    const Four pushed = of.q[0][i] * x + of.q[1][i] * y + of.q[2][i] * z;
+    x = a * x + of.e[0][i] * ahead + Four{c, 0, 0, 0};
+    y = a * y + of.e[1][i] * ahead + Four{0, c, 0, 0} + c * up + half * (pushed + (2.0f / 3 * half) * q);
+    z = a * z + of.e[2][i] * ahead + Four{0, 0, c, 0};
+    up = up + pushed + half * q;
+  }
+  double* const rows[] = {&path.by_velocity[0].x, &path.by_velocity[1].x, &path.by_velocity[2].x};
+  double *place = &path.arrival.position.x, *velocity = &path.arrival.velocity.x;
+  path.leaps = double(leaps[0]) + double(leaps[1]) + double(leaps[2]);
+  for (int i = 0; i < 3; ++i) {
+    rows[i][0] = double(x[i]);
+    rows[i][1] = double(y[i]);
+    rows[i][2] = double(z[i]);
+    place[i] = path.x[i][path.count] + double(off[i]);
+    velocity[i] = path.v[i][path.count];
+  }
+}
+
 /// By eight of Gauss's points in parts of elements: their seventh and fifth Legendre coefficients say what they
 /// mistake.
 struct Gauss {
@@ -378,7 +428,10 @@ void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
     plain ? feel_elements<ManyPoints, true>(medium, path) : feel_elements<ManyPoints, false>(medium, path);
   else
     plain ? feel_elements<FewPoints, true>(medium, path) : feel_elements<FewPoints, false>(medium, path);
+  owe<false>(path);
 }
+
+void settle(FlightPath& path) { owe<true>(path); }
 
 void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count) {
   if (medium.beside == nullptr)

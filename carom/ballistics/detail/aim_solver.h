@@ -116,8 +116,6 @@ class AimSolver {
   void linearize(Path& path, bool finely) const;
   /// Elements within which something is bent, anew.
   void measure(Path& path) const;
-  /// Where the path arrives by what its elements owe.
-  static void settle(Path& path);
   /// Newton's step for u and T together, from a path with its derivatives.
   struct Newton {
     bool known = false;

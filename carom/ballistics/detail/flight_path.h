@@ -1,7 +1,6 @@
 // A path of the aim solver: the nodes of a flight, and what every element between two of them does to the arrival.
 #pragma once
 
-#include "carom/math/simd.h"
 #include "carom/math/vec.h"
 
 namespace carom::ballistics::detail {
@@ -15,7 +14,7 @@ struct FlightPath {
   /// What the arrival owes to a change of the velocity and, beside the same change of its own, of the height: columns
   /// of ∂x(T)/∂(v, y), the fourth lane idle. Seven digits are plenty.
   struct Debt {
-    math::WideFloat<4> v[3], y;
+    alignas(16) float v[3][4], y[4];
   };
   /// From one node to the next. A small change through it: δv' = a δv + b e (e·δv) + q (δy + ½ h δy'),
   /// δx' = δx + c δv + d e (e·δv) + ½ h q (δy + ⅓ h δy').
@@ -32,12 +31,10 @@ struct FlightPath {
   double drag[padded], along[padded], w[3][padded], rise[3][padded];  ///< how k hangs on the velocity and the height
   Elements elements;
   Debt debt[most + 1];
-  bool layers = false;      ///< wind bends sharply within an element
-  bool bends = false;       ///< or drag does
-  double total = 0;         ///< m, of what the defects of all elements may move the arrival by
-  double most_carried = 0;  ///< m, of one element
-  double leaps = 0;         ///< m, of what the leaps between all elements do
-  double steep = 0;         ///< m, the same weighted by how wind that changes with height feeds on errors of the height
+  bool lands = false;  ///< it passes where profiles of wind begin
+  bool bends = false;  ///< wind or drag bends sharply within an element
+  double leaps = 0;    ///< m, of what the leaps between all elements do
+  double steep = 0;    ///< m, the same weighted by how wind that changes with height feeds on errors of the height
   math::Vec3d by_velocity[3];  ///< rows of ∂x(T)/∂v(0), s
   Arrival arrival{};
 
@@ -45,8 +42,10 @@ struct FlightPath {
   /// s, how far at most a change of the velocity at the end of an element moves the arrival.
   double reach(int n) const {
     const Debt& d = debt[n];
-    return (math::abs(d.v[0].v[0]) + math::abs(d.v[1].v[1]) + math::abs(d.v[2].v[2])) / 3;
+    return (math::abs(d.v[0][0]) + math::abs(d.v[1][1]) + math::abs(d.v[2][2])) / 3;
   }
+  /// m, by which the defect of an element may move the arrival.
+  double carried(int n) const { return elements.defect[n] * reach(n); }
   static math::Vec3d at(const double (&a)[3][padded], int i) { return {a[0][i], a[1][i], a[2][i]}; }
   static void put(double (&a)[3][padded], int i, math::Vec3d value) {
     for (int j = 0; j < 3; ++j) a[j][i] = value[j];
