@@ -66,8 +66,7 @@ core::Result<std::optional<Shot>> aim_again(const Projectile& projectile, const 
     return target.position + t * (target.velocity + (0.5 * t) * target.acceleration);
   };
   const detail::AimSolver solver(projectile, conditions, shooter, place, options);
-  const auto root = solver.refine({shooter.velocity + shooter.muzzle_speed * last.direction, last.time}, 40, false,
-                                  detail::AimSolver::Start::near);
+  const auto root = solver.refine({shooter.velocity + shooter.muzzle_speed * last.direction, last.time});
   if (!root.found || root.guess.time > options.longest_time) return std::optional<Shot>{};
   return std::optional<Shot>{{(root.guess.u - shooter.velocity) / shooter.muzzle_speed, root.guess.time,
                               root.arrival.position, root.arrival.velocity}};

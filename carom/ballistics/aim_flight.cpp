@@ -10,55 +10,79 @@ AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
                      x, v, k1, h);
 }
 
+namespace {
+
+/// Where in a step a height > 0 falls to 0: Hermite's cubic, halved to a thousandth.
+double fall_within(double from, double from_slope, double to, double to_slope) {
+  double low = 0, high = 1;
+  for (int j = 0; j < 10; ++j) {
+    const double s = 0.5 * (low + high), s2 = s * s, s3 = s2 * s;
+    const double height =
+        (2 * s3 - 3 * s2 + 1) * from + (s3 - 2 * s2 + s) * from_slope + (3 * s2 - 2 * s3) * to + (s3 - s2) * to_slope;
+    (height > 0 ? low : high) = s;
+  }
+  return high;
+}
+
+}  // namespace
+
 template <bool Plain>
-AimSolver::Arrival AimSolver::propagate_in(Vec3d u, double time, double allowed) const {
-  const double share = allowed / math::max(math::length(u) * time, 1e-9);
+bool AimSolver::fly_in(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling) const {
+  double time = guess.time;
+  const double share = allowed / math::max(math::length(guess.u) * time, 1e-9);
   const double bend_speed = speed_of_a_bend(share);
   const double least = 0.5 * fall_speed_, tolerance = allowed / time;
-  Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v);
+  Vec3d x = shooter_.muzzle, v = guess.u, k = rough_.at<Plain>(x, v);
   double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
-  for (int i = 0; i < 4000; ++i) {
+  int count = 0;
+  if (path) path->put(0, t, x, v, k);
+  const int most = path ? Path::most : 4000;
+  for (int i = 0; i < 4000 && count < most; ++i) {
     const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
-    if (speed > 0.85 * sound_) {
+    if (share < 5e-4 && speed > 0.85 * sound_) {
       h = math::min(h, far_bend * bend);
       if (h > bend && speed - h * pull < 1.15 * sound_) h = bend;
     }
     if (share < 5e-4) h = math::min(h, time / 12);
-    const bool last = t + h >= time * (1 - 1e-12);
+    bool last = !falling && t + h >= time * (1 - 1e-12);
     if (last) h = time - t;
     const Step end = step<Plain>(x, v, k, h);
     const double room = tolerance / math::max(end.error, 1e-30);
     // The fifth root, near enough: the root of the root, held closer to one.
     const double factor = math::clamp(0.8 * math::sqrt(math::sqrt(room)), 0.2, 1.7);
     if (room >= 1) {
+      if (falling && end.v.y < 0 && end.x.y < target_(t + h).y) {
+        // Once more, as far as it takes to come down to the target.
+        const double drop = x.y - target_(t).y, left = end.x.y - target_(t + h).y;
+        falling = false;
+        time = t + (drop > 0 ? h * fall_within(drop, h * (v.y - velocity_of_target(t).y), left,
+                                               h * (end.v.y - velocity_of_target(t + h).y))
+                             : h);
+        if (time < t + h) {
+          h = time - t;
+          continue;
+        }
+        last = true;
+      }
       x = end.x;
       v = end.v;
       k = end.k;
-      t += h;
-      if (last) break;
+      t = last ? time : t + h;
+      ++count;
+      if (path) {
+        path->put(count, t, x, v, k);
+        path->count = count;
+      }
+      if (last) {
+        arrival = {x, v};
+        return true;
+      }
     }
     h *= factor;
-    if (!(h > 1e-9 * time)) break;
+    if (!(h > 1e-9 * time) || (falling && t > options_.longest_time)) break;
   }
-  return {x, v};
-}
-
-template <bool Plain>
-AimSolver::Arrival AimSolver::follow_in(Vec3d u, double time, Path& path) const {
-  Vec3d x = shooter_.muzzle, v = u, k = rough_.at<Plain>(x, v);
-  const double scale = time / path.node[path.count].t;
-  double t = 0;
-  path.node[0].put(0, x, v, k);
-  for (int i = 1; i <= path.count; ++i) {
-    const double next = path.node[i].t * scale;
-    const Step end = step<Plain>(x, v, k, next - t);
-    x = end.x + path.correction[i - 1].x;
-    v = end.v + path.correction[i - 1].v;
-    k = rough_.at<Plain>(x, v);
-    t = next;
-    path.node[i].put(t, x, v, k);
-  }
-  return {x, v};
+  arrival = {x, v};
+  return false;
 }
 
 template <bool Plain>
@@ -118,10 +142,8 @@ AimSolver::Pass AimSolver::pass_in(double elevation, double azimuth) const {
   return {};
 }
 
-template AimSolver::Arrival AimSolver::propagate_in<true>(Vec3d, double, double) const;
-template AimSolver::Arrival AimSolver::propagate_in<false>(Vec3d, double, double) const;
-template AimSolver::Arrival AimSolver::follow_in<true>(Vec3d, double, Path&) const;
-template AimSolver::Arrival AimSolver::follow_in<false>(Vec3d, double, Path&) const;
+template bool AimSolver::fly_in<true>(Guess, double, Arrival&, Path*, bool) const;
+template bool AimSolver::fly_in<false>(Guess, double, Arrival&, Path*, bool) const;
 template AimSolver::Pass AimSolver::pass_in<true>(double, double) const;
 template AimSolver::Pass AimSolver::pass_in<false>(double, double) const;
 

@@ -3,112 +3,105 @@
 
 namespace carom::ballistics::detail {
 
-AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, Start start) const {
+namespace {
+
+bool none_carries(const FlightPath& path, double too_much) {
+  for (int n = 0; n < path.count; ++n)
+    if (path.carried(n) > too_much) return false;
+  return true;
+}
+double all_carry(const FlightPath& path) {
+  double sum = 0;
+  for (int n = 0; n < path.count; ++n) sum += path.carried(n);
+  return sum;
+}
+
+}  // namespace
+
+AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const {
+  Newton to;
+  const Inverse inverse = inverse_of(path.by_velocity);
+  const Arrival& end = path.arrival;
+  const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
+  const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
+  const Vec3d d = barrel / speed, drift = velocity_of_target(guess.time) - end.velocity;
+  const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
+  to.slope = math::dot(d, to_drift);
+  to.known = math::is_finite(missed) && math::is_finite(to.slope) && to.slope != 0;
+  to.missed = missed + math::abs(lack) * guess.time;
+  to.dt = math::clamp((lack - math::dot(d, to_miss)) / to.slope, -0.5 * guess.time, guess.time);
+  to.du = to_miss + to.dt * to_drift;
+  const double longest = shooter_.muzzle_speed;
+  if (math::length(to.du) > longest) to.du *= longest / math::length(to.du);
+  const double end_speed = math::length(end.velocity), time = guess.time + to.dt;
+  to.scale = math::max(math::length(target_(guess.time) - shooter_.muzzle), 0.5 * end_speed * guess.time);
+  to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
+  // Derivatives are known to a few thousandths, and what is left is as the square of the way.
+  // The leap of a wind profile at its beginning they do not know.
+  to.left = to.moved * ((path.lands ? 0.1 : 6e-3) + 3 * to.moved / to.scale);
+  return to;
+}
+
+AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool falling) const {
   Root root;
   Path path;
-  Inverse inverse;
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
-  // Rough paths as long as Newton's method has far to go. Then one whose own error is measured, step by step; what
-  // little is left from there on is found by flying the same steps again, each corrected by what it was found to miss.
+  // A rough flight from the guess; then that path itself is moved, all of it at once, until it is a flight that hits:
+  // in the few elements of that flight, then in as many as the tolerance wants, at last by more points of them.
   double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
-  double accuracy = start == Start::near ? rough : math::max(0.02 * away, rough), last_both = 1e300, first_both = 1e300;
-  double off = 0, last_off = 0;  // m, what the last measured paths erred
-  const double finest = rough / 64;
-  Vec3d last_u{}, last_x{};
-  double last_time = 0;
-  // secant: Broyden's updates, from the closed form; recorded: with the derivatives; plain: Broyden's updates of those;
-  // measured: with what it errs; again: by the corrected steps of that one; checked: and measured once more.
-  enum class Way { secant, recorded, plain, measured, again, checked };
-  Way way = start == Start::near ? Way::measured : eager ? Way::secant : Way::recorded;
-  const auto correct = [&](Arrival& end) {
-    const Vec3d more = measure(path, 0.8 * allowed);
-    last_off = off;
-    end.position += more;
-    off = math::length(more);
-  };
+  double accuracy = math::max(0.02 * away, rough);
+  double last_missed = 1e300, first_missed = 1e300, piece = 16 * allowed;
+  int divisions = 0;
+  enum class Stage { fly, rough, fine, measured } stage = Stage::fly;
   for (int i = 0; i < most; ++i) {
-    Arrival end;
-    if (way == Way::again || way == Way::checked) {
-      end = follow(guess.u, guess.time, path);
-      if (way == Way::checked) correct(end);
-    } else if (way == Way::plain || way == Way::secant) {  // as good as recorded on flat paths, and half the work
-      end = propagate(guess.u, guess.time, accuracy);
-      if (i == 0)
-        inverse = estimate(guess, end);
-      else
-        update(inverse, guess.u - last_u, end.position - last_x - (guess.time - last_time) * end.velocity);
-    } else {
-      if (!record(guess.u, guess.time, accuracy, path, i == 0 && start == Start::falling)) {
+    if (stage == Stage::fly) {
+      if (!record(guess, accuracy, path, i == 0 && falling)) {
         if (path.count < Path::most) return root;
         rough *= 4;  // too many steps
         accuracy *= 4;
         continue;
       }
-      guess.time = path.node[path.count].t;
-      sensitivities(path);
-      inverse = inverse_of(path.by_velocity);
-      end = path.arrival;
-      if (way == Way::measured) {
-        for (int n = 0; n < path.count; ++n) path.correction[n] = {};
-        correct(end);
-      }
+      guess.time = path.time();
+      stage = Stage::rough;
     }
-    last_u = guess.u;
-    last_x = end.position;
-    last_time = guess.time;
-    const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
-    const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
-    const Vec3d d = barrel / speed, drift = velocity_of_target(guess.time) - end.velocity;
-    const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
-    const double slope = math::dot(d, to_drift), both = missed + math::abs(lack) * guess.time;
-    if (!math::is_finite(missed) || !math::is_finite(slope) || slope == 0) return root;
-    double dt = (lack - math::dot(d, to_miss)) / slope;
-    dt = math::clamp(dt, -0.5 * guess.time, guess.time);
-    Vec3d du = to_miss + dt * to_drift;
-    const double longest = shooter_.muzzle_speed;
-    if (math::length(du) > longest) du *= longest / math::length(du);
-    const double scale =
-        math::max(math::length(target_(guess.time) - shooter_.muzzle), 0.5 * math::length(end.velocity) * guess.time);
-    guess.u += du;
-    guess.time += dt;
+    linearize(path, stage == Stage::measured);
+    Newton to = newton(path, guess);
+    bool fine = stage == Stage::measured && (divisions > 3 || none_carries(path, 300 * allowed));
+    if (fine && to.left < allowed) {
+      measure(path);
+      to = newton(path, guess);
+      fine = (path.steep < allowed && (!path.bends || all_carry(path) < 200 * allowed)) || divisions > 3;
+      if (!fine) piece *= 0.1;
+    }
+    if (!to.known) return root;
+    guess.u += to.du;
+    guess.time += to.dt;
     if (!(guess.time > 1e-9) || guess.time > 2 * options_.longest_time) return root;
-    const double moved = math::length(du) * guess.time + math::length(end.velocity) * math::abs(dt);
-    // Derivatives are known to a few thousandths, and the next miss is as the square of this one.
-    const double share = way == Way::measured ? 3e-3 + 3 * moved / scale : math::clamp(both / last_both, 0.01, 1.0);
-    const bool again = way == Way::again || way == Way::checked, known = way == Way::measured || again;
-    // What is measured is known to a hundredth or better, and it errs as its square. Less well where wind or drag
-    // bends, by every step's share of it: those of opposite sign are none the less in doubt. Shorter steps where wind
-    // that changes steeply with height would feel what the heights within them are off.
-    const double enough = path.layers ? finest : 16 * finest;  // flown roughly, drag tables of lines stay as rough
-    const bool fine =
-        rough <= finest || (path.steep < allowed && (!path.bends || path.total < 50 * allowed || rough <= enough));
-    const bool trusted = fine && off < 0.5 * math::sqrt(allowed * scale);
-    const double doubt = way == Way::again ? 0 : path.bends ? 0.05 * path.total : 0.005 * off;
-    if (known && trusted && share * moved < allowed && doubt < 0.5 * allowed) {
-      const double* pull = path.node[path.count].k;
-      const Vec3d aimed = guess.u - shooter_.velocity;
-      root = {true, slope, guess, {target_(guess.time), end.velocity + dt * Vec3d{pull[0], pull[1], pull[2]}}};
+    if (fine && to.left < allowed) {
+      const Vec3d aimed = guess.u - shooter_.velocity, end = path.arrival.velocity;
+      root = {true, to.slope, guess, {target_(guess.time), end + to.dt * Path::at(path.k, path.count)}};
       root.guess.u = shooter_.velocity + (shooter_.muzzle_speed / math::length(aimed)) * aimed;
       return root;
     }
-    if (eager && i >= 4 && both > 0.2 * first_both) return root;
-    if (i == 0) first_both = both;
-    if (known && !trusted) rough *= 0.25;
-    // What a path errs hangs on where its steps lie in the bends of drag and wind: most of all where it is flat.
-    const double alike = start == Start::falling ? 600 * allowed : 150 * allowed;
-    const bool near_by = moved < math::min(alike, 1e-3 * scale) && moved * off < 1e-4 * alike * scale;
-    if (known && trusted && moved < 5e-3 * scale &&
-        (way == Way::measured || both < 0.3 * last_both || (way == Way::checked && off < 0.5 * last_off)))
-      way = near_by && !path.bends ? Way::again : Way::checked;
-    else if (known || way == Way::plain || moved < 0.01 * scale)
-      way = Way::measured;
-    else if (way == Way::recorded && moved < 0.15 * scale)
-      way = Way::plain;
-    else if (way != Way::secant || i > 2 || moved > 0.3 * scale)
-      way = Way::recorded;
-    if (way == Way::measured && moved > 0.15 * scale) way = Way::recorded;
-    accuracy = way == Way::recorded || way == Way::secant ? math::max(0.005 * math::min(moved, scale), rough) : rough;
-    last_both = both;
+    if (eager && i >= 4 && to.missed > 0.2 * first_missed) return root;
+    if (i == 0) first_missed = to.missed;
+    if (to.moved > 1.2 * to.scale || to.missed > last_missed) {
+      stage = Stage::fly;
+      accuracy = math::max(0.02 * math::min(to.moved, to.scale), rough);
+      last_missed = 1e300;
+      continue;
+    }
+    move(path, to.du, to.dt);
+    last_missed = to.missed;
+    if (stage == Stage::fine) {
+      stage = Stage::measured;
+    } else if (stage == Stage::measured ? !fine : to.moved < 0.05 * to.scale) {
+      const double bend = speed_of_a_bend(rough / (math::length(guess.u) * guess.time));
+      divide(path, piece, bend);
+      ++divisions;
+      if (stage == Stage::rough) stage = to.moved < 1e-3 * to.scale ? Stage::measured : Stage::fine;
+      last_missed = 1e300;
+    }
   }
   return root;
 }

@@ -1,9 +1,35 @@
 // Where the aim solver looks for shots, and how it knows that there are none.
 #include "carom/ballistics/detail/aim_solver.h"
+#include "carom/math/cpu.h"
 
 namespace carom::ballistics::detail {
 
 namespace {
+
+void add_beside(const Conditions& conditions, const double* place, const double* velocity, double* acceleration) {
+  const Vec3d more = beside_drag(conditions, {place[0], place[1], place[2]}, {velocity[0], velocity[1], velocity[2]});
+  for (int i = 0; i < 3; ++i) acceleration[i] += more[i];
+}
+
+AimMedium medium_of(const Projectile& projectile, const Conditions& conditions) {
+  AimMedium m;
+  m.air = conditions.air.table();
+  m.wind = conditions.wind.table();
+  m.below.velocity = m.wind.lowest;
+  Vec3d above = m.wind.lowest;
+  if (m.wind.count > 0) {
+    m.sheared_up_to = m.wind.legs[m.wind.count - 1].height;
+    above = m.wind.legs[m.wind.count - 1].velocity;
+  }
+  for (int i = 0; i < 3; ++i) m.wind_above[i] = above[i];
+  m.drag = projectile.drag.table();
+  m.half_area = 0.5 * projectile.area_per_mass;
+  m.gravity = conditions.gravity;
+  const bool plain = conditions.gravity_model == GravityModel::uniform && conditions.rotation == Vec3d{};
+  m.beside = plain ? nullptr : add_beside;
+  m.conditions = &conditions;
+  return m;
+}
 
 /// m/s, faster than anything will fly.
 double fastest(const Shooter& shooter) { return 1.5 * (shooter.muzzle_speed + math::length(shooter.velocity)); }
@@ -14,6 +40,8 @@ AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
     : pull_(projectile, conditions),
       rough_(projectile, conditions),
+      medium_(medium_of(projectile, conditions)),
+      wide_(math::detect_instruction_set() != math::InstructionSet::baseline),
       projectile_(projectile),
       conditions_(conditions),
       shooter_(shooter),
@@ -25,6 +53,7 @@ AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions,
   const double k = 0.5 * density * projectile.drag(speed / sound_) * projectile.area_per_mass;
   decay_ = k > 0 ? 1 / (k * speed) : 1e30;
   fall_speed_ = math::min(speed, math::sqrt(conditions.gravity * decay_ * speed));
+  if (const auto levels = conditions.wind.levels(); levels.size() > 1) ground_ = levels.front().height;
   conditions.wind.for_each_bend(-1e300, 1e300, least_bend, [&](double) { layered_ = true; });
   // Most curves have one bend, at their very end.
   if (projectile.drag.has_bends())
@@ -147,7 +176,7 @@ bool AimSolver::by_guesses(Aims& aims, Root& late) const {
   const double level = math::min(flown / (2 * height + deep) * speed, 0.7 * speed);
   const double climb = math::sqrt(speed * speed - level * level);
   guess.u = shooter_.velocity + Vec3d{level * way.x / flown, climb, level * way.z / flown};
-  const Root high = refine(guess, 40, false, Start::falling);
+  const Root high = refine(guess, 40, false, true);
   if (!high.found) {
     // Where the gun is more than fast enough for the longest time the high arc takes longer.
     Guess last{guess.u, options_.longest_time};
@@ -306,8 +335,8 @@ AimSolver::Footing AimSolver::footing(Guess guess) const {
   Path path;
   for (int i = 0; i < 12; ++i) {
     const double away = math::length(target_(guess.time) - shooter_.muzzle);
-    if (!record(guess.u, guess.time, 2e-4 * away + 1e-3, path)) return {};
-    sensitivities(path);
+    if (!record(guess, 2e-4 * away + 1e-3, path)) return {};
+    linearize(path, false);
     const Inverse inverse = inverse_of(path.by_velocity);
     const Vec3d miss = target_(guess.time) - path.arrival.position;
     const double missed = math::length(miss), speed = math::length(guess.u - shooter_.velocity);

@@ -86,12 +86,22 @@ class CAROM_API DragCurve {
   /// The curve times a form factor.
   DragCurve scaled(double factor) const;
 
- private:
   static constexpr std::size_t cells = 128;
+  /// A cubic in the Mach number less that at its start.
   struct Piece {
     double start = 0, constant = 0, slope = 0, square = 0, cube = 0;
     bool bends = false;  // at its start
   };
+  /// For kernels in lanes: the pieces, one beyond all at the end, and for each of so many cells the first that can hold
+  /// its Mach numbers.
+  struct Table {
+    const Piece* pieces;
+    const std::uint16_t* first;
+    double cells_per_mach;
+  };
+  Table table() const { return {pieces_.data(), first_.data(), cells_per_mach_}; }
+
+ private:
   const Piece& piece(double mach) const {
     // One cell of a uniform grid tells the first piece that can hold it: a step or two from there.
     const int cell = int(math::min(math::max(0.0, mach) * cells_per_mach_, double(cells - 1)));

@@ -42,6 +42,13 @@ class CAROM_API AirColumn {
     return {a.density + t * density, a.speed_of_sound + t * sound};
   }
 
+  /// For kernels in lanes: node i lies at lowest + i/per_metre, the last one at `last`.
+  struct Table {
+    const Air* nodes;
+    double lowest, per_metre, last;
+  };
+  Table table() const { return {nodes_.data(), lowest_, per_metre_, last_}; }
+
  private:
   struct Empty {};
   explicit AirColumn(Empty) {}
@@ -93,12 +100,27 @@ class CAROM_API WindColumn {
       if (leg->height > low && leg->bend > least) f(leg->height);
   }
 
- private:
+  /// From a level to the next: velocity at its height and by the metre above it.
   struct Leg {
     double height = 0;
-    math::Vec3d velocity{}, shear{};  // at that height, and by the metre above it
-    double bend = 0;                  // m/s, what a change of the shear there makes over both legs
+    math::Vec3d velocity{}, shear{};
+    double bend = 0;  // m/s, what a change of the shear there makes over both legs
   };
+  /// For kernels in lanes: the legs, the last one without end, and for sixteen cells an octave of the height above the
+  /// first one, by the first bits of the number, the leg that is at or below the beginning of each. Without shear there
+  /// are none, and the wind is the lowest.
+  struct Table {
+    const Leg* legs;
+    std::size_t count;
+    const std::uint32_t* first;
+    std::uint64_t first_cell, last_cell;
+    math::Vec3d lowest;
+  };
+  Table table() const {
+    return {legs_.data(), legs_.empty() ? 0 : legs_.size() - 1, first_.data(), first_cell_, last_cell_, lowest_};
+  }
+
+ private:
   const Leg& leg_of(double above, double height) const {
     const std::uint64_t cell = math::clamp(std::bit_cast<std::uint64_t>(above) >> 48, first_cell_, last_cell_);
     const Leg* leg = legs_.data() + first_[std::size_t(cell - first_cell_)];

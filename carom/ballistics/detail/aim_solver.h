@@ -4,7 +4,9 @@
 #pragma once
 
 #include "carom/ballistics/aim.h"
-#include "carom/ballistics/detail/flight_path.h"
+#include "carom/ballistics/detail/aim_kernel.h"
+#include "carom/ballistics/detail/flight_step.h"
+#include "carom/ballistics/detail/rough_pull.h"
 
 namespace carom::ballistics::detail {
 
@@ -29,10 +31,9 @@ class AimSolver {
     Guess guess{};
     Arrival arrival{};
   };
-  /// `eager`: gives up where the first steps do not lead there. `near`: the guess is as good as there; `falling`: its
-  /// time is only the order of magnitude, the right one is when it comes down to the target's height.
-  enum class Start { anywhere, near, falling };
-  Root refine(Guess guess, int most = 40, bool eager = false, Start start = Start::anywhere) const;
+  /// `eager`: gives up where the first steps do not lead there; `falling`: the time of the guess is only the order of
+  /// magnitude, the right one is when it comes down to the target's height.
+  Root refine(Guess guess, int most = 40, bool eager = false, bool falling = false) const;
 
   /// All roots by a walk through the flight times, the earliest and the latest of them.
   Aims scan() const;
@@ -110,22 +111,31 @@ class AimSolver {
   static void update(Inverse& inverse, Vec3d du, Vec3d dx);
 
   using Path = FlightPath;
-  /// `falling`: until it comes down to the target's height, not until `time`. False: too many steps.
-  bool record(Vec3d u, double time, double allowed, Path& path, bool falling = false) const {
-    return pull_.plain() ? record_in<true>(u, time, allowed, path, falling)
-                         : record_in<false>(u, time, allowed, path, falling);
-  }
-  template <bool Plain>
-  bool record_in(Vec3d u, double time, double allowed, Path& path, bool falling) const;
-  /// Backward along a recorded path: how the arrival depends on its nodes and on the start.
-  static void sensitivities(Path& path);
-  /// What the steps of a path miss, by quadrature of how far its interpolant is from the equation of motion, to about
-  /// `fine` m at the arrival; added to their corrections. Returns what that moves the arrival by.
-  Vec3d measure(Path& path, double fine) const {
-    return pull_.plain() ? measure_in<true>(path, fine) : measure_in<false>(path, fine);
-  }
-  template <bool Plain>
-  Vec3d measure_in(Path& path, double fine) const;
+  /// How the arrival depends on the start and by how much it is off, to first order in the defects of the elements and
+  /// the leaps between them. `finely`: but for what is bent within elements, to about the tolerance.
+  void linearize(Path& path, bool finely) const;
+  /// Elements within which something is bent, anew.
+  void measure(Path& path) const;
+  /// Newton's step for u and T together, from a path with its derivatives.
+  struct Newton {
+    bool known = false;
+    Vec3d du{};
+    double dt = 0, slope = 0;     // s, and of Root
+    double missed = 0;            // m, by place and by the muzzle speed
+    double moved = 0, scale = 0;  // m, by how much the path moves and leaps, and of how much
+    double left = 0;              // m, what the step leaves
+  };
+  Newton newton(const Path& path, const Guess& guess) const;
+  /// To another initial velocity and time, with what the elements owe.
+  static void move(Path& path, Vec3d du, double dt);
+  /// Elements into parts of which each moves the arrival by less than `enough` m, and does not lose more than `bend`
+  /// m/s in the barrier; into fewer where there would be too many.
+  void divide(Path& path, double enough, double bend) const;
+  struct Cut {
+    int element;
+    double s;
+  };
+  int cut(const Path& path, double enough, double bend, Cut* cuts) const;
 
   /// Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
   /// error: no longer steps there than it takes to lose so much speed (m/s; above the barrier `far_bend` times that),
@@ -141,17 +151,20 @@ class AimSolver {
   [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
   Arrival propagate(Vec3d u, double time, double allowed) const {
-    return pull_.plain() ? propagate_in<true>(u, time, allowed) : propagate_in<false>(u, time, allowed);
+    Arrival arrival;
+    fly({u, time}, allowed, arrival, nullptr);
+    return arrival;
+  }
+  /// The same, recorded. `falling`: until it comes down to the target's height. False: too many steps.
+  bool record(Guess guess, double allowed, Path& path, bool falling = false) const {
+    return fly(guess, allowed, path.arrival, &path, falling);
+  }
+  bool fly(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling = false) const {
+    return pull_.plain() ? fly_in<true>(guess, allowed, arrival, path, falling)
+                         : fly_in<false>(guess, allowed, arrival, path, falling);
   }
   template <bool Plain>
-  Arrival propagate_in(Vec3d u, double time, double allowed) const;
-  /// The steps of a recorded path again, as shares of the time, with their corrections; its nodes are those of the new
-  /// flight then.
-  Arrival follow(Vec3d u, double time, Path& path) const {
-    return pull_.plain() ? follow_in<true>(u, time, path) : follow_in<false>(u, time, path);
-  }
-  template <bool Plain>
-  Arrival follow_in(Vec3d u, double time, Path& path) const;
+  bool fly_in(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling) const;
   /// How a shot passes the target's distance, or falls through its height before.
   struct Pass {
     bool plain = false;  // once and at a slant, or never
@@ -164,7 +177,9 @@ class AimSolver {
   template <bool Plain>
   Pass pass_in(double elevation, double azimuth) const;
   const PointMassPull pull_;  // what holds
-  const RoughPull rough_;     // what paths feel
+  const RoughPull rough_;     // what flights feel
+  const AimMedium medium_;    // what holds, for lanes
+  const bool wide_;           // they are those of AVX2
   const Projectile& projectile_;
   const Conditions& conditions_;
   const Shooter& shooter_;
@@ -173,6 +188,7 @@ class AimSolver {
   double decay_ = 1e30;     // s, in which drag takes the muzzle speed
   double fall_speed_ = 0;   // m/s, terminal, at most the muzzle speed
   double sound_ = 340.294;  // m/s, at the muzzle
+  double ground_ = -1e300;  // m, where profiles of wind begin, with a leap
   bool layered_ = false;    // the wind bends sharply somewhere
   bool bent_ = false;       // the drag curve does, at a Mach number that is flown
 };

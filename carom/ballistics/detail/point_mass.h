@@ -3,7 +3,6 @@
 #pragma once
 
 #include "carom/ballistics/flight.h"
-#include "carom/math/simd_double.h"
 
 namespace carom::ballistics::detail {
 
@@ -54,39 +53,6 @@ class PointMassPull {
       a = (projectile_.drag(speed * slowness) * (weight * speed)) * w;
     }
     return beside<Plain>(a, position, velocity);
-  }
-  using Pair = math::WideDouble<2>;
-  struct Pairs {
-    Pair x, y, z;
-  };
-  /// Two at once; where it is plain, of the positions the heights alone are read.
-  template <bool Plain>
-  [[gnu::always_inline]] Pairs at(const Pairs& position, const Pairs& velocity) const {
-    Pairs a{};
-    if (half_area_ > 0) {
-      const double low = position.y.v[0], high = position.y.v[1];
-      const environment::AirColumn::Air air[2] = {conditions_.air.at(low), conditions_.air.at(high)};
-      const math::Vec3d wind[2] = {conditions_.wind.at(low), conditions_.wind.at(high)};
-      const Pair slowness = Pair::splat(1) / Pair{{air[0].speed_of_sound, air[1].speed_of_sound}};
-      const Pair x = velocity.x - Pair{{wind[0].x, wind[1].x}}, y = velocity.y - Pair{{wind[0].y, wind[1].y}},
-                 z = velocity.z - Pair{{wind[0].z, wind[1].z}};
-      const Pair speed = math::sqrt(x * x + y * y + z * z), mach = speed * slowness;
-      const Pair pull = Pair{{projectile_.drag(mach.v[0]), projectile_.drag(mach.v[1])}} * speed *
-                        (Pair::splat(-half_area_) * Pair{{air[0].density, air[1].density}});
-      a = {pull * x, pull * y, pull * z};
-    }
-    if constexpr (!Plain) {
-      for (int i = 0; i < 2; ++i) {
-        const math::Vec3d more = beside_drag(conditions_, {position.x.v[i], position.y.v[i], position.z.v[i]},
-                                             {velocity.x.v[i], velocity.y.v[i], velocity.z.v[i]});
-        a.x.v[i] += more.x;
-        a.y.v[i] += more.y;
-        a.z.v[i] += more.z;
-      }
-    } else {
-      a.y = a.y - Pair::splat(conditions_.gravity);
-    }
-    return a;
   }
 
  private:

@@ -11,10 +11,6 @@ class RoughPull {
   RoughPull(const Projectile& projectile, const Conditions& conditions)
       : drag_(projectile.drag), conditions_(conditions), half_area_(0.5 * projectile.area_per_mass) {}
 
-  /// How drag changes: ∂a/∂v = −drag I − bend w wᵀ, w the velocity through the air; rise = ∂a/∂y.
-  struct Slope {
-    float drag, bend, w[3], rise[3];
-  };
   template <bool Plain>
   [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
     const environment::AirColumn::Air air = conditions_.air.at(position.y);
@@ -24,27 +20,6 @@ class RoughPull {
     const double square = math::length_squared(w);
     return beside<Plain>(weight * math::sqrt(square) * drag_.roughly(square * slow).coefficient * w, position,
                          velocity);
-  }
-  template <bool Plain>
-  [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity, Slope& slope) const {
-    environment::AirColumn::Air by_metre;
-    math::Vec3d shear;
-    const environment::AirColumn::Air air = conditions_.air.at(position.y, by_metre);
-    const math::Vec3d w = velocity - conditions_.wind.at(position.y, shear);
-    const double slowness = 1 / air.speed_of_sound, weight = half_area_ * air.density;
-    const double square = math::length_squared(w), speed = math::sqrt(square), mach2 = square * (slowness * slowness);
-    const DragCurve::Value drag = drag_.roughly(mach2);
-    const double pull = weight * speed * drag.coefficient, steep = 2 * weight * mach2 * drag.slope;
-    const double bend = (weight * drag.coefficient + steep) / math::max(speed, 1e-9);
-    slope.drag = float(pull);
-    slope.bend = float(bend);
-    const double along = bend * math::dot(w, shear) + steep * speed * slowness * by_metre.speed_of_sound -
-                         half_area_ * by_metre.density * drag.coefficient * speed;
-    for (int i = 0; i < 3; ++i) {
-      slope.w[i] = float(w[i]);
-      slope.rise[i] = float(pull * shear[i] + along * w[i]);
-    }
-    return beside<Plain>(-pull * w, position, velocity);
   }
 
  private:

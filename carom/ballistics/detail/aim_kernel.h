@@ -1,0 +1,58 @@
+// What the lanes of the aim solver work on: plain pointers, one function for each instruction set.
+#pragma once
+
+#include <cstdint>
+
+#include "carom/ballistics/detail/flight_path.h"
+#include "carom/ballistics/flight.h"
+
+namespace carom::ballistics::detail {
+
+/// What a projectile feels, by tables.
+struct AimMedium {
+  environment::AirColumn::Table air;
+  environment::WindColumn::Table wind;
+  environment::WindColumn::Leg below{};  // the wind below the lowest level
+  double sheared_up_to = -1e300;         // m, from there on the wind is
+  double wind_above[3];                  // m/s
+  DragCurve::Table drag;
+  double half_area;  // m²/kg
+  double gravity;    // m/s²
+  /// Adds what is beside drag, where that is more than uniform gravity.
+  void (*beside)(const Conditions& conditions, const double* place, const double* velocity, double* acceleration);
+  const Conditions* conditions;
+};
+
+/// ∫ H d of the defect d over an element, H Hermite's cubics in the order (1, 0), slope (1, 0), (0, 1), slope (0, 1):
+/// what is weighted by a cubic in s takes its values and slopes at both ends of them.
+struct AimMoments {
+  double of[4][3];
+  math::Vec3d at(int i) const { return {of[i][0], of[i][1], of[i][2]}; }
+  void add(const AimMoments& other) {
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 3; ++j) of[i][j] += other.of[i][j];
+  }
+};
+/// A part of an element: what it adds to the moments, and what its points may mistake of its defect.
+struct AimPart {
+  int element;
+  double from, to;
+  double rest;
+  AimMoments moments;
+};
+
+/// By how much a path is off, to first order, and how: `finely` by five points within every element, else by three.
+namespace aim_baseline {
+void linearize(const AimMedium& medium, FlightPath& path, bool finely);
+void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
+void settle(FlightPath& path);
+}  // namespace aim_baseline
+#if defined(__x86_64__)
+namespace aim_avx2 {
+void linearize(const AimMedium& medium, FlightPath& path, bool finely);
+void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
+void settle(FlightPath& path);
+}  // namespace aim_avx2
+#endif
+
+}  // namespace carom::ballistics::detail
