@@ -1,6 +1,7 @@
 // Rollback as games with prediction do it: inputs come late and out of order, the world goes back to the frame that
 // they belong to and is simulated again. It must end where a world ends that had them all in time.
 #include <gtest/gtest.h>
+
 #include <algorithm>
 
 #include "tests/rigid/scene_pieces.h"
