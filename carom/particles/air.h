@@ -45,8 +45,8 @@ struct Air {
   environment::Wind wind{};
   /// Where there are any they stand for `wind`; by rising height, constant beyond.
   std::vector<environment::WindColumn::Level> layers{};
-  /// The wind of an environment: where there is one it stands for `wind` and `layers`. Its steady part is felt as it is,
-  /// what else blows as environment::WindPatch has it, of up to 8192 nodes round all but stray particles.
+  /// The wind of an environment: where there is one it stands for `wind` and `layers`. Its steady part is felt as it
+  /// is, what else blows as environment::WindPatch has it, of up to 8192 nodes round all but stray particles.
   std::optional<environment::WindField> field{};
   double ground = 0;  ///< m: heights of the wind's profile and of the layers are above this
   Turbulence turbulence{};

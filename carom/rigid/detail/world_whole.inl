@@ -265,7 +265,7 @@ template <class D>
 Events<D> World<D>::events() const {
   const detail::StepScratch<D>& s = self_->scratch;
   return {s.contact_begin, s.contact_end, s.contact_hit, s.sensor_begin, s.sensor_end,
-          s.fell_asleep,   s.quarantined, s.body_moves,  s.joint_break, s.spring_break};
+          s.fell_asleep,   s.quarantined, s.body_moves,  s.joint_break,  s.spring_break};
 }
 
 template <class D>
