@@ -105,6 +105,7 @@ struct Cuts {
 }  // namespace
 
 void AimSolver::measure(Path& path) const {
+  constexpr double sure = 5;  // times the tolerance: what carries more is not settled by five points alone
   Path::Elements& of = path.elements;
   struct Hard {
     int element;
@@ -130,7 +131,8 @@ void AimSolver::measure(Path& path) const {
       };
       path.steep += (lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 * path.carried(n);
     }
-    if (!cut && rest < 0.4 * options_.tolerance) continue;
+    const bool settled = rest < 0.4 * options_.tolerance && path.carried(n) < sure * options_.tolerance;
+    if (!cut && settled) continue;
     double s[Cuts::most + 1] = {0, 0.5, 1};
     int parts = 2;
     bool bends = false;
@@ -138,7 +140,7 @@ void AimSolver::measure(Path& path) const {
       const Cuts cuts(projectile_, conditions_, layered_, bent_, least_bend, Interpolant(path, n), path, n);
       bends = cuts.count > 1;
       path.bends = path.bends || bends;
-      if (!bends && rest < 0.4 * options_.tolerance) continue;
+      if (!bends && settled) continue;
       if (bends) {
         parts = cuts.count;
         for (int i = 0; i <= parts; ++i) s[i] = cuts.s[i];

@@ -66,11 +66,11 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
     }
     linearize(path, stage == Stage::measured);
     Newton to = newton(path, guess);
-    bool fine = stage == Stage::measured && (divisions > 3 || none_carries(path, 300 * allowed));
+    bool fine = stage == Stage::measured && (divisions > 6 || none_carries(path, 300 * allowed));
     if (fine && to.left < allowed) {
       measure(path);
       to = newton(path, guess);
-      fine = (path.steep < allowed && (!path.bends || all_carry(path) < 200 * allowed)) || divisions > 3;
+      fine = (path.steep < allowed && (!path.bends || all_carry(path) < 100 * allowed)) || divisions > 6;
       if (!fine) piece *= 0.1;
     }
     if (!to.known) return root;

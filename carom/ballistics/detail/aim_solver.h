@@ -144,7 +144,7 @@ class AimSolver {
     return sound_ * math::clamp(0.55 * math::sqrt(math::sqrt(share)), 0.03, 0.3);
   }
   static constexpr double far_bend = 4;
-  static constexpr double least_bend = 0.2;  // m/s, of the wind
+  static constexpr double least_bend = 0.1;  // m/s, of the wind
 
   using Step = FlightStep;
   template <bool Plain>
