@@ -46,9 +46,9 @@ struct AimOptions {
   bool high_arc = true;       ///< false: only the earliest hit is looked for, in a fraction of the time
 };
 
-/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 8 µs, both 15 to
-/// 50 µs, a target out of reach, at rest or in flight, 5 to 20 µs; one that is only just in or out of reach a tenth of
-/// a millisecond, one with several arcs, or beyond the reach of a light shot by so little that no bound tells,
+/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 12 µs, both 22
+/// to 75 µs, a target out of reach, at rest or in flight, 5 to 20 µs; one that is only just in or out of reach a tenth
+/// of a millisecond, one with several arcs, or beyond the reach of a light shot by so little that no bound tells,
 /// milliseconds. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
@@ -58,7 +58,7 @@ CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions&
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  core::FunctionRef<math::Vec3d(double)> target, const AimOptions& options = {});
 
-/// The way to hit that lies close to `last`, the shot of the frame before or one of a table (AimTable): about 6 µs on
+/// The way to hit that lies close to `last`, the shot of the frame before or one of a table (AimTable): about 9 µs on
 /// a low arc. Empty where Newton's method does not lead there: ask `aim`.
 CAROM_API core::Result<std::optional<Shot>> aim_again(const Projectile& projectile, const Conditions& conditions,
                                                       const Shooter& shooter, const Target& target, const Shot& last,
