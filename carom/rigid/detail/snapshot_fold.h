@@ -164,7 +164,8 @@ class BodyForesight {
   }
   Way way(std::size_t body) const {
     const SolverBody<D> a = velocity(before_, body), b = velocity(now_, body);
-    return (a.linear_velocity + (b.linear_velocity - a.linear_velocity) * share_) * span_;
+    const Way way = (a.linear_velocity + (b.linear_velocity - a.linear_velocity) * share_) * span_;
+    return is_finite(way) ? way : Way{};
   }
 
  private:
@@ -191,7 +192,8 @@ class BodyForesight {
 template <class P, class V>
 bool tell_center_by_way(P& center, const P& from, const V& foreseen) {
   const V way(center - from);
-  if (!(from + P(way) == center)) return false;
+  const P back = from + P(way);
+  if (std::memcmp(&back, &center, sizeof back) != 0) return false;  // to the bit: −0 is not 0
   P told = from;
   V difference = way;
   exclusive_or(difference, foreseen);
