@@ -164,8 +164,7 @@ class BodyForesight {
   }
   Way way(std::size_t body) const {
     const SolverBody<D> a = velocity(before_, body), b = velocity(now_, body);
-    const Way way = (a.linear_velocity + (b.linear_velocity - a.linear_velocity) * share_) * span_;
-    return is_finite(way) ? way : Way{};
+    return (a.linear_velocity + (b.linear_velocity - a.linear_velocity) * share_) * span_;
   }
 
  private:
@@ -192,8 +191,9 @@ class BodyForesight {
 template <class P, class V>
 bool tell_center_by_way(P& center, const P& from, const V& foreseen) {
   const V way(center - from);
-  const P back = from + P(way);
-  if (std::memcmp(&back, &center, sizeof back) != 0) return false;  // to the bit: −0 is not 0
+  if (!(from + P(way) == center)) return false;
+  for (std::size_t k = 0; k < sizeof(P) / sizeof(double); ++k)
+    if (center[int(k)] == 0) return false;  // −0 is not 0 to the bit
   P told = from;
   V difference = way;
   exclusive_or(difference, foreseen);
