@@ -7,14 +7,14 @@
 #include "carom/core/hash.h"
 #include "carom/core/string.h"
 #include "carom/rigid/detail/snapshot_code.h"
-#include "carom/rigid/detail/snapshot_fold.h"
+#include "carom/rigid/detail/snapshot_contacts.h"
 
 namespace carom::rigid {
 namespace detail {
 namespace {
 
 constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
-constexpr std::uint64_t format_version = 9;
+constexpr std::uint64_t format_version = 10;
 constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
 
 /// Where compilers and machines could lay out the plain bytes of a state differently.
@@ -76,8 +76,7 @@ void foretell_bodies(std::vector<std::uint64_t>& image, const SnapshotData<D>& d
   for (std::size_t i = 0; i < common; ++i) {
     if (!folded[i]) continue;
     const typename D::Rotation& from = base_pose[i].rotation;
-    exclusive_or(pose[i].rotation, from);
-    exclusive_or(pose[i].rotation, foresight.rotation(i, from));
+    tell_rotation(pose[i].rotation, from, foresight.rotation(i, from), back);
     if (!back)
       by_way[i] = tell_center_by_way(motion[i].center, base_motion[i].center, foresight.way(i));
     else if (by_way[i])
@@ -166,23 +165,8 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
   const std::size_t bodies = std::size_t(data.sections[data.bodies_at].count);
   const std::size_t common_bodies =
       base != nullptr ? std::min(bodies, std::size_t(base->sections[base->bodies_at].count)) : 0;
-  // What is foreseen goes out as unchanged.
-  std::vector<bool> foreseen;
-  if (base != nullptr) {
-    std::size_t contact = 0;
-    const SnapshotSection &now = data.sections[data.manifolds_at - 1], &before = base->sections[base->manifolds_at - 1];
-    const std::byte* const first = reinterpret_cast<const std::byte*>(image.data() + now.first);
-    ContactForesight<D>(data, *base, base_image).for_each(image, [&](std::byte* at, const typename D::Transform& pose) {
-      const std::byte* const bytes_of_pose = reinterpret_cast<const std::byte*>(&pose);
-      foreseen.push_back(std::equal(bytes_of_pose, bytes_of_pose + sizeof pose, at));
-      if (!foreseen.back()) return;
-      contact = std::size_t(at - first);
-      if (contact + sizeof pose <= before.count * before.element)
-        std::memcpy(at, reinterpret_cast<const std::byte*>(base_image.data() + before.first) + contact, sizeof pose);
-      else
-        std::memset(at, 0, sizeof pose);
-    });
-  }
+  std::vector<bool> foretold;
+  if (base != nullptr) foretold = ContactForesight<D>(image, data, *base, base_image).tell();
   std::vector<bool> folded(bodies, true);
   for (std::size_t i = 0; i < common_bodies; ++i) folded[i] = body_differs(data, image, *base, base_image, i);
   fold_bodies(image, data, [&](std::size_t i) { return folded[i]; });
@@ -215,7 +199,7 @@ std::vector<std::byte> encode_difference(const SnapshotData<D>& data, const Snap
     if (folded[i]) out.bit(foresight, by_way[i]);
   }
   foresight = {};
-  for (const bool x : foreseen) out.bit(foresight, x);
+  for (const bool x : foretold) out.bit(foresight, x);
   // Geometry by slot, where it is not as in the base.
   SectionModel geometry_model(std::size(GeometryRecord{}.value));
   const bool same = base != nullptr && base->geometry == data.geometry && base->missing.empty();
@@ -319,11 +303,8 @@ bool read_sections(ByteReader& in, SnapshotData<D>& data, const SnapshotData<D>*
   fold_trees(data.image, data, true);
   foretell_bodies(data.image, data, *base, base_image, folded, common_bodies, by_way, true);
   fold_bodies(data.image, data, [&](std::size_t i) { return folded[i]; });
-  foresight = {};
-  ContactForesight<D>(data, *base, plain_base)
-      .for_each(data.image, [&](std::byte* at, const typename D::Transform& pose) {
-        if (in.bit(foresight)) std::memcpy(at, &pose, sizeof pose);
-      });
+  BitModel foretold;
+  ContactForesight<D>(data.image, data, *base, plain_base).tell_back([&] { return in.bit(foretold); });
   return in.sound();
 }
 

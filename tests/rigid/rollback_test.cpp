@@ -182,16 +182,16 @@ TEST(SnapshotSize, ADifferenceIsSmall) {
     run(w, steps);
     return double(w.snapshot().encode(base).size()) / w.counters().awake_bodies;
   };
-  EXPECT_LT(bytes_per_awake(world, 1), 48);  // falling on one another
+  EXPECT_LT(bytes_per_awake(world, 1), 40);  // falling on one another
   double worst = 0;                          // 3.4 pairs a body, of which many come and go
   for (int i = 0; i < 12; ++i) {
     run(world, 9);
     worst = std::max(worst, bytes_per_awake(world, 1));
   }
-  EXPECT_LT(worst, 160);
+  EXPECT_LT(worst, 116);
   run(world, 440);
-  EXPECT_LT(bytes_per_awake(world, 1), 80);  // at rest, kept awake
-  EXPECT_LT(bytes_per_awake(world, 8), 112);
+  EXPECT_LT(bytes_per_awake(world, 1), 72);  // at rest, kept awake
+  EXPECT_LT(bytes_per_awake(world, 8), 100);
 
   World3 sleepers(world_with<Dim3>());
   add_ground(sleepers);

@@ -186,6 +186,38 @@ class BodyForesight {
   float span_, share_;
 };
 
+/// The same word of three records, all of plain words: x ⊕ from ⊕ foreseen, which done again gives x back.
+template <class T>
+void tell_by(T& x, const T& from, const T& foreseen) {
+  exclusive_or(x, from);
+  exclusive_or(x, foreseen);
+}
+
+/// An attitude by the foreseen one, but its largest number by what the others leave of a unit.
+template <class R>
+void tell_rotation(R& rotation, const R& from, const R& foreseen, bool back) {
+  constexpr std::size_t size = sizeof(R) / sizeof(float);
+  float now[size], before[size], expected[size];
+  std::memcpy(now, &rotation, sizeof now);
+  std::memcpy(before, &from, sizeof before);
+  std::memcpy(expected, &foreseen, sizeof expected);
+  std::size_t largest = 0;
+  for (std::size_t k = 1; k < size; ++k)
+    if (math::abs(expected[k]) > math::abs(expected[largest])) largest = k;
+  const auto tell_others = [&] {
+    for (std::size_t k = 0; k < size; ++k)
+      if (k != largest) tell_by(now[k], before[k], expected[k]);
+  };
+  if (back) tell_others();
+  float rest = 1;
+  for (std::size_t k = 0; k < size; ++k)
+    if (k != largest) rest -= now[k] * now[k];
+  if (rest > 0) expected[largest] = expected[largest] < 0 ? -math::sqrt(rest) : math::sqrt(rest);
+  tell_by(now[largest], before[largest], expected[largest]);
+  if (!back) tell_others();
+  std::memcpy(static_cast<void*>(&rotation), now, sizeof now);
+}
+
 /// The centre of mass as its way from that of the base: exactly a float for each axis mostly, of which the difference
 /// to the foreseen one is told; the high words are free then. Returns whether it was so.
 template <class P, class V>
@@ -212,53 +244,5 @@ void center_by_way(P& center, const P& from, const V& foreseen) {
   exclusive_or(way, foreseen);
   center = from + P(way);
 }
-
-/// Where the base of a difference is one step old, it tells to the bit how the shapes of most contacts stood to each
-/// other when that step looked at them: ContactRecord::base need not be sent.
-template <class D>
-class ContactForesight {
- public:
-  /// The images as canonical_image makes them; `base` and its image must stay.
-  ContactForesight(const SnapshotData<D>& data, const SnapshotData<D>& base,
-                   const std::vector<std::uint64_t>& base_image)
-      : data_(data), base_(base), base_image_(base_image) {}
-
-  /// Calls f(place of the contact's base in `image`, what it is foreseen to be) for the contacts of `image` whose
-  /// bodies and shapes there are, by what else than `base` the records say.
-  template <class F>
-  void for_each(std::vector<std::uint64_t>& image, F&& f) const {
-    const SnapshotSection &contacts = data_.sections[data_.manifolds_at - 1], &shapes = data_.sections[data_.shapes_at],
-                          &poses = base_.sections[base_.bodies_at + 1];
-    for (std::size_t i = 0; i < contacts.count; ++i) {
-      std::byte* const at =
-          section_values<std::byte>(image, data_, data_.manifolds_at - 1) + i * sizeof(ContactRecord<D>);
-      ContactRecord<D> c;
-      std::memcpy(static_cast<void*>(&c), at, sizeof c);
-      if ((c.flags & contact_in_use) == 0) continue;
-      typename D::Pose pose[2];
-      bool there = true;
-      for (int side = 0; side < 2 && there; ++side) {
-        const std::size_t body = std::size_t(c.body[side]), shape = std::size_t(c.shape[side]);
-        there = c.body[side] >= 0 && body < poses.count && c.shape[side] >= 0 && shape < shapes.count;
-        if (!there) break;
-        std::memcpy(static_cast<void*>(&pose[side]),
-                    reinterpret_cast<const std::byte*>(base_image_.data() + poses.first) + body * sizeof pose[side],
-                    sizeof pose[side]);
-        typename D::Transform local;
-        static_assert(std::is_base_of_v<ShapeTraits<D>, ShapeRecord<D>> && offsetof(ShapeTraits<D>, local) == 0);
-        std::memcpy(static_cast<void*>(&local),
-                    reinterpret_cast<const std::byte*>(image.data() + shapes.first) + shape * sizeof(ShapeTraits<D>),
-                    sizeof local);
-        if (!(local == typename D::Transform{})) pose[side] = pose[side] * local;
-      }
-      if (there) f(at + offsetof(ContactRecord<D>, base), typename D::Transform(relative(pose[0], pose[1])));
-    }
-  }
-
- private:
-  const SnapshotData<D>& data_;
-  const SnapshotData<D>& base_;
-  const std::vector<std::uint64_t>& base_image_;
-};
 
 }  // namespace carom::rigid::detail
