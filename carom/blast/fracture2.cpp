@@ -36,9 +36,35 @@ geometry::MassProperties2 mass_of(const std::vector<Vec2d>& outline) {
   return m;
 }
 
-void add_polygons(Piece2& piece, double skin) {
-  std::vector<Vec2f> corners;
-  for (const Vec2d& p : piece.outline) corners.push_back(Vec2f(p - piece.mass.center));
+/// About the centre, without corners that stand out by less than a millionth of the extent: of a cut that all but ran
+/// along a side they would make two triangles of a brick.
+std::vector<Vec2f> distinct_corners(const Piece2& piece) {
+  std::vector<Vec2d> p;
+  double extent = 0;
+  for (const Vec2d& v : piece.outline) {
+    p.push_back(v - piece.mass.center);
+    extent = math::max(extent, length(p.back()));
+  }
+  const double least = 1e-6 * extent;
+  const auto stands_out = [&](std::size_t i) {
+    const Vec2d before = p[(i + p.size() - 1) % p.size()], after = p[(i + 1) % p.size()];
+    const double base = distance(before, after);
+    return distance(before, p[i]) > least && math::abs(cross(after - before, p[i] - before)) > least * base;
+  };
+  for (std::size_t i = 0, kept = 0; p.size() > 3 && kept < p.size();) {
+    if (stands_out(i)) {
+      i = (i + 1) % p.size(), ++kept;
+      continue;
+    }
+    p.erase(p.begin() + std::ptrdiff_t(i));
+    // Its neighbours are looked at anew.
+    i = (i + p.size() - 1) % p.size(), kept = 0;
+  }
+  return {p.begin(), p.end()};
+}
+
+void add_polygons(Piece2& piece, double skin, detail::CutScratch2& scratch) {
+  const std::vector<Vec2f> corners = distinct_corners(piece);
   const auto parts = geometry::decompose_convex(corners);
   if (!parts) return;
   std::vector<Vec2d> part;
@@ -58,7 +84,7 @@ void add_polygons(Piece2& piece, double skin) {
     for (const Vec2d& p : part) shrunk[0].push_back({p, 0});
     const double back = math::min(skin, 0.1 * inner);
     for (std::size_t i = 0; i < part.size() && !shrunk.empty(); ++i)
-      cut(shrunk, {normal(i), dot(normal(i), part[i]) - back, 0});
+      cut(shrunk, {normal(i), dot(normal(i), part[i]) - back, 0}, scratch);
     if (shrunk.empty()) continue;
     std::vector<Vec2f> points;
     for (const Corner2& c : shrunk[0]) points.push_back(Vec2f(c.p));
@@ -119,16 +145,18 @@ core::Result<Fracture2> fracture_polygon(std::span<const Vec2d> outline, const P
         return core::Error{core::text("fracture_polygon: sides ", i, " and ", j, " cross, expected a simple polygon")};
   Fracture2 fracture;
   std::vector<std::uint32_t> first(pattern.cells.size() + 1, 0);
+  detail::CutScratch2 scratch;
+  std::vector<Outline2> outlines;
   for (std::uint32_t c = 0; c < pattern.cells.size(); ++c) {
-    std::vector<Outline2> outlines{whole};
-    for (const HalfPlane& h : pattern.cells[c]) cut(outlines, h);
+    outlines.assign(1, whole);
+    for (const HalfPlane& h : pattern.cells[c]) cut(outlines, h, scratch);
     for (const Outline2& o : outlines) {
       Piece2 piece;
       piece.cell = c;
       for (const Corner2& corner : o) piece.outline.push_back(corner.p), piece.sources.push_back(corner.source);
       piece.mass = mass_of(piece.outline);
       if (!(piece.mass.mass > 0)) continue;
-      add_polygons(piece, skin);
+      add_polygons(piece, skin, scratch);
       fracture.pieces.push_back(std::move(piece));
     }
     first[c + 1] = std::uint32_t(fracture.pieces.size());

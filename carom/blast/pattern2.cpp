@@ -1,6 +1,5 @@
 // Where a polygon breaks.
 #include <algorithm>
-#include <functional>
 
 #include "carom/blast/detail/lattice.h"
 #include "carom/blast/detail/outline_cut.h"
@@ -23,27 +22,35 @@ core::Result<Pattern2> voronoi_pattern2(std::span<const Vec2d> sites) {
   const double far = 1e3 * (1 + length(high - low));  // cells at the border are open: as good as
   Pattern2 pattern;
   std::vector<std::pair<double, std::uint32_t>> near;
+  std::vector<Outline2> cell;
+  detail::CutScratch2 scratch;
   for (std::uint32_t i = 0; i < sites.size(); ++i) {
     near.clear();
     for (std::uint32_t j = 0; j < sites.size(); ++j)
       if (j != i) near.push_back({distance_squared(sites[i], sites[j]), j});
-    const auto farther = std::greater<>();  // of few the nearest are asked for
-    std::make_heap(near.begin(), near.end(), farther);
-    std::vector<Outline2> cell{{{sites[i] + Vec2d{-far, -far}, 0},
-                                {sites[i] + Vec2d{far, -far}, 0},
-                                {sites[i] + Vec2d{far, far}, 0},
-                                {sites[i] + Vec2d{-far, far}, 0}}};
+    // The nearest first: what they leave of a cell leaves few of the others to be sorted.
+    const std::size_t nearest = math::min(near.size(), std::size_t(16));
+    std::nth_element(near.begin(), near.begin() + std::ptrdiff_t(nearest), near.end());
+    std::sort(near.begin(), near.begin() + std::ptrdiff_t(nearest));
+    cell = {{{sites[i] + Vec2d{-far, -far}, 0},
+             {sites[i] + Vec2d{far, -far}, 0},
+             {sites[i] + Vec2d{far, far}, 0},
+             {sites[i] + Vec2d{-far, far}, 0}}};
     std::vector<HalfPlane> planes;
     double reach = 2 * far * far;
-    while (!near.empty()) {
-      std::pop_heap(near.begin(), near.end(), farther);
-      const auto [d, j] = near.back();
-      near.pop_back();
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      if (k == nearest) {
+        const auto rest = near.begin() + std::ptrdiff_t(nearest);
+        near.erase(std::remove_if(rest, near.end(), [&](const auto& n) { return n.first > 4 * reach; }), near.end());
+        std::sort(near.begin() + std::ptrdiff_t(nearest), near.end());
+        if (k == near.size()) break;
+      }
+      const auto [d, j] = near[k];
       if (!(d > 0)) return core::Error{core::text("voronoi_pattern2: sites ", i, " and ", j, " are in one place")};
       if (d > 4 * reach) break;
       const Vec2d n = (sites[j] - sites[i]) / math::sqrt(d);
       const HalfPlane plane{n, dot(n, 0.5 * (sites[i] + sites[j])), int(j)};
-      detail::cut(cell, plane);
+      detail::cut(cell, plane, scratch);
       if (cell.empty()) break;
       planes.push_back(plane);
       reach = 0;

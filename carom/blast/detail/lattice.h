@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "carom/math/elementary.h"
+#include "carom/math/vec.h"
 
 namespace carom::blast::detail {
 

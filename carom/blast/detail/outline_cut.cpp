@@ -12,19 +12,14 @@ double area_of(const Outline2& o) {
   return 0.5 * twice;
 }
 
-void cut(std::vector<Outline2>& outlines, const HalfPlane& h) {
+void cut(std::vector<Outline2>& outlines, const HalfPlane& h, CutScratch2& scratch) {
   bool any_out = false;
   for (const Outline2& outline : outlines)
     for (const Corner2& c : outline) any_out = any_out || dot(h.normal, c.p) - h.offset > 0;
   if (!any_out) return;
-  struct Crossing {
-    std::size_t corner;
-    double along;
-  };
   const Vec2d along{-h.normal.y, h.normal.x};
-  std::vector<Corner2> corners;
-  std::vector<std::size_t> next;
-  std::vector<Crossing> exits, entries;
+  auto& [corners, next, distance, exits, entries, used] = scratch;
+  corners.clear(), next.clear(), exits.clear(), entries.clear();
   for (const Outline2& outline : outlines) {
     const std::size_t n = outline.size(), base = corners.size();
     for (const Corner2& c : outline) corners.push_back(c);
@@ -32,7 +27,7 @@ void cut(std::vector<Outline2>& outlines, const HalfPlane& h) {
     for (std::size_t i = 0; i < n; ++i) next[base + i] = base + (i + 1) % n;
   }
   const std::size_t count = corners.size();
-  std::vector<double> distance(count);
+  distance.resize(count);
   for (std::size_t i = 0; i < count; ++i) distance[i] = dot(h.normal, corners[i].p) - h.offset;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t j = next[i];
@@ -48,23 +43,26 @@ void cut(std::vector<Outline2>& outlines, const HalfPlane& h) {
     (a > 0 ? entries : exits).push_back({made, dot(along, p)});
     if (a <= 0) next[i] = made;
   }
-  const auto order = [](const Crossing& a, const Crossing& b) {
+  const auto order = [](const CutScratch2::Crossing& a, const CutScratch2::Crossing& b) {
     return a.along != b.along ? a.along < b.along : a.corner < b.corner;
   };
   std::sort(exits.begin(), exits.end(), order);
   std::sort(entries.begin(), entries.end(), order);
   for (std::size_t k = 0; k < exits.size(); ++k) next[exits[k].corner] = entries[k].corner;
-  std::vector<char> used(corners.size(), 0);
-  outlines.clear();
+  used.assign(corners.size(), 0);
+  std::size_t loops = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (used[i] || (i < count && distance[i] > 0)) continue;
-    Outline2 loop;
+    if (loops == outlines.size()) outlines.emplace_back();
+    Outline2& loop = outlines[loops];
+    loop.clear();
     for (std::size_t at = i; !used[at]; at = next[at]) {
       used[at] = 1;
       loop.push_back(corners[at]);
     }
-    if (loop.size() >= 3) outlines.push_back(std::move(loop));
+    if (loop.size() >= 3) ++loops;
   }
+  outlines.resize(loops);
 }
 
 }  // namespace carom::blast::detail
