@@ -1,10 +1,12 @@
-// Unit costs of fracture and of blasts: a Voronoi cell, a hull of it, a whole run-time fracture, a mesh, a wave over a
-// yard.
+// Unit costs of fracture and of blasts: a Voronoi cell, a hull of it, a whole run-time fracture, a mesh, a polygon, a
+// wave over a yard.
 #include <benchmark/benchmark.h>
 
 #include "carom/blast/explosion.h"
+#include "carom/blast/fracture2.h"
 #include "carom/blast/structure.h"
 #include "carom/geometry/mesh_builders.h"
+#include "carom/math/elementary.h"
 
 namespace {
 using namespace carom;
@@ -56,6 +58,22 @@ void FractureMesh(benchmark::State& state) {
     benchmark::DoNotOptimize(fracture_mesh(vertices, ring.indices, pattern, {.hulls = state.range(0) != 0}));
 }
 BENCHMARK(FractureMesh)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+/// In the plane, pattern and all: a star in two hundred Voronoi cells, or in bricks.
+void FracturePolygon(benchmark::State& state) {
+  std::vector<math::Vec2d> star;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 2 * math::pi * i / 12, radius = i % 2 == 0 ? 3 : 1.8;
+    star.push_back({radius * math::cos(angle), radius * math::sin(angle)});
+  }
+  const bool bricks = state.range(0) != 0;
+  for (auto _ : state) {
+    const auto pattern = bricks ? brick_pattern2(star, {0.5, 0.25}, {-3, -3})
+                                : voronoi_pattern2(uniform_sites2({{-3, -3}, {3, 3}}, 200, 1));
+    benchmark::DoNotOptimize(fracture_polygon(star, *pattern));
+  }
+}
+BENCHMARK(FracturePolygon)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 void BlastOverAHundredBoxes(benchmark::State& state) {
   rigid::World3 world;

@@ -84,13 +84,17 @@ void DestructionPicture::draw_fronts(Stage<D>& stage, const scene::DestructionOf
 
 template <class D>
 void DestructionPicture::show_pieces(Stage<D>& stage, const scene::SceneWorld& world) {
+  // The pieces of all by their colours, before the rest is taken up that nobody named.
   for (const auto& entry : world.destruction->of<D>().structures) {
     const blast::Structure<D>& structure = entry.thing;
-    if (structure.made().empty() && structure.changed().empty()) continue;
     const scene::SceneBody* whole = world.find_body(entry.name);
     const std::uint32_t color = whole != nullptr && whole->colored ? whole->color : 0;
     for (const rigid::BodyId body : structure.made())
       if (stage.world().contains(body)) stage.adopt(body, color);
+  }
+  for (const auto& entry : world.destruction->of<D>().structures) {
+    const blast::Structure<D>& structure = entry.thing;
+    if (structure.made().empty() && structure.changed().empty()) continue;
     stage.adopt_all();
     for (const rigid::BodyId body : structure.changed())
       if (stage.world().contains(body)) stage.redraw(body);

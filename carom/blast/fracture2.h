@@ -8,18 +8,25 @@
 
 namespace carom::blast {
 
-/// {x : normal·x ≤ offset} in the plane, unit normal; tag ≥ 0: the cell beyond.
+/// {x : normal·x ≤ offset} in the plane, unit normal. `tag` ≥ 0 names the side that a cut along it leaves.
 struct HalfPlane {
   math::Vec2d normal{1, 0};
   double offset = 0;
   int tag = 0;
 };
-/// A convex cell of the plane as the half-planes of its cuts.
 struct Pattern2 {
+  /// Convex, as the half-planes of their cuts.
   std::vector<std::vector<HalfPlane>> cells;
+  /// Two cells that may share part of a cut: the tags of the sides along which they meet.
+  struct Meeting {
+    std::uint32_t cell_a, cell_b;
+    int tag_a, tag_b;
+  };
+  std::vector<Meeting> meetings;
 };
 
-/// Cells of the sites. Errors: no site, not finite, two in one place, more than 10000.
+/// Cells of the sites; tag of a side: the site beyond it. Errors: no site, not finite, two in one place, more than
+/// 10000.
 CAROM_API core::Result<Pattern2> voronoi_pattern2(std::span<const math::Vec2d> sites);
 /// Uniform in the box.
 CAROM_API std::vector<math::Vec2d> uniform_sites2(const geometry::Bounds2d& box, int count, std::uint64_t seed);
@@ -33,13 +40,22 @@ struct RadialSites2 {
   double limit = 1;      ///< m
 };
 CAROM_API core::Result<std::vector<math::Vec2d>> radial_sites2(const RadialSites2& rings, std::uint64_t seed);
+/// `count` slabs of the polygon square to `normal`, 1 to 10000, with borders moved by up to `jitter` (0 … 1) of half a
+/// thickness.
+CAROM_API core::Result<Pattern2> slab_pattern2(std::span<const math::Vec2d> outline, math::Vec2d normal, int count,
+                                               double jitter = 0, std::uint64_t seed = 0);
+/// Bricks of `size` m over the polygon, in courses that rise along y, every second one shifted by half a brick.
+/// `corner`: where a brick of the lowest course begins. Errors: more than 10000 bricks, a size that is not positive.
+CAROM_API core::Result<Pattern2> brick_pattern2(std::span<const math::Vec2d> outline, math::Vec2d size,
+                                                math::Vec2d corner);
 
 struct Piece2 {
   std::uint32_t cell = 0;
   std::vector<math::Vec2d> outline;   ///< m, counterclockwise
   std::vector<std::int32_t> sources;  ///< of the side from corner i to i + 1: ≥ 0 that of the polygon, < 0: −1 − tag
   geometry::MassProperties2 mass;     ///< of density 1 kg/m²
-  std::vector<geometry::Polygon> polygons;  ///< convex, about the centre, sides moved inward by the skin
+  /// Convex, about the centre, sides moved inward by the skin. A piece too thin for one has none.
+  std::vector<geometry::Polygon> polygons;
 };
 struct Bond2 {
   std::uint32_t a = 0, b = 0;

@@ -92,65 +92,66 @@ Status shares_of(const Explosion3& explosion, const rigid::World3& world, const 
   return explosion.shares_at(world, places, shares);
 }
 
-}  // namespace
-
-Result<Vec3d> push(const Explosion3& explosion, rigid::World3& world, double dt, particles::Cloth& cloth) {
-  if (Status s = check_step(dt); !s) return s.error();
-  const Span<Dim3> span(explosion, world.time(), dt);
+/// A wave on a face of a thing.
+struct FaceLoad {
+  const Face& face;
+  const Wave& wave;
+  double cosine;  // of the face's normal to where the wave comes from
+  double clearing, share;
+  /// N·s/m², of a side turned toward it by a cosine, within the step.
+  double on(const Span<Dim3>& span, double toward) const {
+    const SurfaceLoad load(wave, toward, clearing, share);
+    return load.impulse(span.to) - load.impulse(span.from);
+  }
+};
+/// `impulse_of`: what the thing takes of a FaceLoad, N·s.
+template <class Thing, class ImpulseOf>
+Result<Vec3d> push_faces(const Span<Dim3>& span, rigid::World3& world, Thing& thing,
+                         std::span<const std::uint32_t> corners, const ImpulseOf& impulse_of) {
   std::vector<Face> faces;
-  const double across = faces_near(span, cloth.positions(), cloth.triangles(), faces);
+  const double across = faces_near(span, thing.positions(), corners, faces);
   if (faces.empty()) return Vec3d{};
   std::vector<double> shares;
-  if (Status s = shares_of(explosion, world, faces, shares); !s) return s.error();
-  const double clearing = explosion.charge().clearing ? across : 0, mass_per_area = cloth.mass() / cloth.area();
+  if (Status s = shares_of(span.explosion, world, faces, shares); !s) return s.error();
+  const double clearing = span.explosion.charge().clearing ? across : 0;
   Vec3d given{};
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Face& f = faces[i];
-    const WavesAt<Dim3> waves = explosion.waves_at(f.center);
+    const WavesAt<Dim3> waves = span.explosion.waves_at(f.center);
     for (int k = 0; k < waves.count; ++k) {
-      const double along = dot(f.normal, waves.toward[k]), cosine = math::abs(along);
-      const SurfaceLoad front(waves.wave[k], cosine, clearing, shares[i]),
-          back(waves.wave[k], -cosine, clearing, shares[i]);
-      const double load =
-          front.impulse(span.to) - front.impulse(span.from) - back.impulse(span.to) + back.impulse(span.from);
-      const Vec3d away = along > 0 ? -f.normal : f.normal;
-      double speed = 0;
-      for (const std::uint32_t c : f.corner) speed += dot(Vec3d(cloth.velocities()[c]), away) / 3;
-      const double taken = f.area * sheet_impulse(load, mass_per_area, speed, cosine * span.wind(waves.wave[k]));
-      if (!(taken > 0)) continue;
+      const Vec3d impulse = impulse_of(FaceLoad{f, waves.wave[k], dot(f.normal, waves.toward[k]), clearing, shares[i]});
+      if (impulse == Vec3d{}) continue;
       for (const std::uint32_t c : f.corner)
-        if (Status s = cloth.add_impulse(int(c), (taken / 3) * away, world); !s) return s.error();
-      given += taken * away;
+        if (Status s = thing.add_impulse(int(c), impulse / 3.0, world); !s) return s.error();
+      given += impulse;
     }
   }
   return given;
 }
 
+}  // namespace
+
+Result<Vec3d> push(const Explosion3& explosion, rigid::World3& world, double dt, particles::Cloth& cloth) {
+  if (Status s = check_step(dt); !s) return s.error();
+  const Span<Dim3> span(explosion, world.time(), dt);
+  const double mass_per_area = cloth.mass() / cloth.area();
+  return push_faces(span, world, cloth, cloth.triangles(), [&](const FaceLoad& load) {
+    const double cosine = math::abs(load.cosine);
+    const Vec3d away = load.cosine > 0 ? -load.face.normal : load.face.normal;
+    double speed = 0;
+    for (const std::uint32_t c : load.face.corner) speed += dot(Vec3d(cloth.velocities()[c]), away) / 3;
+    const double taken = sheet_impulse(load.on(span, cosine) - load.on(span, -cosine), mass_per_area, speed,
+                                       cosine * span.wind(load.wave));
+    return math::max(0.0, load.face.area * taken) * away;
+  });
+}
+
 Result<Vec3d> push(const Explosion3& explosion, rigid::World3& world, double dt, particles::SoftBody& body) {
   if (Status s = check_step(dt); !s) return s.error();
   const Span<Dim3> span(explosion, world.time(), dt);
-  std::vector<Face> faces;
-  const double across = faces_near(span, body.positions(), body.surface(), faces);
-  if (faces.empty()) return Vec3d{};
-  std::vector<double> shares;
-  if (Status s = shares_of(explosion, world, faces, shares); !s) return s.error();
-  Vec3d given{};
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Face& f = faces[i];
-    const WavesAt<Dim3> waves = explosion.waves_at(f.center);
-    double pressed = 0;
-    for (int k = 0; k < waves.count; ++k) {
-      const SurfaceLoad load(waves.wave[k], dot(f.normal, waves.toward[k]), explosion.charge().clearing ? across : 0,
-                             shares[i]);
-      pressed += load.impulse(span.to) - load.impulse(span.from);
-    }
-    if (pressed == 0) continue;
-    const Vec3d impulse = -f.area * pressed * f.normal;
-    for (const std::uint32_t c : f.corner)
-      if (Status s = body.add_impulse(int(c), impulse / 3.0, world); !s) return s.error();
-    given += impulse;
-  }
-  return given;
+  return push_faces(span, world, body, body.surface(), [&](const FaceLoad& load) {
+    return -load.face.area * load.on(span, load.cosine) * load.face.normal;
+  });
 }
 
 Result<Vec3d> push(const Explosion3& explosion, rigid::World3& world, double dt, particles::RopeSet& ropes) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "carom/blast/detail/cell_cutter.h"
+#include "carom/blast/detail/lattice.h"
 #include "carom/blast/detail/site_grid.h"
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
@@ -152,9 +153,6 @@ core::Status check(const ConvexCell& container) {
   return {};
 }
 
-/// Planes that cells of a lattice share must not pass exactly through corners of a mesh.
-constexpr double off_lattice = 1.7e-7;
-
 }  // namespace
 
 std::vector<Vec3d> uniform_sites(const ConvexCell& container, int count, std::uint64_t seed) {
@@ -281,7 +279,7 @@ core::Result<Pattern> slab_pattern(const ConvexCell& container, Vec3d normal, in
   const double step = (high - low) / count;
   std::vector<double> borders;
   for (int k = 1; k < count; ++k)
-    borders.push_back(low + step * (k + off_lattice + 0.5 * jitter * random.uniform(-1.0, 1.0)));
+    borders.push_back(low + step * (k + detail::off_lattice + 0.5 * jitter * random.uniform(-1.0, 1.0)));
   Pattern pattern;
   for (int k = 0; k < count; ++k) {
     ConvexCell cell = container;
@@ -303,11 +301,9 @@ core::Result<Pattern> brick_pattern(const ConvexCell& container, Vec3d size, Vec
   std::int64_t first[2][3], last[2][3], low[3], count[3];
   for (int k = 0; k < 3; ++k) {
     for (int odd = 0; odd < 2; ++odd) {
-      const double shift = k == 0 ? 0.5 * odd : 0;
-      const double from = (box.low[k] - corner[k]) / size[k] - shift, to = (box.high[k] - corner[k]) / size[k] - shift;
-      if (!(math::abs(from) < 1e6 && math::abs(to) < 1e6)) return core::Error{"brick_pattern: more than 65536 bricks"};
-      first[odd][k] = std::int64_t(math::floor(from + 1e-6));
-      last[odd][k] = std::int64_t(math::floor(to - 1e-6));
+      const detail::BrickRow row(box.low[k], box.high[k], corner[k], size[k], k == 0 ? 0.5 * odd : 0);
+      if (!row.countable) return core::Error{"brick_pattern: more than 65536 bricks"};
+      first[odd][k] = row.first, last[odd][k] = row.last;
     }
     low[k] = math::min(first[0][k], first[1][k]);
     count[k] = math::max(last[0][k], last[1][k]) - low[k] + 1;
@@ -327,7 +323,8 @@ core::Result<Pattern> brick_pattern(const ConvexCell& container, Vec3d size, Vec
         const std::int64_t here = index(x, y, z);
         const bool odd = ((y + low[1]) & 1) != 0;
         const auto border = [&](int axis, std::int64_t i) {
-          return corner[axis] + (double(i + low[axis]) + (axis == 0 && odd ? 0.5 : 0.0) + off_lattice) * size[axis];
+          return corner[axis] +
+                 (double(i + low[axis]) + (axis == 0 && odd ? 0.5 : 0.0) + detail::off_lattice) * size[axis];
         };
         const std::int64_t place[3] = {x, y, z};
         ConvexCell cell = container;

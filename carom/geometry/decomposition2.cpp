@@ -297,6 +297,38 @@ std::vector<Loop> join(const Corners& c, const std::vector<Triangle>& triangles,
   return parts;
 }
 
+/// A loop that needs no cut: convex, and of no more corners than a polygon has.
+bool is_part(const Corners& c, const Loop& loop) {
+  int corners = 0;
+  for (std::size_t i = 0, n = loop.size(); i < n; ++i) {
+    const std::int64_t turn = c.turn(loop[(i + n - 1) % n], loop[i], loop[(i + 1) % n]);
+    if (turn < 0) return false;
+    corners += turn > 0 ? 1 : 0;
+  }
+  return corners <= max_polygon_vertices;
+}
+
+/// False where no triangles were found that have the area. The outline, then its holes from right to left.
+bool cut_into_parts(const Corners& c, const std::vector<Loop>& loops, std::int64_t area, std::vector<Loop>& parts) {
+  Loop whole = loops[0];
+  std::vector<Triangle> triangles;
+  for (std::size_t k = 1; k < loops.size(); ++k)
+    if (!bridge(c, whole, loops[k], std::span<const Loop>(loops).subspan(k + 1))) return false;
+  if (!cut_ears(c, whole, triangles)) return false;
+  std::int64_t cut = 0;
+  for (const Triangle& t : triangles) cut += c.turn(t[0], t[1], t[2]);
+  if (cut != area) return false;
+  for (const bool shortened : {true, false}) {
+    std::vector<Triangle> these = triangles;
+    if (shortened) shorten_sides(c, these);
+    for (const Order order : {Order::longest, Order::shortest, Order::by_corner}) {
+      std::vector<Loop> joined = join(c, these, order);
+      if (parts.empty() || joined.size() < parts.size()) parts = std::move(joined);
+    }
+  }
+  return true;
+}
+
 /// The least power of two of which 2²⁸ make up the extent.
 double grid_unit(double extent) {
   double unit = 1;
@@ -347,24 +379,11 @@ core::Result<std::vector<Polygon>> decompose_convex(std::span<const Vec2f> outli
     };
     return rightmost(r) < rightmost(l);
   });
-  Loop whole = loops[0];
-  std::vector<Triangle> triangles;
-  bool done = true;
-  for (std::size_t k = 1; k < loops.size() && done; ++k)
-    done = bridge(c, whole, loops[k], std::span<const Loop>(loops).subspan(k + 1));
-  done = done && cut_ears(c, whole, triangles);
-  std::int64_t cut = 0;
-  for (const Triangle& t : triangles) cut += c.turn(t[0], t[1], t[2]);
-  if (!done || cut != area) return detail::error("decompose_convex: the outlines could not be cut into triangles");
   std::vector<Loop> parts;
-  for (const bool shortened : {true, false}) {
-    std::vector<Triangle> these = triangles;
-    if (shortened) shorten_sides(c, these);
-    for (const Order order : {Order::longest, Order::shortest, Order::by_corner}) {
-      std::vector<Loop> joined = join(c, these, order);
-      if (parts.empty() || joined.size() < parts.size()) parts = std::move(joined);
-    }
-  }
+  if (holes.empty() && is_part(c, loops[0]))
+    parts.push_back(loops[0]);
+  else if (!cut_into_parts(c, loops, area, parts))
+    return detail::error("decompose_convex: the outlines could not be cut into triangles");
 
   std::vector<Polygon> result;
   for (const Loop& part : parts) {

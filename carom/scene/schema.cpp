@@ -72,8 +72,11 @@ std::string field_schema(const Field& field) {
     case FieldType::color:
       return "\"type\": \"string\"";
     case FieldType::point_list:
-      return "\"type\": \"array\", \"items\": {\"type\": \"array\", \"items\": " + quantity +
-             ", \"minItems\": 2, \"maxItems\": 3}";
+    case FieldType::point_lists: {
+      const std::string list = "\"type\": \"array\", \"items\": {\"type\": \"array\", \"items\": " + quantity +
+                               ", \"minItems\": 2, \"maxItems\": 3}";
+      return field.type == FieldType::point_list ? list : "\"type\": \"array\", \"items\": {" + list + "}";
+    }
     case FieldType::number_list:
       return "\"type\": \"array\", \"items\": " + quantity;
     case FieldType::object:

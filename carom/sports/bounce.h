@@ -29,7 +29,7 @@ struct Surface {
 CAROM_API core::Status check(const Surface& surface);
 
 /// hard_court, clay_court, grass_court, wood_floor, table, fairway, rough, green, bunker, pitch, soccer_grass,
-/// outfield; each with its source.
+/// outfield, ash_board; each with its source.
 struct SurfacePreset {
   std::string_view name, source;
   Surface surface{};

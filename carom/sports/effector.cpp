@@ -6,14 +6,19 @@
 namespace carom::sports {
 
 rigid::CustomEffector<rigid::Dim3> flight_effector(const Ball& ball, const Conditions& conditions, rigid::BodyId body,
-                                                   double step, bool own_air, bool own_wind) {
+                                                   double step, bool own_air, bool own_wind, Vec3d held_spin) {
   rigid::CustomEffector<rigid::Dim3> effector;
   effector.body = body;
-  effector.model = [ball, conditions, step, own_air, own_wind](const rigid::EffectorInput<rigid::Dim3>& input) {
+  Ball scrambled = ball;
+  scrambled.side = {};
+  effector.model = [whole = ball, scrambled, conditions, step, own_air, own_wind,
+                    held_spin](const rigid::EffectorInput<rigid::Dim3>& input) {
     const environment::Environment* const around = input.around;
     const Vec3d place = input.state.center_of_mass, velocity(input.state.linear_velocity);
     BallMotion motion;
     motion.spin = Vec3d(input.state.angular_velocity);
+    const double held = math::dot(motion.spin, held_spin);
+    const Ball& ball = held < 0.5 * math::length(motion.spin) * math::length(held_spin) ? scrambled : whole;
     if (ball.side.kind == SideForce::Kind::turning_seam) {
       const math::Quatf q = input.state.pose.rotation;
       const double turn = math::dot(Vec3d{q.x, q.y, q.z}, motion.spin);

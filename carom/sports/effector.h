@@ -11,9 +11,10 @@ namespace carom::sports {
 /// stays the world's. With `step`, the length of the world's steps (s), the force is that of the middle of the step,
 /// foretold from its start, and the body follows the flight that `fly` integrates with an error of the order of the
 /// step's square; with 0 of its first power. A turning seam is read from the body's attitude, so it starts at the
-/// identity.
+/// identity. Where `held_spin` (rad/s) is given, a held seam steers as long as the ball spins about that axis, to
+/// within 60°: what turns it, as a pitch does, scrambles the seam.
 CAROM_API rigid::CustomEffector<rigid::Dim3> flight_effector(const Ball& ball, const Conditions& conditions,
                                                              rigid::BodyId body, double step = 0, bool own_air = false,
-                                                             bool own_wind = false);
+                                                             bool own_wind = false, Vec3d held_spin = {});
 
 }  // namespace carom::sports

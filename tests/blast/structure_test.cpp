@@ -281,45 +281,4 @@ TEST(Structure, BadInputIsNamed) {
             "Structure: tensile_strength is 0, expected a finite number > 0");
 }
 
-TEST(Polygon, PiecesAreTheWhole) {
-  // A concave one: an L with a notch.
-  const std::vector<Vec2d> outline{{0, 0}, {3, 0}, {3, 1}, {2, 0.6}, {1, 1}, {1, 3}, {0, 3}};
-  double area = 0;
-  for (std::size_t i = 1; i + 1 < outline.size(); ++i)
-    area += 0.5 * cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
-  const auto sites = uniform_sites2({{0, 0}, {3, 3}}, 50, 6);
-  const auto f = fracture_polygon(outline, voronoi_pattern2(sites).value());
-  ASSERT_TRUE(f) << f.error().message;
-  double sum = 0, hulls = 0, cut = 0, bonded = 0;
-  for (const Piece2& p : f->pieces) {
-    sum += p.mass.mass;
-    for (const geometry::Polygon& polygon : p.polygons) hulls += geometry::mass_properties(polygon, 1).mass;
-    for (std::size_t i = 0; i < p.outline.size(); ++i)
-      if (p.sources[i] < 0) cut += distance(p.outline[i], p.outline[(i + 1) % p.outline.size()]);
-  }
-  for (const Bond2& b : f->bonds) bonded += b.length;
-  EXPECT_NEAR(sum, area, 1e-9 * area);
-  EXPECT_NEAR(2 * bonded, cut, 1e-9 * cut);
-  EXPECT_LT(hulls, area);
-  EXPECT_GT(hulls, 0.97 * area);
-  math::Random random(1);
-  const auto inside = [](const std::vector<Vec2d>& o, Vec2d p) {
-    bool in = false;
-    for (std::size_t i = 0, j = o.size() - 1; i < o.size(); j = i++)
-      if ((o[i].y > p.y) != (o[j].y > p.y) && p.x < o[i].x + (o[j].x - o[i].x) * (p.y - o[i].y) / (o[j].y - o[i].y))
-        in = !in;
-    return in;
-  };
-  for (int k = 0; k < 5000; ++k) {
-    const Vec2d p{random.uniform(0.0, 3.0), random.uniform(0.0, 3.0)};
-    int count = 0;
-    for (const Piece2& piece : f->pieces) count += inside(piece.outline, p);
-    EXPECT_EQ(count, inside(outline, p) ? 1 : 0);
-  }
-  std::vector<Vec2d> clockwise(outline.rbegin(), outline.rend());
-  EXPECT_FALSE(fracture_polygon(clockwise, voronoi_pattern2(sites).value()));
-  const std::vector<Vec2d> bow{{0, 0}, {2, 2}, {2, 0}, {0, 3}};
-  EXPECT_FALSE(fracture_polygon(bow, voronoi_pattern2(sites).value()));
-}
-
 }  // namespace blast_test

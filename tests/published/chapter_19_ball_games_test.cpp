@@ -110,6 +110,10 @@ TEST(Chapter19, BounceGripsOrSlips) {
   EXPECT_LE(restitution(*surface_preset("hard_court"), 7), .761);
   EXPECT_GE(restitution(*surface_preset("wood_floor"), 6), .731);
   EXPECT_LE(restitution(*surface_preset("wood_floor"), 6), .795);
+  // A baseball against ash at 60 mph: .546 +- .032.
+  const Bounce board =
+      bounce(*ball_preset("baseball"), *surface_preset("ash_board"), {-1, 0, 0}, {.velocity = {26.8224, 0, 0}});
+  EXPECT_NEAR(-board.after.velocity.x / 26.8224, .546, .032);
 }
 
 // A green of Stimp distance d stops a ball that leaves with 1.83 m/s after d, and a = v0²/2d (section 6).

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <sstream>
 
+#include "carom/math/elementary.h"
 #include "carom/scene/scene.h"
 #include "carom/sports/flight.h"
+#include "carom/sports/game_presets.h"
 #include "carom/sports/presets.h"
 #include "tests/scene/source_file.h"
 
@@ -89,6 +91,134 @@ TEST(SceneBallFlight, EveryBodyOfTheBallPresetsFlies) {
     ++flown;
   }
   EXPECT_EQ(flown, 11);
+}
+
+/// Started with a ball of presets/ball and the air of presets/flight.
+scene::Result<scene::SceneWorld> released(const std::string& ball, const std::string& keys) {
+  const auto scene = parse(R"("preset": "ball/)" + ball + R"(", "position": [1, 2, 3])",
+                           R"("flight": {"preset": "flight/)" + ball + R"("}, )" + keys);
+  if (!scene.ok()) return scene.error();
+  return scene->instantiate();
+}
+std::string refused(const std::string& ball, const std::string& keys) {
+  const auto world = released(ball, keys);
+  return world.ok() ? std::string("none") : world.error().message;
+}
+rigid::BodyState<rigid::Dim3> ball_of(const scene::SceneWorld& world) {
+  return world.world3->state(world.bodies[0].id).value();
+}
+
+// A delivery by its name leaves as the model's does, turned to where it is bowled, and swings and pitches where it is
+// aimed at; what is aimed passes there within what a step of 1/240 s makes.
+TEST(SceneBallFlight, DeliveriesByName) {
+  for (const char* name : {"outswinger", "inswinger", "leg_break", "yorker", "bouncer"}) {
+    SCOPED_TRACE(name);
+    auto world = released("cricket", std::string(R"("delivery": {"preset": "cricket/)") + name +
+                                         R"(", "from": [10, 1, -2], "toward": [0, 0, 2], "at": [9.9, 1, 10]})");
+    ASSERT_TRUE(world.ok()) << world.error().message;
+    const auto preset = *sports::cricket_preset(name);
+    const auto start = ball_of(*world);
+    EXPECT_LT(length(start.center_of_mass - Vec3d{10 - preset.side, 1 + preset.height, -2}), 1e-6);
+    EXPECT_NEAR(double(length(start.linear_velocity)), preset.speed, 1e-4);
+    EXPECT_NEAR(double(length(start.angular_velocity)), math::hypot(preset.spin, preset.gyro), 1e-3);
+    const auto aimed =
+        *sports::aimed(*sports::ball_preset("cricket"), {}, *sports::surface_preset("pitch"), preset, 1, 0.1, 13);
+    EXPECT_NEAR(double(start.linear_velocity.y), preset.speed * math::sin(aimed.elevation), 1e-3);
+    Vec3d before{}, after = start.center_of_mass;
+    const double ground = 1 + sports::ball_preset("cricket")->radius;
+    for (int i = 0; i < 480 && after.y > ground; ++i) {
+      before = after;
+      ASSERT_TRUE(world->step().ok());
+      after = ball_of(*world).center_of_mass;
+    }
+    const double share = (before.y - ground) / (before.y - after.y);
+    EXPECT_LT(length(before + share * (after - before) - Vec3d{9.9, ground, 10}), 0.02);
+  }
+  // The short form; along x from the origin.
+  auto world = released("cricket", R"("delivery": "top_spinner")");
+  ASSERT_TRUE(world.ok()) << world.error().message;
+  const auto spinner = *sports::cricket_preset("top_spinner");
+  EXPECT_LT(length(ball_of(*world).center_of_mass - Vec3d{0, spinner.height, spinner.side}), 1e-6);
+  EXPECT_NEAR(double(ball_of(*world).angular_velocity.z), -spinner.spin, 1e-3) << "topspin";
+}
+
+// The pitch turns the spin, and the seam that was held steers no more: without air but for the seam's, a ball goes on
+// straight after its bounce.
+TEST(SceneBallFlight, ThePitchScramblesTheSeam) {
+  const auto scene = scene::parse_scene(
+      R"({"step": "1/480 s", "bodies": [{"name": "ball", "preset": "ball/cricket"},
+          {"name": "pitch", "type": "fixed", "shape": {"type": "plane", "normal": [0, 1, 0], "material": {"friction": 0.6}}}],
+          "effectors": [{"type": "ball_flight", "body": "ball", "delivery": {"preset": "cricket/outswinger", "at": [12, 0, 0]},
+                         "flight": {"preset": "flight/cricket", "drag": 0, "lift": 0}}]})",
+      "ball.json", scene::test::read_source);
+  ASSERT_TRUE(scene) << scene.error().message;
+  auto world = scene->instantiate();
+  ASSERT_TRUE(world) << world.error().message;
+  const auto bend = [&] {  // of the way, seen from above, in a twentieth of a second
+    const auto before = ball_of(*world).linear_velocity;
+    for (int i = 0; i < 24; ++i) EXPECT_TRUE(world->step().ok());
+    const auto after = ball_of(*world).linear_velocity;
+    return math::abs(math::atan2(double(after.z), double(after.x)) - math::atan2(double(before.z), double(before.x)));
+  };
+  EXPECT_GT(bend(), 0.005);
+  while (ball_of(*world).linear_velocity.y < 0) ASSERT_TRUE(world->step().ok());
+  EXPECT_LT(ball_of(*world).angular_velocity.z, 0) << "it rolls off the pitch";
+  EXPECT_LT(bend(), 1e-6);
+}
+
+TEST(SceneBallFlight, PitchesAndGolfShotsByName) {
+  auto world = released("baseball", R"("pitch": {"preset": "pitch/curveball", "at": ["16.764 m", "0.8 m", "-0.1 m"]})");
+  ASSERT_TRUE(world.ok()) << world.error().message;
+  const auto curve = *sports::pitch_preset("curveball");
+  EXPECT_LT(length(ball_of(*world).center_of_mass - curve.release), 1e-6);
+  Vec3d before{}, after = curve.release;
+  while (after.x < 16.764) {
+    before = after;
+    ASSERT_TRUE(world->step().ok());
+    after = ball_of(*world).center_of_mass;
+  }
+  const double share = (16.764 - before.x) / (after.x - before.x);
+  EXPECT_LT(length(before + share * (after - before) - Vec3d{16.764, 0.8, -0.1}), 0.02);
+  // A driver's average: the ball stays where it lies and leaves as TrackMan tells, here along z.
+  auto drive = released("golf", R"("shot": {"club": "driver", "toward": [0, 0, 1]})");
+  ASSERT_TRUE(drive.ok()) << drive.error().message;
+  const auto driver = *sports::club_preset("driver");
+  const auto left = ball_of(*drive);
+  EXPECT_EQ(left.center_of_mass, (Vec3d{1, 2, 3}));
+  EXPECT_NEAR(double(length(left.linear_velocity)) / .44704, driver.ball_speed, .01 * driver.ball_speed);
+  EXPECT_NEAR(double(length(left.angular_velocity)) * 30 / math::pi, driver.spin, .05 * driver.spin);
+  EXPECT_NEAR(math::degrees(math::atan2(double(left.linear_velocity.y), double(left.linear_velocity.z))), driver.launch,
+              .5);
+  EXPECT_NEAR(double(left.linear_velocity.x), 0, 1e-3);
+  // An open face slices to the right, which is −x of one who looks along z.
+  auto slice = released("golf", R"("shot": {"club": "driver", "toward": [0, 0, 1], "face": "4 deg"})");
+  ASSERT_TRUE(slice.ok()) << slice.error().message;
+  EXPECT_LT(ball_of(*slice).linear_velocity.x, -1);
+  EXPECT_EQ(refused("golf", R"("shot": "9-iron")"), "none");
+}
+
+TEST(SceneBallFlight, SaysWhatIsWrongWithARelease) {
+  const struct {
+    const char *ball, *keys, *part;
+  } cases[] = {
+      {"cricket", R"("delivery": "beamer")", "presets/cricket/beamer.json"},
+      {"cricket", R"("delivery": 7)", "delivery"},
+      {"cricket", R"("delivery": {"sped": 30})", "sped"},
+      {"cricket", R"("delivery": {"speed": "30 m"})", "delivery.speed"},
+      {"cricket", R"("delivery": {"speed": -1})", "speed of a delivery is -1"},
+      {"cricket", R"("delivery": {"toward": [0, 1, 0]})", "a direction that is not upright"},
+      {"cricket", R"("delivery": {"at": [-3, 0, 0]})", "a point in front of from"},
+      {"cricket", R"("delivery": {"speed": 5, "at": [60, 0, 0]})", "effectors[0].delivery"},
+      {"cricket", R"("delivery": "yorker", "pitch": "slider")", "expected one of delivery, pitch and shot"},
+      {"baseball", R"("pitch": "eephus")", "presets/pitch/eephus.json"},
+      {"baseball", R"("pitch": {"seam": 1})", "seam"},
+      {"golf", R"("shot": "putter")", "driver"},
+      {"golf", R"("shot": {"speed": 40})", "the key \"club\" is missing"},
+      {"golf", R"("shot": {"club": "driver", "toe": "4 m"})", "effectors[0].shot"},
+  };
+  for (const auto& c : cases)
+    EXPECT_NE(refused(c.ball, c.keys).find(c.part), std::string::npos)
+        << c.keys << "\n  gave: " << refused(c.ball, c.keys);
 }
 
 TEST(SceneBallFlight, SaysWhatIsWrong) {

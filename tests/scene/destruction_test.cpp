@@ -416,6 +416,10 @@ TEST(SceneStructures, EverySolidWeighsWhatItShould) {
       {R"("shape": {"type": "box", "size": [2, 1]}, "density": 1000)", 2000, 2},
       {R"("outline": [[0,0],[2,0],[2,2],[1,1],[0,2]], "density": 1000, "pattern": "radial", "impact": [1, 0.5], "first_radius": 0.2)",
        3000, 2},
+      {R"("shape": {"type": "box", "size": [2, 1]}, "density": 1000, "pattern": "slabs", "pieces": 5, "axis": [1, 0.2], "jitter": 0.4)",
+       2000, 2},
+      {R"("outline": [[0,0],[2,0],[2,2],[1,1],[0,2]], "density": 1000, "pattern": "bricks", "brick": [0.4, "20 cm"])",
+       3000, 2},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.keys);
@@ -522,8 +526,17 @@ TEST(SceneDestruction, ErrorsNameTheirPlace) {
       {R"("bodies": [{"name": "a"}], "structures": [{"name": "a", "shape": {"type": "box", "size": [1, 1, 1]}}])",
        "that no body has"},
       {R"("structures": [{"shape": {"type": "segment", "points": [[0,0],[1,0]]}}])", "does not break", 2},
+      {R"("structures": [{"shape": {"type": "circle", "radius": 1}, "pattern": "even"}])",
+       "voronoi, radial, slabs or bricks in the plane", 2},
       {R"("structures": [{"shape": {"type": "circle", "radius": 1}, "pattern": "bricks"}])",
-       "voronoi or radial in the plane", 2},
+       "the key \"brick\" is missing", 2},
+      {R"("structures": [{"shape": {"type": "circle", "radius": 1}, "pattern": "bricks", "brick": [1, 0]}])",
+       "structures[0]", 2},
+      {R"("structures": [{"shape": {"type": "circle", "radius": 1}, "pattern": "bricks", "brick": [1e-3, 1e-3]}])",
+       "structures[0]", 2},
+      {R"("structures": [{"shape": {"type": "circle", "radius": 1}, "pattern": "slabs", "axis": [0, 0]}])",
+       "a direction that is not zero", 2},
+      {R"("structures": [{"shape": {"type": "circle", "radius": 1}, "pattern": "slabs", "jitter": 2}])", "0 to 1", 2},
       {R"("structures": [{"outline": [[0,0],[0,1],[1,0]]}])", "structures[0]", 2},
   };
   for (const Case& c : cases) {

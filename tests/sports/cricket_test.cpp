@@ -82,10 +82,20 @@ TEST(Cricket, SpinTurnsOffThePitch) {
 }
 
 TEST(Cricket, LengthsDoWhatTheirNamesSay) {
-  const CricketPath yorker = thrown(*cricket_preset("yorker"), 1.0), bouncer = thrown(*cricket_preset("bouncer"), 12);
+  const CricketPath yorker = thrown(*cricket_preset("yorker"), 1.0), bouncer = thrown(*cricket_preset("bouncer"), 9);
   EXPECT_TRUE(yorker.hits);
   EXPECT_LT(yorker.height, .4);
-  EXPECT_GT(bouncer.height, 1) << "well over the stumps";
+  // At the popping crease, 4 ft before the stumps, it is at a batter's shoulder; a good length hits the stumps or
+  // passes a little over them, and loses a tenth to a third of its speed on the pitch.
+  const double shoulder = bouncer.off[0].at_x(cricket_pitch - 1.2192)->position.y;
+  EXPECT_GT(shoulder, 1.3);
+  EXPECT_LT(shoulder, 1.6);
+  const CricketPath good = thrown(*cricket_preset("outswinger"), 6);
+  EXPECT_GT(good.height, 0.6);
+  EXPECT_LT(good.height, 1.1);
+  const double pace = length(good.off[0].start().velocity) / length(good.air.end().velocity);
+  EXPECT_GT(pace, 0.7);
+  EXPECT_LT(pace, 0.9);
   EXPECT_FALSE(bouncer.hits);
   EXPECT_GT(thrown(*cricket_preset("slower_ball")).time, 1.2 * thrown(*cricket_preset("yorker")).time);
   const auto full =
@@ -93,6 +103,15 @@ TEST(Cricket, LengthsDoWhatTheirNamesSay) {
   ASSERT_TRUE(full);
   EXPECT_TRUE(full->full);
   EXPECT_TRUE(full->off.empty());
+}
+
+// The drop test of grounds: from 16 ft a fast pitch gives back 25 to 30 in.
+TEST(Cricket, AFastPitchGivesBackWhatTheDropTestSays) {
+  const double fall = 16 * .3048, speed = math::sqrt(2 * 9.80665 * fall);
+  const Bounce up = bounce(*ball_preset("cricket"), *surface_preset("pitch"), {0, 1, 0}, {.velocity = {0, -speed, 0}});
+  const double height = math::square(up.after.velocity.y) / (2 * 9.80665);
+  EXPECT_GT(height, 25 * .0254);
+  EXPECT_LT(height, 30 * .0254);
 }
 
 TEST(Cricket, BadInputIsNamed) {

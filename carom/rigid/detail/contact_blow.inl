@@ -126,4 +126,57 @@ CAROM_SIMD_INLINE BlowRow<W> blow_row(const Block& c, WideFloat<W> s, WideFloat<
           select(apart, zero, mobility * F::load(c.impulse_scale) / F::load(c.mass_scale))};
 }
 
+template <class Velocity>
+struct VelocityPair {
+  Velocity a, b;
+};
+/// Solves the normals of the lanes in `struck` again, all points of a manifold at once.
+template <int W, bool UseBias, class D, class Velocity>
+[[gnu::noinline]] VelocityPair<Velocity> share_blow(const SolverBody<D>* bodies, ContactBlock<D, W>& c, Velocity a,
+                                                    Velocity b, WideMask<W> struck, float inverse_h, float push_speed,
+                                                    float counted) {
+  using F = WideFloat<W>;
+  constexpr int points = std::extent_v<decltype(c.point)>;
+  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
+  const auto ia = load_inertia(c.inverse_inertia_a), ib = load_inertia(c.inverse_inertia_b);
+  const auto n = load_vector(c.normal), offset = load_vector(c.center_offset);
+  const auto offset_turn = cross(offset, n);
+  F pa[4 * (D::dimension - 1)], pb[4 * (D::dimension - 1)];
+  gather<W>(bodies, c.read_a, D::dimension == 2 ? 4 : 8, pa);
+  gather<W>(bodies, c.read_b, D::dimension == 2 ? 4 : 8, pb);
+  F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
+  if constexpr (D::dimension == 3) shift = shift + n.z * (pb[2] - pa[2]);
+  const auto na = turned_back_change(pa, n), nb = turned_back_change(pb, n);
+  TogetherRows<W, points> rows;
+  decltype(a.w) turn_a[points], turn_b[points];
+  for (int i = 0; i < points; ++i) {
+    const auto& point = c.point[i];
+    const auto ra = load_vector(point.r_a), rb = add(ra, offset);
+    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
+    turn_a[i] = cross(ra, n), turn_b[i] = add(turn_a[i], offset_turn);
+    const auto ita = multiply(ia, turn_a[i]), itb = multiply(ib, turn_b[i]);
+    for (int j = 0; j <= i; ++j) rows.k[i][j] = ma + mb + dot(ita, turn_a[j]) + dot(itb, turn_b[j]);
+    const BlowRow<W> row = blow_row<W, UseBias>(c, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
+    rows.velocity[i] = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b[i]) - dot(a.w, turn_a[i]) + row.bias;
+    rows.yield[i] = row.yield;
+    rows.impulse[i] = F::load(point.impulse);
+    rows.present[i] = F::load(point.normal_mass) > F::splat(0);
+  }
+  solve_together<W, points>(rows);
+  F sum = F::splat(0);
+  decltype(a.w) on_a{}, on_b{};
+  for (int i = 0; i < points; ++i) {
+    auto& point = c.point[i];
+    const F old = F::load(point.impulse), delta = keep(struck, rows.impulse[i] - old);
+    (old + delta).store(point.impulse);
+    if constexpr (!UseBias) (F::load(point.total) + delta * F::splat(counted)).store(point.total);
+    sum += delta;
+    on_a = add(on_a, multiply(turn_a[i], delta));
+    on_b = add(on_b, multiply(turn_b[i], delta));
+  }
+  push_back(a, ma, ia, multiply(n, sum), on_a);
+  push(b, mb, ib, multiply(n, sum), on_b);
+  return {a, b};
+}
+
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -44,6 +44,10 @@ CAROM_SIMD_INLINE WideVec2<W> subtract(const WideVec2<W>& a, const WideVec2<W>& 
   return {a.x - b.x, a.y - b.y};
 }
 template <int W>
+CAROM_SIMD_INLINE WideVec2<W> multiply(const WideVec2<W>& a, WideFloat<W> s) {
+  return {a.x * s, a.y * s};
+}
+template <int W>
 CAROM_SIMD_INLINE WideFloat<W> dot(const WideVec3<W>& a, const WideVec3<W>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -77,6 +81,36 @@ template <int W>
 CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3<W>& v) {
   return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
+}
+
+/// What the code of both dimensions calls them: turns and inertias of the plane are numbers.
+template <int W>
+CAROM_SIMD_INLINE WideVec2<W> load_vector(const float (&p)[2][W]) {
+  return load2<W>(p);
+}
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> load_vector(const float (&p)[3][W]) {
+  return load3<W>(p);
+}
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> load_inertia(const float (&p)[W]) {
+  return WideFloat<W>::load(p);
+}
+template <int W>
+CAROM_SIMD_INLINE WideSymmetric<W> load_inertia(const float (&p)[6][W]) {
+  return load_symmetric<W>(p);
+}
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> dot(WideFloat<W> a, WideFloat<W> b) {
+  return a * b;
+}
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> add(WideFloat<W> a, WideFloat<W> b) {
+  return a + b;
+}
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> multiply(WideFloat<W> a, WideFloat<W> s) {
+  return a * s;
 }
 
 /// m/s that the relaxing pass takes off where bodies meet: with more it is a blow, whose friction is due at once.

@@ -128,56 +128,6 @@ CAROM_SIMD_INLINE PassBlow<W> solve_normals2(const SolverBody<Dim2>* bodies, Con
 }
 
 template <int W>
-struct VelocityPair2 {
-  Velocity2<W> a, b;
-};
-/// As share_blow3.
-template <int W, bool UseBias>
-[[gnu::noinline]] VelocityPair2<W> share_blow2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W> a,
-                                               Velocity2<W> b, WideMask<W> struck, float inverse_h, float push_speed,
-                                               float counted) {
-  using F = WideFloat<W>;
-  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
-  const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
-  const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
-  const F offset_turn = cross(offset, n);
-  F pa[4], pb[4];
-  gather<W>(bodies, c.read_a, 4, pa);
-  gather<W>(bodies, c.read_b, 4, pb);
-  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
-  const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-  TogetherRows<W, 2> rows;
-  F turn_a[2], turn_b[2];
-  for (int i = 0; i < 2; ++i) {
-    const auto& point = c.point[i];
-    const WideVec2<W> ra = load2<W>(point.r_a), rb = add(ra, offset);
-    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
-    turn_a[i] = cross(ra, n), turn_b[i] = turn_a[i] + offset_turn;
-    for (int j = 0; j <= i; ++j) rows.k[i][j] = ma + mb + ia * turn_a[i] * turn_a[j] + ib * turn_b[i] * turn_b[j];
-    const BlowRow<W> row = blow_row<W, UseBias>(c, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
-    rows.velocity[i] = dot(subtract(b.v, a.v), n) + b.w * turn_b[i] - a.w * turn_a[i] + row.bias;
-    rows.yield[i] = row.yield;
-    rows.impulse[i] = F::load(point.impulse);
-    rows.present[i] = F::load(point.normal_mass) > F::splat(0);
-  }
-  solve_together<W, 2>(rows);
-  F sum = F::splat(0), on_a = sum, on_b = sum;
-  for (int i = 0; i < 2; ++i) {
-    auto& point = c.point[i];
-    const F old = F::load(point.impulse), delta = keep(struck, rows.impulse[i] - old);
-    (old + delta).store(point.impulse);
-    if constexpr (!UseBias) (F::load(point.total) + delta * F::splat(counted)).store(point.total);
-    sum += delta;
-    on_a += turn_a[i] * delta;
-    on_b += turn_b[i] * delta;
-  }
-  const WideVec2<W> p = {sum * n.x, sum * n.y};
-  push_back(a, ma, ia, p, on_a);
-  push(b, mb, ib, p, on_b);
-  return {a, b};
-}
-
-template <int W>
 void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed, int order) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
@@ -187,7 +137,7 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
                                                         F::splat(push_speed), F::splat(1), F::splat(1), order);
     const auto struck = find_struck<W>(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
-      const auto shared = share_blow2<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
+      const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
       a = shared.a, b = shared.b;
     }
     write_velocity<W>(bodies, c.write_a, a);
@@ -209,7 +159,7 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     const auto takes_part = share > F::splat(0);
     auto rubs = takes_part;
     if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
-      const auto shared = share_blow2<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
+      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
       a = shared.a, b = shared.b;
     }
     F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
@@ -252,7 +202,7 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
           solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
       const auto hard = find_struck<W>(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
-        const auto shared = share_blow2<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
+        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
         a = shared.a, b = shared.b;
       }
       const F before = load;

@@ -126,56 +126,6 @@ CAROM_SIMD_INLINE PassBlow<W> solve_normals3(const SolverBody<Dim3>* bodies, Con
 }
 
 template <int W>
-struct VelocityPair3 {
-  Velocity3<W> a, b;
-};
-/// Solves the normals of the lanes in `struck` again, all points of a manifold at once.
-template <int W, bool UseBias>
-[[gnu::noinline]] VelocityPair3<W> share_blow3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W> a,
-                                               Velocity3<W> b, WideMask<W> struck, float inverse_h, float push_speed,
-                                               float counted) {
-  using F = WideFloat<W>;
-  const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
-  const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
-  const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
-  F pa[8], pb[8];
-  gather<W>(bodies, c.read_a, 8, pa);
-  gather<W>(bodies, c.read_b, 8, pb);
-  const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
-  const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-  TogetherRows<W, 4> rows;
-  WideVec3<W> turn_a[4], turn_b[4];
-  for (int i = 0; i < 4; ++i) {
-    const auto& point = c.point[i];
-    const WideVec3<W> ra = load3<W>(point.r_a), rb = add(ra, offset);
-    const F s = F::load(point.separation) + shift + (dot(nb, rb) - dot(na, ra));
-    turn_a[i] = cross(ra, n), turn_b[i] = add(turn_a[i], offset_turn);
-    const WideVec3<W> ita = multiply(ia, turn_a[i]), itb = multiply(ib, turn_b[i]);
-    for (int j = 0; j <= i; ++j) rows.k[i][j] = ma + mb + dot(ita, turn_a[j]) + dot(itb, turn_b[j]);
-    const BlowRow<W> row = blow_row<W, UseBias>(c, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
-    rows.velocity[i] = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b[i]) - dot(a.w, turn_a[i]) + row.bias;
-    rows.yield[i] = row.yield;
-    rows.impulse[i] = F::load(point.impulse);
-    rows.present[i] = F::load(point.normal_mass) > F::splat(0);
-  }
-  solve_together<W, 4>(rows);
-  F sum = F::splat(0);
-  WideVec3<W> on_a = {sum, sum, sum}, on_b = on_a;
-  for (int i = 0; i < 4; ++i) {
-    auto& point = c.point[i];
-    const F old = F::load(point.impulse), delta = keep(struck, rows.impulse[i] - old);
-    (old + delta).store(point.impulse);
-    if constexpr (!UseBias) (F::load(point.total) + delta * F::splat(counted)).store(point.total);
-    sum += delta;
-    on_a = add(on_a, multiply(turn_a[i], delta));
-    on_b = add(on_b, multiply(turn_b[i], delta));
-  }
-  push_back(a, ma, ia, multiply(n, sum), on_a);
-  push(b, mb, ib, multiply(n, sum), on_b);
-  return {a, b};
-}
-
-template <int W>
 void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed, int order) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
@@ -187,7 +137,7 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
                                 F::splat(1), F::splat(1), order);
     const auto struck = find_struck<W>(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
-      const auto shared = share_blow3<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
+      const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
       a = shared.a, b = shared.b;
     }
     write_velocity<W>(bodies, c.write_a, a);
@@ -268,7 +218,7 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     auto rubs = takes_part;
     // A push is taken back as it was given, before friction can make something of it.
     if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
-      const auto shared = share_blow3<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
+      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
       a = shared.a, b = shared.b;
     }
     F load = load_of<W>(c);
@@ -282,7 +232,7 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
                                                            F::splat(counted), share, 0);
       const auto hard = find_struck<W>(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
-        const auto shared = share_blow3<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
+        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
         a = shared.a, b = shared.b;
       }
       const F before = load;

@@ -1,5 +1,6 @@
 #include "carom/scene/detail/ball_flight.h"
 
+#include "carom/scene/detail/ball_release.h"
 #include "carom/scene/detail/joint_fields.h"
 #include "carom/sports/effector.h"
 #include "carom/sports/numbers.h"
@@ -42,7 +43,7 @@ constexpr Field ball_air_fields[] = {
 const ObjectKind ball_air_kind{"ball_air", "What the air does to a ball, as in presets/flight.", ball_air_fields};
 
 template <class D>
-rigid::EffectorDef<D> read_ball_flight(Reader& reader, const Object& o, rigid::BodyId body) {
+rigid::EffectorDef<D> read_ball_flight(Reader& reader, const Object& o, rigid::BodyId body, rigid::World<D>* world) {
   const auto fail = [&](std::string_view what) {
     reader.fail(*o.node, o.path, what);
     return rigid::LinearDrag<D>{};
@@ -71,13 +72,27 @@ rigid::EffectorDef<D> read_ball_flight(Reader& reader, const Object& o, rigid::B
   }
   ball->side.seam_normal = seam / length;
   if (!reader.accept(sports::check(*ball), *e.node, e.path)) return rigid::LinearDrag<D>{};
-  if constexpr (D::dimension == 3)
-    return sports::flight_effector(*ball, conditions, body, reader.step, o.has("density"), o.has("velocity"));
-  else
+  if constexpr (D::dimension == 3) {
+    const std::optional<BallRelease> release = read_ball_release(reader, o, *ball, conditions);
+    if (reader.failed()) return rigid::LinearDrag<D>{};
+    if (release && o.has("delivery")) ball->side.seam_normal = release->seam_normal;
+    if (release && world != nullptr) {
+      const auto state = world->state(body);
+      core::Status put = state ? core::Status{} : core::Status{state.error()};
+      if (put && release->position) put = world->set_pose(body, *release->position, state->pose.rotation);
+      if (put) put = world->set_velocity(body, math::Vec3f(release->velocity), math::Vec3f(release->spin));
+      if (!reader.accept(put, *o.node, o.path)) return rigid::LinearDrag<D>{};
+    }
+    return sports::flight_effector(*ball, conditions, body, reader.step, o.has("density"), o.has("velocity"),
+                                   release ? release->spin : math::Vec3d{});
+  } else {
     return fail("a ball_flight is of space only: balls curve out of the plane");
+  }
 }
 
-template rigid::EffectorDef<rigid::Dim2> read_ball_flight<rigid::Dim2>(Reader&, const Object&, rigid::BodyId);
-template rigid::EffectorDef<rigid::Dim3> read_ball_flight<rigid::Dim3>(Reader&, const Object&, rigid::BodyId);
+template rigid::EffectorDef<rigid::Dim2> read_ball_flight<rigid::Dim2>(Reader&, const Object&, rigid::BodyId,
+                                                                       rigid::World2*);
+template rigid::EffectorDef<rigid::Dim3> read_ball_flight<rigid::Dim3>(Reader&, const Object&, rigid::BodyId,
+                                                                       rigid::World3*);
 
 }  // namespace carom::scene::detail

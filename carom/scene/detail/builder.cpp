@@ -412,7 +412,7 @@ class Builder final : public BodyNames {
     Object o;
     if (!reader_.open(node, path, *tables().effector, o) || !reader_.wanted(o)) return;
     EffectorDef<D> def;
-    if (!read_effector<D>(reader_, *this, o, def)) return;
+    if (!read_effector<D>(reader_, *this, o, update_ ? nullptr : &world(), def)) return;
     if (update_) {
       if (next_ >= out_.effectors.size()) return count_changed("effectors");
       reader_.accept(world().set_effector(out_.effectors[next_++].id, def), node, path);

@@ -32,8 +32,47 @@ double bounded(Reader& r, const Object& o, const char* key, double fallback, dou
   return x;
 }
 
+struct Rings {
+  double first_radius, growth, jitter;
+  int sectors;
+};
+Rings read_rings(Reader& r, const Object& o) {
+  Rings rings;
+  rings.first_radius = bounded(r, o, "first_radius", 0.02, 1e-4, 1e3, "0.1 mm to 1 km");
+  rings.growth = bounded(r, o, "growth", 1.6, 1.05, 100, "1.05 to 100");
+  rings.sectors = r.integer(o, "sectors", 9, 3, 1000);
+  rings.jitter = bounded(r, o, "jitter", 0.35, 0, 1, "0 to 1");
+  return rings;
+}
+
+Vec3d read_axis(Reader& r, const Object& o, Vec3d fallback) {
+  const Vec3d axis = r.vector(o, "axis", fallback);
+  if (!r.failed() && !(math::length(axis) > 1e-9))
+    r.expected(*o.find("axis"), o.path_of("axis"), "a direction that is not zero");
+  return r.failed() ? fallback : math::normalize(axis);
+}
+
+struct Slabs {
+  Vec3d axis;
+  double jitter;
+};
+Slabs read_slabs(Reader& r, const Object& o) {
+  const Vec3d axis = read_axis(r, o, {0, 1, 0});
+  return {axis, bounded(r, o, "jitter", 0, 0, 1, "0 to 1")};
+}
+
+/// The size of a brick, of which so many fill the extent that the budget allows them.
 template <class D>
-bool read_pattern(DestructionPlace<D>& place, const Object& o, const ConvexCell& box, Pattern& out) {
+bool read_brick(DestructionPlace<D>& place, const Object& o, Vec3d extent, int dimensions, Vec3d& size) {
+  Reader& r = place.reader;
+  if (!o.has("brick")) return r.fail(*o.node, o.path, "the key \"brick\" is missing: the size of a brick"), false;
+  size = r.vector(o, "brick");
+  double count = 1;
+  for (int k = 0; k < dimensions; ++k) count *= size[k] > 0 ? extent[k] / size[k] + 2 : 1;
+  return !r.failed() && spend(r, place.budget, count, o);
+}
+
+bool read_pattern(DestructionPlace<Dim3>& place, const Object& o, const ConvexCell& box, Pattern& out) {
   Reader& r = place.reader;
   const int kind = r.choice(o, "pattern", voronoi);
   const int pieces = r.integer(o, "pieces", 50, 1, 10000);
@@ -43,33 +82,22 @@ bool read_pattern(DestructionPlace<D>& place, const Object& o, const ConvexCell&
   std::vector<Vec3d> sites;
   switch (kind) {
     case slabs: {
-      const Vec3d axis = r.vector(o, "axis", {0, 1, 0});
-      const double jitter = bounded(r, o, "jitter", 0, 0, 1, "0 to 1");
-      if (!r.failed() && !(math::length(axis) > 1e-9))
-        r.expected(*o.find("axis"), o.path_of("axis"), "a direction that is not zero");
-      return !r.failed() && take(r, o, blast::slab_pattern(box, math::normalize(axis), pieces, jitter, seed), out);
+      const Slabs slabs = read_slabs(r, o);
+      return !r.failed() && take(r, o, blast::slab_pattern(box, slabs.axis, pieces, slabs.jitter, seed), out);
     }
     case bricks: {
-      if (!o.has("brick")) return r.fail(*o.node, o.path, "the key \"brick\" is missing: the size of a brick"), false;
-      const Vec3d size = r.vector(o, "brick");
-      Vec3d low{1e300, 1e300, 1e300}, high = -low;
+      Vec3d low{1e300, 1e300, 1e300}, high = -low, size;
       for (const Vec3d& v : box.vertices()) low = math::min(low, v), high = math::max(high, v);
-      double count = 1;
-      for (int k = 0; k < 3; ++k) count *= size[k] > 0 ? (high[k] - low[k]) / size[k] + 2 : 1;
-      return !r.failed() && spend(r, place.budget, count, o) && take(r, o, blast::brick_pattern(box, size, low), out);
+      return read_brick(place, o, high - low, 3, size) && take(r, o, blast::brick_pattern(box, size, low), out);
     }
     case radial: {
-      const Vec3d axis = r.vector(o, "axis", {0, 0, 1});
       blast::RadialSites rings;
       rings.impact = impact;
-      rings.first_radius = bounded(r, o, "first_radius", rings.first_radius, 1e-4, 1e3, "0.1 mm to 1 km");
-      rings.growth = bounded(r, o, "growth", rings.growth, 1.05, 100, "1.05 to 100");
-      rings.sectors = r.integer(o, "sectors", rings.sectors, 3, 1000);
-      rings.jitter = bounded(r, o, "jitter", rings.jitter, 0, 1, "0 to 1");
-      if (!r.failed() && !(math::length(axis) > 1e-9))
-        r.expected(*o.find("axis"), o.path_of("axis"), "a direction that is not zero");
+      rings.axis = read_axis(r, o, {0, 0, 1});
+      const Rings read = read_rings(r, o);
       if (r.failed()) return false;
-      rings.axis = math::normalize(axis);
+      rings.first_radius = read.first_radius, rings.growth = read.growth, rings.sectors = read.sectors;
+      rings.jitter = read.jitter;
       if (!take(r, o, blast::radial_sites(box, rings, seed), sites)) return false;
       if (!spend(r, place.budget, double(sites.size()), o)) return false;
       break;
@@ -85,6 +113,49 @@ bool read_pattern(DestructionPlace<D>& place, const Object& o, const ConvexCell&
       sites = blast::uniform_sites(box, pieces, seed);
   }
   return !r.failed() && take(r, o, blast::voronoi_pattern(box, sites), out);
+}
+
+bool read_pattern(DestructionPlace<Dim2>& place, const Object& o, const std::vector<Vec2d>& outline,
+                  blast::Pattern2& out) {
+  Reader& r = place.reader;
+  geometry::Bounds2d box{{1e300, 1e300}, {-1e300, -1e300}};
+  for (const Vec2d& p : outline) box.low = math::min(box.low, p), box.high = math::max(box.high, p);
+  const int kind = r.choice(o, "pattern", voronoi);
+  const int pieces = r.integer(o, "pieces", 50, 1, 2000);
+  const std::uint64_t seed = std::uint64_t(r.integer(o, "seed", 1, 0, 0x7FFFFFFF));
+  if (r.failed()) return false;
+  std::vector<Vec2d> sites;
+  switch (kind) {
+    case slabs: {
+      const Slabs slabs = read_slabs(r, o);
+      return !r.failed() && spend(r, place.budget, pieces, o) &&
+             take(r, o, blast::slab_pattern2(outline, {slabs.axis.x, slabs.axis.y}, pieces, slabs.jitter, seed), out);
+    }
+    case bricks: {
+      Vec3d size;
+      return read_brick(place, o, {box.high.x - box.low.x, box.high.y - box.low.y, 0}, 2, size) &&
+             take(r, o, blast::brick_pattern2(outline, {size.x, size.y}, box.low), out);
+    }
+    case radial: {
+      const Rings read = read_rings(r, o);
+      blast::RadialSites2 rings;
+      const Vec3d impact = r.vector(o, "impact");
+      rings.impact = {impact.x, impact.y};
+      rings.first_radius = read.first_radius, rings.growth = read.growth, rings.sectors = read.sectors;
+      rings.jitter = read.jitter;
+      rings.limit = math::distance(box.low, box.high);
+      if (r.failed() || !take(r, o, blast::radial_sites2(rings, seed), sites)) return false;
+      break;
+    }
+    case voronoi:
+      sites = blast::uniform_sites2(box, pieces, seed);
+      break;
+    default:
+      return r.expected(*o.find("pattern"), o.path_of("pattern"), "voronoi, radial, slabs or bricks in the plane"),
+             false;
+  }
+  return !r.failed() && spend(r, place.budget, double(sites.size()), o) &&
+         take(r, o, blast::voronoi_pattern2(sites), out);
 }
 
 bool is_in_place(const math::Transform2f& t) { return t == math::Transform2f{}; }
@@ -153,30 +224,8 @@ bool break_up(DestructionPlace<Dim2>& place, const Object& o, const SurfaceDefau
     for (const math::Vec2f& p : found.points) outline.push_back(Vec2d(p));
   }
   if (r.failed()) return false;
-  geometry::Bounds2d box{{1e300, 1e300}, {-1e300, -1e300}};
-  for (const Vec2d& p : outline) box.low = math::min(box.low, p), box.high = math::max(box.high, p);
-  const int kind = r.choice(o, "pattern", voronoi);
-  const int pieces = r.integer(o, "pieces", 50, 1, 2000);
-  const std::uint64_t seed = std::uint64_t(r.integer(o, "seed", 1, 0, 0x7FFFFFFF));
-  std::vector<Vec2d> sites;
-  if (kind == radial) {
-    blast::RadialSites2 rings;
-    const Vec3d impact = r.vector(o, "impact");
-    rings.impact = {impact.x, impact.y};
-    rings.first_radius = bounded(r, o, "first_radius", rings.first_radius, 1e-4, 1e3, "0.1 mm to 1 km");
-    rings.growth = bounded(r, o, "growth", rings.growth, 1.05, 100, "1.05 to 100");
-    rings.sectors = r.integer(o, "sectors", rings.sectors, 3, 1000);
-    rings.jitter = bounded(r, o, "jitter", rings.jitter, 0, 1, "0 to 1");
-    rings.limit = math::distance(box.low, box.high);
-    if (r.failed() || !take(r, o, blast::radial_sites2(rings, seed), sites)) return false;
-  } else if (kind == voronoi) {
-    sites = blast::uniform_sites2(box, pieces, seed);
-  } else {
-    return r.expected(*o.find("pattern"), o.path_of("pattern"), "voronoi or radial in the plane"), false;
-  }
   blast::Pattern2 pattern;
-  return !r.failed() && spend(r, place.budget, double(sites.size()), o) &&
-         take(r, o, blast::voronoi_pattern2(sites), pattern) &&
+  return read_pattern(place, o, outline, pattern) &&
          take(r, o, blast::fracture_polygon(outline, pattern, options.skin), out);
 }
 

@@ -20,6 +20,7 @@ enum class FieldType : std::uint8_t {
   bits,
   color,
   point_list,
+  point_lists,  ///< a list of them
   number_list,
   object,
   list,

@@ -122,7 +122,12 @@ class PartReader {
     if (node.is_object() && node.find("file") != nullptr && node.find("type") != nullptr)
       if (const core::Status read = read_mesh(node, from); !read) return read;
     if (node.is_object() && list == "guns")
-      for (const char* key : {"ammunition", "sight"}) name_preset(node, key);
+      for (const char* key : {"ammunition", "sight"}) spell_out(node, key, "preset", std::string(key) + "/");
+    if (node.is_object() && list == "effectors") {
+      spell_out(node, "delivery", "preset", "cricket/");
+      spell_out(node, "pitch", "preset", "pitch/");
+      spell_out(node, "shot", "club", "");
+    }
     if (node.is_object() && list == "penetration")
       if (const core::Status read = read_wall(node); !read) return read;
     if (node.is_object() && list == "stages")
@@ -137,16 +142,16 @@ class PartReader {
   }
 
   /// "ammunition": "9mm_115_fmj" is short for {"preset": "ammunition/9mm_115_fmj"}.
-  static void name_preset(Node& owner, const std::string& key) {
+  static void spell_out(Node& owner, std::string_view key, const char* inner, const std::string& before) {
     for (std::size_t i = 0; i < owner.keys.size(); ++i) {
       Node& name = owner.children[i];
       if (owner.keys[i] != key || !name.is_text()) continue;
-      Node preset = name;
-      preset.text = key + "/" + name.text;
+      Node full = name;
+      full.text = before + name.text;
       name.kind = NodeKind::object;
       name.text.clear();
-      name.keys = {"preset"};
-      name.children = {std::move(preset)};
+      name.keys = {inner};
+      name.children = {std::move(full)};
     }
   }
   /// "wall": "brick" stands for the layers of presets/wall/brick.json.

@@ -239,6 +239,32 @@ constexpr Field effector_fields[] = {
      {},
      false,
      3},
+    {"delivery",
+     T::reference,
+     M::plain,
+     "ball_flight: how it is bowled, which sets its place, velocity, spin and seam at the start: a name of "
+     "presets/cricket, or written here",
+     &bowled_kind,
+     {},
+     false,
+     3},
+    {"pitch",
+     T::reference,
+     M::plain,
+     "ball_flight: how it is pitched, which sets its place, velocity and spin: a name of presets/pitch, or written "
+     "here",
+     &pitched_kind,
+     {},
+     false,
+     3},
+    {"shot",
+     T::reference,
+     M::plain,
+     "ball_flight: how it is struck, which sets its velocity and spin: the name of a club, or written here",
+     &golf_shot_kind,
+     {},
+     false,
+     3},
 };
 const ObjectKind effector_kind{"effector", "A force that acts on its own every step.", effector_fields};
 

@@ -364,7 +364,7 @@ bool read_joint(Reader& reader, BodyNames& names, const World<D>& world, const O
 namespace {
 
 template <class D>
-EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& o, int type) {
+EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& o, World<D>* world, int type) {
   D* const d = nullptr;
   EffectorTarget target;
   if (o.has("body")) target.body = named_body(reader, names, o, "body");
@@ -539,7 +539,7 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
     case 13:
       return read_projectile<D>(reader, o, target.body);
     case 14:
-      return read_ball_flight<D>(reader, o, target.body);
+      return read_ball_flight<D>(reader, o, target.body, world);
     default: {
       VortexField<D> e{target};
       e.center = position_of(reader.vector(o, "center"), d);
@@ -555,16 +555,16 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
 }  // namespace
 
 template <class D>
-bool read_effector(Reader& reader, BodyNames& names, const Object& o, EffectorDef<D>& out) {
+bool read_effector(Reader& reader, BodyNames& names, const Object& o, World<D>* world, EffectorDef<D>& out) {
   const int type = reader.choice(o, "type", 0);
   if (reader.failed()) return false;
-  out = read_effector_of<D>(reader, names, o, type);
+  out = read_effector_of<D>(reader, names, o, world, type);
   return !reader.failed();
 }
 
 template bool read_joint<Dim2>(Reader&, BodyNames&, const World<Dim2>&, const Object&, ReadJoint<Dim2>&);
 template bool read_joint<Dim3>(Reader&, BodyNames&, const World<Dim3>&, const Object&, ReadJoint<Dim3>&);
-template bool read_effector<Dim2>(Reader&, BodyNames&, const Object&, EffectorDef<Dim2>&);
-template bool read_effector<Dim3>(Reader&, BodyNames&, const Object&, EffectorDef<Dim3>&);
+template bool read_effector<Dim2>(Reader&, BodyNames&, const Object&, World<Dim2>*, EffectorDef<Dim2>&);
+template bool read_effector<Dim3>(Reader&, BodyNames&, const Object&, World<Dim3>*, EffectorDef<Dim3>&);
 
 }  // namespace carom::scene::detail

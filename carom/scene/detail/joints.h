@@ -25,8 +25,10 @@ struct ReadJoint {
 };
 template <class D>
 bool read_joint(Reader& reader, BodyNames& names, const rigid::World<D>& world, const Object& o, ReadJoint<D>& out);
+/// `world`: where it begins, so that what it sets at the start is set; null when it is read again.
 template <class D>
-bool read_effector(Reader& reader, BodyNames& names, const Object& o, rigid::EffectorDef<D>& out);
+bool read_effector(Reader& reader, BodyNames& names, const Object& o, rigid::World<D>* world,
+                   rigid::EffectorDef<D>& out);
 
 /// From what files write (always three components) to the vectors of each dimension.
 inline math::Vec2d position_of(math::Vec3d v, rigid::Dim2*) { return {v.x, v.y}; }

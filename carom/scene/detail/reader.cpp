@@ -326,16 +326,31 @@ math::Quatf Reader::rotation3(const Object& o, std::string_view key) {
   return math::Quatf(math::normalize(about({0, 1, 0}, yaw) * about({0, 0, 1}, pitch) * about({1, 0, 0}, roll)));
 }
 
+std::vector<math::Vec3d> Reader::points_of(const Node& list, const std::string& path, Measure measure) {
+  std::vector<math::Vec3d> out;
+  if (!list.is_array()) return expected(list, path, "a list of points"), out;
+  out.reserve(list.children.size());
+  for (std::size_t i = 0; i < list.children.size() && !failed_; ++i)
+    out.push_back(vector_of(list.children[i], index_path(path, i), measure));
+  return out;
+}
+
 std::vector<math::Vec3d> Reader::points(const Object& o, std::string_view key) {
   const Field& f = field(o, key);
   const Node* node = failed_ ? nullptr : o.find(key);
-  std::vector<math::Vec3d> out;
+  if (node == nullptr) return {};
+  return points_of(*node, o.path_of(key), f.measure);
+}
+
+std::vector<std::vector<math::Vec3d>> Reader::point_lists(const Object& o, std::string_view key) {
+  const Field& f = field(o, key);
+  const Node* node = failed_ ? nullptr : o.find(key);
+  std::vector<std::vector<math::Vec3d>> out;
   if (node == nullptr) return out;
   const std::string path = o.path_of(key);
-  if (!node->is_array()) return expected(*node, path, "a list of points"), out;
-  out.reserve(node->children.size());
+  if (!node->is_array()) return expected(*node, path, "a list of lists of points"), out;
   for (std::size_t i = 0; i < node->children.size() && !failed_; ++i)
-    out.push_back(vector_of(node->children[i], index_path(path, i), f.measure));
+    out.push_back(points_of(node->children[i], index_path(path, i), f.measure));
   return out;
 }
 

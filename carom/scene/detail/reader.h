@@ -76,6 +76,7 @@ class Reader {
   math::Quatf rotation3(const Object& o, std::string_view key);
   math::Rot2f rotation2(const Object& o, std::string_view key);
   std::vector<math::Vec3d> points(const Object& o, std::string_view key);
+  std::vector<std::vector<math::Vec3d>> point_lists(const Object& o, std::string_view key);
   std::vector<double> numbers(const Object& o, std::string_view key, int count = -1);
   /// False where the key "if" is there and zero.
   bool wanted(const Object& o);
@@ -89,6 +90,7 @@ class Reader {
   const Field& field(const Object& o, std::string_view key) const;
   Quantity evaluate(const Node& node, std::string_view path, std::string_view text);
   math::Vec3d vector_of(const Node& node, std::string_view path, Measure measure);
+  std::vector<math::Vec3d> points_of(const Node& list, const std::string& path, Measure measure);
 
   const SceneDocument& document_;
   bool failed_ = false;

@@ -185,8 +185,15 @@ bool read_concave_polygon(Reader& reader, const Object& o, geometry::Shape2& out
   std::vector<Vec2f> points;
   for (const Vec3d& p : reader.points(o, "points")) points.emplace_back(float(p.x), float(p.y));
   if (reader.failed()) return false;
-  const auto parts = geometry::decompose_convex(points);
-  if (!parts.ok()) return reader.fail(*o.find("points"), o.path_of("points"), parts.error().message), false;
+  std::vector<std::vector<Vec2f>> holes;
+  for (const std::vector<Vec3d>& hole : reader.point_lists(o, "openings")) {
+    holes.emplace_back();
+    for (const Vec3d& p : hole) holes.back().emplace_back(float(p.x), float(p.y));
+  }
+  if (reader.failed()) return false;
+  const auto parts = geometry::decompose_convex(points, holes);
+  const char* wrong = holes.empty() ? "points" : "openings";
+  if (!parts.ok()) return reader.fail(*o.find(wrong), o.path_of(wrong), parts.error().message), false;
   out = parts->front();
   more.assign(parts->begin() + 1, parts->end());
   return true;
