@@ -4,13 +4,19 @@
 namespace carom::ballistics::detail {
 
 AimSolver::Reach AimSolver::reach(const Guess& guess) const {
+  Reach at = reach(guess, 5e-3);
+  if (!at.known || math::abs(at.gap) < 0.03 * at.scale) at = reach(guess, 5e-4);
+  return at;
+}
+
+AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
   const double speed = shooter_.muzzle_speed, time = guess.time;
   const Vec3d target = target_(time);
   Reach at;
   at.guess = guess;
   at.scale = math::max(math::length(target - shooter_.muzzle), 0.1 * speed * time);
   Path path;
-  if (!(record(guess, 1e-3 * at.scale, path) || record(guess, 4e-3 * at.scale, path))) return at;
+  if (!record(guess, accuracy * at.scale, path)) return at;
   linearize(path, false);
   at.inverse = inverse_of(path.by_velocity);
   // Changes of u across the barrel move the arrival within the surface.

@@ -82,6 +82,8 @@ class AimSolver {
     Inverse inverse{};
   };
   Reach reach(const Guess& guess) const;
+  /// By a flight that may be so far off, a share of the scale, before it is known by how much.
+  Reach reach(const Guess& guess, double accuracy) const;
   /// The same where it is nearest to the target, about, at the time of the guess.
   Reach reach_nearest(Guess guess) const;
   /// The shot that comes nearest to the target at another flight time, by the ball.
