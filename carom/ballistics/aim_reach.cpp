@@ -54,15 +54,14 @@ AimSolver::Reach AimSolver::reach_nearest(Guess guess) const {
   return at;
 }
 
-AimSolver::Nearest AimSolver::nearest() const {
+AimSolver::Nearest AimSolver::nearest(double time) const {
   const double away = math::length(target_(0) - shooter_.muzzle), longest = options_.longest_time;
-  const Guess first =
-      straight(math::min(math::min(flat_time(), math::sqrt(1.6 * away / conditions_.gravity)), longest));
+  const Guess first = straight(math::min(math::min(time, math::sqrt(1.6 * away / conditions_.gravity)), longest));
   Nearest found = nearest_from(first);
   // There may be a nearer place elsewhere: where winds bend the surface, or where the target turns.
-  const auto look = [&](double time) {
+  const auto look = [&](double at) {
     if (!found.sure || found.gap < 0) return;
-    const Nearest other = nearest_from(straight(time));
+    const Nearest other = nearest_from(straight(at));
     if (!other.sure || other.gap < found.gap) found = other;
   };
   if (found.sure && found.gap < 0.03 * found.at.scale) look(0.7 * found.time);

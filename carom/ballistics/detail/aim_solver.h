@@ -54,11 +54,14 @@ class AimSolver {
     const double h = 1e-3 * math::max(time, 1e-2);
     return (target_(time + h) - target_(time)) / h;
   }
-  double flat_time() const;
-  bool looks_far() const;
+  double drag_by_way(double speed, double height) const;
+  /// Straight at the target, but for what it falls.
+  Guess flat_guess() const;
+  /// Nearly straight up, and down on the target.
+  Guess steep_guess() const;
   void keep(Aims& aims, const Root& root) const;
   /// `late`: the root on the high side, where the search for the low one led there.
-  bool by_guesses(Aims& aims, Root& late) const;
+  bool by_guesses(const Guess& flat, Aims& aims, Root& late) const;
   /// The inverse of ∂x(T)/∂u.
   struct Inverse {
     Vec3d row[3];
@@ -94,7 +97,7 @@ class AimSolver {
     Reach at{};                // near there
     double time = 0, gap = 0;  // s, m, foretold from there
   };
-  Nearest nearest() const;
+  Nearest nearest(double flat_time) const;
   Nearest nearest_from(Guess guess) const;
   /// No solution where the surface never comes to the target; else the roots on either side of where it is deepest in.
   /// `late` may be known, the root after that. False: unknown.
