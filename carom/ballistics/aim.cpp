@@ -47,8 +47,7 @@ core::Result<Aims> aim(const Projectile& projectile, const Conditions& condition
   };
   const detail::AimSolver solver(projectile, conditions, shooter, place, options);
   Aims aims;
-  const bool steady = target.acceleration == Vec3d{};
-  if (solver.two_arcs(aims, steady)) return aims;
+  if (solver.two_arcs(aims)) return aims;
   return solver.scan();
 }
 

@@ -85,66 +85,7 @@ bool AimSolver::fly_in(Guess guess, double allowed, Arrival& arrival, Path* path
   return false;
 }
 
-template <bool Plain>
-AimSolver::Pass AimSolver::pass_in(double elevation, double azimuth) const {
-  Vec3d x = shooter_.muzzle, v = shooter_.velocity + shooter_.muzzle_speed * direction(elevation, azimuth),
-        k = rough_.at<Plain>(x, v);
-  const auto beyond = [&](Vec3d place, double t) {  // m past the target's distance
-    const Vec3d to = target_(t) - shooter_.muzzle, way = place - shooter_.muzzle;
-    return math::sqrt(way.x * way.x + way.z * way.z) - math::sqrt(to.x * to.x + to.z * to.z);
-  };
-  const double start = beyond(x, 0);
-  double t = 0, above = x.y - target_(0).y, nearest = -1e300;
-  for (int i = 0; i < 400 && t < options_.longest_time; ++i) {
-    const double speed = math::length(v),
-                 h = math::min(0.3 * math::max(speed, 0.5 * fall_speed_) / math::max(math::length(k), 1e-9),
-                               -0.5 * start / math::max(speed, 1e-9));
-    const Step end = step<Plain>(x, v, k, h);
-    const double gone = beyond(end.x, t + h), above_end = end.x.y - target_(t + h).y;
-    const bool passes = gone >= 0, crosses = (above > 0) != (above_end > 0);
-    if (passes || crosses) {
-      // Within the step: the cubic through both ends, halved to a thousandth.
-      const auto look = [&](double s) {
-        const double s2 = s * s, s3 = s2 * s;
-        return (2 * s3 - 3 * s2 + 1) * x + (s3 - 2 * s2 + s) * h * v + (3 * s2 - 2 * s3) * end.x +
-               (s3 - s2) * h * end.v;
-      };
-      const auto first = [&](auto&& is_there) {
-        double low = 0, high = 1;
-        for (int j = 0; j < 12; ++j) {
-          const double s = 0.5 * (low + high);
-          (is_there(look(s), t + s * h) ? high : low) = s;
-        }
-        return high;
-      };
-      double s = crosses ? first([&](Vec3d place, double at) { return (place.y > target_(at).y) != (above > 0); }) : 2;
-      const bool far = crosses && beyond(look(s), t + s * h) < 0;  // at the target's height before its distance
-      if (!far && passes) s = first([&](Vec3d place, double at) { return beyond(place, at) >= 0; });
-      const double when = t + s * h;
-      const Vec3d place = look(s), to = target_(when) - shooter_.muzzle, way = place - shooter_.muzzle;
-      const double radial = (v.x * way.x + v.z * way.z) / math::max(math::hypot(way.x, way.z), 1e-9);
-      double turn = math::atan2(to.z, to.x) - math::atan2(way.z, way.x);
-      turn += turn > math::pi ? -2 * math::pi : turn < -math::pi ? 2 * math::pi : 0;
-      if (!far) return {radial > 2 * math::length(velocity_of_target(when)), math::max(way.y - to.y, nearest), turn};
-      // What the wind and the shooter's way do hangs on the azimuth.
-      const double drift = math::length(shooter_.velocity) + math::length(conditions_.wind.at(place.y));
-      nearest = math::max(nearest, beyond(place, when) + drift * when * math::min(math::abs(turn), 1.0));
-      if (above > 0) return {end.v.y < velocity_of_target(when).y, nearest, turn};
-      if (passes) return {};
-    }
-    x = end.x;
-    v = end.v;
-    k = end.k;
-    t += h;
-    above = above_end;
-    if (v.y < 0 && above < 0.5 * start) return {true, above + gone, 0};  // it never came up to the target's height
-  }
-  return {};
-}
-
 template bool AimSolver::fly_in<true>(Guess, double, Arrival&, Path*, bool) const;
 template bool AimSolver::fly_in<false>(Guess, double, Arrival&, Path*, bool) const;
-template AimSolver::Pass AimSolver::pass_in<true>(double, double) const;
-template AimSolver::Pass AimSolver::pass_in<false>(double, double) const;
 
 }  // namespace carom::ballistics::detail

@@ -39,16 +39,9 @@ class AimSolver {
   Aims scan() const;
   /// The usual case, in which the speed to spare has one peak over T, with an arc on either side of it. False: it is
   /// not the usual case, and the scan must tell.
-  bool two_arcs(Aims& aims, bool steady) const;
+  bool two_arcs(Aims& aims) const;
 
  private:
-  /// Finds u(T), from the guess that is there; false where it would need more than several muzzle speeds.
-  struct Need {
-    bool known = false;
-    double lack = -1e300;  // muzzle speed − |u − v|: ≥ 0 where the gun is fast enough
-  };
-  Need need(Guess& guess) const;
-
   /// The initial velocity that hits at T in vacuum.
   Vec3d vacuum(double time) const {
     const Vec3d way = target_(time) - shooter_.muzzle;
@@ -61,54 +54,61 @@ class AimSolver {
     const double h = 1e-3 * math::max(time, 1e-2);
     return (target_(time + h) - target_(time)) / h;
   }
-  double flat_time() const;
-  bool looks_far() const;
+  double drag_by_way(double speed, double height) const;
+  /// Straight at the target, but for what it falls.
+  Guess flat_guess() const;
+  /// Nearly straight up, and down on the target.
+  Guess steep_guess() const;
   void keep(Aims& aims, const Root& root) const;
   /// `late`: the root on the high side, where the search for the low one led there.
-  bool by_guesses(Aims& aims, Root& late) const;
-  /// True: certainly no solution, for a target of steady velocity. No shot gets so far: where drag at every moment is
-  /// the least that it can be at that speed, every level distance grows at least as fast as with the drag that is.
-  bool outranged() const;
-  /// True: certainly no solution. Shots at five elevations pass the target's distance below it, or fall through its
-  /// height before they get there, and so does the best one between them, by a good margin.
-  bool out_of_reach() const;
-  /// The flight time at which a gun needs least speed in vacuum, s.
-  double best_in_vacuum() const;
-  /// The speed that is needed falls with T and rises again: a convex curve, which lies above its tangents. Where these
-  /// leave no time at which the muzzle speed would do, there is no solution (`never`); `near`: `guess` needs hardly
-  /// more than the muzzle speed, or less.
-  enum class Reach { never, near, unknown };
-  Reach falls_short(Guess& guess) const;
-  /// What the gun lacks at a flight time, how that changes with the time, and how the initial velocity does.
-  struct Footing {
-    bool known = false;
-    Guess guess{};
-    double lack = 0, slope = 0;  // m/s, m/s²
-    Vec3d drift{};               // m/s²
-  };
-  Footing footing(Guess guess) const;
-  /// From `top` up to the peak of the speed to spare, then down both sides of it. `sure`: the top is near the peak, so
-  /// that a peak below zero is the end of the matter. `late` may be known, the root after the peak.
-  bool climb(Aims& aims, Guess top, bool sure, const Root& late) const;
-  bool by_peak(Aims& aims, const Root& late) const;
-  /// The root between a and b, where the lack has different signs: halved until Newton's method finds one there.
-  bool bisect(Guess a, const Need& at_a, Guess b, Aims& aims) const;
-  /// A peak of the lack between a and b, below zero in the samples: where it reaches zero there are two roots.
-  void touch(Guess a, Guess peak, double at_peak, Guess b, Aims& aims) const;
-
+  bool by_guesses(const Guess& flat, Aims& aims, Root& late) const;
   /// The inverse of ∂x(T)/∂u.
   struct Inverse {
     Vec3d row[3];
     Vec3d apply(Vec3d x) const { return {math::dot(row[0], x), math::dot(row[1], x), math::dot(row[2], x)}; }
     Vec3d apply_transposed(Vec3d x) const { return x.x * row[0] + x.y * row[1] + x.z * row[2]; }
   };
-  /// Without gravity a turn of u turns the whole path, and quadratic drag gives ∂D/∂|u| = T v_end/|u|.
-  Inverse estimate(const Guess& guess, const Arrival& end) const;
-  /// The inverse of the derivative by differences.
-  Inverse derivatives(const Guess& guess, const Arrival& end, double accuracy) const;
   static Inverse inverse_of(const Vec3d* rows);
-  /// Broyden's update of the inverse: it must give du for dx.
-  static void update(Inverse& inverse, Vec3d du, Vec3d dx);
+
+  /// The surface that the shots of one flight time reach, where one of them arrives: as a ball with its normal and its
+  /// mean curvature there, seen from the target.
+  struct Reach {
+    bool known = false;
+    Guess guess{};
+    double gap = 0;             // m, from the surface to the target; < 0: within
+    double rate = 0, bend = 0;  // m/s, m/s², of the gap over the flight time
+    double scale = 0;           // m
+    double radius = 0;          // m
+    double bulge = 0;           // m, how much of the gap is the ball's doing: none where the target is straight ahead
+    Vec3d normal{}, way{};      // outward; m, from the centre to the target
+    Vec3d drift{};              // m/s, of the target past the shot
+    Inverse inverse{};
+  };
+  Reach reach(const Guess& guess) const;
+  /// By a flight that may be so far off, a share of the scale, before it is known by how much.
+  Reach reach(const Guess& guess, double accuracy) const;
+  /// The same where it is nearest to the target, about, at the time of the guess.
+  Reach reach_nearest(Guess guess) const;
+  /// The shot that comes nearest to the target at another flight time, by the ball.
+  Guess toward(const Reach& at, double time) const;
+  /// Where over all flight times the surface comes nearest to the target, or the target deepest into it.
+  struct Nearest {
+    bool sure = false;
+    Reach at{};                // near there
+    double time = 0, gap = 0;  // s, m, foretold from there
+  };
+  Nearest nearest(double flat_time) const;
+  Nearest nearest_from(Guess guess) const;
+  /// No solution where the surface never comes to the target; else the roots on either side of where it is deepest in.
+  /// `late` may be known, the root after that. False: unknown.
+  bool by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const;
+  /// The root between a and b, on different sides of the surface: by secants until Newton's method finds one there.
+  bool between(Reach a, Reach b, Aims& aims) const;
+  /// The target comes nearer to the surface at a, and farther at b: where it passes it between them there are two
+  /// roots.
+  void touch(Reach a, Reach b, Aims& aims) const;
+  /// The shot at a target in vacuum, by muzzle speed.
+  Guess straight(double time) const;
 
   using Path = FlightPath;
   /// How the arrival depends on the start and by how much it is off, to first order in the defects of the elements and
@@ -150,12 +150,7 @@ class AimSolver {
   template <bool Plain>
   [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
-  Arrival propagate(Vec3d u, double time, double allowed) const {
-    Arrival arrival;
-    fly({u, time}, allowed, arrival, nullptr);
-    return arrival;
-  }
-  /// The same, recorded. `falling`: until it comes down to the target's height. False: too many steps.
+  /// `falling`: until it comes down to the target's height. False: too many steps.
   bool record(Guess guess, double allowed, Path& path, bool falling = false) const {
     return fly(guess, allowed, path.arrival, &path, falling);
   }
@@ -165,17 +160,6 @@ class AimSolver {
   }
   template <bool Plain>
   bool fly_in(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling) const;
-  /// How a shot passes the target's distance, or falls through its height before.
-  struct Pass {
-    bool plain = false;  // once and at a slant, or never
-    double over = 0;     // m above the target at its distance; or how much farther than the target at its height, < 0
-    double aside = 0;    // rad, how much farther to turn
-  };
-  Pass pass(double elevation, double azimuth) const {
-    return pull_.plain() ? pass_in<true>(elevation, azimuth) : pass_in<false>(elevation, azimuth);
-  }
-  template <bool Plain>
-  Pass pass_in(double elevation, double azimuth) const;
   const PointMassPull pull_;  // what holds
   const RoughPull rough_;     // what flights feel
   const AimMedium medium_;    // what holds, for lanes

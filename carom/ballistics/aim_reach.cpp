@@ -1,0 +1,203 @@
+// The surface that shots reach at a flight time: how near it comes to the target, and when the target passes it.
+#include "carom/ballistics/detail/aim_solver.h"
+
+namespace carom::ballistics::detail {
+
+AimSolver::Reach AimSolver::reach(const Guess& guess) const {
+  Reach at = reach(guess, 5e-3);
+  if (!at.known || math::abs(at.gap) < 0.03 * at.scale) at = reach(guess, 5e-4);
+  return at;
+}
+
+AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
+  const double speed = shooter_.muzzle_speed, time = guess.time;
+  const Vec3d target = target_(time);
+  Reach at;
+  at.guess = guess;
+  at.scale = math::max(math::length(target - shooter_.muzzle), 0.1 * speed * time);
+  Path path;
+  if (!record(guess, accuracy * at.scale, path)) return at;
+  linearize(path, false);
+  at.inverse = inverse_of(path.by_velocity);
+  // Changes of u across the barrel move the arrival within the surface.
+  const Vec3d across = at.inverse.apply_transposed((guess.u - shooter_.velocity) / speed);
+  const double steep = math::length(across);
+  const Vec3d *rows = path.by_velocity, miss = target - path.arrival.position;
+  at.normal = across / steep;
+  at.radius = speed * math::sqrt(math::abs(math::dot(rows[0], math::cross(rows[1], rows[2]))) * steep);
+  at.way = miss + at.radius * at.normal;
+  const double distance = math::length(at.way);
+  const Vec3d to = at.way / distance, velocity = velocity_of_target(time);
+  at.drift = velocity - path.arrival.velocity;
+  at.gap = distance - at.radius;
+  at.bulge = math::abs(at.gap - math::dot(at.normal, miss));
+  at.rate = math::dot(to, at.drift);
+  const double later = 1e-2 * time;
+  const Vec3d pull = (velocity_of_target(time + later) - velocity) / later - Path::at(path.k, path.count);
+  at.bend = math::max(math::dot(to, pull) + math::length_squared(at.drift - at.rate * to) / distance,
+                      0.3 * conditions_.gravity);
+  at.known = math::is_finite(at.gap) && math::is_finite(at.bend) && math::is_finite(at.rate) && at.bend > 0;
+  return at;
+}
+
+AimSolver::Guess AimSolver::toward(const Reach& at, double time) const {
+  const Vec3d then = math::normalize(at.way + (time - at.guess.time) * at.drift);
+  const Vec3d barrel =
+      at.guess.u - shooter_.velocity + at.inverse.apply(at.radius * (then - math::dot(then, at.normal) * at.normal));
+  return {shooter_.velocity + shooter_.muzzle_speed * math::normalize(barrel), time};
+}
+
+AimSolver::Reach AimSolver::reach_nearest(Guess guess) const {
+  Reach at = reach(guess);
+  for (int i = 0; i < 6 && at.known && at.bulge > math::max(0.2 * math::abs(at.gap), 1e-4 * at.scale); ++i)
+    at = reach(toward(at, guess.time));
+  return at;
+}
+
+AimSolver::Nearest AimSolver::nearest(double time) const {
+  const double away = math::length(target_(0) - shooter_.muzzle), longest = options_.longest_time;
+  const Guess first = straight(math::min(math::min(time, math::sqrt(1.6 * away / conditions_.gravity)), longest));
+  Nearest found = nearest_from(first);
+  // There may be a nearer place elsewhere: where winds bend the surface, or where the target turns.
+  const auto look = [&](double at) {
+    if (!found.sure || found.gap < 0) return;
+    const Nearest other = nearest_from(straight(at));
+    if (!other.sure || other.gap < found.gap) found = other;
+  };
+  if (found.sure && found.gap < 0.03 * found.at.scale) look(0.7 * found.time);
+  const Vec3d turns = velocity_of_target(longest) - velocity_of_target(0);
+  if (math::length(turns) > 1e-6 * shooter_.muzzle_speed)
+    for (const double share : {0.125, 0.25, 0.5, 1.0}) look(share * longest);
+  return found;
+}
+
+AimSolver::Nearest AimSolver::nearest_from(Guess guess) const {
+  const double longest = options_.longest_time;
+  Nearest found;
+  double early = 0, late = 1e300, closing = 0, opening = 0;  // s, m/s: between them the gap is least
+  double before = 1e300;
+  for (int i = 0; i < 16; ++i) {
+    const Reach at = reach(guess);
+    if (!at.known) return found;
+    const double time = guess.time;
+    (at.rate < 0 ? early : late) = time;
+    (at.rate < 0 ? closing : opening) = at.rate;
+    double next = time - at.rate / at.bend;
+    if (early > 0 && late < 1e300)
+      next = math::clamp(early + (late - early) * closing / (closing - opening), 0.95 * early + 0.05 * late,
+                         0.05 * early + 0.95 * late);
+    next = math::clamp(next, 0.4 * time, math::min(2.5 * time, longest));
+    const double dt = next - time, least = at.gap + dt * (at.rate + 0.5 * at.bend * dt);
+    const double change = math::abs(least - before);
+    found.at = at;
+    found.time = next;
+    found.gap = least;
+    found.sure = change < 0.25 * math::abs(least) || change < 2e-4 * at.scale ||
+                 (at.gap < -0.02 * at.scale && at.bulge < -0.4 * at.gap);
+    if (found.sure) return found;
+    before = least;
+    guess = toward(at, next);
+  }
+  return found;
+}
+
+bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
+  const double first = math::min(a.guess.time, b.guess.time), last = math::max(a.guess.time, b.guess.time);
+  const double margin = 0.02 * (last - first) + 2e-3 * last;  // gaps are known to about 1e-3
+  for (int i = 0; i < 24; ++i) {
+    const double chord = a.gap / (a.gap - b.gap), share = i % 3 == 2 ? 0.5 : math::clamp(chord, 0.1, 0.9);
+    const double time = a.guess.time + share * (b.guess.time - a.guess.time);
+    const Guess guess = toward(share < 0.5 ? a : b, time);
+    const Root root = refine(guess);
+    if (root.found && root.guess.time > first - margin && root.guess.time < last + margin) {
+      keep(aims, root);
+      return true;
+    }
+    const Reach at = reach_nearest(guess);
+    if (!at.known) return false;
+    ((at.gap > 0) == (a.gap > 0) ? a : b) = at;
+  }
+  return false;
+}
+
+bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const {
+  if (!nearest.sure) return false;
+  const Reach& at = nearest.at;
+  const double edge = 1e-3 * at.scale;
+  if (nearest.gap > edge) return true;
+  // What is nearer than it can be known is hit where Newton's method says so.
+  if (nearest.gap > -edge) {
+    const Root touch = refine(toward(at, nearest.time));
+    if (!touch.found) return nearest.gap > 0;
+    keep(aims, touch);
+  }
+  // By the parabola that is foretold.
+  const double way = math::sqrt(2 * math::max(-nearest.gap, edge) / at.bend), peak = at.guess.time - at.rate / at.bend;
+  for (const double side : {-1.0, 1.0}) {
+    if (side > 0 && late.found && late.guess.time > nearest.time) {
+      keep(aims, late);
+      continue;
+    }
+    const double time = math::clamp(peak + side * way, 0.4 * nearest.time, 2 * nearest.time);
+    const Root root = refine(toward(at, time));
+    if (root.found && side * (root.guess.time - nearest.time) > 0 && side * root.slope > 0) {
+      keep(aims, root);
+      continue;
+    }
+    Reach inside = reach_nearest(toward(at, nearest.time)), outside = inside;
+    if (!inside.known) return false;
+    while (outside.gap <= 0) {
+      inside = outside;
+      const double next = inside.guess.time * (side > 0 ? 1.3 : 1 / 1.3);
+      if (next > 1.3 * options_.longest_time || next < 1e-5) break;
+      outside = reach_nearest(toward(inside, next));
+      if (!outside.known) return false;
+    }
+    if (outside.gap > 0 && !between(inside, outside, aims)) return false;
+  }
+  return aims.low.has_value();
+}
+
+Aims AimSolver::scan() const {
+  const double fastest =
+      shooter_.muzzle_speed + math::length(shooter_.velocity) + math::length(conditions_.wind.at(shooter_.muzzle.y));
+  const double first_time = math::max(
+      1e-4, 0.2 * math::length(target_(0) - shooter_.muzzle) / (fastest + math::length(velocity_of_target(0))));
+  const double ratio = math::max(options_.longest_time / first_time, 1.01);
+  constexpr int steps = 160;
+  Aims aims;
+  Reach before = reach(straight(first_time));
+  for (int i = 1; i <= steps; ++i) {
+    const double time = first_time * math::pow(ratio, double(i) / steps);
+    const Reach at = reach_nearest(before.known ? toward(before, time) : straight(time));
+    if (before.known && at.known) {
+      if ((before.gap > 0) != (at.gap > 0))
+        between(before, at, aims);
+      else if (at.gap > 0 && before.rate < 0 && at.rate > 0)
+        touch(before, at, aims);
+    }
+    before = at;
+  }
+  return aims;
+}
+
+void AimSolver::touch(Reach a, Reach b, Aims& aims) const {
+  for (int i = 0; i < 24; ++i) {
+    const double share = i % 3 == 2 ? 0.5 : math::clamp(a.rate / (a.rate - b.rate), 0.05, 0.95);
+    const double time = a.guess.time + share * (b.guess.time - a.guess.time);
+    const Reach at = reach_nearest(toward(share < 0.5 ? a : b, time));
+    if (!at.known || at.gap > 10 * (b.guess.time - a.guess.time) * (math::abs(a.rate) + b.rate)) return;
+    if (at.gap <= 0) {
+      between(a, at, aims);
+      between(at, b, aims);
+      return;
+    }
+    (at.rate < 0 ? a : b) = at;
+    if (b.guess.time - a.guess.time < 1e-3 * b.guess.time) {
+      keep(aims, refine(at.guess));
+      return;
+    }
+  }
+}
+
+}  // namespace carom::ballistics::detail

@@ -1,0 +1,146 @@
+// What a projectile of the aim solver feels, in lanes. Compiled once for each instruction set: CAROM_AIM_NAMESPACE,
+// CAROM_AIM_WIDTH.
+
+namespace carom::ballistics::detail::CAROM_AIM_NAMESPACE {
+namespace {
+
+constexpr int lanes = CAROM_AIM_WIDTH;
+using D = math::WideDouble<lanes>;
+using Mask = typename D::Mask;
+
+CAROM_SIMD_INLINE D load(const double* p) {
+  D r;
+  __builtin_memcpy(&r.v, p, sizeof r.v);
+  return r;
+}
+CAROM_SIMD_INLINE void store(D a, double* p) { __builtin_memcpy(p, &a.v, sizeof a.v); }
+CAROM_SIMD_INLINE void store_floats(D a, float* p) {
+  typedef float Floats __attribute__((vector_size(4 * lanes)));  // NOLINT(modernize-use-using)
+  const Floats floats = __builtin_convertvector(a.v, Floats);
+  __builtin_memcpy(p, &floats, sizeof floats);
+}
+CAROM_SIMD_INLINE D operator*(double a, D b) { return D::splat(a) * b; }
+CAROM_SIMD_INLINE D absolute(D a) { return {typename D::Vector(Mask(a.v) & 0x7fffffffffffffff)}; }
+CAROM_SIMD_INLINE D larger(D a, double least) { return math::select(a > D::splat(least), a, D::splat(least)); }
+CAROM_SIMD_INLINE D smaller(D a, double most) { return math::select(D::splat(most) > a, a, D::splat(most)); }
+
+/// f(lane) of every lane.
+template <class F>
+CAROM_SIMD_INLINE D gather(F&& f) {
+  if constexpr (lanes == 2)
+    return D{typename D::Vector{f(0), f(1)}};
+  else
+    return D{typename D::Vector{f(0), f(1), f(2), f(3)}};
+}
+
+struct Vector {
+  D x[3];
+  CAROM_SIMD_INLINE D& operator[](int i) { return x[i]; }
+  CAROM_SIMD_INLINE const D& operator[](int i) const { return x[i]; }
+};
+CAROM_SIMD_INLINE D dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// The whole part of numbers from 0 to 2^31; of whole numbers themselves it may be one less.
+struct Cell {
+  Mask bits;
+  D part;  // of one, what is left
+  CAROM_SIMD_INLINE explicit Cell(D place) {
+    constexpr double shift = 6755399441055744.0;  // 1.5·2^52: the last bits of the sum are the number, rounded
+    const D moved = (place - D::splat(0.5)) + D::splat(shift);
+    bits = Mask(moved.v);
+    part = place - (moved - D::splat(shift));
+  }
+  CAROM_SIMD_INLINE std::uint32_t operator[](int lane) const { return std::uint32_t(bits[lane]); }
+};
+
+/// The acceleration, the velocity through the air, and how drag grows across it and along it.
+struct Felt {
+  Vector a, w;
+  D drag, along;
+};
+
+/// `rise`: by how much the acceleration grows with the height.
+template <bool Plain, bool Slopes>
+CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v, Vector* rise = nullptr) {
+  Felt f;
+  const D height = smaller(x[1], 1e9);
+  const Cell cell(
+      smaller(larger((height - D::splat(m.air.lowest)) * D::splat(m.air.per_metre), 0), m.air.last * (1 - 1e-15)));
+  const environment::AirColumn::Air* node[lanes];
+#pragma GCC unroll 4
+  for (int i = 0; i < lanes; ++i) node[i] = m.air.nodes + cell[i];
+  D density = gather([&](int i) { return node[i][0].density; }),
+    sound = gather([&](int i) { return node[i][0].speed_of_sound; });
+  const D denser = gather([&](int i) { return node[i][1].density; }) - density,
+          faster = gather([&](int i) { return node[i][1].speed_of_sound; }) - sound;
+  density = density + cell.part * denser;
+  sound = sound + cell.part * faster;
+
+  Vector shear{};
+  if (!math::any_of<lanes>(D::splat(m.sheared_up_to) > height)) {
+    for (int j = 0; j < 3; ++j) f.w[j] = v[j] - D::splat(m.wind_above[j]);
+  } else {
+    const environment::WindColumn::Leg* leg[lanes];
+#pragma GCC unroll 4
+    for (int i = 0; i < lanes; ++i) {
+      const double here = height.v[i], above = here - m.wind.legs[0].height;
+      std::uint64_t bits;
+      __builtin_memcpy(&bits, &above, sizeof bits);
+      bits >>= 48;
+      const std::uint64_t first = m.wind.first_cell, last = m.wind.last_cell;
+      leg[i] = m.wind.legs + m.wind.first[(bits < first ? first : bits > last ? last : bits) - first];
+      while (leg[i][1].height <= here) ++leg[i];
+      if (!(above > 0)) leg[i] = &m.below;
+    }
+    const D up = height - gather([&](int i) { return leg[i]->height; });
+    for (int j = 0; j < 3; ++j) {
+      shear[j] = gather([&](int i) { return (&leg[i]->shear.x)[j]; });
+      f.w[j] = v[j] - (gather([&](int i) { return (&leg[i]->velocity.x)[j]; }) + up * shear[j]);
+    }
+  }
+
+  const D weight = D::splat(m.half_area) * density, slowness = D::splat(1) / sound;
+  const D speed = math::sqrt(dot(f.w, f.w)), mach = smaller(speed * slowness, 1e9);
+  const Cell part_of_curve(smaller(mach * D::splat(m.drag.cells_per_mach), double(DragCurve::cells) - 1));
+  const DragCurve::Piece* piece[lanes];
+#pragma GCC unroll 4
+  for (int i = 0; i < lanes; ++i) {
+    const double here = mach.v[i];
+    piece[i] = m.drag.pieces + m.drag.first[part_of_curve[i]];
+    while (piece[i][1].start < here) ++piece[i];
+  }
+  const D past = mach - gather([&](int i) { return piece[i]->start; });
+  const D c1 = gather([&](int i) { return piece[i]->slope; }), c2 = gather([&](int i) { return piece[i]->square; }),
+          c3 = gather([&](int i) { return piece[i]->cube; });
+  const D coefficient =
+      larger(gather([&](int i) { return piece[i]->constant; }) + past * (c1 + past * (c2 + past * c3)), 0);
+  const D by_speed = weight * speed;
+  f.drag = by_speed * coefficient;
+  for (int j = 0; j < 3; ++j) f.a[j] = D::splat(0) - f.drag * f.w[j];
+  if constexpr (Plain) {
+    f.a[1] = f.a[1] - D::splat(m.gravity);
+  } else {
+    for (int i = 0; i < lanes; ++i) {
+      const double place[3] = {x[0].v[i], x[1].v[i], x[2].v[i]}, velocity[3] = {v[0].v[i], v[1].v[i], v[2].v[i]};
+      double a[3] = {f.a[0].v[i], f.a[1].v[i], f.a[2].v[i]};
+      m.beside(*m.conditions, place, velocity, a);
+      for (int j = 0; j < 3; ++j) f.a[j].v[i] = a[j];
+    }
+  }
+  if constexpr (Slopes) {
+    const D slope = c1 + past * (2.0 * c2 + past * (3.0 * c3));
+    const D steep = by_speed * mach * slope;
+    f.along = f.drag + f.drag + steep;
+    if (rise != nullptr) {
+      const D by_metre = D::splat(m.air.per_metre);
+      const D bend = (f.along - f.drag) / larger(speed * speed, 1e-18);
+      const D more = bend * dot(f.w, shear) + steep * slowness * (by_metre * faster) -
+                     D::splat(m.half_area) * (by_metre * denser) * coefficient * speed;
+      for (int j = 0; j < 3; ++j) (*rise)[j] = f.drag * shear[j] + more * f.w[j];
+    }
+  }
+  return f;
+}
+
+}  // namespace
+}  // namespace carom::ballistics::detail::CAROM_AIM_NAMESPACE
