@@ -1,44 +1,9 @@
 #include "carom/ballistics/shell.h"
 
-#include "carom/ballistics/detail/flight_air.h"
+#include "carom/ballistics/detail/shell_motion.h"
 #include "carom/core/string.h"
 #include "carom/ode/dormand_prince.h"
-
-namespace carom::ballistics {
-
-namespace detail {
-
-/// Modified point mass: position, velocity, spin.
-struct SpinningPoint {
-  math::Vec3d position{}, velocity{};
-  double spin = 0;
-  friend SpinningPoint operator+(const SpinningPoint& a, const SpinningPoint& b) {
-    return {a.position + b.position, a.velocity + b.velocity, a.spin + b.spin};
-  }
-  friend SpinningPoint operator*(double s, const SpinningPoint& a) {
-    return {s * a.position, s * a.velocity, s * a.spin};
-  }
-};
-
-/// A symmetric body: axis e and angular momentum h = I_x p e + I_t (e × ė), so that the spin itself needs no short
-/// steps, only the nutation (McCoy, Modern Exterior Ballistics, ch. 9).
-struct SymmetricBody {
-  math::Vec3d position{}, velocity{}, axis{}, momentum{};
-  friend SymmetricBody operator+(const SymmetricBody& a, const SymmetricBody& b) {
-    return {a.position + b.position, a.velocity + b.velocity, a.axis + b.axis, a.momentum + b.momentum};
-  }
-  friend SymmetricBody operator*(double s, const SymmetricBody& a) {
-    return {s * a.position, s * a.velocity, s * a.axis, s * a.momentum};
-  }
-};
-
-}  // namespace detail
-}  // namespace carom::ballistics
-
-template <>
-inline constexpr int carom::ode::components<carom::ballistics::detail::SpinningPoint> = 7;
-template <>
-inline constexpr int carom::ode::components<carom::ballistics::detail::SymmetricBody> = 12;
+#include "carom/ode/methods.h"
 
 namespace carom::ballistics {
 
@@ -62,7 +27,9 @@ Shell m107() {
                            {1.35, .353, 5.130, 2.442, -.767, -.020, 3.278, -15.6, .366},
                            {1.5, .338, 4.561, 2.556, -.767, -.020, 3.264, -15.3, .373},
                            {1.75, .314, 3.970, 2.692, -.767, -.020, 3.201, -15.3, .381},
-                           {2, .294, 3.460, 2.747, -.767, -.021, 3.013, -15.3, .388}}};
+                           {2, .294, 3.460, 2.747, -.767, -.021, 3.013, -15.3, .388}},
+          .length = 4.5 * .155,
+          .centre = 2.96 * .155};
 }
 
 std::span<const ShellPreset> shell_presets() {
@@ -86,6 +53,12 @@ core::Status check(const Shell& shell) {
   for (const auto& field : positive)
     if (!(field.value > 0) || !math::is_finite(field.value))
       return core::Error{core::text("shell: ", core::refused(field.name, field.value, "a finite number > 0"))};
+  for (const auto& [name, value] : {std::pair{"length", shell.length}, {"centre", shell.centre}})
+    if (!(value >= 0 && value <= 1000))
+      return core::Error{core::text("shell: ", core::refused(name, value, "0 to 1000 m"))};
+  if (shell.length > 0 && !(shell.centre < shell.length))
+    return core::Error{
+        core::text("shell: ", core::refused("centre", shell.centre, "less than the length, m from the nose"))};
   if (!math::is_finite(shell.twist) || shell.twist == 0)
     return core::Error{core::text("shell: ", core::refused("twist", shell.twist, "calibres a turn, not zero"))};
   if (shell.aerodynamics.empty()) return core::Error{"shell: no aerodynamic coefficients, expected at least one row"};
@@ -133,10 +106,6 @@ ShellCoefficients coefficients_at(const Shell& shell, double mach) {
 
 double muzzle_spin(const Shell& shell, double speed) { return 2 * math::pi * speed / (shell.twist * shell.diameter); }
 
-namespace detail {
-inline double frontal_area(const Shell& shell) { return math::pi / 4 * shell.diameter * shell.diameter; }
-}  // namespace detail
-
 double gyroscopic_stability(const Shell& shell, double spin, double density, double speed, double mach) {
   const double s = detail::frontal_area(shell);
   return math::square(shell.axial_inertia * spin) / (2 * density * shell.transverse_inertia * s * shell.diameter *
@@ -152,58 +121,6 @@ Vec3d yaw_of_repose(const Shell& shell, double spin, double density, Vec3d veloc
 }
 
 namespace detail {
-
-/// Gravity and the turning frame: the acceleration of something without drag.
-Vec3d free_acceleration(const Conditions& conditions, Vec3d position, Vec3d velocity) {
-  return beside_drag(conditions, position, velocity);
-}
-
-struct PointMassMotion {
-  SpinningPoint derivative;
-  Vec3d yaw;
-};
-
-PointMassMotion modified_point_mass(const Shell& shell, const Conditions& conditions, double time,
-                                    const SpinningPoint& s) {
-  const environment::AirColumn::Air air = conditions.air.at(s.position.y);
-  const Vec3d v = s.velocity - wind_of(conditions, s.position, time),
-              g = free_acceleration(conditions, s.position, s.velocity);
-  const double speed = math::length(v), area = frontal_area(shell), d = shell.diameter;
-  if (!(speed > 1e-9) || !(air.density > 0)) return {{s.velocity, g, 0}, {}};
-  const ShellCoefficients c = coefficients_at(shell, speed / air.speed_of_sound);
-  const double k = 0.5 * air.density * area / shell.mass, rate = s.spin * d / (2 * speed);
-  // The yaw of repose depends on the acceleration that it changes: three passes from drag and gravity alone.
-  Vec3d yaw{}, a = g - (k * c.axial * speed) * v;
-  for (int pass = 0; pass < 3; ++pass) {
-    yaw = yaw_of_repose(shell, s.spin, air.density, v, a, c.overturning);
-    const double drag = c.axial + (c.axial_yaw + c.normal) * math::length_squared(yaw);
-    a = g + k * ((-drag * speed) * v + ((c.normal - c.axial) * speed * speed) * yaw +
-                 (rate * c.magnus_force * speed) * math::cross(yaw, v));
-  }
-  const double spin = 0.5 * air.density * speed * speed * area * d * rate * c.roll_damping / shell.axial_inertia;
-  return {{s.velocity, a, spin}, yaw};
-}
-
-SymmetricBody six_degrees(const Shell& shell, const Conditions& conditions, double time, const SymmetricBody& s) {
-  const environment::AirColumn::Air air = conditions.air.at(s.position.y);
-  const Vec3d w = s.velocity - wind_of(conditions, s.position, time),
-              g = free_acceleration(conditions, s.position, s.velocity);
-  const Vec3d e = s.axis / math::length(s.axis);
-  const double p = math::dot(s.momentum, e) / shell.axial_inertia;
-  const Vec3d turn = math::cross(s.momentum, e) / shell.transverse_inertia;  // ė
-  const double speed = math::length(w), area = frontal_area(shell), d = shell.diameter;
-  if (!(speed > 1e-9) || !(air.density > 0)) return {s.velocity, g, turn, {}};
-  const ShellCoefficients c = coefficients_at(shell, speed / air.speed_of_sound);
-  const Vec3d u = w / speed, side = u - math::dot(u, e) * e;  // the wind's part across the axis
-  const double q = 0.5 * air.density * speed * speed * area, rate = p * d / (2 * speed);
-  const Vec3d force = q * (-(c.axial + c.axial_yaw * math::length_squared(side)) * e - c.normal * side +
-                           (rate * c.magnus_force) * math::cross(e, u));
-  const Vec3d spin_across = math::cross(e, turn);  // ω without its part along the axis
-  const Vec3d moment =
-      (q * d) * (c.overturning * math::cross(u, e) + (d / (2 * speed) * c.pitch_damping) * spin_across +
-                 (rate * c.magnus_moment) * side + (rate * c.roll_damping) * e);
-  return {s.velocity, g + force / shell.mass, turn, moment};
-}
 
 core::Status check(const FlightPoint& start, const FlightLimits& limits) {
   const struct {
@@ -262,8 +179,7 @@ core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& condit
     return conditions.field ? math::min(step, detail::longest_field_step) : step;
   };
   const auto angle = [&](double time, Vec3d axis, Vec3d position, Vec3d velocity) {
-    const Vec3d w = velocity - detail::wind_of(conditions, position, time);
-    return math::atan2(math::length(math::cross(axis, w)), math::dot(axis, w));
+    return yaw_of(conditions, {position, velocity, 0, axis, {}}, time);
   };
   if (model == ShellModel::modified_point_mass) {
     return detail::integrate(
@@ -278,10 +194,8 @@ core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& condit
           return ShellState{time, s.position, s.velocity, s.spin, axis, angle(time, axis, s.position, s.velocity)};
         });
   }
-  const Vec3d axis = math::normalize(start.velocity);
-  const Vec3d across = tip - math::dot(tip, axis) * axis;
-  const detail::SymmetricBody first{start.position, start.velocity, axis,
-                                    (shell.axial_inertia * spin) * axis + shell.transverse_inertia * across};
+  const ShellMotion launch = launched(shell, start, spin, model, tip);
+  const detail::SymmetricBody first{launch.position, launch.velocity, launch.axis, launch.momentum};
   return detail::integrate(
       first, start, limits, longest(0.05),
       [&](double time, const detail::SymmetricBody& s) { return detail::six_degrees(shell, conditions, time, s); },
@@ -291,6 +205,63 @@ core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& condit
                           s.velocity, math::dot(s.momentum, e) / shell.axial_inertia,
                           e,          angle(time, e, s.position, s.velocity)};
       });
+}
+
+namespace detail {
+
+/// rad/s: the nutation, the swing of a shell that hardly spins, and what it turns by already.
+double fastest_turn(const Shell& shell, const Conditions& conditions, const ShellMotion& m, double time) {
+  const environment::AirColumn::Air air = conditions.air.at(m.position.y);
+  const double speed = math::length(m.velocity - wind_of(conditions, m.position, time));
+  const double lever = math::abs(coefficients_at(shell, speed / air.speed_of_sound).overturning);
+  const double swing = 0.5 * air.density * speed * speed * frontal_area(shell) * shell.diameter * lever;
+  return math::max(shell.axial_inertia * math::abs(m.spin) / shell.transverse_inertia,
+                   math::sqrt(swing / shell.transverse_inertia) +
+                       math::length(math::cross(m.momentum, m.axis)) / shell.transverse_inertia);
+}
+
+}  // namespace detail
+
+ShellMotion launched(const Shell& shell, const FlightPoint& start, double spin, ShellModel model, Vec3d tip) {
+  const Vec3d axis = math::normalize(start.velocity);
+  ShellMotion motion{start.position, start.velocity, spin, axis, {}};
+  if (model == ShellModel::six_degrees)
+    motion.momentum =
+        (shell.axial_inertia * spin) * axis + shell.transverse_inertia * (tip - math::dot(tip, axis) * axis);
+  return motion;
+}
+
+ShellMotion flown(const Shell& shell, const Conditions& conditions, ShellModel model, const ShellMotion& motion,
+                  double time, double dt) {
+  constexpr int most = 4096;
+  double parts = dt / detail::longest_field_step;
+  if (model == ShellModel::six_degrees)
+    parts = math::max(parts, 10 * dt * detail::fastest_turn(shell, conditions, motion, time));
+  const int count = parts < most ? int(math::ceil(math::max(parts, 1.0))) : most;
+  const double h = dt / count;
+  if (model == ShellModel::modified_point_mass) {
+    detail::SpinningPoint s{motion.position, motion.velocity, motion.spin};
+    const auto slope = [&](double t, const detail::SpinningPoint& at) {
+      return detail::modified_point_mass(shell, conditions, t, at).derivative;
+    };
+    for (int k = 0; k < count; ++k) s = ode::rk4(slope, time + k * h, s, h);
+    const Vec3d yaw = detail::modified_point_mass(shell, conditions, time + dt, s).yaw,
+                w = s.velocity - detail::wind_of(conditions, s.position, time + dt);
+    const Vec3d axis = math::length(w) > 1e-9 ? math::normalize(math::normalize(w) + yaw) : motion.axis;
+    return {s.position, s.velocity, s.spin, axis, {}};
+  }
+  detail::SymmetricBody s{motion.position, motion.velocity, motion.axis, motion.momentum};
+  const auto slope = [&](double t, const detail::SymmetricBody& at) {
+    return detail::six_degrees(shell, conditions, t, at);
+  };
+  for (int k = 0; k < count; ++k) s = ode::rk4(slope, time + k * h, s, h);
+  const Vec3d e = math::normalize(s.axis);
+  return {s.position, s.velocity, math::dot(s.momentum, e) / shell.axial_inertia, e, s.momentum};
+}
+
+double yaw_of(const Conditions& conditions, const ShellMotion& motion, double time) {
+  const Vec3d w = motion.velocity - detail::wind_of(conditions, motion.position, time);
+  return math::atan2(math::length(math::cross(motion.axis, w)), math::dot(motion.axis, w));
 }
 
 }  // namespace carom::ballistics

@@ -29,6 +29,8 @@ struct Shell {
   double transverse_inertia = 1;                ///< kg·m², I_t
   double twist = 20;                            ///< calibres a turn, right-handed; negative: left-handed
   std::vector<ShellCoefficients> aerodynamics;  ///< rows by rising Mach number, linear between
+  double length = 0;                            ///< m; 0: 4.5 calibres. Of its body alone, as is:
+  double centre = 0;                            ///< m from the nose to the centre of mass; 0: .65 of the length
 };
 /// Errors name what cannot be: masses, inertias, rows of coefficients.
 CAROM_API core::Status check(const Shell& shell);
@@ -80,5 +82,23 @@ struct ShellFlight {
 CAROM_API core::Result<ShellFlight> fly_shell(const Shell& shell, const Conditions& conditions,
                                               const FlightPoint& start, ShellModel model,
                                               const FlightLimits& limits = {}, math::Vec3d tip = {});
+
+/// A shell in flight that is taken on step by step.
+struct ShellMotion {
+  math::Vec3d position{}, velocity{};  ///< m, m/s
+  double spin = 0;                     ///< rad/s
+  math::Vec3d axis{1, 0, 0};           ///< unit vector, nose forward
+  math::Vec3d momentum{};              ///< kg·m²/s, angular, I_x p e + I_t e × ė; of six degrees alone
+};
+/// As it leaves the barrel along its velocity through the ground with a spin (rad/s). In six degrees `tip` as above.
+CAROM_API ShellMotion launched(const Shell& shell, const FlightPoint& start, double spin, ShellModel model,
+                               math::Vec3d tip = {});
+/// `dt` s later, from the time `time` of the field: classic Runge–Kutta steps, a fiftieth of a second at most, and so
+/// short that the nose turns by a tenth of a radian at most in one. Those are what six degrees cost: a bullet of a
+/// rifle takes hundreds in a sixtieth of a second. Expects a shell that `check` passes.
+CAROM_API ShellMotion flown(const Shell& shell, const Conditions& conditions, ShellModel model,
+                            const ShellMotion& motion, double time, double dt);
+/// rad, between axis and velocity through the air.
+CAROM_API double yaw_of(const Conditions& conditions, const ShellMotion& motion, double time);
 
 }  // namespace carom::ballistics

@@ -1,5 +1,6 @@
 // What shoulders, rails and scene files do with ballistics.
 #include "carom/ballistics/body_rocket.h"
+#include "carom/ballistics/body_shell.h"
 #include "carom/ballistics/recoil.h"
 #include "carom/ballistics/sway.h"
 #include "carom/environment/environment.h"
@@ -57,8 +58,34 @@ void rocket_models() {
   print_model("rocket_body", hash);
 }
 
+void shell_models() {
+  core::StateHash hash;
+  for (const auto model : {ballistics::ShellModel::modified_point_mass, ballistics::ShellModel::six_degrees}) {
+    rigid::World3 world;
+    const rigid::BodyId ground = *world.create_body({.type = rigid::BodyType::fixed});
+    (void)*world.add_shape(ground, geometry::Plane{});
+    auto shell =
+        ballistics::BodyShell::make(world, {.shell = ballistics::m107(),
+                                            .model = model,
+                                            .conditions = {.wind = environment::WindColumn(Vec3d{4, 0, -7}),
+                                                           .gravity_model = ballistics::GravityModel::inverse_square,
+                                                           .rotation = ballistics::earth_rotation_rate(0.7, 0.4)},
+                                            .start = {{0, 1, 0}, 300.0 * ballistics::direction(0.1)},
+                                            .tip = {0, 1, 2},
+                                            .fired_at = 0.1});
+    for (int i = 0; i < 480; ++i) {
+      (void)shell->before_step(world, 1.0 / 60);
+      (void)world.step(1.0f / 60);
+      if (i % 30 == 0) hash.add(world.state_hash()).add(shell->motion().spin).add(shell->yaw());
+    }
+    hash.add(shell->impact() != nullptr ? shell->impact()->point.x : 0);
+  }
+  print_model("shell_body", hash);
+}
+
 void gun_models() {
   rocket_models();
+  shell_models();
   core::StateHash hash;
   for (const auto stance : {ballistics::Stance::offhand, ballistics::Stance::prone}) {
     const ballistics::SwayMotion sway(ballistics::sway_of(stance, 0.6, 0.3), 12);
