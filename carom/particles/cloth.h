@@ -60,8 +60,7 @@ namespace detail {
 struct ClothState;
 }
 
-/// A value: a copy is a snapshot. Call `step` before World3::step with the same dt; of several that are to meet, that
-/// of a SoftGroup.
+/// A value: a copy is a snapshot. Call `step` before World3::step with the same dt.
 class CAROM_API Cloth {
  public:
   /// Errors: a number out of its range, an index beyond the points, a triangle without area.
@@ -105,7 +104,6 @@ class CAROM_API Cloth {
   std::uint64_t state_hash() const;
 
  private:
-  friend class SoftGroup;
   Cloth();
   std::unique_ptr<detail::ClothState> state_;
 };
