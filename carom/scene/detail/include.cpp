@@ -123,6 +123,7 @@ class PartReader {
       if (const core::Status read = read_mesh(node, from); !read) return read;
     if (node.is_object() && list == "guns")
       for (const char* key : {"ammunition", "sight"}) name_preset(node, key);
+    if (node.is_object() && (list == "ammunition" || list == "shells")) name_preset(node, "shell");
     if (node.is_object() && list == "penetration")
       if (const core::Status read = read_wall(node); !read) return read;
     if (node.is_object() && list == "stages")
