@@ -110,10 +110,16 @@ void BodyShell::take_over(const rigid::BodyState<Dim3>& state) {
 
 core::Status BodyShell::land(rigid::World3& world, const rigid::BodyState<Dim3>& state, Vec3d point) {
   phase_ = Phase::landed;
-  const double whole = length_squared(way_);
-  const double share = whole > 0 ? math::clamp(dot(point - from_, way_) / whole, 0.0, 1.0) : 0;
+  const double whole = length(way_), nose = centre_of(definition_->shell);
+  const double share = whole > 0 ? math::clamp((dot(point - from_, way_) / whole - nose) / whole, 0.0, 1.0) : 0;
   impact_ = {stopped_at_ >= 0 ? stopped_at_ : world.time() - (1 - share) * step_, point, Vec3d(given_velocity_),
              motion_.spin};
+  if (definition_->sticks) {
+    if (auto s = world.set_velocity(body_, {}, {}); !s) return s;
+    const math::Quatf along(math::from_to(Vec3d{1, 0, 0}, motion_.axis));
+    if (auto s = world.set_pose(body_, from_ + share * way_, along); !s) return s;
+    return world.set_type(body_, rigid::BodyType::fixed);
+  }
   if (auto s = world.set_gravity_scale(body_, 1); !s) return s;
   const Shell& shell = definition_->shell;
   rigid::CylinderDrag<Dim3> drag;
@@ -133,6 +139,9 @@ core::Status BodyShell::lead(rigid::World3& world, const rigid::BodyState<Dim3>&
   const BodyShellDef& d = *definition_;
   const double time = world.time();
   motion_ = flown(d.shell, d.conditions, d.model, motion_, time, dt);
+  if (!math::is_finite(length(motion_.position) + length(motion_.velocity) + length(motion_.axis) + motion_.spin))
+    return core::Error{core::text(d.name, ": its flight cannot be computed beyond ", time,
+                                  " s, expected coefficients under which it stays finite")};
   yaw_ = yaw_of(d.conditions, motion_, time + dt);
   const environment::AirColumn::Air air = d.conditions.air.at(motion_.position.y);
   const double speed = length(motion_.velocity - detail::wind_of(d.conditions, motion_.position, time + dt));
@@ -142,6 +151,10 @@ core::Status BodyShell::lead(rigid::World3& world, const rigid::BodyState<Dim3>&
   from_ = state.center_of_mass, way_ = motion_.position - from_, step_ = dt;
   given_velocity_ = Vec3f(way_ / dt);
   given_turn_ = Vec3f(shortest_turn(axis_of(state), motion_.axis) / dt);
+  if (d.world_turns) {
+    const Vec3d turning = 2 * d.shell.mass * cross(d.conditions.rotation, Vec3d(given_velocity_));
+    if (auto s = world.add_force(body_, Vec3f(turning)); !s) return s;
+  }
   return world.set_velocity(body_, given_velocity_, given_turn_);
 }
 

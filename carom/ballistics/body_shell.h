@@ -12,13 +12,16 @@ namespace carom::ballistics {
 struct BodyShellDef {
   Shell shell{};
   ShellModel model = ShellModel::modified_point_mass;
-  /// With all of its gravity, which the world's own must not add: the body feels none of that while it flies. What
-  /// else the world does to bodies (effectors, a frame that turns by its Surroundings) acts beside: leave it out here.
+  /// With all of its gravity: the body feels none of the world's while it flies. What effectors do to it acts beside.
   Conditions conditions{};
+  /// The world's Surroundings turn its frame by `conditions.rotation` already: the body is kept from feeling that
+  /// twice.
+  bool world_turns = false;
   FlightPoint start{};  ///< of the centre of mass; the nose points along the velocity
   math::Vec3d tip{};    ///< rad/s, its first transverse angular velocity in six degrees of freedom
   double spin = 0;      ///< rad/s; 0: that of the barrel at the speed of `start`
   double fired_at = 0;  ///< s of the world's time; until then it is disabled
+  bool sticks = false;  ///< it stays where it first touches something, as in soft ground
   /// Material and filter of its shape.
   rigid::ShapeDef<rigid::Dim3> shape{};
   std::string name = "shell";
@@ -36,8 +39,8 @@ struct ShellImpact {
 /// velocity, axis and spin are those of the model, which takes them on in double from step to step; the body goes where
 /// they go, its own velocity being the mean over the step, and does not roll: a world slows what turns by more than
 /// 2.5 rad in a substep. What pushes or turns it besides is taken over into the model. From the first touch on it is a
-/// rigid body like others, with its spin, the world's gravity, and the drag of a cylinder. Copy it with a snapshot of
-/// the world, and restore both.
+/// rigid body like others (or stands fast), with its spin, the world's gravity, and the drag of a cylinder. Copy it
+/// with a snapshot of the world, and restore both.
 class CAROM_API BodyShell {
  public:
   /// Makes the body. Errors: what fly_shell and the world refuse.

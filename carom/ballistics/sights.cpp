@@ -23,6 +23,8 @@ core::Result<void> check(const Gun& gun) {
       return core::Error{core::text(
           "gun: ",
           core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
+  if (!math::is_finite(gun.sight_offset))
+    return core::Error{core::text("gun: ", core::refused("sight_offset", gun.sight_offset, "a finite number"))};
   if (gun.shape && (!(gun.shape->mass > 0) || !(gun.shape->diameter > 0) || !(gun.shape->length > 0) || gun.twist == 0))
     return core::Error{"gun: spin drift needs mass, diameter and length > 0, and a twist"};
   return {};
@@ -56,7 +58,8 @@ Vec3d bore_of(const Aiming& aiming, const Sightline& line) {
 }
 
 FlightPoint muzzle_of(const Gun& gun, const Aiming& aiming, const Sightline& line) {
-  return {-gun.sight_height * line.top(aiming.cant), gun.muzzle_speed * bore_of(aiming, line)};
+  const Vec3d top = line.top(aiming.cant), right = math::cross(line.along, top);
+  return {-gun.sight_height * top - gun.sight_offset * right, gun.muzzle_speed * bore_of(aiming, line)};
 }
 
 core::Result<Trajectory> fly_along(const Gun& gun, const Conditions& conditions, const Aiming& aiming,
@@ -72,20 +75,33 @@ Vec3d swung(Vec3d way, double up, double right) {
 }
 Vec3d bore_direction(Vec3d line, const Aiming& aiming) { return detail::bore_of(aiming, detail::Sightline(line)); }
 
+namespace {
+
+/// The shot at a distance along the line of sight; empty where it does not come so far.
+std::optional<Vec3d> place_at(const Gun& gun, const Conditions& conditions, const Aiming& aiming,
+                              const detail::Sightline& line, double distance) {
+  const core::Result<Trajectory> flight = detail::fly_along(gun, conditions, aiming, distance * 1.01 + 1);
+  if (!flight) return std::nullopt;
+  const auto there =
+      flight->first([&](const Trajectory::Point& p) { return math::dot(p.position, line.along) - distance; });
+  if (!there) return std::nullopt;
+  return there->position;
+}
+
+}  // namespace
+
 core::Result<double> zero_elevation(const Gun& gun, const Conditions& conditions, double distance, double slant) {
   const core::Result<void> checked = detail::check(gun);
   if (!checked.ok()) return checked.error();
   if (!(distance > 0) || !math::is_finite(distance))
     return core::Error{core::refused("zero distance", distance, "a finite number of metres > 0")};
   const detail::Sightline line(slant);
+  const double windage = math::atan(gun.sight_offset / distance);
   const auto height = [&](double elevation) -> std::optional<double> {
-    const core::Result<Trajectory> flight =
-        detail::fly_along(gun, conditions, {.elevation = elevation, .slant = slant}, distance * 1.01 + 1);
-    if (!flight) return std::nullopt;
     const auto there =
-        flight->first([&](const Trajectory::Point& p) { return math::dot(p.position, line.along) - distance; });
+        place_at(gun, conditions, {.elevation = elevation, .slant = slant, .windage = windage}, line, distance);
     if (!there) return std::nullopt;
-    return math::dot(there->position, line.up);
+    return math::dot(*there, line.up);
   };
   // The height there grows with the elevation until the arc becomes too high: secants from a flat shot.
   const double fall = 0.5 * conditions.gravity * math::square(distance / gun.muzzle_speed) * math::cos(slant);
@@ -104,6 +120,25 @@ core::Result<double> zero_elevation(const Gun& gun, const Conditions& conditions
   }
   return core::Error{core::text("no elevation brings the shot to the line of sight at ", distance,
                                 " m: it is out of reach for ", gun.muzzle_speed, " m/s")};
+}
+
+core::Result<Aiming> zero_aiming(const Gun& gun, const Conditions& conditions, double distance, double slant) {
+  const core::Result<double> elevation = zero_elevation(gun, conditions, distance, slant);
+  if (!elevation) return elevation.error();
+  Aiming aiming{.elevation = *elevation, .slant = slant};
+  if (gun.sight_offset == 0) return aiming;
+  // Level in still air the angle is exact; on a slope, gravity shortens the way along the line but not across it.
+  const detail::Sightline line(slant);
+  Gun centred = gun;
+  centred.sight_offset = 0;
+  const auto drift = place_at(centred, conditions, aiming, line, distance);
+  aiming.windage = math::atan(gun.sight_offset / distance);
+  for (int i = 0; i < 2; ++i) {
+    const auto there = place_at(gun, conditions, aiming, line, distance);
+    if (!there || !drift) break;
+    aiming.windage -= math::atan(math::dot(*there - *drift, line.right) / distance);
+  }
+  return aiming;
 }
 
 core::Result<SightedFlight> SightedFlight::fire(const Gun& gun, const Conditions& conditions, const Aiming& aiming,

@@ -1,7 +1,8 @@
 // Sights: zeroing, range cards, hold-over and clicks (chapters 18.2, 18.3).
 //
 // The frame is the shooter's: the eye at the origin, x level toward the target, y up, z to the right. The line of sight
-// starts at the eye, inclined by `slant`; the muzzle lies `sight_height` below it.
+// starts at the eye, inclined by `slant`; the muzzle lies `sight_height` below it, and `sight_offset` to the left of
+// it.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,7 @@ struct Gun {
   double mass = 0;             ///< kg, of the projectile: for energies; 0: none are told
   double muzzle_speed = 800;   ///< m/s
   double sight_height = 0.05;  ///< m, from the bore up to the line of sight
+  double sight_offset = 0;     ///< m, from the bore to the right to the line of sight
   /// The bullet in the field's units and the twist (inches a turn, negative: left-hand), for spin drift and jump.
   std::optional<BulletShape> shape{};
   double twist = 0;
@@ -58,6 +60,24 @@ struct SightedPoint {
 /// Error: out of reach, or a field that cannot be, named.
 CAROM_API core::Result<double> zero_elevation(const Gun& gun, const Conditions& conditions, double distance,
                                               double slant = 0);
+
+/// Elevation and windage with which the shot crosses the line of sight at `distance` m: the windage is that of a bore
+/// beside it (an offset zero), not of wind or spin. Beyond, such a shot goes on to the other side: by
+/// offset · (distance/zero − 1). Errors likewise.
+CAROM_API core::Result<Aiming> zero_aiming(const Gun& gun, const Conditions& conditions, double distance,
+                                           double slant = 0);
+
+/// Parallax of a telescope that is free of it at the distance D₀ (m; infinite, too): there its objective has the image
+/// of the reticle, as if it hung in space. An eye off the axis by e looks through the objective M e beside its middle
+/// (M: the magnification; it is erecting, so on the same side), and along the line from there to the reticle: what that
+/// covers at the distance R lies M e (1 − R/D₀) beside the axis, on the side of the eye where that is positive.
+inline double parallax_error(double eye, double distance, double parallax_free, double magnification = 1) {
+  return magnification * eye * (1 - distance / parallax_free);
+}
+/// rad, by which the axis points beside the mark at R that such an eye has the reticle on: −M e (1/R − 1/D₀).
+inline double parallax_turn(double eye, double distance, double parallax_free, double magnification = 1) {
+  return -parallax_error(eye, distance, parallax_free, magnification) / distance;
+}
 
 /// A shot seen along the line of sight.
 class CAROM_API SightedFlight {

@@ -32,11 +32,15 @@ core::Status check(const Ammunition& a) {
       {"powder_mass", a.powder_mass, 0, 1e5, "0 to 10^5 kg"},
       {"gas_speed", a.gas_speed, 0, 1e4, "0 to 10^4 m/s"},
   };
+  if (a.shell)
+    if (auto s = check(*a.shell); !s) return core::Error{core::text("ammunition: ", s.error().message)};
   return within("ammunition", bounds);
 }
 core::Status check(const Sight& s) {
   const Bound bounds[] = {
       {"height", s.height, -1, 10, "-1 to 10 m"},
+      {"offset", s.offset, -1, 1, "-1 to 1 m"},
+      {"parallax_free", s.parallax_free, 0, 1e5, "0 to 10^5 m"},
       {"click", s.click, 1e-9, 0.1, "10^-9 to 0.1 rad"},
       {"spacing", s.spacing, 0, 1, "0 to 1 rad"},
       {"magnification", s.magnification, 0.1, 1000, "0.1 to 1000"},
@@ -70,12 +74,17 @@ Gun gun_of(const Weapon& w) {
   Gun gun{.projectile = a.projectile,
           .mass = a.mass,
           .muzzle_speed = w.muzzle_speed > 0 ? w.muzzle_speed : a.muzzle_speed,
-          .sight_height = w.sight.height};
+          .sight_height = w.sight.height,
+          .sight_offset = w.sight.offset};
   if (a.length > 0 && w.twist != 0) {
     gun.shape = BulletShape{a.mass / grain, a.diameter / inch, a.length / inch};
     gun.twist = w.twist / inch;
   }
   return gun;
+}
+double spin_of(const Weapon& w, double speed) {
+  if (w.twist != 0) return 2 * math::pi * speed / w.twist;
+  return w.ammunition.shell ? muzzle_spin(*w.ammunition.shell, speed) : 0;
 }
 Charge charge_of(const Weapon& w) {
   return {.bullet_mass = w.ammunition.mass,
@@ -93,9 +102,12 @@ ShotVariation variation_of(const Weapon& w, double aim) {
 
 core::Result<Aiming> zeroed(const Weapon& w, const Conditions& conditions) {
   if (auto s = check(w); !s) return s.error();
-  const auto elevation = zero_elevation(gun_of(w), conditions, w.zero);
-  if (!elevation) return elevation.error();
-  return Aiming{.elevation = *elevation};
+  return zero_aiming(gun_of(w), conditions, w.zero);
+}
+
+math::Vec2d parallax_of(const Sight& sight, math::Vec2d eye, double distance) {
+  if (!(sight.parallax_free > 0) || !(distance > 0)) return {};
+  return parallax_turn(1, distance, sight.parallax_free, sight.magnification) * eye;
 }
 
 Aiming turned(const Aiming& aiming, const Sight& sight, int up, int right) {

@@ -1,5 +1,7 @@
 #include "carom/forces/drag_law.h"
 
+#include <algorithm>
+
 #include "carom/core/string.h"
 #include "carom/forces/drag.h"
 #include "carom/math/elementary.h"
@@ -37,29 +39,29 @@ double sphere_of_mach(double mach) {
 
 }  // namespace
 
-double CoefficientTable::at(double at_x) const {
-  if (count <= 0) return 0;
-  if (!(at_x > x[0])) return y[0];
-  for (int i = 1; i < count; ++i)
-    if (at_x < x[i]) {
-      const double t = logarithmic != 0 ? math::log(at_x / x[i - 1]) / math::log(x[i] / x[i - 1])
-                                        : (at_x - x[i - 1]) / (x[i] - x[i - 1]);
-      return y[i - 1] + t * (y[i] - y[i - 1]);
-    }
-  return y[count - 1];
+double CoefficientTable::at(double x) const {
+  const std::span<const CoefficientPoint> p = points();
+  if (p.empty()) return 0;
+  if (!(x > p[0].x)) return p[0].y;
+  const auto next = std::ranges::upper_bound(p, x, {}, &CoefficientPoint::x);
+  if (next == p.end()) return p.back().y;
+  const CoefficientPoint &a = *(next - 1), &b = *next;
+  const double t = logarithmic_ ? math::log(x / a.x) / math::log(b.x / a.x) : (x - a.x) / (b.x - a.x);
+  return a.y + t * (b.y - a.y);
 }
 
 core::Status validate(const CoefficientTable& table) {
-  if (table.count < 1 || table.count > CoefficientTable::capacity)
-    return core::Error{core::text("table: found ", table.count, " points, expected 1 … ", CoefficientTable::capacity)};
-  for (int i = 0; i < table.count; ++i) {
-    if (!math::is_finite(table.x[i]) || !math::is_finite(table.y[i]))
+  const std::span<const CoefficientPoint> p = table.points();
+  if (p.empty() || p.size() > CoefficientTable::capacity)
+    return core::Error{core::text("table: found ", p.size(), " points, expected 1 … ", CoefficientTable::capacity)};
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!math::is_finite(p[i].x) || !math::is_finite(p[i].y))
       return core::Error{core::text("table: point ", i, " is not finite")};
-    if (i > 0 && !(table.x[i] > table.x[i - 1]))
-      return core::Error{core::text("table: x[", i, "] is ", table.x[i], ", expected more than ", table.x[i - 1])};
+    if (i > 0 && !(p[i].x > p[i - 1].x))
+      return core::Error{core::text("table: x[", i, "] is ", p[i].x, ", expected more than ", p[i - 1].x)};
   }
-  if (table.logarithmic != 0 && !(table.x[0] > 0))
-    return core::Error{core::text("table: x[0] is ", table.x[0], ", expected more than 0 over a logarithm")};
+  if (table.logarithmic() && !(p[0].x > 0))
+    return core::Error{core::text("table: x[0] is ", p[0].x, ", expected more than 0 over a logarithm")};
   return {};
 }
 

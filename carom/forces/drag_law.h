@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include "carom/core/result.h"
 #include "carom/export.h"
@@ -10,14 +13,26 @@
 
 namespace carom::forces {
 
-/// A measured curve: points of rising x, straight lines between them (over ln x where `logarithmic`), constant beyond.
-/// A plain value, so that a world can keep it.
-struct CAROM_API CoefficientTable {
-  static constexpr int capacity = 16;
-  double x[capacity] = {}, y[capacity] = {};
-  std::int32_t count = 0;
-  std::int32_t logarithmic = 0;  ///< 1: over ln x, which then is > 0
-  double at(double at_x) const;
+struct CoefficientPoint {
+  double x = 0, y = 0;
+};
+/// A measured curve: points of rising x, straight lines between them (over ln x where `logarithmic`, which then is >
+/// 0), constant beyond. It does not change: copies share the points.
+class CAROM_API CoefficientTable {
+ public:
+  static constexpr std::size_t capacity = 1024;
+  CoefficientTable() = default;
+  explicit CoefficientTable(std::vector<CoefficientPoint> points, bool logarithmic = false)
+      : points_(std::make_shared<const std::vector<CoefficientPoint>>(std::move(points))), logarithmic_(logarithmic) {}
+  std::span<const CoefficientPoint> points() const {
+    return points_ != nullptr ? std::span<const CoefficientPoint>(*points_) : std::span<const CoefficientPoint>();
+  }
+  bool logarithmic() const { return logarithmic_; }
+  double at(double x) const;
+
+ private:
+  std::shared_ptr<const std::vector<CoefficientPoint>> points_;
+  bool logarithmic_ = false;
 };
 /// Errors: no or too many points, x that does not rise, what is not finite.
 CAROM_API core::Status validate(const CoefficientTable& table);

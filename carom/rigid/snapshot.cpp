@@ -101,6 +101,39 @@ std::vector<GeometryRecord> known_records(const SnapshotData<D>* data) {
   return records;
 }
 
+/// The only effector with numbers of its own elsewhere.
+template <class D>
+void write_drag(ByteWriter& out, const BodyDrag<D>& e) {
+  out.word(e.body.packed());
+  out.number(std::uint32_t(e.law.kind));
+  for (const double x : {e.law.coefficient, e.diameter, e.area, e.density, e.viscosity, e.speed_of_sound})
+    out.word(std::bit_cast<std::uint64_t>(x));
+  for (int k = 0; k < D::dimension; ++k) out.word(std::bit_cast<std::uint32_t>(e.point[k]));
+  out.number(e.law.table.logarithmic());
+  out.number(e.law.table.points().size());
+  for (const forces::CoefficientPoint& p : e.law.table.points())
+    for (const double x : {p.x, p.y}) out.word(std::bit_cast<std::uint64_t>(x));
+}
+inline BodyId body_of(std::uint64_t packed) {
+  return {std::uint32_t(packed >> 32), std::uint16_t(packed >> 16), std::uint16_t(packed)};
+}
+template <class D>
+void read_drag(ByteReader& in, BodyDrag<D>& e) {
+  e.body = body_of(in.word());
+  e.law.kind = forces::DragLaw::Kind(std::int32_t(std::uint32_t(in.number())));
+  for (double* const x : {&e.law.coefficient, &e.diameter, &e.area, &e.density, &e.viscosity, &e.speed_of_sound})
+    *x = std::bit_cast<double>(in.word());
+  for (int k = 0; k < D::dimension; ++k) e.point[k] = std::bit_cast<float>(std::uint32_t(in.word()));
+  const bool logarithmic = in.number() != 0;
+  const std::uint64_t count = in.number();
+  if (count > forces::CoefficientTable::capacity) return in.fail();
+  if (count == 0 && !logarithmic) return;
+  std::vector<forces::CoefficientPoint> points(std::size_t(count), forces::CoefficientPoint{});
+  for (forces::CoefficientPoint& p : points)
+    for (double* const x : {&p.x, &p.y}) *x = std::bit_cast<double>(in.word());
+  e.law.table = forces::CoefficientTable(std::move(points), logarithmic);
+}
+
 template <class D>
 void write_effectors(ByteWriter& out, const std::vector<EffectorData<D>>& effectors) {
   out.number(effectors.size());
@@ -114,6 +147,8 @@ void write_effectors(ByteWriter& out, const std::vector<EffectorData<D>>& effect
             std::memcpy(words.data(), &value, sizeof(T));
             SectionModel model(words.size());
             out.difference(words.data(), nullptr, words.size(), model);
+          } else if constexpr (std::is_same_v<T, BodyDrag<D>>) {
+            write_drag<D>(out, value);
           } else if constexpr (requires { value.body; }) {
             out.word(value.body.packed());  // a function of the caller: only whom it pushes
           }
@@ -135,9 +170,10 @@ bool read_effector(ByteReader& in, std::size_t index, Variant& definition) {
       SectionModel model(words.size());
       in.difference(words.data(), words.size(), model);
       std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
+    } else if constexpr (requires { value.law.table; }) {
+      read_drag(in, value);
     } else if constexpr (requires { value.body; }) {
-      const std::uint64_t packed = in.word();
-      value.body = {std::uint32_t(packed >> 32), std::uint16_t(packed >> 16), std::uint16_t(packed)};
+      value.body = body_of(in.word());
     }
     definition = value;
     return in.sound();

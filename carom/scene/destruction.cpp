@@ -77,7 +77,9 @@ Status shoot(SceneGun& gun, rigid::World<D>& world) {
     if (d.weapon.dispersion > 0) bore = ballistics::swung(bore, up, D::dimension == 3 ? right : 0);
     ballistics::BatchRound round = gun.round;
     round.tag = std::uint64_t(gun.shots);
-    gun.batch.add({muzzle->place, muzzle->velocity + speed * bore}, round);
+    const ballistics::FlightPoint start{muzzle->place, muzzle->velocity + speed * bore};
+    gun.batch.add(start, round);
+    if (gun.spinning) gun.spinning->add(gun.batch, start, ballistics::spin_of(d.weapon, speed));
     if (d.recoils && !d.body.is_null()) {
       const Vec3d push = -ballistics::recoil_impulse(ballistics::charge_of(d.weapon)) * bore;
       typename D::Vector impulse{};
@@ -171,11 +173,10 @@ Status throw_case(SceneExplosion<D>& e, const rigid::World<D>& world, double dt)
   return e.casing->fly_apart(in_space(charge.position), velocity, charge.mass, world.time());
 }
 
-/// A step of projectiles: what they met is in `all.hits` then, and told to the structures that it loads.
+/// What projectiles met on the way of their step is in `all.hits` then, and told to the structures that it loads.
 template <class D>
-Status fly(ballistics::ProjectileBatch& batch, DestructionOf<D>& all, rigid::World<D>& world, double dt,
+Status hit(ballistics::ProjectileBatch& batch, DestructionOf<D>& all, rigid::World<D>& world, double dt,
            rigid::BodyId without) {
-  batch.step(dt);
   ballistics::HitOptions options;
   options.filter.ignore = without;
   if (Status s = all.hits.collect(batch, world, dt, options); !s) return s;
@@ -208,9 +209,12 @@ Status Destruction::before(rigid::World<D>& world, double dt, Matter* matter) {
   DestructionOf<D>& all = of<D>();
   for (auto& gun : all.guns)
     if (Status s = shoot<D>(gun.thing, world); !s) return s;
-  if constexpr (D::dimension == 3)
+  if constexpr (D::dimension == 3) {
     for (auto& rocket : all.rockets)
       if (Status s = rocket.thing.before_step(world, dt); !s) return s;
+    for (auto& shell : all.shells)
+      if (Status s = shell.thing.before_step(world, dt); !s) return s;
+  }
   for (auto& entry : all.explosions) {
     SceneExplosion<D>& e = entry.thing;
     if (Status s = throw_case(e, world, dt); !s) return s;
@@ -243,7 +247,11 @@ Status Destruction::after(rigid::World<D>& world, double dt) {
     SceneGun& gun = entry.thing;
     gun.last.clear();
     if (gun.batch.size() == 0) continue;
-    if (Status s = fly(gun.batch, all, world, dt, gun.definition.body); !s) return s;
+    if (gun.spinning)
+      gun.spinning->step(gun.batch, gun.definition.conditions, world.time() - dt, dt);
+    else
+      gun.batch.step(dt);
+    if (Status s = hit(gun.batch, all, world, dt, gun.definition.body); !s) return s;
     for (const ballistics::BatchHit& hit : all.hits.hits()) {
       gun.last.push_back(hit);
       ++gun.hits;
@@ -258,7 +266,8 @@ Status Destruction::after(rigid::World<D>& world, double dt) {
   for (auto& entry : all.explosions) {
     SceneExplosion<D>& e = entry.thing;
     if (!e.casing || e.casing->batch().size() == 0) continue;
-    if (Status s = fly(e.casing->batch(), all, world, dt, e.explosion.charge().casing); !s) return s;
+    e.casing->batch().step(dt);
+    if (Status s = hit(e.casing->batch(), all, world, dt, e.explosion.charge().casing); !s) return s;
     e.casing->hits += int(all.hits.hits().size());
     e.casing->forget_old(world.time());
   }
@@ -284,14 +293,19 @@ void Destruction::add_to(core::StateHash& hash) const {
     for (const auto& s : all.structures) hash.add(std::uint64_t(s.thing.broken()));
     for (const auto& r : all.rockets)
       hash.add(r.thing.stages_left()).add(r.thing.under_parachute()).add(r.thing.apex());
+    for (const auto& shell : all.shells) {
+      const ballistics::ShellMotion& m = shell.thing.motion();
+      hash.add(m.spin);
+      for (int k = 0; k < 3; ++k) hash.add(m.velocity[k]).add(m.axis[k]).add(m.momentum[k]);
+    }
   };
   add(plane);
   add(space);
 }
 
 namespace {
-enum DestructionList { explosion_list, gun_list, structure_list, rocket_list };
-constexpr std::string_view list_names[] = {"explosion", "gun", "structure", "rocket"};
+enum DestructionList { explosion_list, gun_list, structure_list, rocket_list, shell_list };
+constexpr std::string_view list_names[] = {"explosion", "gun", "structure", "rocket", "shell"};
 enum DestructionField {
   front,
   reached,
@@ -316,7 +330,14 @@ enum DestructionField {
   mass,
   stages,
   parachute,
-  apex
+  apex,
+  spin,
+  yaw,
+  stability,
+  flying,
+  impact,
+  impact_time,
+  impact_speed,
 };
 struct FieldName {
   int list;
@@ -346,7 +367,14 @@ constexpr FieldName fields[] = {{explosion_list, "front", "m"},
                                 {rocket_list, "mass", "kg"},
                                 {rocket_list, "stages", ""},
                                 {rocket_list, "parachute", ""},
-                                {rocket_list, "apex", "m"}};
+                                {rocket_list, "apex", "m"},
+                                {shell_list, "spin", "rad/s"},
+                                {shell_list, "yaw", "rad"},
+                                {shell_list, "stability", ""},
+                                {shell_list, "flying", ""},
+                                {shell_list, "impact", "m", true},
+                                {shell_list, "impact_time", "s"},
+                                {shell_list, "impact_speed", "m/s"}};
 
 template <class See>
 void each_name(const Destruction& all, const See& see) {
@@ -358,6 +386,7 @@ void each_name(const Destruction& all, const See& see) {
     list(gun_list, of.guns);
     list(structure_list, of.structures);
     list(rocket_list, of.rockets);
+    list(shell_list, of.shells);
   };
   both(all.plane);
   both(all.space);
@@ -387,6 +416,25 @@ double read_gun(const SceneGun& gun, const Probe::Source& s, double time) {
       return gun.last_hit[s.component];
   }
 }
+double read_shell(const ballistics::BodyShell& shell, const Probe::Source& s) {
+  const ballistics::ShellImpact* const met = shell.impact();
+  switch (s.field) {
+    case spin:
+      return shell.motion().spin;
+    case yaw:
+      return shell.yaw();
+    case stability:
+      return shell.stability();
+    case flying:
+      return double(shell.flies());
+    case impact:
+      return met != nullptr ? met->point[s.component] : __builtin_nan("");
+    case impact_time:
+      return met != nullptr ? met->time : __builtin_nan("");
+    default:
+      return met != nullptr ? length(met->velocity) : __builtin_nan("");
+  }
+}
 template <class D>
 double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time) {
   const auto place = std::size_t(s.item);
@@ -399,6 +447,7 @@ double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time)
     return s.field == front ? e.explosion.front_radius(time)
                             : (in_space(e.explosion.impulse_given()) + e.pushed)[s.component];
   }
+  if (s.list == shell_list) return read_shell(all.shells[place].thing, s);
   if (s.list == rocket_list) {
     const ballistics::BodyRocket& rocket = all.rockets[place].thing;
     if (s.field == thrust) return rocket.thrust();
@@ -416,7 +465,8 @@ double read_of(const DestructionOf<D>& all, const Probe::Source& s, double time)
 }
 template <class D>
 bool any_of(const DestructionOf<D>& all) {
-  return !all.explosions.empty() || !all.guns.empty() || !all.structures.empty() || !all.rockets.empty();
+  return !all.explosions.empty() || !all.guns.empty() || !all.structures.empty() || !all.rockets.empty() ||
+         !all.shells.empty();
 }
 }  // namespace
 

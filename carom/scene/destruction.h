@@ -1,5 +1,5 @@
 // What a running scene has besides bodies and matter: charges that go off, guns that fire, structures that break,
-// rockets.
+// rockets and shells.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,9 @@
 
 #include "carom/ballistics/aim.h"
 #include "carom/ballistics/body_rocket.h"
+#include "carom/ballistics/body_shell.h"
 #include "carom/ballistics/hits.h"
+#include "carom/ballistics/spinning_rounds.h"
 #include "carom/ballistics/sway.h"
 #include "carom/ballistics/weapon.h"
 #include "carom/blast/matter.h"
@@ -53,11 +55,13 @@ struct SceneGun {
         random(definition.seed),
         next(definition.start) {
     if (definition.sway) sway.emplace(*definition.sway, math::Random(definition.seed, 1).bits64());
+    if (definition.weapon.ammunition.shell) spinning.emplace(*definition.weapon.ammunition.shell);
   }
   GunDef definition;
   ballistics::BatchRound round;
   ballistics::ProjectileBatch batch;
   math::Random random;
+  std::optional<ballistics::SpinningRounds> spinning{};  ///< those of `batch`, where its ammunition spins
   std::optional<ballistics::SwayMotion> sway{};
   /// rad (x to the right, y up), by which the hands hold it beside its aim at a time (s) of the world: sway, and what
   /// its shots raised it by if it climbs.
@@ -78,13 +82,14 @@ struct DestructionOf {
   std::vector<Named<SceneGun>> guns;
   std::vector<Named<blast::Structure<D>>> structures;
   std::vector<Named<ballistics::BodyRocket>> rockets;  ///< of space
+  std::vector<Named<ballistics::BodyShell>> shells;    ///< of space
   ballistics::BatchHits<D> hits;                       ///< with what projectiles go through
   blast::FractureStepper<D> stepper;
 };
 
 /// Guns shoot at the beginning of the step in which their time falls; projectiles fly in the air of the environment, in
 /// its steady wind by height and its turning frame, or in still air of the standard day, and are pulled along y as the
-/// world's bodies are. Rockets feel all of the environment's wind.
+/// world's bodies are. Rockets and shells feel all of the environment's wind.
 class CAROM_API Destruction {
  public:
   DestructionOf<rigid::Dim2> plane;
@@ -115,7 +120,8 @@ class CAROM_API Destruction {
   /// What a quantity such as "gun.turret.hits" names; false where it names nothing here.
   bool find(std::string_view text, int dimension, Probe::Source& source, std::string_view& unit) const;
   double read(const Probe::Source& source, double time) const;
-  /// The names that quantities begin with: "explosion.charge", "gun.turret", "structure.wall", "rocket.alpha".
+  /// The names that quantities begin with: "explosion.charge", "gun.turret", "structure.wall", "rocket.alpha",
+  /// "shell.right".
   std::vector<std::string> names() const;
 };
 

@@ -8,6 +8,8 @@ namespace {
 
 using detail::Node;
 using detail::preset_error;
+using detail::PresetNumber;
+using detail::read_preset_numbers;
 using sports::NumberName;
 
 template <class T>
@@ -16,31 +18,6 @@ core::Result<T> parse_flat(std::string_view text, std::string_view file) {
   if (!values) return values.error();
   auto value = sports::game_from_numbers<T>(values->numbers);
   return value ? std::move(value) : core::Result<T>(detail::in_file(file, value.error()));
-}
-
-/// A number of an object by name.
-struct GameNumber {
-  std::string_view name, unit;
-  double* value;
-};
-/// Numbers of an object; `others` are looked at by the caller.
-core::Status read_numbers(const Node& node, std::span<const GameNumber> fields,
-                          std::span<const std::string_view> others, std::string_view file, const std::string& at) {
-  if (!node.is_object()) return preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
-  for (std::size_t k = 0; k < node.keys.size(); ++k) {
-    const std::string where = core::text(at, ".", node.keys[k]);
-    bool known = false;
-    for (const std::string_view other : others) known |= other == node.keys[k];
-    for (const GameNumber& field : fields) {
-      if (field.name != node.keys[k]) continue;
-      const auto quantity = detail::read_preset_quantity(node.children[k], field.unit, file, where);
-      if (!quantity) return quantity.error();
-      *field.value = *quantity;
-      known = true;
-    }
-    if (!known) return preset_error(file, node.children[k], where, "found a name that is not known here");
-  }
-  return {};
 }
 
 /// [time, value, time, value, …], or one number.
@@ -61,11 +38,11 @@ core::Result<sports::Curve> read_curve(const Node& node, std::string_view file, 
 }
 
 core::Status read_link(const Node& node, std::string_view file, const std::string& at, sports::SwingLink& link) {
-  const GameNumber fields[] = {{"mass", "kg", &link.mass},    {"length", "m", &link.length},
-                               {"centre", "m", &link.centre}, {"inertia", "kg*m^2", &link.inertia},
-                               {"angle", "rad", &link.angle}, {"rate", "rad/s", &link.rate}};
+  const PresetNumber fields[] = {{"mass", "kg", &link.mass},    {"length", "m", &link.length},
+                                 {"centre", "m", &link.centre}, {"inertia", "kg*m^2", &link.inertia},
+                                 {"angle", "rad", &link.angle}, {"rate", "rad/s", &link.rate}};
   static constexpr std::string_view others[] = {"torque", "hold", "name"};
-  if (const core::Status read = read_numbers(node, fields, others, file, at); !read) return read;
+  if (const core::Status read = read_preset_numbers(node, fields, others, file, at); !read) return read;
   if (const Node* torque = node.find("torque")) {
     auto curve = read_curve(*torque, file, at + ".torque");
     if (!curve) return curve.error();
@@ -108,10 +85,10 @@ core::Result<sports::Lane> parse_lane(std::string_view text, std::string_view fi
   if (!tree) return tree.error();
   const Node& values = *tree->find("values");
   sports::Lane lane;
-  const GameNumber fields[] = {
+  const PresetNumber fields[] = {
       {"length", "m", &lane.length}, {"width", "m", &lane.width}, {"gravity", "m/s^2", &lane.gravity}};
   static constexpr std::string_view others[] = {"stretches"};
-  if (const core::Status read = read_numbers(values, fields, others, file, "values"); !read) return read.error();
+  if (const core::Status read = read_preset_numbers(values, fields, others, file, "values"); !read) return read.error();
   const Node* const list = values.find("stretches");
   if (list == nullptr || !list->is_array() || list->children.empty() || list->children.size() > 100)
     return preset_error(file, list != nullptr ? *list : values, "values.stretches",
@@ -119,9 +96,9 @@ core::Result<sports::Lane> parse_lane(std::string_view text, std::string_view fi
   lane.stretches.clear();
   for (std::size_t i = 0; i < list->children.size(); ++i) {
     sports::Lane::Stretch stretch;
-    const GameNumber numbers[] = {{"end", "m", &stretch.end}, {"friction", "", &stretch.friction}};
+    const PresetNumber numbers[] = {{"end", "m", &stretch.end}, {"friction", "", &stretch.friction}};
     if (const core::Status read =
-            read_numbers(list->children[i], numbers, {}, file, core::text("values.stretches[", i, "]"));
+            read_preset_numbers(list->children[i], numbers, {}, file, core::text("values.stretches[", i, "]"));
         !read)
       return read.error();
     lane.stretches.push_back(stretch);
@@ -135,10 +112,10 @@ core::Result<sports::Swing> parse_swing(std::string_view text, std::string_view 
   if (!tree) return tree.error();
   const Node& values = *tree->find("values");
   sports::Swing swing;
-  const GameNumber fields[] = {
+  const PresetNumber fields[] = {
       {"plane", "rad", &swing.plane}, {"gravity", "m/s^2", &swing.gravity}, {"ball", "m", &swing.ball}};
   static constexpr std::string_view others[] = {"impact", "hub", "shaft", "links"};
-  if (const core::Status read = read_numbers(values, fields, others, file, "values"); !read) return read.error();
+  if (const core::Status read = read_preset_numbers(values, fields, others, file, "values"); !read) return read.error();
   if (const Node* impact = values.find("impact")) {
     static constexpr std::string_view names[] = {"head_below_hub", "club_vertical", "ball"};
     bool known = false;
@@ -154,11 +131,12 @@ core::Result<sports::Swing> parse_swing(std::string_view text, std::string_view 
     swing.hub = std::move(*curve);
   }
   if (const Node* shaft = values.find("shaft")) {
-    const GameNumber numbers[] = {{"frequency", "Hz", &swing.shaft.frequency},
-                                  {"damping_ratio", "", &swing.shaft.damping_ratio},
-                                  {"head_mass", "kg", &swing.shaft.head_mass},
-                                  {"shaft_mass", "kg", &swing.shaft.shaft_mass}};
-    if (const core::Status read = read_numbers(*shaft, numbers, {}, file, "values.shaft"); !read) return read.error();
+    const PresetNumber numbers[] = {{"frequency", "Hz", &swing.shaft.frequency},
+                                    {"damping_ratio", "", &swing.shaft.damping_ratio},
+                                    {"head_mass", "kg", &swing.shaft.head_mass},
+                                    {"shaft_mass", "kg", &swing.shaft.shaft_mass}};
+    if (const core::Status read = read_preset_numbers(*shaft, numbers, {}, file, "values.shaft"); !read)
+      return read.error();
   }
   const Node* const links = values.find("links");
   if (links == nullptr || !links->is_array() || links->children.empty() ||

@@ -8,41 +8,9 @@ namespace {
 
 using detail::Node;
 using detail::preset_error;
-
-/// A number of the file, ≥ 0; `positive`: it must be there, and > 0.
-struct RocketNumber {
-  std::string_view name, unit;
-  double* value;
-  bool positive = false;
-};
-
-/// The numbers of an object; `others` are looked at by the caller.
-core::Result<void> read_rocket_numbers(const Node& node, std::span<const RocketNumber> fields,
-                                       std::span<const std::string_view> others, std::string_view file,
-                                       const std::string& at) {
-  for (std::size_t k = 0; k < node.keys.size(); ++k) {
-    const std::string_view key = node.keys[k];
-    const std::string where = core::text(at, ".", key);
-    bool known = false;
-    for (const std::string_view other : others) known |= other == key;
-    for (const RocketNumber& field : fields) {
-      if (field.name != key) continue;
-      const auto quantity = detail::read_preset_quantity(node.children[k], field.unit, file, where);
-      if (!quantity) return quantity.error();
-      if (!math::is_finite(*quantity) || *quantity < 0 || (field.positive && *quantity == 0))
-        return preset_error(
-            file, node.children[k], where,
-            core::refused("it", *quantity, field.positive ? "a finite number > 0" : "a finite number >= 0"));
-      *field.value = *quantity;
-      known = true;
-    }
-    if (!known) return preset_error(file, node.children[k], where, "found a name that is not known here");
-  }
-  for (const RocketNumber& field : fields)
-    if (field.positive && node.find(field.name) == nullptr)
-      return preset_error(file, node, core::text(at, ".", field.name), "is missing");
-  return {};
-}
+using detail::PresetNumber;
+using detail::read_preset_numbers;
+using Need = PresetNumber::Need;
 
 /// Mach number, C_D, Mach number, C_D … under `key`, instead of the number under `other`.
 core::Status read_drag_table(const Node& values, std::string_view key, std::string_view other, std::string_view file,
@@ -97,22 +65,22 @@ core::Result<ballistics::Rocket> parse_rocket(std::string_view text, std::string
   ballistics::Rocket rocket;
   rocket.fins = {.count = 0};
   double drag = 0.5, coasting = -1, fins = 0;
-  const RocketNumber fields[] = {{"diameter", "m", &rocket.diameter, true},
-                                 {"length", "m", &rocket.length, true},
-                                 {"nose_length", "m", &rocket.nose_length},
-                                 {"drag_coefficient", "", &drag},
-                                 {"coasting_drag_coefficient", "", &coasting},
-                                 {"fin_count", "", &fins},
-                                 {"fin_root_chord", "m", &rocket.fins.root_chord},
-                                 {"fin_tip_chord", "m", &rocket.fins.tip_chord},
-                                 {"fin_span", "m", &rocket.fins.span},
-                                 {"fin_sweep", "m", &rocket.fins.sweep},
-                                 {"fin_position", "m", &rocket.fins.position},
-                                 {"parachute_drag_area", "m^2", &rocket.parachute.drag_area},
-                                 {"parachute_height", "m", &rocket.parachute.deploy_height},
-                                 {"parachute_delay", "s", &rocket.parachute.deploy_delay}};
+  const PresetNumber fields[] = {{"diameter", "m", &rocket.diameter, Need::positive},
+                                 {"length", "m", &rocket.length, Need::positive},
+                                 {"nose_length", "m", &rocket.nose_length, Need::not_negative},
+                                 {"drag_coefficient", "", &drag, Need::not_negative},
+                                 {"coasting_drag_coefficient", "", &coasting, Need::not_negative},
+                                 {"fin_count", "", &fins, Need::not_negative},
+                                 {"fin_root_chord", "m", &rocket.fins.root_chord, Need::not_negative},
+                                 {"fin_tip_chord", "m", &rocket.fins.tip_chord, Need::not_negative},
+                                 {"fin_span", "m", &rocket.fins.span, Need::not_negative},
+                                 {"fin_sweep", "m", &rocket.fins.sweep, Need::not_negative},
+                                 {"fin_position", "m", &rocket.fins.position, Need::not_negative},
+                                 {"parachute_drag_area", "m^2", &rocket.parachute.drag_area, Need::not_negative},
+                                 {"parachute_height", "m", &rocket.parachute.deploy_height, Need::not_negative},
+                                 {"parachute_delay", "s", &rocket.parachute.deploy_delay, Need::not_negative}};
   static constexpr std::string_view lists[] = {"stages", "drag_table", "coasting_drag_table"};
-  if (auto s = read_rocket_numbers(values, fields, lists, file, "values"); !s) return s.error();
+  if (auto s = read_preset_numbers(values, fields, lists, file, "values"); !s) return s.error();
   rocket.drag = ballistics::DragCurve(drag);
   if (const core::Status s = read_drag_table(values, "drag_table", "drag_coefficient", file, rocket.drag); !s)
     return s.error();
@@ -133,15 +101,14 @@ core::Result<ballistics::Rocket> parse_rocket(std::string_view text, std::string
   for (std::size_t i = 0; i < stages->children.size(); ++i) {
     const Node& node = stages->children[i];
     const std::string at = core::text("values.stages[", i, "]");
-    if (!node.is_object()) return preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
     ballistics::Stage stage;
-    const RocketNumber numbers[] = {{"dry_mass", "kg", &stage.dry_mass, true},
-                                    {"dry_centre", "m", &stage.dry_centre},
-                                    {"motor_centre", "m", &stage.motor_centre},
-                                    {"ignition_delay", "s", &stage.ignition_delay},
-                                    {"separation_delay", "s", &stage.separation_delay}};
+    const PresetNumber numbers[] = {{"dry_mass", "kg", &stage.dry_mass, Need::positive},
+                                    {"dry_centre", "m", &stage.dry_centre, Need::not_negative},
+                                    {"motor_centre", "m", &stage.motor_centre, Need::not_negative},
+                                    {"ignition_delay", "s", &stage.ignition_delay, Need::not_negative},
+                                    {"separation_delay", "s", &stage.separation_delay, Need::not_negative}};
     static constexpr std::string_view texts[] = {"motor", "designation", "name"};
-    if (auto s = read_rocket_numbers(node, numbers, texts, file, at); !s) return s.error();
+    if (auto s = read_preset_numbers(node, numbers, texts, file, at); !s) return s.error();
     auto motor = read_motor(node, file, at, resolver);
     if (!motor) return motor.error();
     stage.motor = std::move(*motor);

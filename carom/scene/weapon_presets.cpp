@@ -7,15 +7,32 @@
 namespace carom::scene {
 namespace {
 
+using detail::PresetNumber;
 using detail::PresetValues;
 using sports::NumberName;
 
 /// The number of that name into `into`, where the file has it.
 void take(const PresetValues& values, std::string_view name, double& into) { into = values.number(name, into); }
 
+/// The text of the preset that is named under its kind.
+core::Result<std::string> named_preset(const PresetValues& values, std::string_view kind, std::string_view file,
+                                       const PresetResolver& resolver) {
+  const auto error = [&](const std::string& message) {
+    return detail::preset_error(file, *values.root.find("values"), core::text("values.", kind), message);
+  };
+  const std::string_view name = values.text(kind);
+  if (!detail::is_preset_name(name))
+    return error(core::text("found ", core::quoted(name), ", expected the name of a preset"));
+  if (!resolver) return error("there is nobody to ask for presets");
+  auto found = resolver(core::text("presets/", kind, "/", name, ".json"));
+  if (!found) return error(found.error().message);
+  return found;
+}
+
 }  // namespace
 
-core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std::string_view file) {
+core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std::string_view file,
+                                                      const PresetResolver& resolver) {
   static constexpr NumberName names[] = {{"ballistic_coefficient", ""},
                                          {"drag_coefficient", ""},
                                          {"form_factor", ""},
@@ -26,7 +43,8 @@ core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std
                                          {"speed_deviation", "m/s"},
                                          {"powder_mass", "kg"},
                                          {"gas_speed", "m/s"}};
-  static constexpr std::string_view texts[] = {"drag_function"}, lists[] = {"drag_table", "ballistic_coefficients"};
+  static constexpr std::string_view texts[] = {"drag_function", "shell"},
+                                    lists[] = {"drag_table", "ballistic_coefficients"};
   const auto values = detail::read_preset(text, file, names, texts, lists);
   if (!values) return values.error();
   const auto error = [&](std::string_view where, const std::string& message) {
@@ -64,16 +82,26 @@ core::Result<ballistics::Ammunition> parse_ammunition(std::string_view text, std
   if (!projectile)
     return detail::preset_error(file, *values->root.find("values"), "values", projectile.error().message);
   a.projectile = std::move(projectile).value();
+  if (values->has("shell")) {
+    const auto shell = named_preset(*values, "shell", file, resolver);
+    if (!shell) return shell.error();
+    auto read = parse_shell(*shell, core::text("presets/shell/", values->text("shell"), ".json"));
+    if (!read) return error("shell", read.error().message);
+    a.shell = std::move(*read);
+  }
   if (auto s = ballistics::check(a); !s) return detail::in_file(file, s.error());
   return a;
 }
 
 core::Result<ballistics::Sight> parse_sight(std::string_view text, std::string_view file) {
-  static constexpr NumberName names[] = {{"height", "m"}, {"click", "rad"}, {"spacing", "rad"}, {"magnification", ""}};
+  static constexpr NumberName names[] = {{"height", "m"},    {"offset", "m"},       {"click", "rad"},
+                                         {"spacing", "rad"}, {"magnification", ""}, {"parallax_free", "m"}};
   const auto values = detail::read_preset(text, file, names, {});
   if (!values) return values.error();
   ballistics::Sight s;
   take(*values, "height", s.height);
+  take(*values, "offset", s.offset);
+  take(*values, "parallax_free", s.parallax_free);
   take(*values, "click", s.click);
   take(*values, "spacing", s.spacing);
   take(*values, "magnification", s.magnification);
@@ -103,23 +131,15 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
   const auto error = [&](std::string_view where, const std::string& message) {
     return detail::preset_error(file, *values->root.find("values"), "values." + std::string(where), message);
   };
-  const auto preset = [&](std::string_view kind) -> core::Result<std::string> {
-    const std::string_view name = values->text(kind);
-    if (!detail::is_preset_name(name))
-      return error(kind, core::text("found ", core::quoted(name), ", expected the name of a preset"));
-    if (!resolver) return error(kind, "there is nobody to ask for presets");
-    auto found = resolver(core::text("presets/", kind, "/", name, ".json"));
-    if (!found) return error(kind, found.error().message);
-    return found;
-  };
   ballistics::Weapon w;
-  const auto ammunition = preset("ammunition");
+  const auto ammunition = named_preset(*values, "ammunition", file, resolver);
   if (!ammunition) return ammunition.error();
-  auto round = parse_ammunition(*ammunition, core::text("presets/ammunition/", values->text("ammunition"), ".json"));
+  auto round =
+      parse_ammunition(*ammunition, core::text("presets/ammunition/", values->text("ammunition"), ".json"), resolver);
   if (!round) return error("ammunition", round.error().message);
   w.ammunition = *round;
   if (values->has("sight")) {
-    const auto sight = preset("sight");
+    const auto sight = named_preset(*values, "sight", file, resolver);
     if (!sight) return sight.error();
     const auto read = parse_sight(*sight, core::text("presets/sight/", values->text("sight"), ".json"));
     if (!read) return error("sight", read.error().message);
@@ -148,53 +168,36 @@ core::Result<ballistics::Shell> parse_shell(std::string_view text, std::string_v
   if (!tree) return tree.error();
   const detail::Node& values = *tree->find("values");
   ballistics::Shell shell;
-  struct Number {
-    std::string_view name, unit;
-    double* value;
-  };
-  const auto read = [&](const detail::Node& node, std::span<const Number> fields, std::string_view other,
-                        const std::string& at) -> core::Status {
-    if (!node.is_object())
-      return detail::preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
-    for (std::size_t k = 0; k < node.keys.size(); ++k) {
-      const std::string where = core::text(at, ".", node.keys[k]);
-      const Number* known = nullptr;
-      for (const Number& field : fields)
-        if (field.name == node.keys[k]) known = &field;
-      if (known == nullptr && node.keys[k] == other) continue;
-      if (known == nullptr)
-        return detail::preset_error(file, node.children[k], where, "found a name that is not known here");
-      const auto quantity = detail::read_preset_quantity(node.children[k], known->unit, file, where);
-      if (!quantity) return quantity.error();
-      *known->value = *quantity;
-    }
-    return {};
-  };
-  const Number whole[] = {{"mass", "kg", &shell.mass},
-                          {"diameter", "m", &shell.diameter},
-                          {"axial_inertia", "kg*m^2", &shell.axial_inertia},
-                          {"transverse_inertia", "kg*m^2", &shell.transverse_inertia},
-                          {"twist", "", &shell.twist}};
-  if (const core::Status s = read(values, whole, "aerodynamics", "values"); !s) return s.error();
-  for (const Number& field : whole)
-    if (values.find(field.name) == nullptr)
-      return detail::preset_error(file, values, core::text("values.", field.name), "is missing");
+  const PresetNumber whole[] = {{"mass", "kg", &shell.mass},
+                                {"diameter", "m", &shell.diameter},
+                                {"axial_inertia", "kg*m^2", &shell.axial_inertia},
+                                {"transverse_inertia", "kg*m^2", &shell.transverse_inertia},
+                                {"twist", "", &shell.twist},
+                                {"length", "m", &shell.length},
+                                {"centre", "m", &shell.centre}};
+  static constexpr std::string_view others[] = {"aerodynamics"};
+  if (const core::Status s = detail::read_preset_numbers(values, whole, others, file, "values"); !s) return s.error();
+  for (const std::string_view needed : {"mass", "diameter", "axial_inertia", "transverse_inertia", "twist"})
+    if (values.find(needed) == nullptr)
+      return detail::preset_error(file, values, core::text("values.", needed), "is missing");
   const detail::Node* const rows = values.find("aerodynamics");
   if (rows == nullptr || !rows->is_array() || rows->children.empty() || rows->children.size() > 200)
     return detail::preset_error(file, rows != nullptr ? *rows : values, "values.aerodynamics",
                                 "expected a list of 1 to 200 rows");
   for (std::size_t i = 0; i < rows->children.size(); ++i) {
     ballistics::ShellCoefficients row;
-    const Number numbers[] = {{"mach", "", &row.mach},
-                              {"axial", "", &row.axial},
-                              {"axial_yaw", "", &row.axial_yaw},
-                              {"normal", "", &row.normal},
-                              {"magnus_force", "", &row.magnus_force},
-                              {"roll_damping", "", &row.roll_damping},
-                              {"overturning", "", &row.overturning},
-                              {"pitch_damping", "", &row.pitch_damping},
-                              {"magnus_moment", "", &row.magnus_moment}};
-    if (const core::Status s = read(rows->children[i], numbers, {}, core::text("values.aerodynamics[", i, "]")); !s)
+    const PresetNumber numbers[] = {{"mach", "", &row.mach},
+                                    {"axial", "", &row.axial},
+                                    {"axial_yaw", "", &row.axial_yaw},
+                                    {"normal", "", &row.normal},
+                                    {"magnus_force", "", &row.magnus_force},
+                                    {"roll_damping", "", &row.roll_damping},
+                                    {"overturning", "", &row.overturning},
+                                    {"pitch_damping", "", &row.pitch_damping},
+                                    {"magnus_moment", "", &row.magnus_moment}};
+    if (const core::Status s = detail::read_preset_numbers(rows->children[i], numbers, {}, file,
+                                                           core::text("values.aerodynamics[", i, "]"));
+        !s)
       return s.error();
     shell.aerodynamics.push_back(row);
   }
@@ -203,9 +206,6 @@ core::Result<ballistics::Shell> parse_shell(std::string_view text, std::string_v
 }
 
 core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, std::string_view file) {
-  static constexpr NumberName names[] = {{"thickness", "m"},          {"strength", "Pa"},    {"inertia", "kg/m^3"},
-                                         {"limit_speed", "m/s"},      {"density", "kg/m^3"}, {"ricochet_angle", "rad"},
-                                         {"ricochet_restitution", ""}};
   const auto tree = detail::read_preset_tree(text, file, true);
   if (!tree) return tree.error();
   const detail::Node& list = *tree->find("values");
@@ -213,26 +213,19 @@ core::Result<std::vector<ballistics::Layer>> parse_wall(std::string_view text, s
     return detail::preset_error(file, list, "values", "expected 1 to 100 layers");
   std::vector<ballistics::Layer> layers;
   for (std::size_t i = 0; i < list.children.size(); ++i) {
-    const detail::Node& node = list.children[i];
-    const std::string at = core::text("values[", i, "]");
-    if (!node.is_object())
-      return detail::preset_error(file, node, at, "found " + detail::show(node) + ", expected an object");
     ballistics::Layer layer;
-    double* const fields[] = {&layer.thickness, &layer.medium.strength, &layer.medium.inertia,      &layer.limit_speed,
-                              &layer.density,   &layer.ricochet_angle,  &layer.ricochet_restitution};
-    for (std::size_t k = 0; k < node.keys.size(); ++k) {
-      const std::string where = at + "." + node.keys[k];
-      if (node.keys[k] == "name") continue;
-      double* field = nullptr;
-      std::string_view unit;
-      for (std::size_t f = 0; f < std::size(names); ++f)
-        if (names[f].name == node.keys[k]) field = fields[f], unit = names[f].unit;
-      if (field == nullptr)
-        return detail::preset_error(file, node.children[k], where, "found a name that is not known here");
-      const auto quantity = detail::read_preset_quantity(node.children[k], unit, file, where);
-      if (!quantity) return quantity.error();
-      *field = *quantity;
-    }
+    const PresetNumber numbers[] = {{"thickness", "m", &layer.thickness},
+                                    {"strength", "Pa", &layer.medium.strength},
+                                    {"inertia", "kg/m^3", &layer.medium.inertia},
+                                    {"limit_speed", "m/s", &layer.limit_speed},
+                                    {"density", "kg/m^3", &layer.density},
+                                    {"ricochet_angle", "rad", &layer.ricochet_angle},
+                                    {"ricochet_restitution", "", &layer.ricochet_restitution}};
+    static constexpr std::string_view others[] = {"name"};
+    if (const core::Status s =
+            detail::read_preset_numbers(list.children[i], numbers, others, file, core::text("values[", i, "]"));
+        !s)
+      return s.error();
     layers.push_back(layer);
   }
   if (auto s = ballistics::check_layers(layers); !s) return detail::in_file(file, s.error());

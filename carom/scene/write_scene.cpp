@@ -407,9 +407,9 @@ class SceneWriter {
     Fields f = effector_fields("body_drag", e.body);
     f.put("law", quote(laws[int(e.law.kind)])).put("drag_coefficient", e.law.coefficient);
     std::string table;
-    for (int i = 0; i < e.law.table.count; ++i)
-      table += (i > 0 ? ", " : "") + digits(e.law.table.x[i]) + ", " + digits(e.law.table.y[i]);
-    if (!table.empty()) f.put("table", "[" + table + "]").flag("logarithmic", e.law.table.logarithmic != 0, false);
+    for (const forces::CoefficientPoint& p : e.law.table.points())
+      table += (table.empty() ? "" : ", ") + digits(p.x) + ", " + digits(p.y);
+    if (!table.empty()) f.put("table", "[" + table + "]").flag("logarithmic", e.law.table.logarithmic(), false);
     f.put("diameter", e.diameter).put("area", e.area).put("point", vector_text(e.point)).put("density", e.density);
     return f.put("viscosity", e.viscosity).put("speed_of_sound", e.speed_of_sound).object();
   }
@@ -508,12 +508,13 @@ Result<std::string> write_scene(const SceneWorld& world, const WriteOptions& opt
         "only bodies, joints, effectors and charges can be written: this scene has ropes, cloth, liquids, grains or "
         "particles too"};
   const Destruction* const destruction = world.destruction.get();
-  const auto more = [](const auto& of) { return !of.guns.empty() || !of.structures.empty() || !of.rockets.empty(); };
+  const auto more = [](const auto& of) {
+    return !of.guns.empty() || !of.structures.empty() || !of.rockets.empty() || !of.shells.empty();
+  };
   if (destruction != nullptr && (more(destruction->plane) || more(destruction->space)))
     return core::Error{
-        "only bodies, joints, effectors and charges can be written: this scene has guns, rockets or structures that "
-        "break "
-        "too"};
+        "only bodies, joints, effectors and charges can be written: this scene has guns, rockets, shells or structures "
+        "that break too"};
   if (world.world2) return SceneWriter<Dim2>(*world.world2, options, world.bodies, destruction).write();
   if (world.world3) return SceneWriter<Dim3>(*world.world3, options, world.bodies, destruction).write();
   return core::Error{"only worlds of bodies can be written"};

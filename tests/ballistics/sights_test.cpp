@@ -1,6 +1,8 @@
 // Sights: cant, slant, point-blank range, what is out of reach. Published tables are in tests/published.
 #include "carom/ballistics/sights.h"
 
+#include "carom/ballistics/weapon.h"
+
 #include <gtest/gtest.h>
 
 namespace ballistics_sights_test {
@@ -114,6 +116,70 @@ TEST(Sights, ABoreIsRaisedTurnedAndCantedAboutItsLine) {
   }
   EXPECT_NEAR(ballistics::swung({1, 0, 0}, 0.1, 0).y, math::sin(0.1), 1e-16);
   EXPECT_NEAR(ballistics::swung({1, 0, 0}, 0, 0.1).z, math::sin(0.1), 1e-16);
+}
+
+// A bore beside the line of sight meets it at the zero alone: in still air by offset · (distance/zero − 1), whatever
+// the drag, because the flight stays in the upright plane of the bore.
+TEST(Sights, BoreBesideTheLineOfSight) {
+  for (const double offset : {0.03, -0.08}) {
+    Gun gun{.projectile = projectile_from_coefficient(DragFunction::g7, .218), .muzzle_speed = 800};
+    Gun centred = gun;
+    gun.sight_offset = offset;
+    const auto aiming = zero_aiming(gun, {}, 100);
+    ASSERT_TRUE(aiming) << aiming.error().message;
+    EXPECT_NEAR(aiming->windage, math::atan(offset / 100), 1e-12);
+    EXPECT_NEAR(aiming->elevation, *zero_elevation(centred, {}, 100), 1e-8);
+    const auto flight = SightedFlight::fire(gun, {}, *aiming, 500);
+    for (const double distance : {1.0, 50.0, 100.0, 300.0, 500.0}) {
+      EXPECT_NEAR(flight->at(distance)->side, offset * (distance / 100 - 1), 1e-9) << distance;
+    }
+    EXPECT_NEAR(flight->at(100)->height, 0, 1e-6);
+    // Up a slope it is set for that zero all the same; canted, the bore keeps to its own side of the sight.
+    const auto slope = zero_aiming(gun, {}, 200, 0.5);
+    const auto uphill = SightedFlight::fire(gun, {}, *slope, 250);
+    EXPECT_NEAR(uphill->at(200)->side, 0, 1e-8);
+    EXPECT_NEAR(uphill->at(200)->height, 0, 1e-6);
+    Aiming canted = *aiming;
+    canted.cant = math::pi / 2;
+    const Vec3d muzzle = SightedFlight::fire(gun, {}, canted, 10)->trajectory().start().position;
+    EXPECT_LT(length(muzzle - Vec3d{0, offset, -gun.sight_height}), 1e-12) << "leaning to the right, its left is up";
+  }
+  // The wind takes what is zeroed in still air aside, and the zero leaves that alone.
+  Gun gun{.projectile = projectile_from_coefficient(DragFunction::g7, .218), .muzzle_speed = 800};
+  Gun centred = gun;
+  gun.sight_offset = .05;
+  const Conditions windy{.wind = environment::WindColumn({0, 0, 4})};
+  EXPECT_NEAR(SightedFlight::fire(gun, windy, *zero_aiming(gun, windy, 100), 120)->at(100)->side,
+              SightedFlight::fire(centred, windy, *zero_aiming(centred, windy, 100), 120)->at(100)->side, 1e-6);
+  gun.sight_offset = __builtin_nan("");
+  EXPECT_NE(zero_aiming(gun, {}, 100).error().message.find("sight_offset"), std::string::npos);
+}
+
+// Parallax: rays through an objective and an eyepiece. The reticle stands where the objective has the image of D₀; the
+// ray from the eye through it, traced back through the objective, comes from e M (1 − R/D₀) beside the axis.
+TEST(Sights, ParallaxIsThatOfTheRays) {
+  const double objective = 0.2, eyepiece = 0.02;  // m, focal lengths of thin lenses
+  for (const double free : {50.0, 100.0, 1e9})
+    for (const double eye : {0.001, -0.002}) {
+      // Where the objective has the image of D₀ and the reticle stands; the eyepiece makes its rays parallel.
+      const double image = 1 / (1 / objective - 1 / free), magnification = objective / eyepiece;
+      // Through the middle of the reticle and a point `height` of the objective; the erected pupil has it at `eye`.
+      const double height = magnification * eye, inner = -height / image, outer = inner + height / objective;
+      for (const double distance : {25.0, 100.0, 600.0}) {
+        // Backward from the objective into the field: a thin lens turns a ray by −height/f.
+        const double met = height - distance * outer;
+        EXPECT_NEAR(parallax_error(eye, distance, free, magnification), met, 1e-9) << free << ' ' << distance;
+        EXPECT_NEAR(parallax_turn(eye, distance, free, magnification) * distance, -met, 1e-9);
+      }
+      EXPECT_NEAR(parallax_error(eye, free, free, magnification), 0, 1e-12);
+    }
+  EXPECT_EQ(parallax_error(0.002, 500, __builtin_inf(), 8), 0.016) << "set for the stars: as far as the pupil is wide";
+  EXPECT_EQ(parallax_error(0.001, 300, 100), -0.002) << "to the other side beyond";
+  const Sight sight{.magnification = 10, .parallax_free = 100};
+  const math::Vec2d turn = parallax_of(sight, {0.002, -0.001}, 200);
+  EXPECT_NEAR(turn.x, 0.02 * (1 / 100.0 - 1 / 200.0), 1e-15);
+  EXPECT_NEAR(turn.y, -0.01 * (1 / 100.0 - 1 / 200.0), 1e-15);
+  EXPECT_EQ(parallax_of({.parallax_free = 0}, {1, 1}, 100), math::Vec2d());
 }
 
 }  // namespace ballistics_sights_test

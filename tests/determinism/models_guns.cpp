@@ -2,6 +2,7 @@
 #include "carom/ballistics/body_rocket.h"
 #include "carom/ballistics/body_shell.h"
 #include "carom/ballistics/recoil.h"
+#include "carom/ballistics/spinning_rounds.h"
 #include "carom/ballistics/sway.h"
 #include "carom/environment/environment.h"
 #include "carom/scene/scene.h"
@@ -81,6 +82,25 @@ void shell_models() {
     hash.add(shell->impact() != nullptr ? shell->impact()->point.x : 0);
   }
   print_model("shell_body", hash);
+
+  hash = {};
+  const ballistics::Conditions air{.wind = environment::WindColumn(Vec3d{-3, 0, 6})};
+  ballistics::ProjectileBatch batch(ballistics::DragCurve(0.3), air);
+  ballistics::SpinningRounds rounds(ballistics::m107());
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    const ballistics::FlightPoint start{{0, 10.0 * double(i), 0}, 400.0 * ballistics::direction(0.2 + 0.1 * double(i))};
+    batch.add(start, {.mass = 43, .tag = i});
+    rounds.add(batch, start, i % 2 == 0 ? 900 : -900);
+  }
+  for (int i = 0; i < 240; ++i) {
+    if (i == 100) batch.remove(1);
+    if (i == 150) batch.place(0, {batch.at(0).position, {0, 90, 0}});
+    rounds.step(batch, air, i / 60.0, 1.0 / 60);
+  }
+  for (int k = 0; k < 6; ++k)
+    for (const float x : batch.array(k)) hash.add(x);
+  hash.add(std::uint64_t(rounds.size()));
+  print_model("spinning_rounds", hash);
 }
 
 void gun_models() {

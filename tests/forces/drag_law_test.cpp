@@ -56,22 +56,30 @@ TEST(DragLaw, DiscAndPlate) {
 TEST(DragLaw, Tables) {
   DragLaw law;
   law.kind = DragLaw::Kind::by_mach;
-  law.table = {.x = {0, 0.8, 1.2}, .y = {0.2, 0.3, 0.7}, .count = 3};
+  law.table = CoefficientTable({{0, 0.2}, {0.8, 0.3}, {1.2, 0.7}});
   EXPECT_NEAR(forces::drag_coefficient(law, 1, 0.4), 0.25, 1e-15);
   EXPECT_NEAR(forces::drag_coefficient(law, 1, 1.0), 0.5, 1e-15);
   EXPECT_EQ(forces::drag_coefficient(law, 1, 3), 0.7);
   EXPECT_EQ(forces::drag_coefficient(law, 1, -1), 0.2);
   law.kind = DragLaw::Kind::by_reynolds;
-  law.table = {.x = {1, 100}, .y = {10, 2}, .count = 2, .logarithmic = 1};
+  law.table = CoefficientTable({{1, 10}, {100, 2}}, true);
   EXPECT_NEAR(forces::drag_coefficient(law, 10, 0), 6, 1e-14) << "half way of the logarithm";
   EXPECT_TRUE(forces::validate(law.table).ok());
-  law.table.x[0] = 0;
+  law.table = CoefficientTable({{0, 10}, {100, 2}}, true);
   EXPECT_NE(forces::validate(law.table).error().message.find("logarithm"), std::string::npos);
-  law.table.x[1] = -1;
+  law.table = CoefficientTable({{0, 10}, {-1, 2}}, true);
   EXPECT_FALSE(forces::validate(law.table).ok());
-  law.table.count = 17;
-  EXPECT_EQ(forces::validate(law.table).error().message, "table: found 17 points, expected 1 … 16");
-  law.table = {.x = {0}, .y = {std::numeric_limits<double>::quiet_NaN()}, .count = 1};
+  std::vector<forces::CoefficientPoint> many;
+  for (int i = 0; i < 1025; ++i) many.push_back({0.01 * i, 1.0 / (1 + i)});
+  EXPECT_EQ(forces::validate(CoefficientTable(many)).error().message, "table: found 1025 points, expected 1 … 1024");
+  many.pop_back();
+  const CoefficientTable fine(many);
+  EXPECT_TRUE(forces::validate(fine).ok());
+  for (int i = 0; i < 1023; ++i) {
+    EXPECT_EQ(fine.at(0.01 * i), 1.0 / (1 + i));
+    EXPECT_NEAR(fine.at(0.01 * (i + 0.5)), 0.5 / (1 + i) + 0.5 / (2 + i), 1e-12);
+  }
+  law.table = CoefficientTable({{0, std::numeric_limits<double>::quiet_NaN()}});
   EXPECT_FALSE(forces::validate(law.table).ok());
   DragLaw flat;
   flat.kind = DragLaw::Kind::constant;

@@ -40,7 +40,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 3; ++i)
     if (!world->step()) return 0;
   const Result<std::string> written = write_scene(*world);
-  const auto more = [](const auto& of) { return !of.guns.empty() || !of.structures.empty() || !of.rockets.empty(); };
+  const auto more = [](const auto& of) {
+    return !of.guns.empty() || !of.structures.empty() || !of.rockets.empty() || !of.shells.empty();
+  };
   if (world->matter || (world->destruction && (more(world->destruction->plane) || more(world->destruction->space)))) {
     if (written) broken("ropes, guns and so on were left out of what was written", *written);
     return 0;

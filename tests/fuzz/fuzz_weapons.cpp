@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "carom/ballistics/body_shell.h"
 #include "carom/scene/rocket_presets.h"
 #include "tests/fuzz/require.h"
 
@@ -13,7 +14,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(result.ok() || result.error().message.starts_with("f"), "an error that does not name the file");
     return result.ok();
   };
-  const auto round = scene::parse_ammunition(text, "f");
+  const auto any_shell = [](std::string_view path) -> core::Result<std::string> {
+    require(path.starts_with("presets/shell/") && path.find("..") == std::string_view::npos,
+            "a path out of the presets");
+    return std::string(
+        R"({"values": {"mass": "4 kg", "diameter": "9 cm", "axial_inertia": "0.01 kg*m^2", "transverse_inertia": "0.1 kg*m^2",
+            "twist": 20, "aerodynamics": [{"mach": 0, "axial": 0.2, "overturning": 3}]}})");
+  };
+  const auto round = scene::parse_ammunition(text, "f", any_shell);
   if (named(round)) {
     require(ballistics::check(*round).ok(), "ammunition that cannot be");
     const auto flight =
@@ -45,6 +53,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ballistics::fly_shell(*shell, {}, {{}, {300, 100, 0}}, ballistics::ShellModel::modified_point_mass,
                               {.time = 0.05, .tolerance = 1e-6});
     require(!flight.ok() || math::is_finite(math::length(flight->path.end().velocity)), "a flight that is not finite");
+    rigid::World3 world;
+    auto body = ballistics::BodyShell::make(
+        world, {.shell = *shell, .model = ballistics::ShellModel::six_degrees, .start = {{}, {300, 100, 0}}});
+    if (body.ok() && body->before_step(world, 1.0 / 240).ok()) {
+      require(world.step(1.0f / 240).ok(), "a shell that stops a world");
+      require(math::is_finite(math::length(world.state(body->body())->center_of_mass)), "a body that is not finite");
+    }
   }
   const auto wall = scene::parse_wall(text, "f");
   if (named(wall)) {

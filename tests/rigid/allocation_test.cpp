@@ -247,7 +247,10 @@ TYPED_TEST(WarmStep, OfEffectorsSensorsAndEvents) {
   Buoyancy<D> carried;
   carried.added_mass = along<D>(0.5f, 0.5f);
   world.add_effector(carried).value();
-  world.add_effector(BodyDrag<D>{}).value();
+  BodyDrag<D> curve;
+  curve.law.kind = forces::DragLaw::Kind::by_mach;
+  curve.law.table = forces::CoefficientTable(std::vector<forces::CoefficientPoint>{{0, 0.2}, {0.9, 0.3}, {1.1, 0.6}});
+  world.add_effector(curve).value();
   world.add_effector(MagnusLift<D>{}).value();
   LiftingSurface<D> wing;
   wing.body = bodies[0];

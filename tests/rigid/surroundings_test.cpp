@@ -614,7 +614,7 @@ TEST(Surroundings3, RefusesBadInput) {
   BodyDrag<Dim3> drag;
   drag.law.kind = forces::DragLaw::Kind::by_mach;
   EXPECT_NE(message(drag).find("table: found 0 points"), std::string::npos);
-  drag.law.table.count = 2;
+  drag.law.table = forces::CoefficientTable({{0, 0}, {0, 0}});
   EXPECT_NE(message(drag).find("x[1] is 0"), std::string::npos);
   drag = {};
   drag.diameter = 0;
@@ -641,6 +641,10 @@ TEST(Surroundings3, Snapshots) {
     water.added_mass = {0.5f, 0.5f, 0.5f};
     world.add_effector(water).value();
     BodyDrag<Dim3> drag;
+    drag.law.kind = forces::DragLaw::Kind::by_reynolds;
+    std::vector<forces::CoefficientPoint> curve;  // as long as measured ones are
+    for (int i = 0; i < 84; ++i) curve.push_back({10.0 * (i + 1), 24 / (10.0 * (i + 1)) + 0.4});
+    drag.law.table = forces::CoefficientTable(std::move(curve), true);
     world.add_effector(drag).value();
     return ball(world, 0.4, 400, {0, 1, 0});
   };

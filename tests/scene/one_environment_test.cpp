@@ -192,6 +192,22 @@ TEST(OneEnvironment, RocketsFeelGusts) {
   EXPECT_NEAR(blown.z, launch(R"("velocity": [0, 0, 8])").z, .05) << "as into a steady one";
 }
 
+// The frame's turning acts on a rocket once.
+TEST(OneEnvironment, RocketsFeelTheTurningOnce) {
+  SceneWorld world = start(
+      R"({"step": "1/240 s", "gravity": [0, -9.80665, 0], "environment": {"air": {"vacuum": true}, "frame": {"latitude": "0 deg"}}, "rockets": [{"name": "r",
+      "diameter": "1 m", "length": "8 m", "drag_coefficient": 0, "stages": [{"dry_mass": 1000,
+        "motor": {"mass": 10, "propellant_mass": 0, "thrust": [0, 0, 0.01, 400e3, 1, 400e3, 1.01, 0]}}]}]})");
+  run(world, 240 * 9);
+  // Straight up at some 395 m/s less what gravity takes: Coriolis' 2 Ω v to the west, by closed form from the burnout.
+  const rigid::BodyState<rigid::Dim3> state = *world.world3->state(world.find_body("r")->id);
+  const Vec3d rate = around(world).definition().frame.rate;
+  const Vec3d aside = math::cross(-2.0 * rate, Vec3d{0, state.center_of_mass.y - 4, 0});  // ∫ 2 Ω v dt = 2 Ω h
+  EXPECT_NEAR(state.linear_velocity.x, aside.x, .05 * math::length(aside));
+  EXPECT_NEAR(state.linear_velocity.z, aside.z, .05 * math::length(aside));
+  EXPECT_GT(math::length(aside), .1);
+}
+
 // Fog takes on the wind of its own height.
 TEST(OneEnvironment, ParticlesFeelLayers) {
   SceneWorld world =

@@ -32,7 +32,7 @@ TEST(WeaponPresets, EveryFileIsRead) {
       const std::string_view k = kind;
       const auto told = [&](const auto& result) { EXPECT_TRUE(result.ok()) << result.error().message; };
       if (k == "gun") told(scene::parse_gun(text, path, read_source));
-      if (k == "ammunition") told(scene::parse_ammunition(text, path));
+      if (k == "ammunition") told(scene::parse_ammunition(text, path, read_source));
       if (k == "sight") told(scene::parse_sight(text, path));
       if (k == "wall") told(scene::parse_wall(text, path));
       ++count;
@@ -81,6 +81,8 @@ TEST(WeaponPresets, ShellsAreTheLibrarysNumbers) {
     EXPECT_EQ(shell->axial_inertia, preset.shell.axial_inertia);
     EXPECT_EQ(shell->transverse_inertia, preset.shell.transverse_inertia);
     EXPECT_EQ(shell->twist, preset.shell.twist);
+    EXPECT_NEAR(shell->length, preset.shell.length, 1e-12);
+    EXPECT_NEAR(shell->centre, preset.shell.centre, 1e-12);
     ASSERT_EQ(shell->aerodynamics.size(), preset.shell.aerodynamics.size());
     for (std::size_t i = 0; i < shell->aerodynamics.size(); ++i) {
       const ShellCoefficients &a = shell->aerodynamics[i], &b = preset.shell.aerodynamics[i];

@@ -108,7 +108,8 @@ struct EffectorCheck {
     if (e.law.kind == Kind::constant) c.not_negative("law.coefficient", e.law.coefficient);
     if (c.none_yet() && (e.law.kind == Kind::by_reynolds || e.law.kind == Kind::by_mach)) {
       c.status(forces::validate(e.law.table));
-      for (int i = 0; c.none_yet() && i < e.law.table.count; ++i) c.not_negative("law.table", e.law.table.y[i]);
+      for (const forces::CoefficientPoint& p : e.law.table.points())
+        if (c.none_yet()) c.not_negative("law.table", p.y);
     }
     c.positive("diameter", e.diameter);
     c.not_negative("area", e.area);

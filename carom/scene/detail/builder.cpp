@@ -123,7 +123,7 @@ class Builder final : public BodyNames {
 
   static constexpr const char* lists[] = {"bodies",     "joints",      "effectors", "characters", "ropes",
                                           "cloths",     "soft_bodies", "liquids",   "grains",     "particles",
-                                          "structures", "explosions",  "guns",      "rockets"};
+                                          "structures", "explosions",  "guns",      "rockets",    "shells"};
   void visit_parts() {
     for (const Node& part : document_.parts)
       for (const char* list : lists)

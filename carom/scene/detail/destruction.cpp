@@ -103,15 +103,21 @@ template bool read_penetration(Reader&, const Node&, ballistics::BatchHits<rigid
 
 template <class D>
 void read_destruction(DestructionPlace<D>& place, std::string_view list, const Node& node, const std::string& path) {
-  const bool charge = list == "explosions", gun = list == "guns", rocket = list == "rockets";
-  const ObjectKind& kind = charge ? explosion_kind : gun ? gun_kind : rocket ? rocket_kind : structure_kind;
+  const bool charge = list == "explosions", gun = list == "guns", rocket = list == "rockets", shell = list == "shells";
+  const ObjectKind& kind = charge   ? explosion_kind
+                           : gun    ? gun_kind
+                           : rocket ? rocket_kind
+                           : shell  ? fired_shell_kind
+                                    : structure_kind;
   Object o;
   if (!place.reader.open(node, path, kind, o)) return;
   if (!place.reader.wanted(o)) return;
   if (charge) return read_explosion(place, o);
   if (gun) return read_gun(place, o);
-  if constexpr (D::dimension == 3)
+  if constexpr (D::dimension == 3) {
     if (rocket) return read_rocket(place, o);
+    if (shell) return read_shell(place, o);
+  }
   read_structure(place, o);
 }
 template void read_destruction(DestructionPlace<rigid::Dim2>&, std::string_view, const Node&, const std::string&);

@@ -1,4 +1,4 @@
-// Reads explosions, guns, structures and rockets of a scene file into a world.
+// Reads explosions, guns, structures, rockets and shells of a scene file into a world.
 #pragma once
 
 #include "carom/scene/destruction.h"
@@ -7,7 +7,7 @@
 
 namespace carom::scene::detail {
 
-inline constexpr const char* destruction_lists[] = {"structures", "explosions", "guns", "rockets"};
+inline constexpr const char* destruction_lists[] = {"structures", "explosions", "guns", "rockets", "shells"};
 
 /// What readers of these share.
 template <class D>
@@ -35,14 +35,19 @@ template <class D>
 template <class D>
 [[gnu::noinline]] void read_structure(DestructionPlace<D>& place, const Object& o);
 [[gnu::noinline]] void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o);
+[[gnu::noinline]] void read_shell(DestructionPlace<rigid::Dim3>& place, const Object& o);
+/// What spins, by its numbers.
+ballistics::Shell read_shell_itself(Reader& reader, const Object& o);
 /// Air, steady wind by height, gravity and the turning of the frame as what flies through the scene from a point meets
 /// them.
 ballistics::Conditions conditions_at(math::Vec3d point, double gravity, int dimension,
                                      const environment::Environment* around);
-/// The same with all of the wind.
-ballistics::Conditions rocket_conditions(math::Vec3d point, const rigid::World3& world,
-                                         const std::shared_ptr<const environment::Environment>& around);
-/// Guns and rockets that run meet what is around them now.
+/// Those of a body that flies by a model: with all of the wind. `turning`: with that of the frame, which the world
+/// gives to every body.
+ballistics::Conditions own_flight_conditions(math::Vec3d point, const rigid::World3& world,
+                                             const std::shared_ptr<const environment::Environment>& around,
+                                             bool turning);
+/// Guns, rockets and shells that run meet what is around them now.
 template <class D>
 [[gnu::noinline]] void renew_air(Destruction& all, const rigid::World<D>& world,
                                  const std::shared_ptr<const environment::Environment>& around);

@@ -62,14 +62,21 @@ constexpr Field ammunition_fields[] = {
     {"speed_deviation", T::quantity, M::speed, "standard deviation from shot to shot"},
     {"powder_mass", T::quantity, M::mass, "for the recoil"},
     {"gas_speed", T::quantity, M::speed, "at which the powder's gas leaves"},
+    {"shell", T::reference, M::plain,
+     "its rounds fly as spinning shells, in space: name of a preset of presets/shell, or written here; the drag counts "
+     "after a hit, and for aiming",
+     &shell_kind},
 };
 constexpr Field sight_fields[] = {
     {"preset", T::text, M::plain, preset_text},
     {"description", T::text},
     {"height", T::quantity, M::length, "from the bore up to the line of sight"},
+    {"offset", T::quantity, M::length, "from the bore to the right to the line of sight", nullptr, {}, false, 3},
     {"click", T::quantity, M::angle, "of a turret"},
     {"spacing", T::quantity, M::angle, "between marks of the reticle"},
     {"magnification", T::quantity, M::plain},
+    {"parallax_free", T::quantity, M::length,
+     "distance at which an eye off its axis makes no error; unless given at all"},
 };
 constexpr std::string_view stances[] = {"offhand", "kneeling", "sitting", "prone", "supported"};
 constexpr Field sway_fields[] = {
@@ -108,6 +115,9 @@ constexpr Field gun_fields[] = {
     {"clicks_right", T::integer, M::plain, "", nullptr, {}, false, 3},
     {"hold_up", T::quantity, M::angle, "sighted: how much higher than direction it is held"},
     {"hold_right", T::quantity, M::angle, "likewise, to the right", nullptr, {}, false, 3},
+    {"eye_up", T::quantity, M::length,
+     "sighted: the eye above the sight's axis, which the parallax shows; the mark is as far as dial or zero"},
+    {"eye_right", T::quantity, M::length, "likewise, to the right", nullptr, {}, false, 3},
     {"cant", T::quantity, M::angle, "sighted: it leans to the right", nullptr, {}, false, 3},
     {"sway", T::object, M::plain, "of the hands that hold it; none unless given", &sway_kind},
     {"mass", T::quantity, M::mass, "of the gun"},
@@ -257,8 +267,55 @@ constexpr Field rocket_fields[] = {
     {"trail", T::flag, M::plain, "pictures draw its path"},
 };
 
+constexpr Field shell_row_fields[] = {
+    {"mach", T::quantity, M::plain, "rising from row to row, linear between"},
+    {"axial", T::quantity, M::plain, "C_X0"},
+    {"axial_yaw", T::quantity, M::plain, "C_X2, with the square of the yaw"},
+    {"normal", T::quantity, M::plain, "C_Na"},
+    {"magnus_force", T::quantity, M::plain, "C_Ypa"},
+    {"roll_damping", T::quantity, M::plain, "C_lp"},
+    {"overturning", T::quantity, M::plain, "C_Ma, not zero"},
+    {"pitch_damping", T::quantity, M::plain, "C_mq"},
+    {"magnus_moment", T::quantity, M::plain, "C_Mpa"},
+};
+constexpr Field shell_fields[] = {
+    {"preset", T::text, M::plain, "name of a preset file, such as shell/155mm_m107"},
+    {"description", T::text},
+    {"mass", T::quantity, M::mass},
+    {"diameter", T::quantity, M::length},
+    {"axial_inertia", T::quantity, M::inertia, "about its axis"},
+    {"transverse_inertia", T::quantity, M::inertia, "across it"},
+    {"twist", T::quantity, M::plain, "of the barrel, calibres a turn, 20 unless given; negative: left-handed"},
+    {"length", T::quantity, M::length, "4.5 calibres unless given"},
+    {"centre", T::quantity, M::length, "of mass, from the nose; at .65 of the length unless given"},
+    {"aerodynamics", T::list, M::plain, "per radian, rate terms with p d/2V", &shell_row_kind},
+};
+constexpr std::string_view shell_models[] = {"modified_point_mass", "six_degrees"};
+constexpr Field fired_shell_fields[] = {
+    {"name", T::text, M::plain, "unique among bodies; {expressions} in braces are replaced"},
+    {"description", T::text},
+    {"if", T::quantity, M::plain, "0: leave this shell out"},
+    {"shell", T::reference, M::plain, "name of a preset of presets/shell, or written here", &shell_kind, {}, true},
+    {"model", T::choice, M::plain, "modified_point_mass unless given; or the axis nutates and precesses", nullptr,
+     shell_models},
+    {"position", T::vector, M::length, "of its centre of mass at the muzzle"},
+    {"direction", T::vector, M::plain, "of the barrel; x unless given"},
+    {"speed", T::quantity, M::speed, "at the muzzle", nullptr, {}, true},
+    {"spin", T::quantity, M::angular_speed, "instead of that of the barrel's twist"},
+    {"tip", T::vector, M::angular_speed, "its first angular velocity across the axis, in six degrees"},
+    {"start", T::quantity, M::time, "when it is fired"},
+    {"sticks", T::flag, M::plain, "it stays where it first touches something, as in soft ground"},
+    {"material", T::reference, M::plain, "of its surface", &material_kind},
+    {"filter", T::object, M::plain, "", &filter_kind},
+    {"color", T::color, M::plain, "as #rrggbb, or #rrggbbaa with an opacity"},
+    {"trail", T::flag, M::plain, "pictures draw its path"},
+};
+
 }  // namespace
 
+const ObjectKind shell_row_kind{"shell_row", "Aerodynamic coefficients at a Mach number.", shell_row_fields};
+const ObjectKind shell_kind{"shell", "A spinning shell by its numbers.", shell_fields};
+const ObjectKind fired_shell_kind{"fired_shell", "A spinning shell that flies as a body.", fired_shell_fields};
 const ObjectKind rocket_motor_kind{"rocket_motor", "The motor of a stage.", rocket_motor_fields};
 const ObjectKind stage_kind{"stage", "A stage of a rocket.", stage_fields};
 const ObjectKind rocket_kind{"rocket", "A rocket that flies as a body.", rocket_fields};

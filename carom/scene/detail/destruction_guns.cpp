@@ -32,6 +32,9 @@ ballistics::Ammunition read_ammunition(Reader& r, const Object& o) {
     if (numbers.size() % 2 != 0) return r.expected(*o.find(key), o.path_of(key), "pairs, one after another");
     for (std::size_t i = 0; i < numbers.size(); i += 2) out.push_back({numbers[i], numbers[i + 1]});
   };
+  if (Object shell; o.has("shell")) {
+    if (r.open(*o.find("shell"), o.path_of("shell"), shell_kind, shell)) a.shell = read_shell_itself(r, shell);
+  }
   pairs("drag_table", data.table);
   pairs("ballistic_coefficients", data.bands);
   if (!o.has("drag_function") && !o.has("drag_table") && !o.has("ballistic_coefficient") && data.bands.empty())
@@ -69,6 +72,8 @@ ballistics::Weapon read_weapon(Reader& r, const Object& o) {
   }
   if (open_named(r, o, "sight", sight_kind, sight)) {
     w.sight.height = r.number(sight, "height", w.sight.height);
+    w.sight.offset = r.number(sight, "offset", w.sight.offset);
+    w.sight.parallax_free = r.number(sight, "parallax_free", w.sight.parallax_free);
     w.sight.click = r.number(sight, "click", w.sight.click);
     w.sight.spacing = r.number(sight, "spacing", w.sight.spacing);
     w.sight.magnification = r.number(sight, "magnification", w.sight.magnification);
@@ -121,7 +126,10 @@ Status set_sights(Reader& r, const Object& o, GunDef& gun) {
   }
   ballistics::Aiming set = turned(*aiming, sight, up, r.integer(o, "clicks_right", 0, -100000, 100000));
   set.cant = r.number(o, "cant", 0);
-  const Vec3d line = ballistics::swung(gun.bore, r.number(o, "hold_up", 0), r.number(o, "hold_right", 0));
+  const math::Vec2d eye{r.number(o, "eye_right", 0), r.number(o, "eye_up", 0)};
+  const math::Vec2d beside = ballistics::parallax_of(sight, eye, r.number(o, "dial", gun.weapon.zero));
+  const Vec3d line =
+      ballistics::swung(gun.bore, r.number(o, "hold_up", 0) + beside.y, r.number(o, "hold_right", 0) + beside.x);
   gun.bore = ballistics::bore_direction(line, set);
   return {};
 }
@@ -174,7 +182,7 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
   gun.seed = std::uint64_t(r.integer(o, "seed", 1, 0, 0x7FFFFFFF));
   const bool sighted = r.flag(o, "sighted", false);
   if (o.has("sway") && !read_sway(r, o, gun)) return;
-  for (const char* key : {"dial", "clicks_up", "clicks_right", "hold_up", "hold_right", "cant"})
+  for (const char* key : {"dial", "clicks_up", "clicks_right", "hold_up", "hold_right", "eye_up", "eye_right", "cant"})
     if (o.has(key) && !sighted) return r.fail(*o.find(key), o.path_of(key), "only a gun that is \"sighted\" has it");
   std::string name;
   std::uint32_t color = 0xffd27f;
@@ -188,6 +196,7 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
     return r.expected(*o.find("lifetime"), o.path_of("lifetime"), "1 ms to 600 s");
   if (!r.accept(ballistics::check(gun.weapon), *o.node, o.path)) return;
 
+  if (D::dimension == 2) gun.weapon.ammunition.shell.reset();  // its drift leads out of the plane
   gun.conditions = conditions_of(gun, place.world, place.around.get());
   if (sighted && (!r.accept(set_sights(r, o, gun), *o.node, o.path) || r.failed())) return;
   const ballistics::Ammunition& a = gun.weapon.ammunition;
@@ -211,7 +220,10 @@ void renew_air(Destruction& all, const rigid::World<D>& world,
             entry.thing.explosion.charge().position, -double(world.definition().gravity.y), 3, around.get()));
     for (auto& entry : all.space.rockets)
       if (const auto rocket = world.state(entry.thing.body()); rocket.ok())
-        entry.thing.set_conditions(rocket_conditions(rocket->pose.position, world, around));
+        entry.thing.set_conditions(own_flight_conditions(rocket->pose.position, world, around, false));
+    for (auto& entry : all.space.shells)
+      if (const auto shell = world.state(entry.thing.body()); shell.ok())
+        entry.thing.set_conditions(own_flight_conditions(shell->pose.position, world, around, true));
   }
 }
 template void renew_air(Destruction&, const rigid::World2&, const std::shared_ptr<const environment::Environment>&);

@@ -96,9 +96,11 @@ ballistics::Rocket read_rocket_itself(Reader& r, const Object& o) {
 
 }  // namespace
 
-ballistics::Conditions rocket_conditions(math::Vec3d point, const rigid::World3& world,
-                                         const std::shared_ptr<const environment::Environment>& around) {
+ballistics::Conditions own_flight_conditions(math::Vec3d point, const rigid::World3& world,
+                                             const std::shared_ptr<const environment::Environment>& around,
+                                             bool turning) {
   ballistics::Conditions out = conditions_at(point, -double(world.definition().gravity.y), 3, around.get());
+  if (!turning) out.rotation = {};
   if (around != nullptr && around->has_wind())
     out.field = [around](math::Vec3d place, double time) { return around->wind(place, time); };
   return out;
@@ -126,7 +128,7 @@ void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o) {
     return r.expected(*o.find("direction"), o.path_of("direction"), "a direction that is not zero");
   def.shape.material = surface.material;
   def.shape.filter = surface.filter;
-  def.conditions = rocket_conditions(def.launch.position, place.world, place.around);
+  def.conditions = own_flight_conditions(def.launch.position, place.world, place.around, false);
   def.name = name;
   auto made = ballistics::BodyRocket::make(place.world, def);
   if (!r.accept(made.ok() ? core::Status{} : core::Status{made.error()}, *o.node, o.path)) return;

@@ -55,6 +55,7 @@ constexpr Field group_fields[] = {
     {"explosions", T::list, M::plain, "charges", &explosion_kind},
     {"guns", T::list, M::plain, "guns", &gun_kind},
     {"rockets", T::list, M::plain, "rockets", &rocket_kind, {}, false, 3},
+    {"shells", T::list, M::plain, "spinning shells", &fired_shell_kind, {}, false, 3},
     {"characters", T::list, M::plain, "", &character_kind},
 };
 const ObjectKind group_kind{
@@ -205,6 +206,7 @@ constexpr Field scene_fields[] = {
     {"explosions", T::list, M::plain, "charges and groups", &explosion_kind},
     {"guns", T::list, M::plain, "guns and groups", &gun_kind},
     {"rockets", T::list, M::plain, "rockets and groups", &rocket_kind, {}, false, 3},
+    {"shells", T::list, M::plain, "spinning shells and groups", &fired_shell_kind, {}, false, 3},
     {"penetration", T::list, M::plain, "what projectiles go through; all else stops them", &penetration_kind},
     {"characters", T::list, M::plain, "characters and groups", &character_kind},
     {"environment", T::object, M::plain, "gravity, air, wind and water around the bodies", &environment_kind},
@@ -236,6 +238,7 @@ constexpr Field part_fields[] = {
     {"explosions", T::list, M::plain, "charges", &explosion_kind},
     {"guns", T::list, M::plain, "guns", &gun_kind},
     {"rockets", T::list, M::plain, "rockets", &rocket_kind, {}, false, 3},
+    {"shells", T::list, M::plain, "spinning shells", &fired_shell_kind, {}, false, 3},
     {"penetration", T::list, M::plain, "what projectiles go through; all else stops them", &penetration_kind},
     {"characters", T::list, M::plain, "", &character_kind},
 };
@@ -322,6 +325,9 @@ const ObjectKind* const all_kinds[] = {&scene_kind,
                                        &rocket_kind,
                                        &stage_kind,
                                        &rocket_motor_kind,
+                                       &fired_shell_kind,
+                                       &shell_kind,
+                                       &shell_row_kind,
                                        &ammunition_kind,
                                        &sight_kind,
                                        &penetration_kind,

@@ -128,6 +128,7 @@ class PartReader {
       spell_out(node, "pitch", "preset", "pitch/");
       spell_out(node, "shot", "club", "");
     }
+    if (node.is_object() && (list == "ammunition" || list == "shells")) spell_out(node, "shell", "preset", "shell/");
     if (node.is_object() && list == "penetration")
       if (const core::Status read = read_wall(node); !read) return read;
     if (node.is_object() && list == "stages")

@@ -456,16 +456,13 @@ EffectorDef<D> read_effector_of(Reader& reader, BodyNames& names, const Object& 
       e.law.coefficient = reader.number(o, "drag_coefficient", e.law.coefficient);
       if (o.has("table")) {
         const std::vector<double> table = reader.numbers(o, "table");
-        const std::size_t most = 2 * std::size_t(forces::CoefficientTable::capacity);
+        const std::size_t most = 2 * forces::CoefficientTable::capacity;
         if (!reader.failed() && (table.empty() || table.size() % 2 != 0 || table.size() > most))
-          reader.expected(*o.find("table"), o.path_of("table"), "up to 16 pairs of x and C_d, one after another");
-        for (std::size_t i = 0; i + 1 < table.size() && i < most; i += 2) {
-          e.law.table.x[i / 2] = table[i];
-          e.law.table.y[i / 2] = table[i + 1];
-          ++e.law.table.count;
-        }
+          reader.expected(*o.find("table"), o.path_of("table"), "up to 1024 pairs of x and C_d, one after another");
+        std::vector<forces::CoefficientPoint> points;
+        for (std::size_t i = 0; i + 1 < table.size() && i < most; i += 2) points.push_back({table[i], table[i + 1]});
+        e.law.table = forces::CoefficientTable(std::move(points), reader.flag(o, "logarithmic", false));
       }
-      e.law.table.logarithmic = reader.flag(o, "logarithmic", false) ? 1 : 0;
       e.diameter = reader.number(o, "diameter", e.diameter);
       e.area = reader.number(o, "area", 0.25 * math::pi * e.diameter * e.diameter);
       e.point = vector_for(reader.vector(o, "point"), d);

@@ -68,6 +68,34 @@ core::Result<double> read_preset_quantity(const Node& node, std::string_view uni
   return quantity.si;
 }
 
+core::Status read_preset_numbers(const Node& node, std::span<const PresetNumber> fields,
+                                 std::span<const std::string_view> others, std::string_view file,
+                                 const std::string& at) {
+  using Need = PresetNumber::Need;
+  if (!node.is_object()) return preset_error(file, node, at, "found " + show(node) + ", expected an object");
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const std::string_view key = node.keys[k];
+    if (std::find(others.begin(), others.end(), key) != others.end()) continue;
+    const std::string where = core::text(at, ".", key);
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const PresetNumber& f) { return f.name == key; });
+    if (field == fields.end())
+      return preset_error(file, node.children[k], where, "found a name that is not known here");
+    const auto quantity = read_preset_quantity(node.children[k], field->unit, file, where);
+    if (!quantity) return quantity.error();
+    if (field->need != Need::any &&
+        (!math::is_finite(*quantity) || *quantity < 0 || (field->need == Need::positive && *quantity == 0)))
+      return preset_error(
+          file, node.children[k], where,
+          core::refused("it", *quantity,
+                        field->need == Need::positive ? "a finite number > 0" : "a finite number >= 0"));
+    *field->value = *quantity;
+  }
+  for (const PresetNumber& field : fields)
+    if (field.need == Need::positive && node.find(field.name) == nullptr)
+      return preset_error(file, node, core::text(at, ".", field.name), "is missing");
+  return {};
+}
+
 core::Result<PresetValues> read_preset(std::string_view text, std::string_view file,
                                        std::span<const sports::NumberName> names,
                                        std::span<const std::string_view> texts,

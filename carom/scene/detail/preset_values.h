@@ -44,6 +44,20 @@ core::Result<PresetValues> read_preset(std::string_view text, std::string_view f
 /// One quantity, in the unit's dimension (empty: a plain number), or an error.
 core::Result<double> read_preset_quantity(const Node& node, std::string_view unit, std::string_view file,
                                           std::string_view where);
+/// A number of an object by name, and what it must be.
+struct PresetNumber {
+  std::string_view name, unit;
+  double* value;
+  enum class Need {
+    any,
+    not_negative,
+    positive,  ///< and it must be there
+  } need = Need::any;
+};
+/// The numbers of an object; keys of `others` are looked at by the caller, all else is an error.
+core::Status read_preset_numbers(const Node& node, std::span<const PresetNumber> fields,
+                                 std::span<const std::string_view> others, std::string_view file,
+                                 const std::string& at);
 /// The tree of a preset with its values, whose kind is checked: "values" an object, or an array where `array` says so.
 core::Result<Node> read_preset_tree(std::string_view text, std::string_view file, bool array);
 
