@@ -33,7 +33,9 @@ core::Result<Aims> aim(const Projectile& projectile, const Conditions& condition
                        core::FunctionRef<Vec3d(double)> target, const AimOptions& options) {
   const core::Result<void> checked = detail::check(projectile, shooter, options);
   if (!checked.ok()) return checked.error();
-  return detail::AimSolver(projectile, conditions, shooter, target, options).scan();
+  Aims aims;
+  detail::AimSolver(projectile, conditions, shooter, target, options).scan(aims);
+  return aims;
 }
 
 core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
@@ -47,8 +49,8 @@ core::Result<Aims> aim(const Projectile& projectile, const Conditions& condition
   };
   const detail::AimSolver solver(projectile, conditions, shooter, place, options);
   Aims aims;
-  if (solver.two_arcs(aims)) return aims;
-  return solver.scan();
+  if (!solver.two_arcs(aims)) solver.scan(aims);
+  return aims;
 }
 
 core::Result<std::optional<Shot>> aim_again(const Projectile& projectile, const Conditions& conditions,

@@ -46,15 +46,14 @@ struct AimOptions {
   bool high_arc = true;       ///< false: only the earliest hit is looked for, in a fraction of the time
 };
 
-/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 12 µs, both 22
-/// to 75 µs, a target out of reach, at rest or in flight, 5 to 20 µs; one that is only just in or out of reach a tenth
-/// of a millisecond, one with several arcs, or beyond the reach of a light shot by so little that no bound tells,
-/// milliseconds. Errors: a field that is not finite, a muzzle speed ≤ 0.
+/// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 5 to 30 µs, both
+/// 15 to 80 µs, a target out of reach, at rest or in flight, 7 to 25 µs; one at the very edge of reach 70 µs, one with
+/// several arcs half a millisecond. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
 
 /// The same for any motion of the target, its position (m) by the time since firing (s): every root in the longest time
-/// that is not a passing touch of less than a hundredth of it; about ten times slower.
+/// that is not a passing touch of less than a hundredth of it; about half a millisecond.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  core::FunctionRef<math::Vec3d(double)> target, const AimOptions& options = {});
 

@@ -3,12 +3,13 @@
 
 namespace carom::ballistics::detail {
 
-/// 1/m, of the speed that drag takes by way.
 double AimSolver::drag_by_way(double speed, double height) const {
   const environment::AirColumn::Air air = conditions_.air.at(height);
   return math::max(medium_.half_area * air.density * projectile_.drag(speed / air.speed_of_sound), 1e-9);
 }
 
+// Along a straight way drag leaves e^(−ks) of the speed after s: so long does it take, z = e^(ks) − 1 in units of 1/(k
+// v), and the fall is what gravity adds up to under the same drag.
 AimSolver::Guess AimSolver::flat_guess() const {
   const double speed = shooter_.muzzle_speed, g = conditions_.gravity, lies = shooter_.muzzle.y;
   const Vec3d wind = conditions_.wind.at(lies), still = shooter_.velocity - wind;

@@ -3,6 +3,12 @@
 
 namespace carom::ballistics::detail {
 
+// Shots of one muzzle speed that fly for a time T reach a closed surface around those that are slower: a ball in
+// vacuum, nearly an ellipsoid with drag, with the normal J⁻ᵀ d where the barrel points along d and J = ∂x(T)/∂u. A
+// target that lies beyond the plane that touches it there is out of reach at T. Over T the distance is convex as a
+// rule: its rate is the speed of the target past the shot along the normal, and two or three flights find where it is
+// least.
+
 AimSolver::Reach AimSolver::reach(const Guess& guess) const {
   Reach at = reach(guess, 5e-3);
   if (!at.known || math::abs(at.gap) < 0.03 * at.scale) at = reach(guess, 5e-4);
@@ -19,7 +25,7 @@ AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
   if (!record(guess, accuracy * at.scale, path)) return at;
   linearize(path, false);
   at.inverse = inverse_of(path.by_velocity);
-  // Changes of u across the barrel move the arrival within the surface.
+  // Changes of u across the barrel move the arrival within the surface. The ball's curvature is the surface's mean one.
   const Vec3d across = at.inverse.apply_transposed((guess.u - shooter_.velocity) / speed);
   const double steep = math::length(across);
   const Vec3d *rows = path.by_velocity, miss = target - path.arrival.position;
@@ -35,8 +41,8 @@ AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
   const double later = 1e-2 * time;
   const Vec3d pull = (velocity_of_target(time + later) - velocity) / later - Path::at(path.k, path.count);
   at.bend = math::max(math::dot(to, pull) + math::length_squared(at.drift - at.rate * to) / distance,
-                      0.3 * conditions_.gravity);
-  at.known = math::is_finite(at.gap) && math::is_finite(at.bend) && math::is_finite(at.rate) && at.bend > 0;
+                      math::max(0.3 * conditions_.gravity, 1e-4 * speed * speed / at.scale));
+  at.known = math::is_finite(at.gap) && math::is_finite(at.bend) && math::is_finite(at.rate);
   return at;
 }
 
@@ -64,7 +70,7 @@ AimSolver::Nearest AimSolver::nearest(double time) const {
     const Nearest other = nearest_from(straight(at));
     if (!other.sure || other.gap < found.gap) found = other;
   };
-  if (found.sure && found.gap < 0.03 * found.at.scale) look(0.7 * found.time);
+  if (found.sure && found.gap < (layered_ ? 0.15 : 0.03) * found.at.scale) look(0.7 * found.time);
   const Vec3d turns = velocity_of_target(longest) - velocity_of_target(0);
   if (math::length(turns) > 1e-6 * shooter_.muzzle_speed)
     for (const double share : {0.125, 0.25, 0.5, 1.0}) look(share * longest);
@@ -158,14 +164,13 @@ bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late)
   return aims.low.has_value();
 }
 
-Aims AimSolver::scan() const {
+void AimSolver::scan(Aims& aims) const {
   const double fastest =
       shooter_.muzzle_speed + math::length(shooter_.velocity) + math::length(conditions_.wind.at(shooter_.muzzle.y));
   const double first_time = math::max(
       1e-4, 0.2 * math::length(target_(0) - shooter_.muzzle) / (fastest + math::length(velocity_of_target(0))));
   const double ratio = math::max(options_.longest_time / first_time, 1.01);
   constexpr int steps = 160;
-  Aims aims;
   Reach before = reach(straight(first_time));
   for (int i = 1; i <= steps; ++i) {
     const double time = first_time * math::pow(ratio, double(i) / steps);
@@ -178,7 +183,6 @@ Aims AimSolver::scan() const {
     }
     before = at;
   }
-  return aims;
 }
 
 void AimSolver::touch(Reach a, Reach b, Aims& aims) const {

@@ -50,7 +50,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   // in the few elements of that flight, then in as many as the tolerance wants, at last by more points of them.
   double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = math::max(0.02 * away, rough);
-  double last_missed = 1e300, first_missed = 1e300, piece = (medium_.wind.count > 0 || bent_ ? 4 : 24) * allowed;
+  double last_missed = 1e300, first_missed = 1e300, piece = (medium_.wind.count > 0 || bent_ ? 4 : 16) * allowed;
   int divisions = 0;
   enum class Stage { fly, rough, fine, measured } stage = Stage::fly;
   for (int i = 0; i < most; ++i) {

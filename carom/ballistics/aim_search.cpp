@@ -86,8 +86,8 @@ bool AimSolver::two_arcs(Aims& aims) const {
     previous = lack;
   }
   if (peaks + (rises ? 1 : 0) > 1) return false;
-  Nearest near;
   const Guess flat = flat_guess();
+  Nearest near;
   // On such a flight it would fall by more than the shots that go farthest do (.3 to .55 of the way).
   if (0.5 * conditions_.gravity * flat.time * flat.time > 0.65 * math::length(target_(flat.time) - shooter_.muzzle)) {
     near = nearest(flat.time);

@@ -1,6 +1,6 @@
 // How AimSolver and its parts are divided: aim_flight.cpp flies, aim_path.cpp knows what a flight owes to its start,
-// aim_measure.cpp by how much it is off, aim_roots.cpp finds the shot near a guess, aim_search.cpp finds guesses, or
-// that there are none, aim_bounds.cpp knows what no shot can do.
+// aim_measure.cpp by how much it is off, aim_roots.cpp finds the shot near a guess, aim_guesses.cpp guesses,
+// aim_reach.cpp knows how near shots come to the target and when, aim_search.cpp asks them in turn.
 #pragma once
 
 #include "carom/ballistics/aim.h"
@@ -35,8 +35,8 @@ class AimSolver {
   /// magnitude, the right one is when it comes down to the target's height.
   Root refine(Guess guess, int most = 40, bool eager = false, bool falling = false) const;
 
-  /// All roots by a walk through the flight times, the earliest and the latest of them.
-  Aims scan() const;
+  /// The earliest and the latest of all roots, and of those that are known, by a walk through the flight times.
+  void scan(Aims& aims) const;
   /// The usual case, in which the speed to spare has one peak over T, with an arc on either side of it. False: it is
   /// not the usual case, and the scan must tell.
   bool two_arcs(Aims& aims) const;
@@ -54,6 +54,7 @@ class AimSolver {
     const double h = 1e-3 * math::max(time, 1e-2);
     return (target_(time + h) - target_(time)) / h;
   }
+  /// 1/m, the share of the speed that drag takes by way.
   double drag_by_way(double speed, double height) const;
   /// Straight at the target, but for what it falls.
   Guess flat_guess() const;
@@ -97,8 +98,9 @@ class AimSolver {
     Reach at{};                // near there
     double time = 0, gap = 0;  // s, m, foretold from there
   };
-  Nearest nearest(double flat_time) const;
   Nearest nearest_from(Guess guess) const;
+  /// `time`: of a flat shot, s.
+  Nearest nearest(double time) const;
   /// No solution where the surface never comes to the target; else the roots on either side of where it is deepest in.
   /// `late` may be known, the root after that. False: unknown.
   bool by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const;
