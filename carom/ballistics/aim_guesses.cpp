@@ -22,7 +22,10 @@ AimSolver::Guess AimSolver::flat_guess() const {
     // The speed through the air that the barrel gives along that way.
     const double ahead = math::dot(along, still), beside = speed * speed - math::length_squared(still) + ahead * ahead;
     const double first = math::max(ahead + math::sqrt(math::max(beside, 0.0)), 0.1 * speed);
-    const double k = (drag_by_way(first, lies) + 4 * drag_by_way(mean, lies) + drag_by_way(last, lies)) / 6,
+    // Where it comes down through the speed of sound that mean swings to and fro; what holds at first is nearer.
+    const bool falls_through = first > 1.2 * sound_ && last < 1.2 * sound_;
+    const double at_first = drag_by_way(first, lies),
+                 k = falls_through ? at_first : (at_first + 4 * drag_by_way(mean, lies) + drag_by_way(last, lies)) / 6,
                  worn = math::min(k * length, 5.0), z = math::expm1(worn);
     mean = first * math::exp(-0.5 * worn);
     last = mean * mean / first;
