@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -374,6 +375,89 @@ void expect_hits(Rough rough, std::uint64_t seed, int cases) {
   ::testing::Test::RecordProperty("worst_miss_micrometres", int(worst * 1e6));
   EXPECT_GT(found, cases / 2);
   EXPECT_GT(none, cases / 8);
+}
+
+/// The least miss (m) that Newton's method with differences of whole flights finds from a direction of the barrel and a
+/// time: nothing of the solver is in it.
+double least_miss(const Case& c, double longest, double elevation, double azimuth, double time) {
+  const auto off = [&](double e, double a, double t) {
+    const Vec3d u = c.shooter.velocity + c.shooter.muzzle_speed * direction(e, a);
+    const auto flight = fly(c.projectile, c.conditions, {c.shooter.muzzle, u}, {.time = t, .tolerance = 1e-10});
+    return flight ? flight->end().position - (c.target.position + t * c.target.velocity) : Vec3d{1e300, 0, 0};
+  };
+  double least = 1e300;
+  for (int i = 0; i < 30; ++i) {
+    const Vec3d r = off(elevation, azimuth, time);
+    least = math::min(least, math::length(r));
+    if (least < .005) return least;
+    const double h = 1e-6, ht = 1e-5 * time;
+    const Vec3d je = (off(elevation + h, azimuth, time) - r) / h, ja = (off(elevation, azimuth + h, time) - r) / h,
+                jt = (off(elevation, azimuth, time + ht) - r) / ht;
+    const double whole = math::dot(je, math::cross(ja, jt));
+    if (whole == 0 || !math::is_finite(whole)) return least;
+    const double de = math::dot(r, math::cross(ja, jt)) / whole, da = math::dot(je, math::cross(r, jt)) / whole,
+                 dt = math::dot(je, math::cross(ja, r)) / whole;
+    const double share = math::min(1.0, math::min(.1 / (math::abs(de) + math::abs(da)), .2 * time / math::abs(dt)));
+    elevation -= share * de, azimuth -= share * da, time -= share * dt;
+    if (!(time > 1e-6 && time < longest)) return least;
+  }
+  return least;
+}
+
+/// Tries barrels all round: the nearest passes of their whole flights are what Newton's method begins with.
+double least_miss(const Case& c, double longest) {
+  struct Pass {
+    double miss, elevation, azimuth, time;
+  };
+  std::vector<Pass> passes;
+  constexpr int rows = 36, columns = 48;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double elevation = math::pi * ((i + .5) / rows - .5), azimuth = 2 * math::pi * j / columns;
+      const Vec3d u = c.shooter.velocity + c.shooter.muzzle_speed * direction(elevation, azimuth);
+      const auto flight =
+          fly(c.projectile, c.conditions, {c.shooter.muzzle, u}, {.time = longest, .ground = -1000, .tolerance = 1e-4});
+      Pass pass{1e300, elevation, azimuth, 0};
+      for (int k = 1; flight && k <= 100; ++k) {
+        const double t = flight->duration() * math::square(k / 100.0);
+        const double away =
+            math::length(flight->at(t).position - (c.target.position + t * c.target.velocity)) / (1 + t);
+        if (away < pass.miss) pass.miss = away, pass.time = t;
+      }
+      if (pass.time > 0) passes.push_back(pass);
+    }
+  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.miss < b.miss; });
+  double least = 1e300;
+  for (std::size_t i = 0; i < passes.size() && i < 24 && least > .005; ++i)
+    least = math::min(least, least_miss(c, longest, passes[i].elevation, passes[i].azimuth, passes[i].time));
+  return least;
+}
+
+// Where no solution is told, barrels all round find none either; where one is told, they nearly always do.
+TEST(Aim, NoSolutionIsTrue) {
+  const int asked = cases_asked(1);
+  int told = 0, found = 0;
+  for (int kind = 0; kind < 4; ++kind) {
+    math::Random random = random_asked(90210);
+    int none = 0, some = 0;
+    for (int i = 0; none < asked && i < 100 * asked; ++i) {
+      const Case c = kind == 3 ? draw(random) : draw_outdoors(random, Rough(kind));
+      const double longest = kind == 3 ? 60 : AimOptions{}.longest_time;
+      const auto aims = aim(c.projectile, c.conditions, c.shooter, c.target, {.longest_time = longest});
+      ASSERT_TRUE(aims.ok());
+      if (*aims && some++ >= asked) continue;
+      const double least = least_miss(c, longest);
+      if (*aims) {
+        ++told;
+        found += least < .01;
+      } else {
+        ++none;
+        EXPECT_GE(least, .01) << "kind " << kind << ", case " << i;
+      }
+    }
+    EXPECT_EQ(none, asked);
+  }
+  EXPECT_GE(found, told - (told + 9) / 10);
 }
 
 // Nearly straight up by a curve whose slope at Mach 0 is not zero: slow for seconds about the top; and one through the
