@@ -16,7 +16,7 @@ using detail::Measure;
 using detail::Node;
 
 /// A number of a preset, and where it goes.
-struct PresetNumber {
+struct TableNumber {
   const char* name;
   Measure measure;
   double* to;
@@ -61,13 +61,13 @@ class PresetReader {
     fail(core::text(name_, ":", at.line, ": ", path, ": found ", detail::show(at), ", expected ", expected));
   }
 
-  void numbers(const Node& object, const std::string& path, std::span<const PresetNumber> known,
+  void numbers(const Node& object, const std::string& path, std::span<const TableNumber> known,
                std::span<const char* const> others = {}) {
     for (std::size_t i = 0; i < object.keys.size() && ok(); ++i) {
       const std::string& key = object.keys[i];
       const Node& value = object.children[i];
-      const PresetNumber* found = nullptr;
-      for (const PresetNumber& k : known)
+      const TableNumber* found = nullptr;
+      for (const TableNumber& k : known)
         if (key == k.name) found = &k;
       if (found != nullptr) {
         read(value, path + key, *found);
@@ -77,7 +77,7 @@ class PresetReader {
       for (const char* o : others) other = other || key == o;
       if (other) continue;
       std::string names;
-      for (const PresetNumber& k : known) names += names.empty() ? k.name : std::string(", ") + k.name;
+      for (const TableNumber& k : known) names += names.empty() ? k.name : std::string(", ") + k.name;
       for (const char* o : others) names += std::string(", ") + o;
       refuse(value, path + key, "one of the keys " + names);
     }
@@ -95,7 +95,7 @@ class PresetReader {
   }
 
  private:
-  void read(const Node& at, const std::string& path, const PresetNumber& to) {
+  void read(const Node& at, const std::string& path, const TableNumber& to) {
     const detail::MeasureInfo& info = detail::measure_info(to.measure);
     const std::string wanted =
         info.sample[0] != 0 ? core::text(info.article, " such as \"", info.sample, "\"") : std::string(info.article);
@@ -117,11 +117,11 @@ class PresetReader {
 };
 
 void read_cloth_numbers(PresetReader& in, const Node& at, const std::string& path, sports::Cloth& cloth) {
-  const PresetNumber known[] = {{"sliding_friction", Measure::plain, &cloth.sliding_friction},
-                                {"rolling_friction", Measure::plain, &cloth.rolling_friction},
-                                {"spinning_friction", Measure::plain, &cloth.spinning_friction},
-                                {"restitution", Measure::plain, &cloth.restitution},
-                                {"bounce_threshold", Measure::speed, &cloth.bounce_threshold}};
+  const TableNumber known[] = {{"sliding_friction", Measure::plain, &cloth.sliding_friction},
+                               {"rolling_friction", Measure::plain, &cloth.rolling_friction},
+                               {"spinning_friction", Measure::plain, &cloth.spinning_friction},
+                               {"restitution", Measure::plain, &cloth.restitution},
+                               {"bounce_threshold", Measure::speed, &cloth.bounce_threshold}};
   in.numbers(at, path, known);
 }
 
@@ -134,41 +134,41 @@ core::Result<BilliardSetting> read_billiard_table(std::string_view text, std::st
   const Node* values = in.values();
   if (values == nullptr) return in.error();
   sports::RectangularTable& t = s.table;
-  const PresetNumber known[] = {{"length", Measure::length, &t.length},
-                                {"width", Measure::length, &t.width},
-                                {"nose_height", Measure::length, &t.nose_height},
-                                {"rail_width", Measure::length, &t.rail_width},
-                                {"corner_mouth", Measure::length, &t.corner_mouth},
-                                {"corner_angle", Measure::angle, &t.corner_angle},
-                                {"corner_depth", Measure::length, &t.corner_depth},
-                                {"corner_radius", Measure::length, &t.corner_radius},
-                                {"corner_rounding", Measure::length, &t.corner_rounding},
-                                {"side_mouth", Measure::length, &t.side_mouth},
-                                {"side_angle", Measure::angle, &t.side_angle},
-                                {"side_depth", Measure::length, &t.side_depth},
-                                {"side_radius", Measure::length, &t.side_radius},
-                                {"side_rounding", Measure::length, &t.side_rounding}};
+  const TableNumber known[] = {{"length", Measure::length, &t.length},
+                               {"width", Measure::length, &t.width},
+                               {"nose_height", Measure::length, &t.nose_height},
+                               {"rail_width", Measure::length, &t.rail_width},
+                               {"corner_mouth", Measure::length, &t.corner_mouth},
+                               {"corner_angle", Measure::angle, &t.corner_angle},
+                               {"corner_depth", Measure::length, &t.corner_depth},
+                               {"corner_radius", Measure::length, &t.corner_radius},
+                               {"corner_rounding", Measure::length, &t.corner_rounding},
+                               {"side_mouth", Measure::length, &t.side_mouth},
+                               {"side_angle", Measure::angle, &t.side_angle},
+                               {"side_depth", Measure::length, &t.side_depth},
+                               {"side_radius", Measure::length, &t.side_radius},
+                               {"side_rounding", Measure::length, &t.side_rounding}};
   constexpr const char* parts[] = {"pockets", "ball", "cloth", "balls", "cushion"};
   in.numbers(*values, "", known, parts);
   t.pockets = in.flag(*values, "pockets", t.pockets);
   sports::BilliardPhysics& p = s.physics;
   if (const Node* at = in.part(*values, "ball")) {
-    const PresetNumber ball[] = {{"mass", Measure::mass, &p.ball.mass}, {"radius", Measure::length, &p.ball.radius}};
+    const TableNumber ball[] = {{"mass", Measure::mass, &p.ball.mass}, {"radius", Measure::length, &p.ball.radius}};
     in.numbers(*at, "ball.", ball);
   }
   if (const Node* at = in.part(*values, "cloth")) read_cloth_numbers(in, *at, "cloth.", p.cloth);
   if (const Node* at = in.part(*values, "balls")) {
-    const PresetNumber balls[] = {{"restitution", Measure::plain, &p.balls.restitution},
-                                  {"friction_floor", Measure::plain, &p.balls.friction_floor},
-                                  {"friction_range", Measure::plain, &p.balls.friction_range},
-                                  {"friction_rate", Measure::plain, &p.balls.friction_rate},
-                                  {"contact_time", Measure::time, &p.balls.contact_time}};
+    const TableNumber balls[] = {{"restitution", Measure::plain, &p.balls.restitution},
+                                 {"friction_floor", Measure::plain, &p.balls.friction_floor},
+                                 {"friction_range", Measure::plain, &p.balls.friction_range},
+                                 {"friction_rate", Measure::plain, &p.balls.friction_rate},
+                                 {"contact_time", Measure::time, &p.balls.contact_time}};
     in.numbers(*at, "balls.", balls);
   }
   if (const Node* at = in.part(*values, "cushion")) {
-    const PresetNumber cushion[] = {{"restitution", Measure::plain, &p.cushion.restitution},
-                                    {"friction", Measure::plain, &p.cushion.friction},
-                                    {"frequency_ratio", Measure::plain, &p.cushion.frequency_ratio}};
+    const TableNumber cushion[] = {{"restitution", Measure::plain, &p.cushion.restitution},
+                                   {"friction", Measure::plain, &p.cushion.friction},
+                                   {"frequency_ratio", Measure::plain, &p.cushion.frequency_ratio}};
     constexpr const char* model[] = {"model"};
     in.numbers(*at, "cushion.", cushion, model);
     if (const Node* named = at->find("model")) {
@@ -208,10 +208,10 @@ core::Result<sports::Cue> read_cue(std::string_view text, std::string_view name,
   PresetReader in(text, name);
   const Node* values = in.values();
   if (values == nullptr) return in.error();
-  const PresetNumber known[] = {{"mass", Measure::mass, &cue.mass},
-                                {"end_mass", Measure::mass, &cue.end_mass},
-                                {"tip_friction", Measure::plain, &cue.tip_friction},
-                                {"restitution", Measure::plain, &cue.restitution}};
+  const TableNumber known[] = {{"mass", Measure::mass, &cue.mass},
+                               {"end_mass", Measure::mass, &cue.end_mass},
+                               {"tip_friction", Measure::plain, &cue.tip_friction},
+                               {"restitution", Measure::plain, &cue.restitution}};
   in.numbers(*values, "", known);
   if (const auto good = sports::strike_cue({}, cue, {}); in.ok() && !good) in.fail_at_values(good.error().message);
   if (!in.ok()) return in.error();
