@@ -30,8 +30,7 @@ core::Result<Pattern2> voronoi_pattern2(std::span<const Vec2d> sites) {
       if (j != i) near.push_back({distance_squared(sites[i], sites[j]), j});
     // The nearest first: what they leave of a cell leaves few of the others to be sorted.
     const std::size_t nearest = math::min(near.size(), std::size_t(16));
-    std::nth_element(near.begin(), near.begin() + std::ptrdiff_t(nearest), near.end());
-    std::sort(near.begin(), near.begin() + std::ptrdiff_t(nearest));
+    std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(nearest), near.end());
     cell = {{{sites[i] + Vec2d{-far, -far}, 0},
              {sites[i] + Vec2d{far, -far}, 0},
              {sites[i] + Vec2d{far, far}, 0},
