@@ -31,7 +31,7 @@ class ContactForesight {
     foretell_friction(false, cheaper(frictions));
     foretell_finds(cheaper(finds));
     for_each_base([&](auto& pose, const auto& from, const auto& foreseen) {
-      bases.push_back(std::memcmp(&pose, &foreseen, sizeof pose) == 0);
+      bases.push_back(differing_bits(pose, foreseen) == 0);
       if (bases.back()) pose = from;
     });
     bases.insert(bases.end(), finds.begin(), finds.end());
