@@ -268,18 +268,12 @@ core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<con
 core::Result<Pattern> slab_pattern(const ConvexCell& container, Vec3d normal, int count, double jitter,
                                    std::uint64_t seed) {
   if (auto s = check(container); !s) return s.error();
-  if (count < 1 || count > 65536) return core::Error{core::refused("count", count, "1 to 65536 slabs")};
-  if (!(jitter >= 0 && jitter <= 1)) return core::Error{core::refused("jitter", jitter, "0 to 1")};
-  if (!(length_squared(normal) > 0) || !is_finite(normal)) return core::Error{"normal: expected a direction"};
+  if (auto s = detail::check_slabs(normal, count, 65536, jitter); !s) return s.error();
   normal = normalize(normal);
-  math::Random random(seed);
   double low = dot(normal, container.vertices()[0]), high = low;
   for (const Vec3d& v : container.vertices())
     low = math::min(low, dot(normal, v)), high = math::max(high, dot(normal, v));
-  const double step = (high - low) / count;
-  std::vector<double> borders;
-  for (int k = 1; k < count; ++k)
-    borders.push_back(low + step * (k + detail::off_lattice + 0.5 * jitter * random.uniform(-1.0, 1.0)));
+  const std::vector<double> borders = detail::slab_borders(low, high, count, jitter, seed);
   Pattern pattern;
   for (int k = 0; k < count; ++k) {
     ConvexCell cell = container;

@@ -114,18 +114,15 @@ core::Status check(std::span<const Vec2d> outline) {
 core::Result<Pattern2> slab_pattern2(std::span<const Vec2d> outline, Vec2d normal, int count, double jitter,
                                      std::uint64_t seed) {
   if (auto s = check(outline); !s) return s.error();
-  if (count < 1 || count > 10000) return core::Error{core::refused("count", count, "1 to 10000 slabs")};
-  if (!(jitter >= 0 && jitter <= 1)) return core::Error{core::refused("jitter", jitter, "0 to 1")};
-  if (!(length_squared(normal) > 0) || !is_finite(normal)) return core::Error{"normal: expected a direction"};
+  if (auto s = detail::check_slabs(normal, count, 10000, jitter); !s) return s.error();
   normal = normalize(normal);
-  math::Random random(seed);
   double low = dot(normal, outline[0]), high = low;
   for (const Vec2d& p : outline) low = math::min(low, dot(normal, p)), high = math::max(high, dot(normal, p));
-  const double step = (high - low) / count;
+  const std::vector<double> borders = detail::slab_borders(low, high, count, jitter, seed);
   Pattern2 pattern;
   pattern.cells.resize(std::size_t(count));
   for (int k = 1; k < count; ++k) {
-    const double border = low + step * (k + detail::off_lattice + 0.5 * jitter * random.uniform(-1.0, 1.0));
+    const double border = borders[std::size_t(k - 1)];
     pattern.cells[std::size_t(k - 1)].push_back({normal, border, k});
     pattern.cells[std::size_t(k)].push_back({-normal, -border, k - 1});
     pattern.meetings.push_back({std::uint32_t(k - 1), std::uint32_t(k), k, k - 1});

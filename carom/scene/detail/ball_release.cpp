@@ -97,6 +97,13 @@ std::optional<Thrown> read_thrown(Reader& reader, const Object& o) {
   return *thrown;
 }
 
+/// Deliveries and pitches name how a ball leaves the hand alike.
+template <class Thrown>
+sports::Launch out_of_the_hand(const Thrown& t) {
+  return {
+      .speed = t.speed, .elevation = t.elevation, .azimuth = t.azimuth, .spin = t.spin, .tilt = t.tilt, .gyro = t.gyro};
+}
+
 sports::Conditions in_frame(sports::Conditions conditions, const ThrowFrame& frame) {
   conditions.wind = environment::WindColumn(frame.to_frame(conditions.wind.at(0)));
   return conditions;
@@ -128,14 +135,7 @@ std::optional<BallRelease> read_delivery(Reader& reader, const Object& o, const 
     d = *aimed;
     d->height += up;
   }
-  BallRelease release = released(frame, from,
-                                 {.speed = d->speed,
-                                  .elevation = d->elevation,
-                                  .azimuth = d->azimuth,
-                                  .spin = d->spin,
-                                  .tilt = d->tilt,
-                                  .gyro = d->gyro},
-                                 {0, d->height, d->side});
+  BallRelease release = released(frame, from, out_of_the_hand(*d), {0, d->height, d->side});
   const math::SinCos<double> seam = math::sincos(d->azimuth + d->seam);
   release.seam_normal = frame.to_world({0.0 - seam.sin, 0, seam.cos});
   return release;
@@ -153,14 +153,7 @@ std::optional<BallRelease> read_pitch(Reader& reader, const Object& o, const spo
     if (!reader.accept(aimed ? core::Status{} : core::Status{aimed.error()}, *o.node, o.path)) return {};
     p = *aimed;
   }
-  return released(frame, from,
-                  {.speed = p->speed,
-                   .elevation = p->elevation,
-                   .azimuth = p->azimuth,
-                   .spin = p->spin,
-                   .tilt = p->tilt,
-                   .gyro = p->gyro},
-                  p->release);
+  return released(frame, from, out_of_the_hand(*p), p->release);
 }
 
 std::optional<BallRelease> read_shot(Reader& reader, const Object& o, const sports::Ball& ball) {

@@ -3,6 +3,7 @@
 
 #include "carom/scene/destruction.h"
 #include "carom/scene/detail/joints.h"
+#include "carom/scene/detail/matter.h"
 #include "carom/scene/detail/shapes.h"
 
 namespace carom::scene::detail {
@@ -42,6 +43,15 @@ ballistics::Shell read_shell_itself(Reader& reader, const Object& o);
 /// them.
 ballistics::Conditions conditions_at(math::Vec3d point, double gravity, int dimension,
                                      const environment::Environment* around);
+/// What flies as a body of its own has a name that neither another thing of its list nor a body has.
+template <class List>
+bool name_flying_body(DestructionPlace<rigid::Dim3>& place, const Object& o, std::string_view kind, const List& others,
+                      std::string& name, std::uint32_t& color) {
+  if (!name_thing(place.reader, o, kind, others, name, color)) return false;
+  if (place.scene.find_body(name) == nullptr) return true;
+  place.reader.fail(*o.node, o.path, "found the name " + quote(name) + " a second time, expected one that no body has");
+  return false;
+}
 /// Those of a body that flies by a model: with all of the wind. `turning`: with that of the frame, which the world
 /// gives to every body.
 ballistics::Conditions own_flight_conditions(math::Vec3d point, const rigid::World3& world,

@@ -1,7 +1,6 @@
 #include "carom/core/string.h"
 #include "carom/scene/detail/destruction.h"
 #include "carom/scene/detail/destruction_fields.h"
-#include "carom/scene/detail/matter.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -111,9 +110,7 @@ void read_rocket(DestructionPlace<rigid::Dim3>& place, const Object& o) {
   std::string name;
   std::uint32_t color = 0;
   auto& list = place.out.of<rigid::Dim3>().rockets;
-  if (!name_thing(r, o, "rocket", list, name, color)) return;
-  if (place.scene.find_body(name) != nullptr)
-    return r.fail(*o.node, o.path, "found the name " + quote(name) + " a second time, expected one that no body has");
+  if (!name_flying_body(place, o, "rocket", list, name, color)) return;
   ballistics::BodyRocketDef def;
   def.rocket = read_rocket_itself(r, o);
   def.launch.position = r.vector(o, "position");

@@ -1,7 +1,6 @@
 #include "carom/core/string.h"
 #include "carom/scene/detail/destruction.h"
 #include "carom/scene/detail/destruction_fields.h"
-#include "carom/scene/detail/matter.h"
 
 namespace carom::scene::detail {
 
@@ -39,9 +38,7 @@ void read_shell(DestructionPlace<rigid::Dim3>& place, const Object& o) {
   std::string name;
   std::uint32_t color = 0;
   auto& list = place.out.of<rigid::Dim3>().shells;
-  if (!name_thing(r, o, "shell", list, name, color)) return;
-  if (place.scene.find_body(name) != nullptr)
-    return r.fail(*o.node, o.path, "found the name " + quote(name) + " a second time, expected one that no body has");
+  if (!name_flying_body(place, o, "shell", list, name, color)) return;
   Object itself;
   if (!r.open(*o.find("shell"), o.path_of("shell"), shell_kind, itself)) return;
   ballistics::BodyShellDef def;
