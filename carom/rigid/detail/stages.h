@@ -63,7 +63,7 @@ void prepare_drives(StepContext<D>& context);
 void fly_through(StepContext<Dim3>& context, int begin, int end);
 /// Of the others there, by one substep.
 template <class D>
-void integrate_velocities(StepContext<D>& context, int begin, int end);
+void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on);
 template <class D>
 void integrate_positions(StepContext<D>& context, int begin, int end);
 /// New poses from displacements; bounds; sleep timers; quarantine; who is fast.
