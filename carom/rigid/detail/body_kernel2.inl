@@ -24,6 +24,7 @@ struct DrivenBodies2 {
   CAROM_SIMD_INLINE WideMask<W> in_flight() const { return drive[7] > WideFloat<W>::splat(2); }
 };
 
+/// Where the Flight<Dim2> of each lane is.
 template <int W>
 struct FlightRows2 {
   const float* row[W];
