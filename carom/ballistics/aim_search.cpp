@@ -1,4 +1,6 @@
 // Where the aim solver looks for shots, and how it knows that there are none.
+#include <bit>
+
 #include "carom/ballistics/detail/aim_solver.h"
 #include "carom/math/cpu.h"
 
@@ -20,6 +22,8 @@ AimMedium medium_of(const Projectile& projectile, const Conditions& conditions) 
   if (m.wind.count > 0) {
     m.sheared_up_to = m.wind.legs[m.wind.count - 1].height;
     above = m.wind.legs[m.wind.count - 1].velocity;
+    m.lowest_cell = std::bit_cast<double>(m.wind.first_cell << 48);
+    m.highest_cell = std::bit_cast<double>(m.wind.last_cell << 48);
   }
   for (int i = 0; i < 3; ++i) m.wind_above[i] = above[i];
   m.drag = projectile.drag.table();

@@ -163,9 +163,18 @@ int find(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<
         }
         const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
         std::uint32_t hits = math::bitmask(square < math::min(touch * touch + (way + way), farthest * farthest));
-        if (hits != 0) hits &= math::bitmask(square <= touch * math::sqrt(square) + way);
         if (runs.to[run] - j < width) hits &= (1u << (runs.to[run] - j)) - 1;
-        for (; hits != 0; hits &= hits - 1) found[at++] = j + __builtin_ctz(hits);
+        if (hits == 0) continue;
+        const F open = square - touch * math::sqrt(square);
+        hits &= math::bitmask(open <= way);
+        const F stage = math::min(math::max(open, F::zero()) * splat(grain_stages) / math::max(way, splat(1e-30f)),
+                                  splat(grain_stages - 1));
+        std::int32_t stages[width];
+        (math::to_int(stage) << grain_stage_bit).store(stages);
+        for (; hits != 0; hits &= hits - 1) {
+          const int lane = __builtin_ctz(hits);
+          found[at++] = stages[lane] | (j + lane);
+        }
       }
   }
   return at;
@@ -329,6 +338,12 @@ void sweep(GrainBlock<N>* blocks, int first, int last, bool back, float* motion,
       sweep_lanes<N, pair>(blocks[back ? last - 1 - i : first + i], lane, motion, pass);
 }
 
+CAROM_SIMD_INLINE float greatest(F of) {
+  float result = 0;
+  for (int i = 0; i < width; ++i) result = of[i] > result ? of[i] : result;
+  return result;
+}
+
 template <int N>
 float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
   F most = F::zero();
@@ -341,9 +356,7 @@ float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
       for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
       most = math::max(most, a[3] + b[3] - math::sqrt(dot(d, d)));
     }
-  float result = 0;
-  for (int i = 0; i < width; ++i) result = most[i] > result ? most[i] : result;
-  return result;
+  return greatest(most);
 }
 
 const GrainKernels<2> kernels2 = {find<2>,        recall<2>,       keep<2>,         press<2, true>,
