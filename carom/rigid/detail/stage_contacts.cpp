@@ -174,7 +174,7 @@ bool prepare_blocks(StepContext<D>& context) {
 /// all, where these are many, because then the blow that pressed them into each other goes through all.
 template <class D, int W>
 void mark_settling(StepContext<D>& context) {
-  constexpr std::size_t many = 64;  ///< one in so many bodies
+  constexpr std::size_t many = 16;  ///< one in so many bodies
   WorldImplementation<D>& world = context.world;
   std::uint8_t* pushed = nullptr;  // by slot of the body
   std::size_t count = 0;
