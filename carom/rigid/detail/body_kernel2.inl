@@ -56,11 +56,12 @@ bool integrate_velocities2(SolverBody<Dim2>* bodies, const BodyDrive<Dim2>* driv
   const auto dynamic = driven.dynamic(), flies = driven.in_flight();
   const F share = F::splat(0.5f * h), zero = F::splat(0);
   const FlightRows2<W> rows(flights);
+  const auto carries = driven.carries();
+  const bool any_carry = any(carries);
   F carried[3] = {zero, zero, zero};
-  if (carry_on) {
+  if (carry_on && any_carry) {
     F last[8];
     gather_rows<8, W>(rows.row, last);
-    const auto carries = driven.carries();
     carried[0] = select(carries, row[0] - last[0], zero);
     carried[1] = select(carries, row[1] - last[1], zero);
     carried[2] = select(carries, row[2] - last[4], zero);
@@ -76,8 +77,13 @@ bool integrate_velocities2(SolverBody<Dim2>* bodies, const BodyDrive<Dim2>* driv
   scatter_rows<8, 8, W>(reinterpret_cast<float*>(bodies), driven.body, moved);
   std::int32_t place[W];
   for (int i = 0; i < W; ++i) place[i] = i;
-  const F flight[8] = {x, y, row[0], row[1], spin, zero, zero, zero};
-  scatter_rows<8, 8, W>(flights, place, flight);
+  if (any_carry) {
+    const F flight[8] = {x, y, row[0], row[1], spin, zero, zero, zero};
+    scatter_rows<8, 8, W>(flights, place, flight);
+  } else {
+    const F flight[4] = {x, y, row[0], row[1]};
+    scatter_rows<8, 4, W>(flights, place, flight);
+  }
   return true;
 }
 

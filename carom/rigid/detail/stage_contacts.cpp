@@ -204,6 +204,7 @@ void mark_settling(StepContext<D>& context) {
 template <class D, int W>
 void find_again(StepContext<D>& context, bool any_strikes) {
   WorldImplementation<D>& world = context.world;
+  if (!any_contacts(world)) return;
   const bool any_asleep = world.sleeping.count() > 0;
   bool any_joint = false;
   const auto take = [&](std::int32_t body) {

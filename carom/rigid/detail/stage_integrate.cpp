@@ -44,7 +44,10 @@ class PushedBodies {
     lanes_.start[0][count_] = start.w;
     for (int i = 0; i < 3; ++i) lanes_.start[i + 1][count_] = start.vector()[i];
     lanes_.body[count_] = body;
-    places_[count_] = place;
+    if ((context_.drives[place].flags & BodyDrive<Dim3>::carries) != 0) {
+      carrying_[carry_count_++] = place;
+      context_.flights[place].spin -= context_.bodies[body].angular_velocity;
+    }
     if (++count_ < W) return;
     turn();
     clear();
@@ -52,22 +55,20 @@ class PushedBodies {
 
  private:
   void turn() {
-    for (int k = 0; k < count_; ++k)
-      context_.flights[places_[k]].spin -= context_.bodies[lanes_.body[k]].angular_velocity;
     turn_(context_.bodies, &lanes_, context_.h);
-    for (int k = 0; k < count_; ++k)
-      context_.flights[places_[k]].spin += context_.bodies[lanes_.body[k]].angular_velocity;
+    for (int k = 0; k < carry_count_; ++k)
+      context_.flights[carrying_[k]].spin += context_.bodies[context_.drives[carrying_[k]].body].angular_velocity;
   }
   void clear() {
-    count_ = 0;
+    count_ = carry_count_ = 0;
     lanes_ = {};
     for (std::int32_t& body : lanes_.body) body = none;
   }
   StepContext<Dim3>& context_;
   TurnKernel turn_;
   TurnLanes<W> lanes_;
-  int places_[W] = {};
-  int count_ = 0;
+  int carrying_[W] = {};  ///< places of those whose spin turns with them (Flight)
+  int count_ = 0, carry_count_ = 0;
 };
 
 /// The same for bodies that nothing touches: in double, because one near its intermediate axis feels every rounding.
@@ -117,8 +118,10 @@ class FreeBodies {
       // intermediate axis that decides when it flips.
       const Quatf now = normalize(s.delta_rotation * context_.world.bodies.pose[std::size_t(lanes_.body[k])].rotation);
       const Vec3d w = rotate(normalize(Quatd(now)), Vec3d{lanes_.spin[0][k], lanes_.spin[1][k], lanes_.spin[2][k]});
-      Vec3f& spin = context_.flights[places_[k]].spin;
-      spin = spin - s.angular_velocity + Vec3f(w);
+      if ((context_.drives[places_[k]].flags & BodyDrive<Dim3>::carries) != 0) {
+        Vec3f& spin = context_.flights[places_[k]].spin;
+        spin = spin - s.angular_velocity + Vec3f(w);
+      }
       s.angular_velocity = Vec3f(w);
       const Vec3f rest(w - Vec3d(s.angular_velocity));
       s.spin_rest_x = rest.x, s.spin_rest_y = rest.y, s.spin_rest_z = rest.z;
@@ -172,6 +175,7 @@ void prepare_drives(StepContext<D>& context) {
   const auto& bodies = context.world.bodies;
   const float h = context.h;
   const typename D::Vector gravity = context.world.definition.gravity;
+  const bool touches = any_contacts(context.world);
   context.drives = context.arena.template allocate<BodyDrive<D>>(bodies.awake.size()).data();
   context.scheduler.parallel_for(int(bodies.awake.size()), 256, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
@@ -188,7 +192,7 @@ void prepare_drives(StepContext<D>& context) {
         if (D::dimension == 3 && record.locks == 0) drive.flags |= BodyDrive<D>::flies_through;
       }
       std::uint8_t& again = context.world.scratch.again[std::size_t(drive.body)];
-      const bool carries = record.constraint_count > 0 && again == 0;
+      const bool carries = touches && record.constraint_count > 0 && again == 0;
       again = 0;
       if (carries) drive.flags |= BodyDrive<D>::carries;
       if (record.locks == 0) drive.kind = record.constraint_count == 0 ? 3.0f : carries ? 2.0f : 1.0f;
@@ -241,17 +245,23 @@ void accelerate_bodies(StepContext<D>& context, int begin, int end, bool carry_o
     if ((drive.flags & BodyDrive<D>::dynamic) == 0 || (drive.flags & BodyDrive<D>::flies_through) != 0) continue;
     SolverBody<D>& s = context.bodies[drive.body];
     Flight<D>& flight = context.flights[i];
+    const bool carries = (drive.flags & BodyDrive<D>::carries) != 0;
     typename D::Vector carried{};
     typename D::Angular carried_spin{};
-    if (carry_on && (drive.flags & BodyDrive<D>::carries) != 0) {
+    if (carry_on && carries) {
       carried = s.linear_velocity - flight.after;
       carried_spin = s.angular_velocity - flight.spin;
     }
     const typename D::Vector before = accelerate(s, drive, max_speed);
     spin_up(s, drive, h);
     // Free flight: the mean of the velocities makes ½at² exact. In contact it would fight the contact.
-    if ((drive.flags & BodyDrive<D>::in_flight) != 0) s.delta_position += (0.5f * h) * (before + s.linear_velocity);
-    flight.after = s.linear_velocity, flight.before = before, flight.spin = s.angular_velocity;
+    if ((drive.flags & BodyDrive<D>::in_flight) != 0) {
+      s.delta_position += (0.5f * h) * (before + s.linear_velocity);
+      continue;
+    }
+    flight.after = s.linear_velocity, flight.before = before;
+    if (!carries) continue;
+    flight.spin = s.angular_velocity;
     s.linear_velocity += carried;
     s.angular_velocity += carried_spin;
   }
