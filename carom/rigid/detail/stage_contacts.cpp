@@ -85,13 +85,9 @@ void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
 }
 
 template <class D>
-bool is_awake(const WorldImplementation<D>& world, std::int32_t body) {
-  return world.bodies.record[std::size_t(body)].awake_index != none;
-}
-template <class D>
 void take_again(WorldImplementation<D>& world, std::int32_t body) {
   // By all threads: all write the same.
-  if (body != none && is_awake(world, body))
+  if (body != none && world.bodies.is_awake(body))
     std::atomic_ref<std::uint8_t>(world.scratch.again[std::size_t(body)]).store(1, std::memory_order_relaxed);
 }
 
@@ -225,7 +221,8 @@ void find_again(StepContext<D>& context, bool any_strikes) {
                        const bool may_sleep = any_asleep && nearest >= 0;
                        const auto again = [&](std::int32_t body) {
                          if (body == none) return 0;
-                         return may_sleep && !is_awake(world, body) ? 1 : int(world.scratch.again[std::size_t(body)]);
+                         return may_sleep && !world.bodies.is_awake(body) ? 1
+                                                                          : int(world.scratch.again[std::size_t(body)]);
                        };
                        block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
                        if (block.again[lane] != 0) marks[lane] |= mark_again;
