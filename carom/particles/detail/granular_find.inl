@@ -268,8 +268,7 @@ void GranularState<D>::find_pairs(float dt) {
   for_slabs([&](GrainSlab<N>& slab, int index) { place_pairs(slab, slab_begin(index), slab_begin(index + 1)); });
 }
 
-/// Surface: a side of the domain, or 2 N + the
-/// index of a solid. Each has blocks of its own: a grain is in one once.
+/// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.
 template <class D>
 void GranularState<D>::touch(int grain, int surface, std::uint32_t key) {
   const GrainTouch* old = nullptr;

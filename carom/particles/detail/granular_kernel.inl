@@ -338,12 +338,6 @@ void sweep(GrainBlock<N>* blocks, int first, int last, bool back, float* motion,
       sweep_lanes<N, pair>(blocks[back ? last - 1 - i : first + i], lane, motion, pass);
 }
 
-CAROM_SIMD_INLINE float greatest(F of) {
-  float result = 0;
-  for (int i = 0; i < width; ++i) result = of[i] > result ? of[i] : result;
-  return result;
-}
-
 template <int N>
 float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
   F most = F::zero();
@@ -356,7 +350,9 @@ float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
       for (int k = 0; k < N; ++k) d.k[k] = b[k] - a[k];
       most = math::max(most, a[3] + b[3] - math::sqrt(dot(d, d)));
     }
-  return greatest(most);
+  float result = 0;
+  for (int i = 0; i < width; ++i) result = most[i] > result ? most[i] : result;
+  return result;
 }
 
 const GrainKernels<2> kernels2 = {find<2>,        recall<2>,       keep<2>,         press<2, true>,

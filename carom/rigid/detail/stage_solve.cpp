@@ -115,6 +115,7 @@ void list_stages(StepContext<D>& context) {
   }
 }
 
+bool is_warm_start(SolverPass pass) { return pass == SolverPass::warm_start || pass == SolverPass::warm_start_again; }
 bool is_of_trees(SolverPass pass) {
   return pass == SolverPass::begin_trees || pass == SolverPass::solve_trees || pass == SolverPass::factorise_trees ||
          pass == SolverPass::settle_trees;
@@ -123,10 +124,8 @@ bool is_of_trees(SolverPass pass) {
 template <class D>
 void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b, int begin, int end) {
   const ContactKernels<D>& kernels = context.world.kernels;
-  if (stage.pass == SolverPass::warm_start)
-    kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end, false);
-  else if (stage.pass == SolverPass::warm_start_again)
-    kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end, true);
+  if (is_warm_start(stage.pass))
+    kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end, stage.pass == SolverPass::warm_start_again);
   else if (stage.pass == SolverPass::solve)
     kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, stage.order);
   else
@@ -150,7 +149,7 @@ void run_marked(StepContext<D>& context, SolverStage stage, std::uint8_t mark, i
 template <class D>
 void run_joints(StepContext<D>& context, SolverPass pass, int color, int begin, int end) {
   if (begin >= end) return;
-  if (pass == SolverPass::warm_start || pass == SolverPass::warm_start_again)
+  if (is_warm_start(pass))
     warm_start_joints(context, color, begin, end);
   else
     solve_joints(context, color, pass == SolverPass::solve, begin, end);
