@@ -40,6 +40,21 @@ Mat3f symmetric(const Mat3f& i) {
   const float xy = 0.5f * (i.cx.y + i.cy.x), xz = 0.5f * (i.cx.z + i.cz.x), yz = 0.5f * (i.cy.z + i.cz.y);
   return {{i.cx.x, xy, xz}, {xy, i.cy.y, yz}, {xz, yz, i.cz.z}};
 }
+Mat3f symmetric(float xx, float xy, float xz, float yy, float yz, float zz) {
+  return {{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}};
+}
+/// r t rᵀ.
+Mat3f turned(const Mat3f& t, const Mat3f& r) {
+  const Vec3f x{r.cx.x, r.cy.x, r.cz.x}, y{r.cx.y, r.cy.y, r.cz.y}, z{r.cx.z, r.cy.z, r.cz.z};  // its rows
+  const Vec3f tx = t * x, ty = t * y, tz = t * z;
+  return symmetric(dot(x, tx), dot(x, ty), dot(x, tz), dot(y, ty), dot(y, tz), dot(z, tz));
+}
+/// scale m⁻¹.
+Mat3f inverse_of_symmetric(const Mat3f& m, float scale) {
+  const Vec3f a = cross(m.cy, m.cz), b = cross(m.cz, m.cx), c = cross(m.cx, m.cy);
+  const float d = dot(m.cx, a), s = d != 0 ? scale / d : 0;
+  return symmetric(a.x * s, a.y * s, a.z * s, b.y * s, b.z * s, c.z * s);
+}
 void set_inertia(BodyMotion<Dim2>& m, double inertia) { m.inertia = float(inertia); }
 void set_inertia(BodyMotion<Dim3>& m, const Mat3d& inertia) {
   m.inertia = symmetric(Mat3f(inertia));
@@ -80,8 +95,7 @@ Mat3f inverse_inertia_in_world(const BodyMotion<Dim3>& m, const Quatf& q, const 
   if (record.type != BodyType::dynamic || !(scale > 0) || locked == 7) return Mat3f::zero();
   if (locked == 0 && !m.gyroscopic) return Mat3f::diagonal({1 / scale, 1 / scale, 1 / scale});
   // Scaled to order one, because a determinant of three small moments would underflow.
-  const Mat3f r = to_matrix(q);
-  Mat3f i = r * ((1 / scale) * m.inertia) * transpose(r);
+  Mat3f i = turned((1 / scale) * m.inertia, to_matrix(q));
   // Only the free axes turn: the inverse of that part of the tensor.
   for (int k = 0; k < 3; ++k)
     if (locked >> k & 1)
@@ -89,10 +103,10 @@ Mat3f inverse_inertia_in_world(const BodyMotion<Dim3>& m, const Quatf& q, const 
         i.column(k)[l] = k == l ? 1.0f : 0.0f;
         i.column(l)[k] = k == l ? 1.0f : 0.0f;
       }
-  i = inverse(i) * (1 / scale);
+  i = inverse_of_symmetric(i, 1 / scale);
   for (int k = 0; k < 3; ++k)
     if (locked >> k & 1) i.column(k)[k] = 0;
-  return symmetric(i);
+  return i;
 }
 float inverse_inertia_in_world(const BodyMotion<Dim2>& m, const Rot2f&, const BodyRecord& record) {
   return record.type == BodyType::dynamic && m.inertia > 0 && (record.locks & 32) == 0 ? 1 / m.inertia : 0;

@@ -103,6 +103,15 @@ CAROM_SIMD_INLINE void place_law(LawLanes<W>& law, WideFloat<W> angle, WideFloat
   (high - x).store_aligned(law.upper.gap);
 }
 
+/// mass_ratio_root, of a mobility and what the anchors take from it.
+template <class D, int W>
+CAROM_SIMD_INLINE void store_stiffness(WideFloat<W> mobility, WideFloat<W> taken, LimbRaw<D, W>& raw) {
+  using F = WideFloat<W>;
+  const auto moves = mobility > F::zero();
+  const F row = select(moves, mobility, F::splat(1));
+  select(moves, sqrt(row / max(row - taken, F::splat(0.01f) * row)), F::splat(1)).store_aligned(raw.stiffer);
+}
+
 // The plane -----------------------------------------------------------------------------------------------------------
 template <int W>
 struct Placement2 {
@@ -132,6 +141,26 @@ CAROM_SIMD_INLINE void place(LimbLanes<Dim2, W>& c, const Placement2<W>& a, cons
   const Lanes<2, W> back = {{a.turn.v[0], F::zero() - a.turn.v[1]}};
   const auto q = turned(back, turned(b.turn, load(c.frame)));
   place_law(c.law, arc(q.v[1], q.v[0]), ia + ib);
+}
+template <int W>
+CAROM_SIMD_INLINE void turn_frames(LimbLanes<Dim2, W>& c, const LimbRaw<Dim2, W>& raw) {
+  const auto qa = load(raw.rotation_a), qb = load(raw.rotation_b);
+  store(turned(qa, load(c.arm_a)), c.arm_a);
+  store(turned(qb, load(c.arm_b)), c.arm_b);
+  const auto fa = turned(qa, load(raw.frame_a)), fb = turned(qb, load(raw.frame_b));
+  store(turned(Lanes<2, W>{{fa.v[0], WideFloat<W>::zero() - fa.v[1]}}, fb), c.frame);
+}
+template <int W>
+CAROM_SIMD_INLINE void note_spin(LimbLanes<Dim2, W>& c, const Lanes<1, W>& spin) {
+  spin.v[0].store_aligned(c.law.before);
+}
+template <int W>
+CAROM_SIMD_INLINE void find_stiffness(const LimbLanes<Dim2, W>& c, LimbRaw<Dim2, W>& raw) {
+  using F = WideFloat<W>;
+  const Lanes<1, W> ia = {{F::load_aligned(c.inverse_inertia_a)}}, ib = {{F::load_aligned(c.inverse_inertia_b)}};
+  const auto anchors = add(cross(ib, load(c.reach_b)), cross(ia, load(c.reach_a)));
+  const auto held = solve_factor(load(c.factor), anchors);
+  store_stiffness(F::load_aligned(c.law.axis_mobility), anchors.v[0] * held.v[0] + anchors.v[1] * held.v[1], raw);
 }
 template <int W>
 CAROM_SIMD_INLINE void solve_limb(LimbLanes<Dim2, W>& c, Motion2<W>& a, Motion2<W>& b, const LimbPass& pass,
@@ -347,6 +376,34 @@ CAROM_SIMD_INLINE void place(LimbLanes<Dim3, W>& c, const Placement3<W>& a, cons
 }
 
 template <int W>
+CAROM_SIMD_INLINE void store_turn(const Turn<W>& q, float (&p)[4][W]) {
+  q.w.store_aligned(p[0]);
+  for (int i = 0; i < 3; ++i) q.u.v[i].store_aligned(p[i + 1]);
+}
+template <int W>
+CAROM_SIMD_INLINE void turn_frames(LimbLanes<Dim3, W>& c, const LimbRaw<Dim3, W>& raw) {
+  const Turn<W> a = load_turn(raw.rotation_a), b = load_turn(raw.rotation_b);
+  store(turned(a, load(c.arm_a)), c.arm_a);
+  store(turned(b, load(c.arm_b)), c.arm_b);
+  if (c.parts == part_pin) return;
+  store_turn(product(a, load_turn(c.frame_a)), c.frame_a);
+  store_turn(product(b, load_turn(c.frame_b)), c.frame_b);
+}
+template <int W>
+CAROM_SIMD_INLINE void note_spin(LimbLanes<Dim3, W>& c, const Lanes<3, W>& spin) {
+  if (c.parts & part_twist) dot(load(c.twist_axis), spin).store_aligned(c.law.before);
+  if (c.parts & part_angular) store(spin, c.before);
+}
+template <int W>
+CAROM_SIMD_INLINE void find_stiffness(const LimbLanes<Dim3, W>& c, LimbRaw<Dim3, W>& raw) {
+  const Lanes<3, W> n = load(c.twist_axis);
+  const Lanes<3, W> anchors =
+      add(cross(times(load(c.tensor_b), n), load(c.reach_b)), cross(times(load(c.tensor_a), n), load(c.reach_a)));
+  const Lanes<3, W> held = solve_factor(load(c.factor), anchors);
+  store_stiffness(WideFloat<W>::load_aligned(c.law.axis_mobility), dot(anchors, held), raw);
+}
+
+template <int W>
 struct LimbMotion3 {
   Motion3<W> a, b;
   Lanes<6, W> ta, tb;
@@ -457,12 +514,14 @@ CAROM_SIMD_INLINE void warm_start_limb(const LimbLanes<Dim3, W>& c, Motion3<W>& 
 
 // Both ----------------------------------------------------------------------------------------------------------------
 template <class D, int W>
-void place_limbs(SolverBody<D>* bodies, void* blocks, int begin, int end) {
-  for (int k = begin; k < end; ++k) {
-    LimbLanes<D, W>& c = static_cast<LimbLanes<D, W>*>(blocks)[k];
-    place(c, read_placement<W>(bodies, c.read_a), read_placement<W>(bodies, c.read_b));
-    sum_turns(c);
-  }
+void begin_limbs(const SolverBody<D>* bodies, void* block, void* out) {
+  LimbLanes<D, W>& c = *static_cast<LimbLanes<D, W>*>(block);
+  LimbRaw<D, W>& raw = *static_cast<LimbRaw<D, W>*>(out);
+  turn_frames(c, raw);
+  place(c, read_placement<W>(bodies, c.read_a), read_placement<W>(bodies, c.read_b));
+  sum_turns(c);
+  note_spin(c, subtract(read_motion<W>(bodies, c.read_b).w, read_motion<W>(bodies, c.read_a).w));
+  if ((c.parts & part_twist) && (D::dimension == 2 || (c.parts & part_hinge))) find_stiffness(c, raw);
 }
 template <class D, int W>
 void warm_start_limbs(SolverBody<D>* bodies, void* blocks, int begin, int end) {
@@ -499,11 +558,11 @@ void relax_limbs(SolverBody<D>* bodies, void* blocks, int begin, int end, LimbPa
 
 LimbKernels<Dim2> limb_kernels2() {
   constexpr int W = CAROM_PIN_WIDTH;
-  return {place_limbs<Dim2, W>, warm_start_limbs<Dim2, W>, solve_limbs<Dim2, W>, relax_limbs<Dim2, W>};
+  return {begin_limbs<Dim2, W>, warm_start_limbs<Dim2, W>, solve_limbs<Dim2, W>, relax_limbs<Dim2, W>};
 }
 LimbKernels<Dim3> limb_kernels3() {
   constexpr int W = CAROM_PIN_WIDTH;
-  return {place_limbs<Dim3, W>, warm_start_limbs<Dim3, W>, solve_limbs<Dim3, W>, relax_limbs<Dim3, W>};
+  return {begin_limbs<Dim3, W>, warm_start_limbs<Dim3, W>, solve_limbs<Dim3, W>, relax_limbs<Dim3, W>};
 }
 
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -75,6 +75,21 @@ struct alignas(64) LimbLanes<Dim3, W> {
   std::uint32_t parts;
 };
 
+/// What a block starts from, beside what lies in it: then its arms, and in space its frames, are in their bodies' own.
+template <class D, int W>
+struct LimbRaw;
+template <int W>
+struct alignas(64) LimbRaw<Dim2, W> {
+  float rotation_a[2][W], rotation_b[2][W];  ///< of the bodies
+  float frame_a[2][W], frame_b[2][W];        ///< of the joint, in them
+  float stiffer[W];                          ///< out: mass_ratio_root of the turn
+};
+template <int W>
+struct alignas(64) LimbRaw<Dim3, W> {
+  float rotation_a[4][W], rotation_b[4][W];
+  float stiffer[W];
+};
+
 /// In the parts of a limb: its spring is rigid (a weld).
 inline constexpr std::uint32_t limb_is_stiff = 1u << 31;
 /// Its spring pulls toward another attitude than that of frames aligned.
@@ -83,7 +98,9 @@ inline constexpr std::uint32_t limb_is_aimed = 1u << 30;
 /// The kernels of one width. Blocks [begin, end).
 template <class D>
 struct LimbKernels {
-  void (*place)(SolverBody<D>* bodies, void* blocks, int begin, int end) = nullptr;  ///< what follows from the bodies
+  /// From where its bodies are when the step begins and how fast: what a block holds of that (but for the response of
+  /// its springs), from its LimbRaw.
+  void (*begin)(const SolverBody<D>* bodies, void* block, void* raw) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, void* blocks, int begin, int end) = nullptr;
   void (*solve)(SolverBody<D>* bodies, void* blocks, int begin, int end, LimbPass pass) = nullptr;
   void (*relax)(SolverBody<D>* bodies, void* blocks, int begin, int end, LimbPass pass) = nullptr;  ///< places first

@@ -1,4 +1,5 @@
 // Limbs side by side (joint_limb_lanes.h): who they are, and their way into the blocks and back.
+#include "carom/rigid/detail/joint_law.h"
 #include "carom/rigid/detail/joint_place.h"
 
 namespace carom::rigid::detail {
@@ -17,6 +18,11 @@ void set_lane(float (&lanes)[4][W], int lane, const Quatf& q) {
   for (int i = 0; i < 3; ++i) lanes[i + 1][lane] = q.vector()[i];
 }
 template <int W>
+void set_lane(float (&lanes)[2][W], int lane, const Rot2f& q) {
+  lanes[0][lane] = q.c;
+  lanes[1][lane] = q.s;
+}
+template <int W>
 void set_lane(float (&lanes)[6][W], int lane, const Mat3f& m) {
   const float t[6] = {m.cx.x, m.cx.y, m.cx.z, m.cy.y, m.cy.z, m.cz.z};
   for (int i = 0; i < 6; ++i) lanes[i][lane] = t[i];
@@ -30,15 +36,33 @@ Vec2f lane_value(const float (&lanes)[2][W], int lane) {
   return {lanes[0][lane], lanes[1][lane]};
 }
 
+/// Springs of one figure and of its like are the same.
+class SameSpring {
+ public:
+  const Response& response(const JointSpring& spring, const Clock& t) {
+    if (spring.hertz != hertz_ || spring.damping_ratio != damping_ratio_ || t.pace != pace_) {
+      response_ = stiffened_response(spring, t, 1);
+      hertz_ = spring.hertz, damping_ratio_ = spring.damping_ratio, pace_ = t.pace;
+    }
+    return response_;
+  }
+
+ private:
+  float hertz_ = 0, damping_ratio_ = 0, pace_ = 0;
+  Response response_{};
+};
+
+/// `out`: LawLanes, or LimbLanes<Dim3>.
+void put_response(auto& out, int lane, const Response& response) {
+  out.velocity[lane] = response.velocity;
+  out.position[lane] = response.position;
+  out.memory[lane] = response.memory;
+  out.previous[lane] = response.previous;
+}
 template <int W>
 void put_law(LawLanes<W>& out, int lane, const AxisLaw& law) {
-  const bool spring = law.has(AxisLaw::spring);
   out.rest[lane] = law.rest;
-  out.velocity[lane] = spring ? law.response.velocity : 0;
-  out.position[lane] = spring ? law.response.position : 0;
-  out.memory[lane] = spring ? law.response.memory : 1;
-  out.previous[lane] = spring ? law.response.previous : 0;
-  out.before[lane] = law.before;
+  put_response(out, lane, {0, 0, 1, 0});
   out.spring[lane] = law.spring_impulse;
   out.max_spring[lane] = law.max_spring_impulse > 0 ? law.max_spring_impulse : 1e30f;
   out.speed[lane] = law.speed;
@@ -60,86 +84,103 @@ void take_law(const LawLanes<W>& law, int lane, auto& memory) {
 }
 
 template <int W>
-void fill_block(LimbLanes<Dim2, W>& out, int lane, JointPart, const PinBlock<Dim2>& pin) {
-  set_lane(out.arm_a, lane, pin.arm_a);
-  set_lane(out.arm_b, lane, pin.arm_b);
-  set_lane(out.offset, lane, pin.offset);
-  set_lane(out.impulse, lane, pin.impulse);
+void put_frames(LimbLanes<Dim2, W>&, LimbRaw<Dim2, W>& raw, int lane, const JointFrames<Dim2>& frames) {
+  set_lane(raw.frame_a, lane, frames.frame_a.q);
+  set_lane(raw.frame_b, lane, frames.frame_b.q);
 }
 template <int W>
-void fill_block(LimbLanes<Dim2, W>& out, int lane, JointPart, const AngularAxis<Dim2>& axis) {
-  const Rot2f frame = conjugate(axis.frame_a) * axis.frame_b;
-  out.frame[0][lane] = frame.c;
-  out.frame[1][lane] = frame.s;
-  put_law(out.law, lane, axis.law);
-}
-template <int W>
-void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart, const PinBlock<Dim3>& pin) {
-  set_lane(out.arm_a, lane, pin.arm_a);
-  set_lane(out.arm_b, lane, pin.arm_b);
-  set_lane(out.offset, lane, pin.offset);
-  set_lane(out.impulse, lane, pin.impulse);
-}
-template <int W>
-void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart part, const AngularAxis<Dim3>& axis) {
-  if (part == part_twist) return put_law(out.law, lane, axis.law);
-  out.cone_angle[lane] = axis.law.high;
-  out.cone.impulse[lane] = axis.law.upper_impulse;
-}
-template <int W>
-void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart part, const AngularBlock<Dim3>& turn) {
-  if (part == part_friction) {
-    set_lane(out.friction, lane, turn.impulse);
-    out.max_friction[lane] = turn.max_impulse;
-    return;
-  }
-  set_lane(out.spring, lane, turn.impulse);
-  set_lane(out.before, lane, turn.before);
-  out.velocity[lane] = turn.response.velocity;
-  out.position[lane] = turn.response.position;
-  out.memory[lane] = turn.response.memory;
-  out.previous[lane] = turn.response.previous;
-}
-template <int W>
-void fill_block(LimbLanes<Dim3, W>& out, int lane, JointPart, const HingeBlock& hinge) {
-  set_lane(out.hinge, lane, hinge.impulse);
+void put_frames(LimbLanes<Dim3, W>& out, LimbRaw<Dim3, W>&, int lane, const JointFrames<Dim3>& frames) {
+  set_lane(out.frame_a, lane, frames.frame_a.q);
+  set_lane(out.frame_b, lane, frames.frame_b.q);
 }
 
 template <class D, int W>
-void fill_lane(LimbLanes<D, W>& out, int lane, std::int32_t joint, const WorldImplementation<D>& world, float h) {
+void put_turns(LimbLanes<D, W>& out, int lane, const JointData<D>& data, const Clock& t, SameSpring& same) {
+  if (out.parts & part_twist) {
+    AxisLaw law;
+    fill_twist(law, data, t);
+    put_law(out.law, lane, law);
+  }
+  if constexpr (D::dimension == 3) {
+    const auto* ball = data.template get<BallJointDef>();
+    if (out.parts & part_cone) {
+      out.cone_angle[lane] = ball->cone_angle;
+      out.cone.impulse[lane] = data.memory.turn[0].upper;
+    }
+    if (out.parts & part_friction) {
+      set_lane(out.friction, lane, data.memory.friction);
+      out.max_friction[lane] = ball->friction_torque * t.push();
+    }
+    if (out.parts & part_angular) {
+      set_lane(out.spring, lane, data.memory.angular);
+      if ((out.parts & limb_is_stiff) == 0)
+        put_response(out, lane,
+                     same.response(ball != nullptr ? ball->spring : data.template get<WeldJointDef>()->angular, t));
+      if (out.parts & limb_is_aimed) set_lane(out.aim, lane, ball->target_rotation);
+    }
+    if (out.parts & part_hinge) set_lane(out.hinge, lane, data.memory.hinge);
+  }
+}
+
+/// One of the two bodies.
+template <class D, int W>
+void put_body(const BodyStore<D>& bodies, std::int32_t body, int lane, std::int32_t (&read)[W],
+              std::int32_t (&write)[W], float (&inverse_mass)[W], auto& inverse_inertia, auto& rotation) {
+  read[lane] = body;
+  if (body == none) return set_lane(rotation, lane, typename D::Rotation{});
+  set_lane(rotation, lane, bodies.pose[std::size_t(body)].rotation);
+  if (!bodies.is_dynamic(body)) return;
+  write[lane] = body;
+  const BodyMotion<D>& motion = bodies.motion[std::size_t(body)];
+  inverse_mass[lane] = motion.inverse_mass;
+  if constexpr (D::dimension == 2)
+    inverse_inertia[lane] = motion.world_inverse_inertia;
+  else
+    set_lane(inverse_inertia, lane, motion.world_inverse_inertia);
+}
+
+template <class D, int W>
+void fill_lane(LimbLanes<D, W>& out, LimbRaw<D, W>& raw, int lane, std::int32_t joint,
+               const WorldImplementation<D>& world, float h, SameSpring& same) {
   out.joint[lane] = joint;
   out.read_a[lane] = out.read_b[lane] = out.write_a[lane] = out.write_b[lane] = none;
   if (joint == none) return;
-  constexpr std::uint32_t most = D::dimension == 2 ? limb_mask2 : limb_mask3;
-  constexpr std::size_t size = 16 * std::size_t(record_units<D>(most, D::dimension == 2));
-  alignas(16) unsigned char bytes[size];
-  auto& record = *::new (static_cast<void*>(bytes)) JointRecord<D>{};
-  record.joint = joint;
-  record.isotropic = D::dimension == 2;
-  record.parts = out.parts & most;
-  fill_record(record, world, h);
-  out.read_a[lane] = record.body_a;
-  out.read_b[lane] = record.body_b;
-  out.write_a[lane] = record.dynamic_a ? record.body_a : none;
-  out.write_b[lane] = record.dynamic_b ? record.body_b : none;
-  out.inverse_mass_a[lane] = record.inverse_mass_a;
-  out.inverse_mass_b[lane] = record.inverse_mass_b;
+  const BodyStore<D>& bodies = world.bodies;
+  const JointHeader& header = world.joints.headers[std::size_t(joint)];
+  const JointData<D>& data = world.joints.at(joint);
+  const JointFrames<D>& frames = data.frames();
+  const std::int32_t a = header.body[0], b = header.body[1];
   if constexpr (D::dimension == 2) {
-    out.inverse_inertia_a[lane] = record.inverse_inertia_a;
-    out.inverse_inertia_b[lane] = record.inverse_inertia_b;
+    put_body(bodies, a, lane, out.read_a, out.write_a, out.inverse_mass_a, out.inverse_inertia_a, raw.rotation_a);
+    put_body(bodies, b, lane, out.read_b, out.write_b, out.inverse_mass_b, out.inverse_inertia_b, raw.rotation_b);
   } else {
-    set_lane(out.start_tensor_a, lane, record.tensors()[0]);
-    set_lane(out.start_tensor_b, lane, record.tensors()[1]);
-    const JointPlacement<D> at =
-        place_joint(world.bodies, world.joints.headers[std::size_t(joint)], world.joints.at(joint));
-    if (out.parts & limb_is_aimed)
-      set_lane(out.aim, lane, world.joints.at(joint).template get<BallJointDef>()->target_rotation);
-    set_lane(out.frame_a, lane, at.frame_a);
-    set_lane(out.frame_b, lane, at.frame_b);
+    put_body(bodies, a, lane, out.read_a, out.write_a, out.inverse_mass_a, out.start_tensor_a, raw.rotation_a);
+    put_body(bodies, b, lane, out.read_b, out.write_b, out.inverse_mass_b, out.start_tensor_b, raw.rotation_b);
   }
-  for_each_block(record, [&](JointPart part, auto& block) {
-    if constexpr (requires { fill_block(out, lane, part, block); }) fill_block(out, lane, part, block);
-  });
+  const BodyMotion<D>& motion_b = bodies.motion[std::size_t(b)];
+  if (a != none) {
+    const BodyMotion<D>& motion_a = bodies.motion[std::size_t(a)];
+    set_lane(out.arm_a, lane, frames.frame_a.p - motion_a.local_center);
+    set_lane(out.offset, lane, typename D::Vector(motion_b.center - motion_a.center));
+  } else {
+    set_lane(out.offset, lane, typename D::Vector(motion_b.center - data.world_anchor()));
+  }
+  set_lane(out.arm_b, lane, frames.frame_b.p - motion_b.local_center);
+  put_frames(out, raw, lane, frames);
+  set_lane(out.impulse, lane, data.memory.point);
+  put_turns(out, lane, data, clock_of(bodies, header, h), same);
+}
+
+/// How the springs of hinges respond, whose frequency is that of the whole joint.
+template <class D, int W>
+void stiffen_springs(LimbLanes<D, W>& out, const LimbRaw<D, W>& raw, const WorldImplementation<D>& world, float h) {
+  for (int lane = 0; lane < W; ++lane) {
+    if (out.joint[lane] == none) continue;
+    const JointSpring* spring = spring_of_twist(world.joints.at(out.joint[lane]));
+    if (spring == nullptr) continue;
+    const Clock t = clock_of(world.bodies, world.joints.headers[std::size_t(out.joint[lane])], h);
+    put_response(out.law, lane, stiffened_response(*spring, t, raw.stiffer[lane]));
+  }
 }
 
 template <int W>
@@ -215,13 +256,17 @@ void prepare_limbs(StepContext<D>& context) {
     const auto blocks = context.arena.template allocate<LimbLanes<D, W>>(std::size_t(count));
     joints.limb_blocks = blocks.data();
     context.scheduler.parallel_for(count, 4, [&](int begin, int end, int) {
+      SameSpring same;
       for (int b = begin; b < end; ++b) {
         LimbLanes<D, W>& block = *::new (static_cast<void*>(&blocks[std::size_t(b)])) LimbLanes<D, W>{};
         block.parts = joints.limbs[std::size_t(b) * W].parts;
+        LimbRaw<D, W> raw{};
         for (int lane = 0; lane < W; ++lane)
-          fill_lane(block, lane, joints.limbs[std::size_t(b) * W + std::size_t(lane)].joint, context.world, context.h);
+          fill_lane(block, raw, lane, joints.limbs[std::size_t(b) * W + std::size_t(lane)].joint, context.world,
+                    context.h, same);
+        joints.limb_kernels.begin(context.bodies, &block, &raw);
+        if (block.parts & part_twist) stiffen_springs(block, raw, context.world, context.h);
       }
-      joints.limb_kernels.place(context.bodies, joints.limb_blocks, begin, end);
     });
   });
 }

@@ -1,41 +1,11 @@
 // From definitions to the records of a step, and back.
 #include <algorithm>
 
+#include "carom/rigid/detail/joint_law.h"
 #include "carom/rigid/detail/joint_place.h"
 
 namespace carom::rigid::detail {
 namespace {
-
-/// The substep, and how fast the time of what is joined goes (BodyDef::time_scale).
-struct Clock {
-  float h = 0;                                      ///< s
-  float pace = 1;                                   ///< s of its own in a second
-  float push() const { return h * (pace * pace); }  ///< impulse in the world's time of a force of 1 N
-};
-/// Of the two bodies' clocks the geometric mean; the ground has none.
-template <class D>
-Clock clock_of(const BodyStore<D>& bodies, const JointRecord<D>& record, float h) {
-  if (bodies.time_scale.empty()) return {h};
-  const float a = record.dynamic_a ? bodies.pace(record.body_a) : 0;
-  const float b = record.dynamic_b ? bodies.pace(record.body_b) : 0;
-  if (a == b) return {h, a > 0 ? a : 1};
-  return {h, a > 0 && b > 0 ? math::sqrt(a * b) : a + b};
-}
-
-void fill_limit(AxisLaw& law, const JointLimit& limit) {
-  if (!limit.enabled) return;
-  law.flags |= AxisLaw::lower | AxisLaw::upper;
-  law.low = limit.lower;
-  law.high = limit.upper;
-}
-void fill_motor(AxisLaw& law, const JointMotor& motor, const Clock& t) {
-  if (!motor.enabled) return;
-  law.flags |= AxisLaw::motor;
-  law.speed = t.pace * motor.speed;
-  law.max_motor_impulse = motor.max_force * t.push();
-}
-template <class D>
-inline constexpr int last_turn = D::dimension == 2 ? 0 : 1;
 
 /// Which axis of a generic joint (others have their first linear one) a block is for.
 int axis_of_part(JointPart part) {
@@ -51,14 +21,6 @@ int axis_of_part(JointPart part) {
   }
 }
 
-/// `stiffer`: √(mass that moves with the coordinate once the rest of the joint holds / mass of the row alone). A user's
-/// frequency is that of the whole joint: a rod on a hinge swings about the hinge, not about its own centre.
-void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, const Clock& t, float stiffer = 1) {
-  if (!(spring.hertz > 0)) return;
-  law.flags |= AxisLaw::spring;
-  law.rest = rest;
-  law.response = spring_response(t.pace * stiffer * spring.hertz, stiffer * spring.damping_ratio, t.h);
-}
 /// A coordinate of a generic joint, held or free.
 void fill_axis(AxisLaw& law, const JointAxis& axis, const Clock& t, float stiffer) {
   if (!axis.free) {
@@ -72,10 +34,6 @@ void fill_axis(AxisLaw& law, const JointAxis& axis, const Clock& t, float stiffe
     fill_motor(law, axis.motor, t);
   else if (axis.friction > 0)
     fill_motor(law, {true, 0, axis.friction}, t);
-}
-float mass_ratio_root(float row_mobility, float held_mobility) {
-  if (!(row_mobility > 0)) return 1;
-  return math::sqrt(row_mobility / max(held_mobility, 0.01f * row_mobility));
 }
 /// A pair with the record's masses, at rest or with the speeds of `bodies`.
 template <class D>
@@ -91,13 +49,6 @@ BodyPair<D> pair_of(JointRecord<D>& record, const SolverBody<D>* bodies = nullpt
   }
   load_masses(pair, record);
   return pair;
-}
-template <class Axis>
-void remember(AxisLaw& law, const Axis& memory) {
-  law.spring_impulse = law.has(AxisLaw::spring) ? memory.spring : 0;
-  law.motor_impulse = law.has(AxisLaw::motor) ? memory.motor : 0;
-  law.lower_impulse = law.has(AxisLaw::lower) ? memory.lower : 0;
-  law.upper_impulse = law.has(AxisLaw::upper) ? memory.upper : 0;
 }
 template <class Axis>
 void memorise(const AxisLaw& law, Axis& memory) {
@@ -174,27 +125,17 @@ void fill_twist(AngularAxis<D>& block, const JointData<D>& data, const JointPlac
                 const Clock& t) {
   block.frame_a = at.frame_a;
   block.frame_b = at.frame_b;
-  block.law.flags = AxisLaw::periodic;
-  if (const auto* hinge = data.template get<HingeJointDef>()) {
-    float stiffer = 1;
-    if (hinge->spring.hertz > 0) {
-      const BodyPair<D> pair = pair_of(record);
-      float unused;
-      const auto n = block.row(pair, false, unused);
-      const auto turn_a = pair.inverse_inertia_a * n, turn_b = pair.inverse_inertia_b * n;
-      const float mobility = inner(n, turn_a) + inner(n, turn_b);
-      const auto anchors = cross(turn_b, at.arm_b) + cross(turn_a, at.arm_a);
-      const auto held = solve_mobility(point_mobility(pair, at.arm_a, at.arm_b), anchors);
-      stiffer = mass_ratio_root(mobility, mobility - dot(anchors, held));
-    }
-    fill_spring(block.law, hinge->spring, hinge->target_angle, t, stiffer);
-    block.law.max_spring_impulse = hinge->max_spring_torque * t.push();
-    fill_motor(block.law, hinge->motor, t);
-    fill_limit(block.law, hinge->limit);
-  } else if (const auto* ball = data.template get<BallJointDef>()) {
-    fill_limit(block.law, ball->twist);
-  }
-  remember(block.law, data.memory.turn[last_turn<D>]);
+  fill_twist(block.law, data, t);
+  const JointSpring* spring = spring_of_twist(data);
+  if (spring == nullptr) return;
+  const BodyPair<D> pair = pair_of(record);
+  float unused;
+  const auto n = block.row(pair, false, unused);
+  const auto turn_a = pair.inverse_inertia_a * n, turn_b = pair.inverse_inertia_b * n;
+  const float mobility = inner(n, turn_a) + inner(n, turn_b);
+  const auto anchors = cross(turn_b, at.arm_b) + cross(turn_a, at.arm_a);
+  const auto held = solve_mobility(point_mobility(pair, at.arm_a, at.arm_b), anchors);
+  block.law.response = stiffened_response(*spring, t, mass_ratio_root(mobility, mobility - dot(anchors, held)));
 }
 
 template <class D>
@@ -367,7 +308,7 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   };
   fill_masses(record.dynamic_a, record.body_a, record.inverse_mass_a, record.inverse_inertia_a, 0);
   fill_masses(record.dynamic_b, record.body_b, record.inverse_mass_b, record.inverse_inertia_b, 1);
-  const Clock t = clock_of(world.bodies, record, h);
+  const Clock t = clock_of(world.bodies, header, h);
   const JointPlacement<D> at = place_joint(world.bodies, header, data);
   const JointMemory<D>& memory = data.memory;
   const auto moving = [&] { return pair_of(record, world.bodies.solver.data()); };

@@ -1,16 +1,16 @@
-// The kernels of pins, limbs, turns and flights for 16 lanes.
+// The kernels of pins, limbs, flights and bodies of space for 16 lanes.
 #include "carom/math/simd.h"
 #include "carom/math/simd_double.h"
 #include "carom/rigid/detail/flight_lanes.h"
 #include "carom/rigid/detail/joint_lanes.h"
 #include "carom/rigid/detail/joint_limb_lanes.h"
-#include "carom/rigid/detail/turn_lanes.h"
+#include "carom/rigid/detail/move_lanes.h"
 
 #define CAROM_PIN_NAMESPACE pin_kernels_avx512
 #define CAROM_PIN_WIDTH 16
 #include "carom/rigid/detail/flight_kernel.inl"
 #include "carom/rigid/detail/joint_kernel.inl"
 #include "carom/rigid/detail/joint_limb_kernel.inl"
-#include "carom/rigid/detail/turn_kernel.inl"
+#include "carom/rigid/detail/move_kernel.inl"
 #undef CAROM_PIN_NAMESPACE
 #undef CAROM_PIN_WIDTH

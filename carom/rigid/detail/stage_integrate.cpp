@@ -1,19 +1,21 @@
+#include <bit>
+
 #include "carom/rigid/detail/flight_lanes.h"
 #include "carom/rigid/detail/move_body.h"
+#include "carom/rigid/detail/move_lanes.h"
 #include "carom/rigid/detail/stages.h"
-#include "carom/rigid/detail/turn_lanes.h"
 
 namespace carom::rigid::detail {
 namespace {
 
-TurnKernel turn_kernel_of(int width) {
+MoveKernels move_kernels_of(int width) {
 #if defined(__x86_64__)
-  if (width == 16) return pin_kernels_avx512::turn_kernel();
-  if (width == 8) return pin_kernels_avx2::turn_kernel();
+  if (width == 16) return pin_kernels_avx512::move_kernels();
+  if (width == 8) return pin_kernels_avx2::move_kernels();
 #else
   (void)width;
 #endif
-  return pin_kernels_baseline::turn_kernel();
+  return pin_kernels_baseline::move_kernels();
 }
 FlightKernel flight_kernel_of(int width) {
 #if defined(__x86_64__)
@@ -29,7 +31,7 @@ FlightKernel flight_kernel_of(int width) {
 template <int W>
 class PushedBodies {
  public:
-  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(turn_kernel_of(W)) { clear(); }
+  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(move_kernels_of(W).turn) { clear(); }
   PushedBodies(const PushedBodies&) = delete;
   ~PushedBodies() {
     if (count_ > 0) turn();
@@ -65,7 +67,7 @@ class PushedBodies {
     for (std::int32_t& body : lanes_.body) body = none;
   }
   StepContext<Dim3>& context_;
-  TurnKernel turn_;
+  decltype(MoveKernels::turn) turn_;
   TurnLanes<W> lanes_;
   int carrying_[W] = {};  ///< places of those whose spin turns with them (Flight)
   int count_ = 0, carry_count_ = 0;
@@ -209,10 +211,10 @@ void prepare_drives(StepContext<D>& context) {
 namespace {
 
 /// Of the places [begin, end) as many as a kernel takes at once, the others one by one: the same arithmetic.
-template <class D, class Kernel, class Single>
-void by_lanes(const StepContext<D>& context, int begin, int end, Kernel&& kernel, Single&& single) {
+template <class Kernel, class Single>
+void by_lanes(const StepContext<Dim2>& context, int begin, int end, Kernel&& kernel, Single&& single) {
   const int width = context.world.kernels.width;
-  for (; D::dimension == 2 && begin + width <= end; begin += width)
+  for (; begin + width <= end; begin += width)
     if (!kernel(begin)) single(begin, begin + width);
   if (begin < end) single(begin, end);
 }
@@ -282,21 +284,32 @@ void move_bodies(StepContext<Dim2>& context, int begin, int end) {
         }
       });
 }
+/// f(place) for each of those that follow `first`. Bits by their distance.
+template <class F>
+void for_places(std::uint32_t which, int first, F&& f) {
+  for (; which != 0; which &= which - 1) f(first + std::countr_zero(which));
+}
 template <int W>
 void move_bodies(StepContext<Dim3>& context, int begin, int end) {
+  const MoveKernels kernels = move_kernels_of(W);
   PushedBodies<W> pushed(context);
   FreeBodies<W> free(context, 1);
-  for (int i = begin; i < end; ++i) {
-    const BodyDrive<Dim3>& drive = context.drives[i];
-    if ((drive.flags & BodyDrive<Dim3>::flies_through) != 0) continue;
-    SolverBody<Dim3>& s = context.bodies[drive.body];
-    const bool flies = move_center(context, i);
-    if ((drive.flags & BodyDrive<Dim3>::gyroscopic) == 0 || !spins(s.angular_velocity))
-      turn_body(s, context.h);
-    else if (flies)
-      free.add(i, {}, 1);
-    else
-      pushed.add(i);
+  for (int first = begin; first < end; first += W) {
+    const LeftOver left =
+        kernels.move(context.bodies, context.drives + first, context.flights + first, min(W, end - first), context.h);
+    for_places(left.locked, first, [&](int i) {
+      const BodyDrive<Dim3>& drive = context.drives[i];
+      SolverBody<Dim3>& s = context.bodies[drive.body];
+      const bool flies = move_center(context, i);
+      if ((drive.flags & BodyDrive<Dim3>::gyroscopic) == 0 || !spins(s.angular_velocity))
+        turn_body(s, context.h);
+      else if (flies)
+        free.add(i, {}, 1);
+      else
+        pushed.add(i);
+    });
+    for_places(left.free, first, [&](int i) { free.add(i, {}, 1); });
+    for_places(left.pushed, first, [&](int i) { pushed.add(i); });
   }
 }
 
@@ -336,15 +349,24 @@ void fly_through(StepContext<Dim3>& context, int begin, int end) {
 
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on) {
-  static_assert(sizeof(Flight<Dim2>) == 8 * sizeof(float));
-  by_lanes(
-      context, begin, end,
-      [&](int first) {
-        return context.world.kernels.integrate_velocities(
-            context.bodies, context.drives + first, reinterpret_cast<float*>(context.flights + first), context.h,
-            context.world.definition.maximum_linear_speed, max_turn, carry_on);
-      },
-      [&](int first, int last) { accelerate_bodies(context, first, last, carry_on); });
+  const float max_speed = context.world.definition.maximum_linear_speed;
+  if constexpr (D::dimension == 3) {
+    const int width = context.world.kernels.width;
+    const MoveKernels kernels = move_kernels_of(width);
+    for (int first = begin; first < end; first += width)
+      for_places(kernels.accelerate(context.bodies, context.drives + first, context.flights + first,
+                                    min(width, end - first), context.h, max_speed, carry_on),
+                 first, [&](int i) { accelerate_bodies(context, i, i + 1, carry_on); });
+  } else {
+    by_lanes(
+        context, begin, end,
+        [&](int first) {
+          return context.world.kernels.integrate_velocities(context.bodies, context.drives + first,
+                                                            reinterpret_cast<float*>(context.flights + first),
+                                                            context.h, max_speed, max_turn, carry_on);
+        },
+        [&](int first, int last) { accelerate_bodies(context, first, last, carry_on); });
+  }
 }
 
 template <class D>

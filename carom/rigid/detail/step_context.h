@@ -9,8 +9,6 @@ namespace carom::rigid::detail {
 
 template <class D>
 struct WorldImplementation;
-template <class D>
-struct Flight;  // step_scratch.h
 
 /// Soft contacts swing by at most so many turns in a substep.
 inline constexpr float most_contact_turns = 0.15f;
@@ -30,7 +28,7 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
 /// What a substep does to the motion of an awake body besides its constraints: the same in every substep, so that the
 /// cold parts of bodies are read once a step.
 template <class D>
-struct BodyDrive {
+struct alignas(16) BodyDrive {
   enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4, flies_through = 8, carries = 16 };
   std::int32_t body = none;                 ///< slot
   std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint; flies_through: so, in
@@ -41,7 +39,26 @@ struct BodyDrive {
   typename D::Angular angular_gain{};       ///< rad/s
   float kind = 0;  ///< the same for lanes: 0 kinematic, 1 dynamic, 2 carries, 3 in flight; above: with locks
 };
-static_assert(sizeof(BodyDrive<Dim2>) == 32);  // a row of eight floats
+static_assert(sizeof(BodyDrive<Dim2>) == 32 && sizeof(BodyDrive<Dim3>) == 48);  // rows of eight and twelve floats
+
+/// A body's velocities before and after a substep's forces. `spin` turns on with the body: what it has more at the
+/// substep's end is what constraints gave it. Rows of four floats, as SolverBody.
+template <class D>
+struct Flight;
+template <>
+struct alignas(32) Flight<Dim2> {
+  Vec2f after, before;
+  float spin, unused[3];
+};
+template <>
+struct alignas(16) Flight<Dim3> {
+  Vec3f after;
+  float unused_after;
+  Vec3f before;
+  float unused_before;
+  Vec3f spin;
+  float unused_spin;
+};
 
 template <class D>
 struct StepContext {

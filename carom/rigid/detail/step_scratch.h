@@ -117,19 +117,6 @@ struct BulletMeeting {
   }
 };
 
-/// A body's velocities before and after a substep's forces. `spin` turns on with the body: what it has more at the
-/// substep's end is what constraints gave it.
-template <class D>
-struct Flight {
-  typename D::Vector after, before;
-  typename D::Angular spin;
-};
-template <>
-struct alignas(32) Flight<Dim2> {
-  Vec2f after, before;
-  float spin, unused[3];
-};
-
 template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];

@@ -1,0 +1,52 @@
+// Bodies of space through a substep, side by side.
+#pragma once
+
+#include <cstdint>
+
+#include "carom/rigid/detail/rotation_step.h"
+#include "carom/rigid/detail/step_context.h"
+
+namespace carom::rigid::detail {
+
+/// Bodies that constraints push about, to be turned with the arithmetic of `torque_free_turn`.
+template <int W>
+struct alignas(64) TurnLanes {
+  std::int32_t body[W];  ///< slots; −1: none in this lane
+  float inertia[6][W];   ///< about the centre of mass, body axes: xx, xy, xz, yy, yz, zz
+  float start[4][W];     ///< attitude at the start of the step: w, x, y, z
+};
+
+/// Which of as many bodies as there are lanes were not wholly moved. Bits by lane.
+struct LeftOver {
+  std::uint32_t locked = 0;  ///< not at all: axes are locked
+  std::uint32_t free = 0;    ///< not turned: by themselves, and nothing pushed them
+  std::uint32_t pushed = 0;  ///< not turned: constraints pushed them about (TurnLanes)
+};
+
+/// `drives`, `flights`: those of `count` places of the awake list, at most as many as there are lanes. Bodies that fly
+/// through (BodyDrive) are left alone.
+struct MoveKernels {
+  /// What forces do to velocities in a substep (stage_integrate.cpp). carry_on: see SolverStage::order. Returns those
+  /// whose axes are locked, with which nothing is done: bits by lane.
+  std::uint32_t (*accelerate)(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, Flight<Dim3>* flights, int count,
+                              float h, float max_speed, bool carry_on) = nullptr;
+  /// Moves their centres, and turns those whose spin stays as it is.
+  LeftOver (*move)(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, const Flight<Dim3>* flights, int count,
+                   float h) = nullptr;
+  /// Turns the bodies of `lanes` (TurnLanes<W>) for a time h (s): their angular momentum stays, their velocity follows.
+  void (*turn)(SolverBody<Dim3>* bodies, const void* lanes, float h) = nullptr;
+};
+
+namespace pin_kernels_baseline {
+MoveKernels move_kernels();
+}
+#if defined(__x86_64__)
+namespace pin_kernels_avx2 {
+MoveKernels move_kernels();
+}
+namespace pin_kernels_avx512 {
+MoveKernels move_kernels();
+}
+#endif
+
+}  // namespace carom::rigid::detail
