@@ -93,6 +93,14 @@ CAROM_SIMD_INLINE void write_motion(SolverBody<Dim2>* bodies, const std::int32_t
   const WideFloat<W> c[4] = {m.v.v[0], m.v.v[1], m.w.v[0], WideFloat<W>::zero()};
   scatter_rows<8, 4, W>(reinterpret_cast<float*>(bodies), index, c);
 }
+template <int W>
+CAROM_SIMD_INLINE Lanes<2, W> load_turn(const float (&p)[2][W]) {
+  return load(p);
+}
+template <int W>
+CAROM_SIMD_INLINE Lanes<2, W> turned(const Lanes<2, W>& turn, const Lanes<2, W>& r) {
+  return {{turn.v[0] * r.v[0] - turn.v[1] * r.v[1], turn.v[1] * r.v[0] + turn.v[0] * r.v[1]}};
+}
 /// Where the arms point now; returns the arm turned and the displacement of the centre.
 template <int W>
 CAROM_SIMD_INLINE Lanes<2, W> turned_arm(const SolverBody<Dim2>* bodies, const std::int32_t* index,
@@ -100,7 +108,7 @@ CAROM_SIMD_INLINE Lanes<2, W> turned_arm(const SolverBody<Dim2>* bodies, const s
   WideFloat<W> c[4];
   gather_part<4, 4, 8, W>(reinterpret_cast<const float*>(bodies), index, unmoved.plane, c);
   shift = {{c[0], c[1]}};
-  return {{c[2] * arm.v[0] - c[3] * arm.v[1], c[3] * arm.v[0] + c[2] * arm.v[1]}};
+  return turned(Lanes<2, W>{{c[2], c[3]}}, arm);
 }
 template <int W>
 CAROM_SIMD_INLINE Lanes<3, W> factorise(const Lanes<2, W>& a, const Lanes<2, W>& b, WideFloat<W> m, WideFloat<W> ia,
@@ -136,13 +144,27 @@ CAROM_SIMD_INLINE void write_motion(SolverBody<Dim3>* bodies, const std::int32_t
   scatter_rows<16, 8, W>(reinterpret_cast<float*>(bodies), index, c);
 }
 template <int W>
+struct Turn {
+  WideFloat<W> w;
+  Lanes<3, W> u;
+};
+template <int W>
+CAROM_SIMD_INLINE Turn<W> load_turn(const float (&p)[4][W]) {
+  using F = WideFloat<W>;
+  return {F::load_aligned(p[0]), {{F::load_aligned(p[1]), F::load_aligned(p[2]), F::load_aligned(p[3])}}};
+}
+template <int W>
+CAROM_SIMD_INLINE Lanes<3, W> turned(const Turn<W>& q, const Lanes<3, W>& r) {
+  const Lanes<3, W> x = cross(q.u, r), t = add(x, x);
+  return add(add(r, multiply(t, q.w)), cross(q.u, t));
+}
+template <int W>
 CAROM_SIMD_INLINE Lanes<3, W> turned_arm(const SolverBody<Dim3>* bodies, const std::int32_t* index,
                                          const Lanes<3, W>& arm, Lanes<3, W>& shift) {
   WideFloat<W> c[8];
   gather_part<8, 8, 16, W>(reinterpret_cast<const float*>(bodies), index, unmoved.space, c);
   shift = {{c[0], c[1], c[2]}};
-  const Lanes<3, W> u = {{c[5], c[6], c[7]}}, x = cross(u, arm), t = add(x, x);
-  return add(add(arm, multiply(t, c[4])), cross(u, t));
+  return turned(Turn<W>{c[4], {{c[5], c[6], c[7]}}}, arm);
 }
 template <int W>
 CAROM_SIMD_INLINE Lanes<6, W> factorise(const Lanes<3, W>& a, const Lanes<3, W>& b, WideFloat<W> m, WideFloat<W> ia,
@@ -179,6 +201,18 @@ CAROM_SIMD_INLINE void push(Motion& a, Motion& b, WideFloat<W> ma, WideFloat<W> 
   b.w = add(b.w, multiply(cross(reach_b, impulse), ib));
 }
 
+template <class D, int W>
+void begin(void* block, const void* in) {
+  PinLanes<D, W>& c = *static_cast<PinLanes<D, W>*>(block);
+  const BodyTurns<D, W>& turns = *static_cast<const BodyTurns<D, W>*>(in);
+  const auto arm_a = turned(load_turn(turns.a), load(c.arm_a)), reach_b = turned(load_turn(turns.b), load(c.arm_b)),
+             reach_a = add(load(c.offset), reach_b);
+  store(arm_a, c.arm_a);
+  store(reach_b, c.arm_b);
+  store(reach_b, c.reach_b);
+  store(reach_a, c.reach_a);
+  store(subtract(reach_a, arm_a), c.error);
+}
 template <class D, int W>
 void warm_start(SolverBody<D>* bodies, void* blocks, int begin, int end) {
   using F = WideFloat<W>;
@@ -243,11 +277,11 @@ void relax(SolverBody<D>* bodies, void* blocks, int begin, int end) {
 
 PinKernels<Dim2> kernels2() {
   constexpr int W = CAROM_PIN_WIDTH;
-  return {W, warm_start<Dim2, W>, solve<Dim2, W>, relax<Dim2, W>};
+  return {W, begin<Dim2, W>, warm_start<Dim2, W>, solve<Dim2, W>, relax<Dim2, W>};
 }
 PinKernels<Dim3> kernels3() {
   constexpr int W = CAROM_PIN_WIDTH;
-  return {W, warm_start<Dim3, W>, solve<Dim3, W>, relax<Dim3, W>};
+  return {W, begin<Dim3, W>, warm_start<Dim3, W>, solve<Dim3, W>, relax<Dim3, W>};
 }
 
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -25,6 +25,13 @@ struct alignas(64) PinLanes {
   std::int32_t joint[W];                                     ///< slot
 };
 
+/// Rotations of both bodies when the step begins: cosine and sine, or w, x, y, z.
+template <class D, int W>
+struct alignas(64) BodyTurns {
+  static constexpr int numbers = D::dimension == 2 ? 2 : 4;
+  float a[numbers][W], b[numbers][W];
+};
+
 /// How rigid rows answer in the biased pass (joint_response.h).
 struct PinResponse {
   float velocity, position, memory;
@@ -34,6 +41,8 @@ struct PinResponse {
 template <class D>
 struct PinKernels {
   int width = 4;
+  /// Of a block whose arms are in the frames of their bodies: turns them (by BodyTurns), and what follows from that.
+  void (*begin)(void* block, const void* turns) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, void* blocks, int begin, int end) = nullptr;
   void (*solve)(SolverBody<D>* bodies, void* blocks, int begin, int end, PinResponse response) = nullptr;
   /// Brings the arms to where the bodies are now, and removes the velocity that is left.

@@ -124,10 +124,6 @@ CAROM_SIMD_INLINE Placement2<W> read_placement(const SolverBody<Dim2>* bodies, c
   return {{{c[0], c[1]}}, {{c[2], c[3]}}};
 }
 template <int W>
-CAROM_SIMD_INLINE Lanes<2, W> turned(const Lanes<2, W>& turn, const Lanes<2, W>& r) {
-  return {{turn.v[0] * r.v[0] - turn.v[1] * r.v[1], turn.v[1] * r.v[0] + turn.v[0] * r.v[1]}};
-}
-template <int W>
 CAROM_SIMD_INLINE void place(LimbLanes<Dim2, W>& c, const Placement2<W>& a, const Placement2<W>& b) {
   using F = WideFloat<W>;
   const auto arm_a = turned(a.turn, load(c.arm_a)), reach_b = turned(b.turn, load(c.arm_b));
@@ -144,7 +140,7 @@ CAROM_SIMD_INLINE void place(LimbLanes<Dim2, W>& c, const Placement2<W>& a, cons
 }
 template <int W>
 CAROM_SIMD_INLINE void turn_frames(LimbLanes<Dim2, W>& c, const LimbRaw<Dim2, W>& raw) {
-  const auto qa = load(raw.rotation_a), qb = load(raw.rotation_b);
+  const auto qa = load_turn(raw.turns.a), qb = load_turn(raw.turns.b);
   store(turned(qa, load(c.arm_a)), c.arm_a);
   store(turned(qb, load(c.arm_b)), c.arm_b);
   const auto fa = turned(qa, load(raw.frame_a)), fb = turned(qb, load(raw.frame_b));
@@ -201,11 +197,6 @@ CAROM_SIMD_INLINE void sum_turns(LimbLanes<Dim2, W>& c) {
 
 // Space ---------------------------------------------------------------------------------------------------------------
 template <int W>
-struct Turn {
-  WideFloat<W> w;
-  Lanes<3, W> u;
-};
-template <int W>
 struct Placement3 {
   Lanes<3, W> moved;
   Turn<W> turn;
@@ -217,18 +208,8 @@ CAROM_SIMD_INLINE Placement3<W> read_placement(const SolverBody<Dim3>* bodies, c
   return {{{c[0], c[1], c[2]}}, {c[4], {{c[5], c[6], c[7]}}}};
 }
 template <int W>
-CAROM_SIMD_INLINE Lanes<3, W> turned(const Turn<W>& q, const Lanes<3, W>& r) {
-  const Lanes<3, W> x = cross(q.u, r), t = add(x, x);
-  return add(add(r, multiply(t, q.w)), cross(q.u, t));
-}
-template <int W>
 CAROM_SIMD_INLINE Turn<W> product(const Turn<W>& p, const Turn<W>& q) {
   return {p.w * q.w - dot(p.u, q.u), add(add(multiply(q.u, p.w), multiply(p.u, q.w)), cross(p.u, q.u))};
-}
-template <int W>
-CAROM_SIMD_INLINE Turn<W> load_turn(const float (&p)[4][W]) {
-  using F = WideFloat<W>;
-  return {F::load_aligned(p[0]), {{F::load_aligned(p[1]), F::load_aligned(p[2]), F::load_aligned(p[3])}}};
 }
 template <int W>
 CAROM_SIMD_INLINE Lanes<3, W> axis_x(const Turn<W>& q) {
@@ -382,7 +363,7 @@ CAROM_SIMD_INLINE void store_turn(const Turn<W>& q, float (&p)[4][W]) {
 }
 template <int W>
 CAROM_SIMD_INLINE void turn_frames(LimbLanes<Dim3, W>& c, const LimbRaw<Dim3, W>& raw) {
-  const Turn<W> a = load_turn(raw.rotation_a), b = load_turn(raw.rotation_b);
+  const Turn<W> a = load_turn(raw.turns.a), b = load_turn(raw.turns.b);
   store(turned(a, load(c.arm_a)), c.arm_a);
   store(turned(b, load(c.arm_b)), c.arm_b);
   if (c.parts == part_pin) return;

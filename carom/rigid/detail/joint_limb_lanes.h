@@ -6,8 +6,8 @@
 
 #include <cstdint>
 
+#include "carom/rigid/detail/joint_lanes.h"
 #include "carom/rigid/detail/joint_part.h"
-#include "carom/rigid/detail/solver_body.h"
 
 namespace carom::rigid::detail {
 
@@ -80,13 +80,13 @@ template <class D, int W>
 struct LimbRaw;
 template <int W>
 struct alignas(64) LimbRaw<Dim2, W> {
-  float rotation_a[2][W], rotation_b[2][W];  ///< of the bodies
-  float frame_a[2][W], frame_b[2][W];        ///< of the joint, in them
-  float stiffer[W];                          ///< out: mass_ratio_root of the turn
+  BodyTurns<Dim2, W> turns;
+  float frame_a[2][W], frame_b[2][W];  ///< of the joint, in its bodies
+  float stiffer[W];                    ///< out: mass_ratio_root of the turn
 };
 template <int W>
 struct alignas(64) LimbRaw<Dim3, W> {
-  float rotation_a[4][W], rotation_b[4][W];
+  BodyTurns<Dim3, W> turns;
   float stiffer[W];
 };
 

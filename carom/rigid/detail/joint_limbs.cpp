@@ -1,6 +1,6 @@
 // Limbs side by side (joint_limb_lanes.h): who they are, and their way into the blocks and back.
+#include "carom/rigid/detail/joint_fill.h"
 #include "carom/rigid/detail/joint_law.h"
-#include "carom/rigid/detail/joint_place.h"
 
 namespace carom::rigid::detail {
 namespace {
@@ -8,25 +8,6 @@ namespace {
 constexpr std::uint32_t limb_mask2 = part_pin | part_twist;
 constexpr std::uint32_t limb_mask3 = part_pin | part_friction | part_cone | part_twist | part_angular | part_hinge;
 
-template <std::size_t N, int W, class V>
-void set_lane(float (&lanes)[N][W], int lane, const V& v) {
-  for (std::size_t i = 0; i < N; ++i) lanes[i][lane] = v[int(i)];
-}
-template <int W>
-void set_lane(float (&lanes)[4][W], int lane, const Quatf& q) {
-  lanes[0][lane] = q.w;
-  for (int i = 0; i < 3; ++i) lanes[i + 1][lane] = q.vector()[i];
-}
-template <int W>
-void set_lane(float (&lanes)[2][W], int lane, const Rot2f& q) {
-  lanes[0][lane] = q.c;
-  lanes[1][lane] = q.s;
-}
-template <int W>
-void set_lane(float (&lanes)[6][W], int lane, const Mat3f& m) {
-  const float t[6] = {m.cx.x, m.cx.y, m.cx.z, m.cy.y, m.cy.z, m.cz.z};
-  for (int i = 0; i < 6; ++i) lanes[i][lane] = t[i];
-}
 template <int W>
 Vec3f lane_value(const float (&lanes)[3][W], int lane) {
   return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
@@ -122,53 +103,17 @@ void put_turns(LimbLanes<D, W>& out, int lane, const JointData<D>& data, const C
   }
 }
 
-/// One of the two bodies.
-template <class D, int W>
-void put_body(const BodyStore<D>& bodies, std::int32_t body, int lane, std::int32_t (&read)[W],
-              std::int32_t (&write)[W], float (&inverse_mass)[W], auto& inverse_inertia, auto& rotation) {
-  read[lane] = body;
-  if (body == none) return set_lane(rotation, lane, typename D::Rotation{});
-  set_lane(rotation, lane, bodies.pose[std::size_t(body)].rotation);
-  if (!bodies.is_dynamic(body)) return;
-  write[lane] = body;
-  const BodyMotion<D>& motion = bodies.motion[std::size_t(body)];
-  inverse_mass[lane] = motion.inverse_mass;
-  if constexpr (D::dimension == 2)
-    inverse_inertia[lane] = motion.world_inverse_inertia;
-  else
-    set_lane(inverse_inertia, lane, motion.world_inverse_inertia);
-}
-
 template <class D, int W>
 void fill_lane(LimbLanes<D, W>& out, LimbRaw<D, W>& raw, int lane, std::int32_t joint,
                const WorldImplementation<D>& world, float h, SameSpring& same) {
-  out.joint[lane] = joint;
-  out.read_a[lane] = out.read_b[lane] = out.write_a[lane] = out.write_b[lane] = none;
+  if constexpr (D::dimension == 2)
+    put_joint(out, raw.turns, out.inverse_inertia_a, out.inverse_inertia_b, lane, joint, world);
+  else
+    put_joint(out, raw.turns, out.start_tensor_a, out.start_tensor_b, lane, joint, world);
   if (joint == none) return;
-  const BodyStore<D>& bodies = world.bodies;
-  const JointHeader& header = world.joints.headers[std::size_t(joint)];
   const JointData<D>& data = world.joints.at(joint);
-  const JointFrames<D>& frames = data.frames();
-  const std::int32_t a = header.body[0], b = header.body[1];
-  if constexpr (D::dimension == 2) {
-    put_body(bodies, a, lane, out.read_a, out.write_a, out.inverse_mass_a, out.inverse_inertia_a, raw.rotation_a);
-    put_body(bodies, b, lane, out.read_b, out.write_b, out.inverse_mass_b, out.inverse_inertia_b, raw.rotation_b);
-  } else {
-    put_body(bodies, a, lane, out.read_a, out.write_a, out.inverse_mass_a, out.start_tensor_a, raw.rotation_a);
-    put_body(bodies, b, lane, out.read_b, out.write_b, out.inverse_mass_b, out.start_tensor_b, raw.rotation_b);
-  }
-  const BodyMotion<D>& motion_b = bodies.motion[std::size_t(b)];
-  if (a != none) {
-    const BodyMotion<D>& motion_a = bodies.motion[std::size_t(a)];
-    set_lane(out.arm_a, lane, frames.frame_a.p - motion_a.local_center);
-    set_lane(out.offset, lane, typename D::Vector(motion_b.center - motion_a.center));
-  } else {
-    set_lane(out.offset, lane, typename D::Vector(motion_b.center - data.world_anchor()));
-  }
-  set_lane(out.arm_b, lane, frames.frame_b.p - motion_b.local_center);
-  put_frames(out, raw, lane, frames);
-  set_lane(out.impulse, lane, data.memory.point);
-  put_turns(out, lane, data, clock_of(bodies, header, h), same);
+  put_frames(out, raw, lane, data.frames());
+  put_turns(out, lane, data, clock_of(world.bodies, world.joints.headers[std::size_t(joint)], h), same);
 }
 
 /// How the springs of hinges respond, whose frequency is that of the whole joint.

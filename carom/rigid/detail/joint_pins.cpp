@@ -1,44 +1,7 @@
 // Pins side by side (joint_lanes.h): who they are, and their way into the blocks and back.
-#include "carom/rigid/detail/joint_place.h"
+#include "carom/rigid/detail/joint_fill.h"
 
 namespace carom::rigid::detail {
-namespace {
-
-template <class D, int W>
-void fill_lane(PinLanes<D, W>& block, int lane, std::int32_t slot, const WorldImplementation<D>& world) {
-  block.joint[lane] = slot;
-  block.read_a[lane] = block.read_b[lane] = block.write_a[lane] = block.write_b[lane] = none;
-  if (slot == none) return;
-  const JointHeader& header = world.joints.headers[std::size_t(slot)];
-  const JointData<D>& data = world.joints.at(slot);
-  const auto masses = [&](std::int32_t body, std::int32_t& read, std::int32_t& write, float& mass, float& inertia) {
-    read = body;
-    if (body == none || !world.bodies.is_dynamic(body)) return;
-    write = body;
-    const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
-    mass = motion.inverse_mass;
-    if constexpr (D::dimension == 2)
-      inertia = motion.world_inverse_inertia;
-    else
-      inertia = motion.world_inverse_inertia.cx.x;
-  };
-  masses(header.body[0], block.read_a[lane], block.write_a[lane], block.inverse_mass_a[lane],
-         block.inverse_inertia_a[lane]);
-  masses(header.body[1], block.read_b[lane], block.write_b[lane], block.inverse_mass_b[lane],
-         block.inverse_inertia_b[lane]);
-  const JointPlacement<D> at = place_joint(world.bodies, header, data);
-  const typename D::Vector reach_a = at.offset + at.arm_b, error = reach_a - at.arm_a;
-  for (int i = 0; i < D::dimension; ++i) {
-    block.arm_a[i][lane] = at.arm_a[i];
-    block.arm_b[i][lane] = block.reach_b[i][lane] = at.arm_b[i];
-    block.offset[i][lane] = at.offset[i];
-    block.reach_a[i][lane] = reach_a[i];
-    block.error[i][lane] = error[i];
-    block.impulse[i][lane] = data.memory.point[i];
-  }
-}
-
-}  // namespace
 
 template <class D>
 bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint) {
@@ -80,8 +43,11 @@ void prepare_pins(StepContext<D>& context) {
     context.scheduler.parallel_for(count, 8, [&](int begin, int end, int) {
       for (int b = begin; b < end; ++b) {
         PinLanes<D, W>& block = *::new (static_cast<void*>(&blocks[std::size_t(b)])) PinLanes<D, W>{};
+        BodyTurns<D, W> turns{};
         for (int lane = 0; lane < W; ++lane)
-          fill_lane(block, lane, joints.pins[std::size_t(b) * W + std::size_t(lane)], context.world);
+          put_joint(block, turns, block.inverse_inertia_a, block.inverse_inertia_b, lane,
+                    joints.pins[std::size_t(b) * W + std::size_t(lane)], context.world);
+        joints.pin_kernels.begin(&block, &turns);
       }
     });
   });
