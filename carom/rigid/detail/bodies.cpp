@@ -228,7 +228,9 @@ template <class D>
 void pose_from_center(WorldImplementation<D>& world, std::int32_t body) {
   const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
   typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
-  pose.position = m.center - typename D::Position(rotate(pose.rotation, m.local_center));
+  pose.position = m.center;
+  if (m.local_center != typename D::Vector{})
+    pose.position = pose.position - typename D::Position(rotate(pose.rotation, m.local_center));
 }
 template <class D>
 void center_from_pose(WorldImplementation<D>& world, std::int32_t body) {
