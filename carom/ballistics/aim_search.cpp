@@ -1,4 +1,6 @@
 // Where the aim solver looks for shots, and how it knows that there are none.
+#include <bit>
+
 #include "carom/ballistics/detail/aim_solver.h"
 #include "carom/math/cpu.h"
 
@@ -20,6 +22,8 @@ AimMedium medium_of(const Projectile& projectile, const Conditions& conditions) 
   if (m.wind.count > 0) {
     m.sheared_up_to = m.wind.legs[m.wind.count - 1].height;
     above = m.wind.legs[m.wind.count - 1].velocity;
+    m.lowest_cell = std::bit_cast<double>(m.wind.first_cell << 48);
+    m.highest_cell = std::bit_cast<double>(m.wind.last_cell << 48);
   }
   for (int i = 0; i < 3; ++i) m.wind_above[i] = above[i];
   m.drag = projectile.drag.table();
@@ -54,7 +58,7 @@ AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions,
   decay_ = k > 0 ? 1 / (k * speed) : 1e30;
   fall_speed_ = math::min(speed, math::sqrt(conditions.gravity * decay_ * speed));
   if (const auto levels = conditions.wind.levels(); levels.size() > 1) ground_ = levels.front().height;
-  conditions.wind.for_each_bend(-1e300, 1e300, least_bend, [&](double) { layered_ = true; });
+  layered_ = conditions.wind.sharpest_bend() > least_bend;
   // Most curves have one bend, at their very end.
   if (projectile.drag.has_bends())
     projectile.drag.for_each_bend(0, fastest(shooter) / sound_, [&](double) { bent_ = true; });

@@ -33,6 +33,36 @@ CAROM_SIMD_INLINE D gather(F&& f) {
     return D{typename D::Vector{f(0), f(1), f(2), f(3)}};
 }
 
+/// Four numbers that lie side by side in memory, of every lane: the first of all, the second, and so on.
+template <int N>
+struct Columns {
+  using Wide = math::WideDouble<N>;
+  Wide x[4];
+  template <class F>
+  CAROM_SIMD_INLINE explicit Columns(F&& of_lane) {
+    const auto row = [&](int lane, int at) __attribute__((always_inline)) {
+      typename Wide::Vector r;
+      __builtin_memcpy(&r, of_lane(lane) + at, sizeof r);
+      return r;
+    };
+    if constexpr (N == 2) {
+      for (int at = 0; at < 4; at += 2) {
+        const auto a = row(0, at), b = row(1, at);
+        x[at].v = __builtin_shufflevector(a, b, 0, 2);
+        x[at + 1].v = __builtin_shufflevector(a, b, 1, 3);
+      }
+    } else {
+      const auto a = row(0, 0), b = row(1, 0), c = row(2, 0), d = row(3, 0);
+      const auto ac = __builtin_shufflevector(a, c, 0, 1, 4, 5), bd = __builtin_shufflevector(b, d, 0, 1, 4, 5),
+                 to_ac = __builtin_shufflevector(a, c, 2, 3, 6, 7), to_bd = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+      x[0].v = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
+      x[1].v = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
+      x[2].v = __builtin_shufflevector(to_ac, to_bd, 0, 4, 2, 6);
+      x[3].v = __builtin_shufflevector(to_ac, to_bd, 1, 5, 3, 7);
+    }
+  }
+};
+
 struct Vector {
   D x[3];
   CAROM_SIMD_INLINE D& operator[](int i) { return x[i]; }
@@ -66,36 +96,32 @@ CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v
   const D height = smaller(x[1], 1e9);
   const Cell cell(
       smaller(larger((height - D::splat(m.air.lowest)) * D::splat(m.air.per_metre), 0), m.air.last * (1 - 1e-15)));
-  const environment::AirColumn::Air* node[lanes];
-#pragma GCC unroll 4
-  for (int i = 0; i < lanes; ++i) node[i] = m.air.nodes + cell[i];
-  D density = gather([&](int i) { return node[i][0].density; }),
-    sound = gather([&](int i) { return node[i][0].speed_of_sound; });
-  const D denser = gather([&](int i) { return node[i][1].density; }) - density,
-          faster = gather([&](int i) { return node[i][1].speed_of_sound; }) - sound;
-  density = density + cell.part * denser;
-  sound = sound + cell.part * faster;
+  static_assert(sizeof(environment::AirColumn::Air) == 2 * sizeof(double));
+  const Columns<lanes> air([&](int i) { return &m.air.nodes[cell[i]].density; });
+  const D denser = air.x[2] - air.x[0], faster = air.x[3] - air.x[1];
+  const D density = air.x[0] + cell.part * denser, sound = air.x[1] + cell.part * faster;
 
   Vector shear{};
   if (!math::any_of<lanes>(D::splat(m.sheared_up_to) > height)) {
     for (int j = 0; j < 3; ++j) f.w[j] = v[j] - D::splat(m.wind_above[j]);
   } else {
+    const D above = height - D::splat(m.wind.legs[0].height);
+    const Mask cells = Mask(smaller(larger(above, m.lowest_cell), m.highest_cell).v) >> 48;
     const environment::WindColumn::Leg* leg[lanes];
 #pragma GCC unroll 4
     for (int i = 0; i < lanes; ++i) {
-      const double here = height.v[i], above = here - m.wind.legs[0].height;
-      std::uint64_t bits;
-      __builtin_memcpy(&bits, &above, sizeof bits);
-      bits >>= 48;
-      const std::uint64_t first = m.wind.first_cell, last = m.wind.last_cell;
-      leg[i] = m.wind.legs + m.wind.first[(bits < first ? first : bits > last ? last : bits) - first];
+      const double here = height.v[i];
+      leg[i] = m.wind.legs + m.wind.first[std::uint64_t(cells[i]) - m.wind.first_cell];
       while (leg[i][1].height <= here) ++leg[i];
-      if (!(above > 0)) leg[i] = &m.below;
     }
-    const D up = height - gather([&](int i) { return leg[i]->height; });
+    if (math::any_of<lanes>(~(above > D::splat(0))))
+      for (int i = 0; i < lanes; ++i)
+        if (!(above.v[i] > 0)) leg[i] = &m.below;
+    const Columns<lanes> at([&](int i) { return &leg[i]->height; }), by([&](int i) { return &leg[i]->shear.x; });
+    const D up = height - at.x[0];
     for (int j = 0; j < 3; ++j) {
-      shear[j] = gather([&](int i) { return (&leg[i]->shear.x)[j]; });
-      f.w[j] = v[j] - (gather([&](int i) { return (&leg[i]->velocity.x)[j]; }) + up * shear[j]);
+      shear[j] = by.x[j];
+      f.w[j] = v[j] - (at.x[j + 1] + up * shear[j]);
     }
   }
 
@@ -109,11 +135,10 @@ CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v
     piece[i] = m.drag.pieces + m.drag.first[part_of_curve[i]];
     while (piece[i][1].start < here) ++piece[i];
   }
-  const D past = mach - gather([&](int i) { return piece[i]->start; });
-  const D c1 = gather([&](int i) { return piece[i]->slope; }), c2 = gather([&](int i) { return piece[i]->square; }),
+  const Columns<lanes> curve([&](int i) { return &piece[i]->start; });
+  const D past = mach - curve.x[0], c1 = curve.x[2], c2 = curve.x[3],
           c3 = gather([&](int i) { return piece[i]->cube; });
-  const D coefficient =
-      larger(gather([&](int i) { return piece[i]->constant; }) + past * (c1 + past * (c2 + past * c3)), 0);
+  const D coefficient = larger(curve.x[1] + past * (c1 + past * (c2 + past * c3)), 0);
   const D by_speed = weight * speed;
   f.drag = by_speed * coefficient;
   for (int j = 0; j < 3; ++j) f.a[j] = D::splat(0) - f.drag * f.w[j];

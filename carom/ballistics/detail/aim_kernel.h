@@ -12,9 +12,10 @@ namespace carom::ballistics::detail {
 struct AimMedium {
   environment::AirColumn::Table air;
   environment::WindColumn::Table wind;
-  environment::WindColumn::Leg below{};  // the wind below the lowest level
-  double sheared_up_to = -1e300;         // m, from there on the wind is
-  double wind_above[3];                  // m/s
+  environment::WindColumn::Leg below{};      // the wind below the lowest level
+  double lowest_cell = 0, highest_cell = 0;  // m, above the lowest level, of the table of its legs
+  double sheared_up_to = -1e300;             // m, from there on the wind is
+  double wind_above[3];                      // m/s
   DragCurve::Table drag;
   double half_area;  // m²/kg
   double gravity;    // m/s²
