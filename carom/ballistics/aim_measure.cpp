@@ -112,7 +112,10 @@ void AimSolver::measure(Path& path) const {
     const double reach = path.reach(n), rest = of.rest[n] * reach;
     const bool lands = (path.x[1][n] > ground_) != (path.x[1][n + 1] > ground_), cut = lands || layered_ || bent_;
     const double h = path.t[n + 1] - path.t[n];
-    const bool settled = rest < (path.count < 4 ? 0.5 : 1) * options_.tolerance;
+    // Profiles of wind bend more sharply than the points can tell: what they carry must be little there too.
+    const bool settled = medium_.wind.count > 0
+                             ? rest < 0.25 * options_.tolerance && path.carried(n) < 5 * options_.tolerance
+                             : rest < 0.6 * options_.tolerance;
     if (!cut && settled) continue;
     double s[Cuts::most + 1] = {0, 0.5, 1};
     int parts = 2;
@@ -129,7 +132,7 @@ void AimSolver::measure(Path& path) const {
     }
     if (waits + parts > most_waiting) break;
     // Smooth elements err independently of each other.
-    hard[hards] = {n, (bends ? 0.4 : 1.2) * options_.tolerance / (3 * h * reach), {}};
+    hard[hards] = {n, (bends ? 0.4 : 0.4) * options_.tolerance / (3 * h * reach), {}};
     for (int i = parts - 1; i >= 0; --i) waiting[waits++] = {hards, s[i], s[i + 1]};
     ++hards;
   }

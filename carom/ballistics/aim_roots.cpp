@@ -38,7 +38,7 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
   // The leap of a wind profile at its beginning they do not know.
-  to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale);
+  to.left = to.moved * ((path.lands ? 0.1 : medium_.wind.count > 0 ? 2e-2 : 2e-3) + to.moved / to.scale);
   return to;
 }
 
@@ -52,7 +52,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   double accuracy = math::max(0.02 * away, rough);
   double last_missed = 1e300, first_missed = 1e300, strict = 1;
   int divisions = 0;
-  bool flown = false;
+  bool flown = false, flat = true;
   for (int i = 0; i < most; ++i) {
     if (!flown) {
       if (!record(guess, accuracy, path, i == 0 && falling)) {
@@ -63,11 +63,12 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
       }
       for (int n = 0; n < path.count; ++n) path.flatten(n);
       guess.time = path.time();
-      flown = true;
+      flown = flat = true;
     }
     linearize(path, true);
     Newton to = newton(path, guess);
-    bool fine = to.left < allowed && unsettled(path) < allowed;
+    bool fine = to.left < allowed && unsettled(path) < allowed && (!flat || all_carry(path) < 10 * allowed);
+    flat = false;
     const bool near = to.left < 20 * allowed;
     const double enough = (near ? 3 : 8) * allowed * strict;
     bool hard = !fine && (near || to.moved < 0.05 * to.scale) && divisions < 7 && any_mistakes(path, 2 * enough);
