@@ -39,7 +39,7 @@ struct Columns {
   using Wide = math::WideDouble<N>;
   Wide x[4];
   template <class F>
-  CAROM_SIMD_INLINE explicit Columns(F&& of_lane) {
+  CAROM_SIMD_INLINE explicit Columns(const F& of_lane) {
     const auto row = [&](int lane, int at) __attribute__((always_inline)) {
       typename Wide::Vector r;
       __builtin_memcpy(&r, of_lane(lane) + at, sizeof r);

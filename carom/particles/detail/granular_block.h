@@ -15,6 +15,10 @@ inline constexpr int grain_place = 4;  ///< floats: place, at the last radius
 template <int N>
 inline constexpr int grain_held = N == 2 ? 4 : 8;
 
+/// Of the time until the next search: pairs are solved from that stage on in which the two may first touch.
+inline constexpr int grain_stages = 4;
+inline constexpr int grain_stage_bit = 24;  ///< of what is found of a pair: its stage, above the other's number
+
 /// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
 /// twice a grain that is none.
 template <int N>
@@ -64,7 +68,7 @@ struct GrainReach {
 template <int N>
 struct GrainKernels {
   using Block = GrainBlock<N>;
-  /// Neighbours that may come to touch: their numbers go to found[at …], for each grain where they begin to
+  /// Neighbours that may come to touch: their numbers and stages go to found[at …], for each grain where they begin to
   /// first[grain]. Returns where they end.
   int (*find)(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<N>& reach, int* first, int* found,
               int at);

@@ -76,7 +76,7 @@ void GranularState<D>::make_grid() {
   }
   const int across = N == 2 ? cells[0] : cells[2];
   // Narrow ones leave lanes empty. Four or a multiple of it share evenly between two threads, every second at a time.
-  const int wanted = (across + 2) / (N == 2 ? 24 : 4);
+  const int wanted = (across + 2) / (N == 2 ? 16 : 4);
   const int count = wanted < 3 ? math::max(wanted, 1) : 4 * ((wanted + 2) / 4);
   slab_cells = (across + count - 1) / count;
   slabs.resize(std::size_t((across + slab_cells - 1) / slab_cells));
@@ -96,14 +96,17 @@ void GranularState<D>::reserve() {
   for (auto* list : {&first_pair, &old_first_pair, &first_touch, &old_first_touch}) list->reserve(n + 1);
   for (auto& list : near_by) list.reserve(n + grain_lanes);
   for (auto* list : {&pairs, &old_pairs}) list->resize(contacts);
+  for (auto* list : {&stages, &old_stages}) list->resize(contacts);
+  paces.reserve(n);
   held.reserve(contacts * grain_held<N>);
   for (GrainSlab<N>& slab : slabs) {
     const std::size_t share = contacts / slabs.size() + 1, share_of_blocks = share / grain_lanes + 1;
     slab.pairs.resize(share);
     slab.blocks.reserve(share_of_blocks);
-    slab.open_block.reserve(share_of_blocks);
-    slab.filled.reserve(share_of_blocks);
-    for (auto* list : {&slab.pair_of, &slab.was}) list->reserve(share_of_blocks * grain_lanes);
+    slab.open_block.resize(share_of_blocks);
+    slab.filled.resize(share_of_blocks);
+    for (auto* list : {&slab.pair_of, &slab.was}) list->resize(share_of_blocks * grain_lanes);
+    for (auto& list : slab.later) list.reserve(share / 2);
   }
   for (auto* list : {&touches, &old_touches}) list->reserve(n + 16);
   for (auto* list : {&wall_blocks, &old_wall_blocks}) list->reserve(n / grain_lanes + 64);

@@ -37,9 +37,7 @@ void GranularState<D>::sort() {
     cell_of[i] = inside ? cell_at(at[0], at[1], at[2]) : -1;
     if (!inside) continue;
     ++cell_start[cell_of[i] + 1];
-    Haste<D>& h = haste[cell_of[i]];
-    h.least = min(h.least, grains[i].v);
-    h.most = max(h.most, grains[i].v);
+    haste[cell_of[i]].add(grains[i].v);
   }
   for (int c = 0; c < size; ++c) cell_start[c + 1] += cell_start[c];
   sorted.resize(cell_start[size]);
@@ -64,14 +62,12 @@ void GranularState<D>::sort() {
 template <class D>
 typename D::Vector GranularState<D>::fastest_near(int x, int y, int z) const {
   Haste<D> all;
+  const Haste<D>* const by_cell = haste.data();
+  const int left = math::max(x - 1, 0), right = math::min(x + 1, cells[0] - 1);
   for (int k = math::max(z - 1, 0); k <= math::min(z + 1, cells[2] - 1); ++k)
     for (int j = math::max(y - 1, 0); j <= math::min(y + 1, cells[1] - 1); ++j)
-      for (int i = math::max(x - 1, 0); i <= math::min(x + 1, cells[0] - 1); ++i) {
-        const Haste<D>& h = haste[cell_at(i, j, k)];
-        all.least = min(all.least, h.least);
-        all.most = max(all.most, h.most);
-      }
-  return all.most - all.least;
+      for (int i = left; i <= right; ++i) all.add(by_cell[cell_at(i, j, k)]);
+  return all.range();
 }
 
 /// Lists the neighbours of a cell's grains, each pair once: those that come later along x, up or across to the next
@@ -85,6 +81,10 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   const Vector closing = fastest_near(x, y, z);
   GrainReach<N> reach{.slack = 0.02f * definition.radius, .most = (cell_radii - 2) * definition.radius};
   for (int k = 0; k < N; ++k) reach.way[k] = dt * closing[k] + 0.55f * dt * dt * math::abs(definition.gravity[k]);
+  // As fast at any time until the next search.
+  Vector pace{};
+  for (int k = 0; k < N; ++k) pace[k] = dt * closing[k] + 1.1f * dt * dt * math::abs(definition.gravity[k]);
+  std::fill(paces.begin() + begin, paces.begin() + end, pace);
   GrainRuns runs;
   runs.begin = begin;
   runs.end = end;
@@ -115,41 +115,75 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   slab.pair_count = kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.pair_count);
 }
 
-/// The first block that has room and comes after `last`, in which one of the pair is: solved block by block the pairs
-/// give what they would one after the other.
+/// One more, empty; `none`: a grain that is none.
 template <int N>
-int GrainSlab<N>::block_after(int last, std::uint32_t none) {
-  int* const open = open_block.data();
-  int block = last + 1;
-  while (block < block_count && open[block] != block) {
-    const int next = open[block];
-    if (next < block_count) open[block] = open[next];
-    block = next;
+void GrainSlab<N>::add_block(std::uint32_t none) {
+  const std::size_t block = std::size_t(block_count++);
+  if (block == blocks.size()) blocks.emplace_back();
+  if (block == open_block.size()) {
+    const std::size_t room = 2 * block + 16;
+    open_block.resize(room);
+    filled.resize(room);
+    pair_of.resize(room * grain_lanes);
+    was.resize(room * grain_lanes);
   }
-  if (block < block_count) return block;
-  block = block_count++;
-  if (block == int(blocks.size())) blocks.emplace_back();
-  open_block.push_back(block);
-  filled.push_back(0);
-  pair_of.resize(pair_of.size() + grain_lanes, -1);
-  was.resize(was.size() + grain_lanes, -1);
-  for (int lane = 0; lane < grain_lanes; ++lane) blocks[block].a[lane] = blocks[block].b[lane] = none;
-  return block;
+  open_block[block] = int(block);
+  filled[block] = 0;
+  std::fill_n(&pair_of[block * grain_lanes], grain_lanes, -1);
+  std::fill_n(&was[block * grain_lanes], grain_lanes, -1);
+  blocks[block] = {};
+  std::fill_n(blocks[block].a, grain_lanes, none);
+  std::fill_n(blocks[block].b, grain_lanes, none);
 }
 
-/// Gives the pairs of the slab's grains, which end at `end`, their blocks, and finds which they were when last looked
-/// for: mostly the same in turn. `none`: a grain that is none.
+/// Gives a pair a lane in the first block that has room after the last in which one of the two is: solved block by
+/// block the pairs give what they would one after the other. The slab's grains end at `end`.
 template <class D>
-void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end, int none) {
+int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int pair) {
+  const int b = pairs[pair];
+  int *const open = slab.open_block.data(), &last_of_a = last_block[grain],
+             &last_of_b = b < end ? last_block[b] : last_across[b];
+  int block = math::max(last_of_a, last_of_b) + 1;
+  while (block < slab.block_count && open[block] != block) {
+    const int after = open[block];
+    if (after < slab.block_count) open[block] = open[after];
+    block = after;
+  }
+  if (block >= slab.block_count) {
+    block = slab.block_count;
+    slab.add_block(std::uint32_t((int(grains.size()) + int(&slab - slabs.data())) * grain_place));
+  }
+  last_of_a = last_of_b = block;
+  const int lane = slab.filled[block]++;
+  if (lane == grain_lanes - 1) slab.open_block[block] = block + 1;
+  slab.blocks[block].a[lane] = std::uint32_t(grain * grain_place);
+  slab.blocks[block].b[lane] = std::uint32_t(b * grain_place);
+  slab.pair_of[block * grain_lanes + lane] = pair;
+  stages[pair] = 0;
+  return block * grain_lanes + lane;
+}
+
+/// Gives the pairs of the slab's grains that may touch at once their blocks, and finds which they were when last looked
+/// for: mostly the same in turn. The others wait for their stage.
+template <class D>
+void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
   const int known = int(old_first_pair.size()) - 1;
   const int *const old_first = old_first_pair.data(), *const others = old_pairs.data(),
                    *const places = old_place.data();
+  for (auto& list : slab.later) list.clear();
+  float fastest = 0;
   for (int grain = begin; grain < end; ++grain) {
     const int own = places[grain];
     const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
-    int next = old_begin, last = last_block[grain];
+    int next = old_begin;
     for (int k = first_pair[grain], to = first_pair[grain + 1]; k < to; ++k) {
-      const int b = pairs[k], other = places[b];
+      const Vector passing = grains[pairs[k]].v - grains[grain].v;
+      fastest = math::max(fastest, dot(passing, passing));
+      if (stages[k] > 0) {
+        slab.later[stages[k]].push_back({grain, k});
+        continue;
+      }
+      const int other = places[pairs[k]];
       int old = next, was = -1;
       if (old >= old_end || others[old] != other) {
         old = old_begin;
@@ -157,23 +191,45 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end, int n
       }
       if (old < old_end) {
         next = old + 1;
-        was = 2 * old;
+        was = old_stages[old] == 0 ? 2 * old : -1;
       } else if (other < known) {
         for (old = old_first[other]; old < old_first[other + 1]; ++old)
-          if (others[old] == own) was = 2 * old + 1;
+          if (others[old] == own && old_stages[old] == 0) was = 2 * old + 1;
       }
-      int& last_of_b = b < end ? last_block[b] : last_across[b];
-      const int block = slab.block_after(math::max(last, last_of_b), std::uint32_t(none * grain_place));
-      last = last_of_b = block;
-      const int lane = slab.filled[block]++, at = block * grain_lanes + lane;
-      if (lane == grain_lanes - 1) slab.open_block[block] = block + 1;
-      GrainBlock<N>& to_block = slab.blocks[block];
-      to_block.a[lane] = std::uint32_t(grain * grain_place);
-      to_block.b[lane] = std::uint32_t(b * grain_place);
-      slab.pair_of[at] = k;
-      slab.was[at] = was;
+      slab.was[place_pair(slab, end, grain, k)] = was;
     }
-    last_block[grain] = last;
+  }
+  slab.fastest = math::sqrt(fastest);
+}
+
+/// At the begin of a stage: pairs that may touch within it get a lane, the others wait on.
+template <class D>
+void GranularState<D>::place_later(GrainSlab<N>& slab, int end, int stage) {
+  for (const auto& [grain, pair] : slab.later[stage]) {
+    const int other = pairs[pair];
+    const float *const a = &place[std::size_t(grain) * grain_place], *const b =
+                                                                         &place[std::size_t(other) * grain_place];
+    const Vector& pace = paces[grain];
+    float square = 0, way = 0;
+    for (int k = 0; k < N; ++k) {
+      const float d = math::abs(b[k] - a[k]);
+      square += d * d;
+      way += d * pace[k];
+    }
+    // As find() has it, from here on.
+    const float touch = a[3] + b[3] + 0.02f * definition.radius, open = square - touch * math::sqrt(square);
+    const float wait = grain_stages * open;
+    if (wait >= way) {
+      const int next = wait < grain_stages * way ? stage + int(wait / way) : grain_stages;
+      if (next < grain_stages) slab.later[next].push_back({grain, pair});
+      continue;
+    }
+    const int at = place_pair(slab, end, grain, pair), lane = at % grain_lanes;
+    GrainBlock<N>& block = slab.blocks[at / grain_lanes];
+    const Grain<D>&ga = grains[grain], &gb = grains[other];
+    block.ease[lane] = 1 / (ga.inverse_mass + gb.inverse_mass);
+    block.give_way[lane] = 1 / (ga.inverse_inertia + gb.inverse_inertia);
+    block.lever[lane] = 1 / (ga.curve + gb.curve);
   }
 }
 
@@ -181,8 +237,10 @@ template <class D>
 void GranularState<D>::find_pairs(float dt) {
   const int count = int(grains.size());
   old_pairs.swap(pairs);
+  old_stages.swap(stages);
   old_first_pair.swap(first_pair);
   first_pair.resize(std::size_t(count) + 1);
+  paces.resize(std::size_t(count));
   last_block.assign(std::size_t(count), -1);
   last_across.assign(std::size_t(count), -1);
   const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
@@ -196,26 +254,23 @@ void GranularState<D>::find_pairs(float dt) {
   pair_count = 0;
   for (const GrainSlab<N>& slab : slabs) pair_count += slab.pair_count;
   if (std::size_t(pair_count) > pairs.size()) pairs.resize(2 * std::size_t(pair_count));
+  if (stages.size() < pairs.size()) stages.resize(pairs.size());
   first_pair[count] = pair_count;
   for (int k = 0, before = 0; k < int(slabs.size()); ++k) {
     const GrainSlab<N>& slab = slabs[k];
-    std::copy_n(slab.pairs.begin(), slab.pair_count, pairs.begin() + before);
+    for (int i = 0; i < slab.pair_count; ++i) {
+      pairs[before + i] = slab.pairs[i] & ((1 << grain_stage_bit) - 1);
+      stages[before + i] = std::uint8_t(slab.pairs[i] >> grain_stage_bit);
+    }
     for (int i = slab_begin(k); i < slab_begin(k + 1); ++i) first_pair[i] += before;
     before += slab.pair_count;
   }
-  for_slabs([&](GrainSlab<N>& slab, int index) {
-    slab.pair_of.clear();
-    slab.was.clear();
-    slab.open_block.clear();
-    slab.filled.clear();
-    place_pairs(slab, slab_begin(index), slab_begin(index + 1), count + index);
-  });
+  for_slabs([&](GrainSlab<N>& slab, int index) { place_pairs(slab, slab_begin(index), slab_begin(index + 1)); });
 }
 
-/// Surface (`scale`: of the impulses of the last substep, for those of the next): a side of the domain, or 2 N + the
-/// index of a solid. Each has blocks of its own: a grain is in one once.
+/// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.
 template <class D>
-void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float scale) {
+void GranularState<D>::touch(int grain, int surface, std::uint32_t key) {
   const GrainTouch* old = nullptr;
   const int was = old_place[grain];
   if (was + 1 < int(old_first_touch.size()))
@@ -223,12 +278,7 @@ void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float sc
       if (old_touches[k].key == key) old = &old_touches[k];
   if (surface >= 2 * N && solids[surface - 2 * N].body >= 0) {
     Contact c;
-    if (old && old->lane < 0) {
-      c = old_body_contacts[-1 - old->lane];
-      c.normal_impulse *= scale;
-      c.friction = scale * c.friction;
-      c.rolling = scale * c.rolling;
-    }
+    if (old && old->lane < 0) c = old_body_contacts[-1 - old->lane];
     c.a = grain;
     c.solid = surface - 2 * N;
     touches.push_back({key, -1 - int(body_contacts.size())});
@@ -252,28 +302,28 @@ void GranularState<D>::touch(int grain, int surface, std::uint32_t key, float sc
   if (old && old->lane >= 0) {
     const Block& then = old_wall_blocks[old->lane / grain_lanes];
     const int from = old->lane % grain_lanes;
-    now.push[lane] = scale * then.push[from];
+    now.push[lane] = then.push[from];
     for (int k = 0; k < Block::turns; ++k) {
-      now.grip[k][lane] = scale * then.grip[k][from];
-      now.roll[k][lane] = scale * then.roll[k][from];
+      now.grip[k][lane] = then.grip[k][from];
+      now.roll[k][lane] = then.roll[k][from];
     }
   }
   touches.push_back({key, filling * grain_lanes + lane});
 }
 
 template <class D>
-void GranularState<D>::touch_solid(int i, int index, float reach, float scale) {
+void GranularState<D>::touch_solid(int i, int index, float reach) {
   const GrainSolid<D>& solid = solids[index];
   const Grain<D>& g = grains[i];
   const float most = g.radius + reach;
   for (int b = 0; b < N; ++b)
     if (g.x[b] < solid.bounds.low[b] - most || g.x[b] > solid.bounds.high[b] + most) return;
   const Vector local = inverse_transform_point(solid.at, g.x);
-  if (signed_distance(solid.shape, local, solid.sheet) < most) touch(i, 2 * N + index, solid.key, scale);
+  if (signed_distance(solid.shape, local, solid.sheet) < most) touch(i, 2 * N + index, solid.key);
 }
 
 template <class D>
-void GranularState<D>::find_surfaces(float dt, float scale) {
+void GranularState<D>::find_surfaces(float dt) {
   old_touches.swap(touches);
   old_first_touch.swap(first_touch);
   old_wall_blocks.swap(wall_blocks);
@@ -289,11 +339,29 @@ void GranularState<D>::find_surfaces(float dt, float scale) {
     first_touch[i] = int(touches.size());
     for (int side = 0; side < 2 * N; ++side) {
       const float x = grains[i].x[side / 2], distance = side % 2 ? extent[side / 2] - x : x;
-      if (definition.walls[side] && distance < grains[i].radius + reach) touch(i, side, std::uint32_t(side), scale);
+      if (definition.walls[side] && distance < grains[i].radius + reach) touch(i, side, std::uint32_t(side));
     }
-    for (int k = 0; k < int(solids.size()); ++k) touch_solid(i, k, reach, scale);
+    for (int k = 0; k < int(solids.size()); ++k) touch_solid(i, k, reach);
   }
   first_touch[grains.size()] = int(touches.size());
+}
+
+/// Of the impulses that surfaces held, for a substep so much longer.
+template <class D>
+void GranularState<D>::scale_surfaces(float scale) {
+  for (Block& block : wall_blocks)
+    for (int lane = 0; lane < grain_lanes; ++lane) {
+      block.push[lane] *= scale;
+      for (int k = 0; k < Block::turns; ++k) {
+        block.grip[k][lane] *= scale;
+        block.roll[k][lane] *= scale;
+      }
+    }
+  for (Contact& c : body_contacts) {
+    c.normal_impulse *= scale;
+    c.friction = scale * c.friction;
+    c.rolling = scale * c.rolling;
+  }
 }
 
 }  // namespace carom::particles::detail

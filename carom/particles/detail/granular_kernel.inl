@@ -163,9 +163,18 @@ int find(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<
         }
         const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
         std::uint32_t hits = math::bitmask(square < math::min(touch * touch + (way + way), farthest * farthest));
-        if (hits != 0) hits &= math::bitmask(square <= touch * math::sqrt(square) + way);
         if (runs.to[run] - j < width) hits &= (1u << (runs.to[run] - j)) - 1;
-        for (; hits != 0; hits &= hits - 1) found[at++] = j + __builtin_ctz(hits);
+        if (hits == 0) continue;
+        const F open = square - touch * math::sqrt(square);
+        hits &= math::bitmask(open <= way);
+        const F stage = math::min(math::max(open, F::zero()) * splat(grain_stages) / math::max(way, splat(1e-30f)),
+                                  splat(grain_stages - 1));
+        std::int32_t stages[width];
+        (math::to_int(stage) << grain_stage_bit).store(stages);
+        for (; hits != 0; hits &= hits - 1) {
+          const int lane = __builtin_ctz(hits);
+          found[at++] = stages[lane] | (j + lane);
+        }
       }
   }
   return at;

@@ -7,6 +7,7 @@
 
 namespace carom::particles::detail {
 
+constexpr float pair_way = 0.3f;                         ///< radii
 constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
 /// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
 /// layer by layer, and not pushed into it.
@@ -22,34 +23,35 @@ int GranularState<D>::grain_in(const Block& block, int lane) const {
 template <class D>
 void GranularState<D>::to_rows() {
   const int count = int(grains.size());
-  for_grains(count + int(slabs.size()), [&](int i) {
-    float* const p = &place[std::size_t(i) * grain_place];
-    float* const m = &motion[std::size_t(i) * grain_motion<N>];
-    const Grain<D> none{.curve = 1, .inverse_mass = 1};
-    const Grain<D>& g = i < count ? grains[i] : none;
-    p[2] = 0;
-    for (int k = 0; k < N; ++k) {
-      p[k] = g.x[k];
-      m[k] = g.v[k];
-    }
-    p[3] = g.radius;
-    if constexpr (N == 2) {
-      m[2] = g.radius * g.spin;
-      m[3] = g.curve;
-    } else {
-      m[3] = g.inverse_mass;
-      for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
-      m[7] = g.curve;
-    }
-  });
+  for_grains(count + int(slabs.size()),
+             [count, from = grains.data(), places = place.data(), motions = motion.data()](int i) {
+               float* const p = places + std::size_t(i) * grain_place;
+               float* const m = motions + std::size_t(i) * grain_motion<N>;
+               const Grain<D> none{.curve = 1, .inverse_mass = 1};
+               const Grain<D>& g = i < count ? from[i] : none;
+               p[2] = 0;
+               for (int k = 0; k < N; ++k) {
+                 p[k] = g.x[k];
+                 m[k] = g.v[k];
+               }
+               p[3] = g.radius;
+               if constexpr (N == 2) {
+                 m[2] = g.radius * g.spin;
+                 m[3] = g.curve;
+               } else {
+                 m[3] = g.inverse_mass;
+                 for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
+                 m[7] = g.curve;
+               }
+             });
 }
 
 template <class D>
 void GranularState<D>::from_rows() {
-  for_grains(int(grains.size()), [&](int i) {
-    const float* const p = &place[std::size_t(i) * grain_place];
-    const float* const m = &motion[std::size_t(i) * grain_motion<N>];
-    Grain<D>& g = grains[i];
+  for_grains(int(grains.size()), [to = grains.data(), places = place.data(), motions = motion.data()](int i) {
+    const float* const p = places + std::size_t(i) * grain_place;
+    const float* const m = motions + std::size_t(i) * grain_motion<N>;
+    Grain<D>& g = to[i];
     for (int k = 0; k < N; ++k) {
       g.x[k] = p[k];
       g.v[k] = m[k];
@@ -236,7 +238,7 @@ void GranularState<D>::for_slabs_in_turn(bool back, F&& f) {
 template <class D>
 template <class F>
 void GranularState<D>::for_grains(int count, F&& f) {
-  scheduler->parallel_for(count, 2048, [&](int begin, int end, int) {
+  scheduler->parallel_for(count, 2048, [f](int begin, int end, int) {
     for (int i = begin; i < end; ++i) f(i);
   });
 }
@@ -293,15 +295,37 @@ void GranularState<D>::sum_walls() {
     }
 }
 
+/// m/s, of a grain beside a shape.
 template <class D>
-void GranularState<D>::round(float h, int parts, int sweeps) {
-  const float dt = h * float(parts);
-  const float scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with the substep
-  last_h = h;
+float GranularState<D>::fastest_beside_solids() const {
+  float most = 0;
+  for (std::size_t i = 0; i < wall_blocks.size(); ++i)
+    for (int lane = 0; wall_of[i] >= 2 * N && lane < grain_lanes && grain_in(wall_blocks[i], lane) >= 0; ++lane) {
+      const Vector& v = grains[grain_in(wall_blocks[i], lane)].v;
+      most = math::max(most, dot(v, v));
+    }
+  for (const Contact& c : body_contacts) most = math::max(most, dot(grains[c.a].v, grains[c.a].v));
+  return math::sqrt(most);
+}
+
+/// `dt` seconds with one search, in `parts` to `most` substeps and with `sweeps` at least. How fast grains fall
+/// together does not matter, nor on a wall: no two pass each other by more than `pair_way` in a substep, nor one a
+/// shape, which may be hollow, by more than half a radius.
+template <class D>
+void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
   sort();
   find_pairs(dt);
-  find_surfaces(dt, scale);
+  find_surfaces(dt);
   to_rows();
+  const float pull = solids.empty() ? 0 : dt * length(definition.gravity);
+  float ways = 2 * (fastest_beside_solids() + pull);
+  for (const GrainSlab<N>& slab : slabs) ways = math::max(ways, slab.fastest / pair_way);
+  ways *= dt / definition.radius;
+  parts = math::max(parts, ways < float(most) ? int(math::ceil(ways)) : most);
+  sweeps = math::max(sweeps, math::min(definition.iterations, 2) * parts);
+  const float h = dt / float(parts), scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with it
+  last_h = h;
+  scale_surfaces(scale);
   const GrainPass pass{.lightness = lightness()};
   for_slabs([&](GrainSlab<N>& slab, int) {
     kernels->recall(slab.blocks.data(), 0, slab.block_count, slab.was.data(), held.data(), scale, motion.data(), pass);
@@ -314,20 +338,30 @@ void GranularState<D>::round(float h, int parts, int sweeps) {
   const Four time = Four::load(row);
   for (int k = 0; k < N; ++k) row[k] = h * definition.gravity[k];
   const Four gained = Four::load(row);
-  for (int part = 0, swept = 0; part < parts; ++part) {
-    for_grains(count, [&](int i) {
-      float* const m = motion.data() + std::size_t(i) * grain_motion<N>;
-      (Four::load(m) + gained).store(m);
-    });
+  float *const places = place.data(), *const motions = motion.data();
+  const auto gain = [=](int i) {
+    float* const m = motions + std::size_t(i) * grain_motion<N>;
+    (Four::load(m) + gained).store(m);
+  };
+  const auto move = [=](int i) {
+    float* const p = places + std::size_t(i) * grain_place;
+    (Four::load(p) + time * Four::load(motions + std::size_t(i) * grain_motion<N>)).store(p);
+  };
+  for_grains(count, gain);
+  for (int part = 0, swept = 0, stage = 0; part < parts; ++part) {
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
+    for (const int last = ((part + 1) * grain_stages - 1) / parts; stage < last;) {
+      ++stage;  // this substep ends in it
+      for_slabs([&](GrainSlab<N>& slab, int index) { place_later(slab, slab_begin(index + 1), stage); });
+    }
     press();
     for (const int end = (part + 1) * sweeps / parts; swept < end; ++swept) sweep(h, swept % 2 == 0);
     sum_walls();
-    for_grains(count, [&](int i) {
-      float* const p = place.data() + std::size_t(i) * grain_place;
-      (Four::load(p) + time * Four::load(motion.data() + std::size_t(i) * grain_motion<N>)).store(p);
-    });
+    if (part + 1 == parts)
+      for_grains(count, move);
+    else
+      for_grains(count, [=](int i) { move(i), gain(i); });
   }
   from_rows();
   held.resize(std::size_t(pair_count) * grain_held<N>);
@@ -350,7 +384,7 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
     if (!gathered.ok()) return gathered;
   }
   const core::ParallelRegion region(*scheduler);
-  // No grain moves by more than half a radius in a substep, and contacts are looked for every `search_way` radii.
+  // Contacts are looked for every `search_way` radii.
   float fastest = 0;
   for (const Grain<D>& g : grains) fastest = math::max(fastest, dot(g.v, g.v));
   fastest = math::sqrt(fastest) + dt * length(definition.gravity);
@@ -359,12 +393,12 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
     const float ways = fastest * dt / (radii * definition.radius);
     return ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;
   };
-  const int parts = math::max(definition.substeps, times(0.5f)), rounds = math::min(times(search_way), parts);
-  // What moves fast takes more substeps; they share the sweeps, but have one there and one back.
+  const int rounds = times(search_way), parts = math::max(definition.substeps, rounds);
+  // An impact goes through a heap in sweeps: one there and one back for each half of a radius.
   const int sweeps =
-      math::max(math::min(definition.iterations, 2) * parts, definition.substeps * definition.iterations);
+      math::max(math::min(definition.iterations, 2) * times(0.5f), definition.substeps * definition.iterations);
   const auto share = [&](int all, int k) { return (k + 1) * all / rounds - k * all / rounds; };
-  for (int k = 0; k < rounds; ++k) round(dt / float(parts), share(parts, k), share(sweeps, k));
+  for (int k = 0; k < rounds; ++k) round(dt / float(rounds), share(parts, k), share(64, k), share(sweeps, k));
   for (const GrainSlab<N>& slab : slabs)
     statistics.max_overlap =
         math::max(statistics.max_overlap, kernels->deepest(slab.blocks.data(), 0, slab.block_count, place.data()));

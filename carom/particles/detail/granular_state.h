@@ -72,13 +72,30 @@ struct GrainSolid {
 /// m/s: between what velocities the grains of a cell lie, and nought.
 template <class D>
 struct Haste {
-  typename D::Vector least{}, most{};
+  static constexpr int N = D::dimension, lanes = N == 2 ? 4 : 8, down = lanes / 2;
+  using Four = math::WideFloat<4>;
+  float most[lanes] = {};  ///< up the axes, and from `down` on down them
+
+  void add(const typename D::Vector& v) {
+    for (int k = 0; k < N; ++k) {
+      most[k] = math::max(most[k], v[k]);
+      most[down + k] = math::max(most[down + k], -v[k]);
+    }
+  }
+  void add(const Haste& other) {
+    for (int k = 0; k < lanes; k += 4) math::max(Four::load(most + k), Four::load(other.most + k)).store(most + k);
+  }
+  typename D::Vector range() const {
+    typename D::Vector r{};
+    for (int k = 0; k < N; ++k) r[k] = most[k] + most[down + k];
+    return r;
+  }
 };
 
 /// Neighbouring columns of cells: their pairs are found and placed by one thread, without a look at other slabs'.
 template <int N>
 struct GrainSlab {
-  std::vector<int> pairs;  ///< the others of its grains' pairs, as found: room for more than pair_count
+  std::vector<int> pairs;  ///< its grains' pairs, as GrainKernels::find leaves them: room for more than pair_count
   int pair_count = 0;
   // Where they are solved, in the order of the slab's layers.
   std::vector<GrainBlock<N>> blocks;  ///< room for more than block_count, which is not made anew
@@ -86,16 +103,21 @@ struct GrainSlab {
   std::vector<int> pair_of, was;     ///< by block and lane: the pair's number, and its old one (GrainKernels)
   std::vector<std::uint8_t> filled;  ///< lanes by block
   std::vector<int> open_block;       ///< the next that has room, by block
+  struct Later {
+    int grain = 0, pair = 0;
+  };
+  std::vector<Later> later[grain_stages];  ///< pairs that do not touch at once
+  float fastest = 0;                       ///< m/s, that two of its pairs pass each other
 
-  int block_after(int last, std::uint32_t none);
+  void add_block(std::uint32_t none);
 };
 
 template <class D>
 struct GranularState {
   static constexpr int N = D::dimension;
-  static constexpr float cell_radii = N == 2 ? 4 : 3;  ///< width of a cell in the largest radii
+  static constexpr float cell_radii = N == 2 ? 6 : 3;  ///< width of a cell in the largest radii
   /// Largest radii that the fastest grain moves from search to search: no more than cells have room for.
-  static constexpr float search_way = N == 2 ? 1.9f : 1;
+  static constexpr float search_way = N == 2 ? 3.8f : 1;
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   using Position = typename D::Position;
@@ -119,6 +141,9 @@ struct GranularState {
   AlignedFloats place, motion;
   // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
+  /// By pair: in which stage of the time until the next search it may first touch; 0 once it is solved.
+  std::vector<std::uint8_t> stages, old_stages;
+  std::vector<Vector> paces;  ///< m, by grain: how far another may close on it until the next search, by axis
   int pair_count = 0;
   std::vector<float> held;
   std::vector<GrainSlab<N>> slabs;
@@ -152,11 +177,15 @@ struct GranularState {
   void find_pairs(float dt);
   Vector fastest_near(int x, int y, int z) const;
   void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
-  void place_pairs(GrainSlab<N>& slab, int begin, int end, int none);
+  int place_pair(GrainSlab<N>& slab, int end, int grain, int pair);
+  void place_pairs(GrainSlab<N>& slab, int begin, int end);
+  void place_later(GrainSlab<N>& slab, int end, int stage);
   int slab_begin(int slab) const { return cell_start[std::size_t(slab) * (std::size_t(size) / slabs.size())]; }
-  void find_surfaces(float dt, float scale);
-  void touch(int grain, int surface, std::uint32_t key, float scale);
-  void touch_solid(int grain, int index, float reach, float scale);
+  void find_surfaces(float dt);
+  void touch(int grain, int surface, std::uint32_t key);
+  void touch_solid(int grain, int index, float reach);
+  void scale_surfaces(float scale);
+  float fastest_beside_solids() const;
   float push_out(int grain, const Vector& normal, float gap, const GrainPass& pass);
   void measure_surfaces(const GrainPass& pass);
   bool measure_solid(const GrainSolid<D>& solid, const Vector& at, Vector& normal, float& distance) const;
@@ -171,7 +200,7 @@ struct GranularState {
   void solve_body(Contact& contact, float h);
   void apply_body(const Contact& contact, float normal, Vector friction, Angular rolling);
   void sum_walls();
-  void round(float h, int parts, int sweeps);
+  void round(float dt, int parts, int most, int sweeps);
   core::Status step(rigid::World<D>* world, float dt);
 };
 

@@ -18,15 +18,25 @@ struct DrivenBodies2 {
     }
     gather_rows<8, W>(rows, drive);
   }
-  CAROM_SIMD_INLINE bool any_locked() const { return any(drive[7] > WideFloat<W>::splat(2)); }
+  CAROM_SIMD_INLINE bool any_locked() const { return any(drive[7] > WideFloat<W>::splat(3)); }
   CAROM_SIMD_INLINE WideMask<W> dynamic() const { return drive[7] > WideFloat<W>::splat(0); }
-  CAROM_SIMD_INLINE WideMask<W> in_flight() const { return drive[7] > WideFloat<W>::splat(1); }
+  CAROM_SIMD_INLINE WideMask<W> carries() const { return drive[7] == WideFloat<W>::splat(2); }
+  CAROM_SIMD_INLINE WideMask<W> in_flight() const { return drive[7] > WideFloat<W>::splat(2); }
+};
+
+/// Where the Flight<Dim2> of each lane is.
+template <int W>
+struct FlightRows2 {
+  const float* row[W];
+  CAROM_SIMD_INLINE explicit FlightRows2(const float* flights) {
+    for (int i = 0; i < W; ++i) row[i] = flights + 8 * i;
+  }
 };
 
 /// False, and nothing done, where a body's axes are locked.
 template <int W>
 bool integrate_velocities2(SolverBody<Dim2>* bodies, const BodyDrive<Dim2>* drives, float* flights, float h,
-                           float max_speed, float max_turn) {
+                           float max_speed, float max_turn, bool carry_on) {
   using F = WideFloat<W>;
   const DrivenBodies2<W> driven(drives);
   if (driven.any_locked()) return false;
@@ -44,10 +54,21 @@ bool integrate_velocities2(SolverBody<Dim2>* bodies, const BodyDrive<Dim2>* driv
   const auto spins = turn > most;
   spin *= select(spins, most / select(spins, turn, one), one);
   const auto dynamic = driven.dynamic(), flies = driven.in_flight();
-  const F share = F::splat(0.5f * h);
-  const F moved[8] = {select(dynamic, x, row[0]),
-                      select(dynamic, y, row[1]),
-                      select(dynamic, spin, row[2]),
+  const F share = F::splat(0.5f * h), zero = F::splat(0);
+  const FlightRows2<W> rows(flights);
+  const auto carries = driven.carries();
+  const bool any_carry = any(carries);
+  F carried[3] = {zero, zero, zero};
+  if (carry_on && any_carry) {
+    F last[8];
+    gather_rows<8, W>(rows.row, last);
+    carried[0] = select(carries, row[0] - last[0], zero);
+    carried[1] = select(carries, row[1] - last[1], zero);
+    carried[2] = select(carries, row[2] - last[4], zero);
+  }
+  const F moved[8] = {select(dynamic, x + carried[0], row[0]),
+                      select(dynamic, y + carried[1], row[1]),
+                      select(dynamic, spin + carried[2], row[2]),
                       row[3],
                       select(flies, row[4] + share * (row[0] + x), row[4]),
                       select(flies, row[5] + share * (row[1] + y), row[5]),
@@ -56,8 +77,13 @@ bool integrate_velocities2(SolverBody<Dim2>* bodies, const BodyDrive<Dim2>* driv
   scatter_rows<8, 8, W>(reinterpret_cast<float*>(bodies), driven.body, moved);
   std::int32_t place[W];
   for (int i = 0; i < W; ++i) place[i] = i;
-  const F flight[4] = {x, y, row[0], row[1]};
-  scatter_rows<4, 4, W>(flights, place, flight);
+  if (any_carry) {
+    const F flight[8] = {x, y, row[0], row[1], spin, zero, zero, zero};
+    scatter_rows<8, 8, W>(flights, place, flight);
+  } else {
+    const F flight[4] = {x, y, row[0], row[1]};
+    scatter_rows<8, 4, W>(flights, place, flight);
+  }
   return true;
 }
 
@@ -68,9 +94,7 @@ bool integrate_positions2(SolverBody<Dim2>* bodies, const BodyDrive<Dim2>* drive
   if (driven.any_locked()) return false;
   F row[8], flight[4];
   gather_rows<8, W>(reinterpret_cast<const float*>(bodies), driven.body, row);
-  const float* flight_rows[W];
-  for (int i = 0; i < W; ++i) flight_rows[i] = flights + 4 * i;
-  gather_rows<4, W>(flight_rows, flight);
+  gather_rows<4, W>(FlightRows2<W>(flights).row, flight);
   // What others are near but do not touch flies too: nothing has changed its velocity.
   const auto undisturbed = driven.dynamic() & (row[0] == flight[0]) & (row[1] == flight[1]);
   const F share = F::splat(0.5f * h), whole = F::splat(h), one = F::splat(1), zero = F::splat(0);

@@ -152,6 +152,7 @@ struct BodyStore {
   explicit BodyStore(std::uint16_t world) : slots(world) {}
   /// Does the solver move this body (dynamic or kinematic) or is it like the ground?
   bool is_fixed(std::int32_t slot) const { return record[std::size_t(slot)].type == BodyType::fixed; }
+  bool is_awake(std::int32_t slot) const { return record[std::size_t(slot)].awake_index != none; }
   bool is_dynamic(std::int32_t slot) const { return record[std::size_t(slot)].type == BodyType::dynamic; }
   /// Seconds of the body's own in a second of the world.
   float pace(std::int32_t slot) const {

@@ -37,8 +37,9 @@ struct alignas(64) ContactBlock<Dim2, W> {
   float friction[W];
   float patch_r_a[2][W];  ///< where friction acts
   float tangent_mass[W], tangent_target[W], tangent_impulse[W], tangent_total[W];
-  float settles[W];  ///< 1: takes part in the passes that settle what is pushed out
-  float struck[W];   ///< its points are solved together in this step: block_struck, block_pushed
+  float settles[W];       ///< 1: takes part in the passes that settle what is pushed out
+  float struck[W];        ///< its points are solved together in this step: block_struck, block_pushed
+  std::int32_t again[W];  ///< bits 0, 1: A, B takes impulses again in every substep; written only where some do
 };
 
 template <int W>
@@ -65,6 +66,7 @@ struct alignas(64) ContactBlock<Dim3, W> {
   float twist_mass[W], twist_radius[W], twist_impulse[W];
   float settles[W];
   float struck[W];
+  std::int32_t again[W];
 };
 
 /// What the preparation of a block starts from, as the records hold it; the points, the normal (both in A's shape
@@ -145,12 +147,16 @@ struct ContactKernels {
                             void* extra) = nullptr;
   /// Which lanes of a prepared block close at `least` m/s or more. Bits by lane. Null in space.
   std::uint32_t (*closing)(const ContactSources<D>& from, int lanes, const void* block, float least) = nullptr;
+  /// Which lanes of a prepared block meet in this step from so far off that a blow does not act where the block has it.
+  /// Bits by lane.
+  std::uint32_t (*strikes)(const SolverBody<D>* bodies, const void* block) = nullptr;
   /// The impulses of a block to the records and to the loads of its bodies. Bits by lane: friction is at its limit.
   std::uint32_t (*store)(const ContactSources<D>& to, const std::int32_t* list, int lanes, const void* block) = nullptr;
   /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back. friction_leak: part of
   /// its impulse that is forgotten in a substep where faces are squeezed.
   void (*prepare)(void* block, void* raw, float anchor_rate, float friction_leak) = nullptr;
-  void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
+  /// again: to the bodies of ContactBlock::again only.
+  void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end, bool again) = nullptr;
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
                 int order) = nullptr;
@@ -160,9 +166,10 @@ struct ContactKernels {
                 float counted) = nullptr;
   void (*restitute)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
   /// As many bodies as there are lanes through a substep, from a place of the awake list on (2D; stage_integrate.cpp).
-  /// flights: Flight<D> as floats; max_turn: rad. False, and nothing done, where one of them has locks.
+  /// flights: Flight<D> as floats; max_turn: rad; carry_on: see SolverStage::order. False, and nothing done, where one
+  /// of them has locks.
   bool (*integrate_velocities)(SolverBody<D>* bodies, const BodyDrive<D>* drives, float* flights, float h,
-                               float max_speed, float max_turn) = nullptr;
+                               float max_speed, float max_turn, bool carry_on) = nullptr;
   bool (*integrate_positions)(SolverBody<D>* bodies, const BodyDrive<D>* drives, const float* flights,
                               float h) = nullptr;
 };

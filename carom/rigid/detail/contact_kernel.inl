@@ -130,6 +130,13 @@ CAROM_SIMD_INLINE void who_settles(const float (&settles)[W], const std::int32_t
   for (int i = 0; i < W; ++i) chosen[i] = settles[i] > 0 ? bodies[i] : none;
 }
 
+/// Of the lanes' bodies those that take impulses again.
+template <int W>
+CAROM_SIMD_INLINE void who_starts_again(const std::int32_t (&again)[W], std::int32_t bit,
+                                        const std::int32_t (&bodies)[W], std::int32_t (&chosen)[W]) {
+  for (int i = 0; i < W; ++i) chosen[i] = (again[i] & bit) != 0 ? bodies[i] : none;
+}
+
 template <int W, int Columns, class Body>
 CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int offset,
                               WideFloat<W> (&columns)[Columns]) {
@@ -155,6 +162,22 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
+/// Lanes of a prepared block whose points are a hundredth of an arm or more apart and close fast enough for a blow.
+template <class D, int W>
+std::uint32_t strikes(const SolverBody<D>* bodies, const void* block) {
+  using F = WideFloat<W>;
+  const ContactBlock<D, W>& c = *static_cast<const ContactBlock<D, W>*>(block);
+  const auto ra = load_vector(c.patch_r_a), rb = add(ra, load_vector(c.center_offset));
+  F nearest = F::load(c.point[0].separation);
+  for (int i = 1; i < c.points; ++i) nearest = min(nearest, F::load(c.point[i].separation));
+  const auto apart = (nearest > F::splat(0)) & (nearest * nearest > F::splat(1e-4f) * min(dot(ra, ra), dot(rb, rb)));
+  if (!any(apart)) return 0;
+  const auto n = load_vector(c.normal);
+  const auto a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+  const F parting = dot(subtract(b.v, a.v), n) + dot(b.w, cross(rb, n)) - dot(a.w, cross(ra, n));
+  return bitmask(apart & (parting < F::splat(-least_blow)));
+}
+
 ContactKernels<Dim2> kernels2() {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim2> k;
@@ -166,6 +189,7 @@ ContactKernels<Dim2> kernels2() {
   k.approach = approach2<W>;
   k.closing = closing2<W>;
   k.store = store2<W>;
+  k.strikes = strikes<Dim2, W>;
   k.warm_start = warm_start2<W>;
   k.solve = solve2<W>;
   k.relax = relax2<W>;
@@ -181,6 +205,7 @@ ContactKernels<Dim3> kernels3() {
   k.new_meetings = new_meetings<Dim3, W>;
   k.nothing_new = nothing_new3<W>;
   k.prepare = prepare3<W>;
+  k.strikes = strikes<Dim3, W>;
   k.warm_start = warm_start3<W>;
   k.solve = solve3<W>;
   k.relax = relax3<W>;

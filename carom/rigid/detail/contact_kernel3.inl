@@ -32,7 +32,7 @@ CAROM_SIMD_INLINE void push_back(Velocity3<W>& a, WideFloat<W> m, const WideSymm
 }
 
 template <int W>
-void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end) {
+void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int begin, int end, bool again) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     const ContactBlock<Dim3, W>& c = static_cast<const ContactBlock<Dim3, W>*>(blocks)[k];
@@ -61,8 +61,16 @@ void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int 
     }
     push_back(a, F::load(c.inverse_mass_a), load_symmetric<W>(c.inverse_inertia_a), p, turn_a);
     push(b, F::load(c.inverse_mass_b), load_symmetric<W>(c.inverse_inertia_b), p, turn_b);
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    if (again) {
+      std::int32_t to_a[W], to_b[W];
+      who_starts_again<W>(c.again, 1, c.write_a, to_a);
+      who_starts_again<W>(c.again, 2, c.write_b, to_b);
+      write_velocity<W>(bodies, to_a, a);
+      write_velocity<W>(bodies, to_b, b);
+    } else {
+      write_velocity<W>(bodies, c.write_a, a);
+      write_velocity<W>(bodies, c.write_b, b);
+    }
   }
 }
 

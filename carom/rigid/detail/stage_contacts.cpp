@@ -1,4 +1,5 @@
 // From manifolds to the blocks of the wide solver, and from the solved blocks back.
+#include <atomic>
 #include <bit>
 
 #include "carom/math/cpu.h"
@@ -83,8 +84,16 @@ void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
   });
 }
 
+template <class D>
+void take_again(WorldImplementation<D>& world, std::int32_t body) {
+  // By all threads: all write the same.
+  if (body != none && world.bodies.is_awake(body))
+    std::atomic_ref<std::uint8_t>(world.scratch.again[std::size_t(body)]).store(1, std::memory_order_relaxed);
+}
+
+/// Whether any of them strikes.
 template <class D, int W>
-void prepare_blocks(StepContext<D>& context) {
+bool prepare_blocks(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   for (int color = 0; color <= overflow_color; ++color) {
     const GraphColor& c = world.graph.colors[color];
@@ -103,6 +112,7 @@ void prepare_blocks(StepContext<D>& context) {
   // Where nothing rare is asked for, lanes find by themselves how their contacts roll and bounce, and who may hit.
   const bool by_kernel = world.kernels.approach != nullptr && !any_special && world.bodies.time_scale.empty();
   const bool may_wait = D::dimension == 2 && !any_special;
+  std::atomic<bool> any_strikes = false;
   for_blocks<D, W>(
       context, Overflow::at_once,
       [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
@@ -117,6 +127,13 @@ void prepare_blocks(StepContext<D>& context) {
           if ((marks[lane] & mark_pushed) != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane]))
             marks[lane] &= std::uint8_t(~mark_pushed);
         world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt, friction_leak / float(context.substeps));
+        for (std::uint32_t strikes = world.kernels.strikes(context.bodies, &block); strikes != 0;
+             strikes &= strikes - 1) {
+          const int lane = std::countr_zero(strikes);
+          take_again(world, block.write_a[lane]);
+          take_again(world, block.write_b[lane]);
+          any_strikes.store(true, std::memory_order_relaxed);
+        }
         for (int lane = 0; lane < lanes; ++lane)
           if (raw.anchor_state[lane] > 0) {
             const bool set = set_anchor(context, list[std::size_t(lane)], block, lane, may_wait);
@@ -146,13 +163,14 @@ void prepare_blocks(StepContext<D>& context) {
           if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
         }
       });
+  return any_strikes;
 }
 
 /// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves;
 /// all, where these are many, because then the blow that pressed them into each other goes through all.
 template <class D, int W>
 void mark_settling(StepContext<D>& context) {
-  constexpr std::size_t many = 64;  ///< one in so many bodies
+  constexpr std::size_t many = 16;  ///< one in so many bodies
   WorldImplementation<D>& world = context.world;
   std::uint8_t* pushed = nullptr;  // by slot of the body
   std::size_t count = 0;
@@ -177,10 +195,49 @@ void mark_settling(StepContext<D>& context) {
                    });
 }
 
+/// Finds the contacts of bodies that take impulses again: those of joints and trees, what strikes, and who sleeps
+/// beside somebody who is awake, not yet touched.
+template <class D, int W>
+void find_again(StepContext<D>& context, bool any_strikes) {
+  WorldImplementation<D>& world = context.world;
+  if (!any_contacts(world)) return;
+  const bool any_asleep = world.sleeping.count() > 0;
+  bool any_joint = false;
+  const auto take = [&](std::int32_t body) {
+    if (body != none && world.bodies.is_dynamic(body)) take_again(world, body), any_joint = true;
+  };
+  for (const GraphColor& color : world.graph.colors)
+    for (const std::int32_t j : color.joints)
+      for (const std::int32_t body : world.joints.headers[std::size_t(j)].body) take(body);
+  for (const TreeRange& tree : world.joints.trees.trees)
+    for (std::int32_t i = tree.first_body; i < tree.body_end; ++i) take(world.joints.trees.bodies[std::size_t(i)].body);
+  if (!any_strikes && !any_joint && !any_asleep) return;
+  for_blocks<D, W>(context, Overflow::at_once,
+                   [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
+                       ContactExtra<D, W>*, std::uint8_t* marks) {
+                     for (int lane = 0; lane < lanes; ++lane) {
+                       float nearest = block.point[0].separation[lane];
+                       for (const auto& point : block.point) nearest = min(nearest, point.separation[lane]);
+                       const bool may_sleep = any_asleep && nearest >= 0;
+                       const auto again = [&](std::int32_t body) {
+                         if (body == none) return 0;
+                         return may_sleep && !world.bodies.is_awake(body) ? 1
+                                                                          : int(world.scratch.again[std::size_t(body)]);
+                       };
+                       block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
+                       if (block.again[lane] != 0) marks[lane] |= mark_again;
+                     }
+                   });
+  for (int color = 0; color <= overflow_color; ++color)
+    for_marked(world, color, mark_again, [&](std::int32_t) { world.scratch.blocks[color].again = true; });
+}
+
 template <class D, int W>
 void prepare_and_mark(StepContext<D>& context) {
-  prepare_blocks<D, W>(context);
+  context.world.scratch.again.resize(context.world.bodies.record.size());
+  const bool any_strikes = prepare_blocks<D, W>(context);
   mark_settling<D, W>(context);
+  find_again<D, W>(context, any_strikes);
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
   std::vector<std::int32_t>& hits = world.scratch.hits;

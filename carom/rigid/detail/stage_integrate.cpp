@@ -32,9 +32,11 @@ class PushedBodies {
   explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(turn_kernel_of(W)) { clear(); }
   PushedBodies(const PushedBodies&) = delete;
   ~PushedBodies() {
-    if (count_ > 0) turn_(context_.bodies, &lanes_, context_.h);
+    if (count_ > 0) turn();
   }
-  void add(std::int32_t body) {
+  /// By its place in the list of awake bodies.
+  void add(int place) {
+    const std::int32_t body = context_.drives[place].body;
     const Mat3f& inertia = context_.world.bodies.motion[std::size_t(body)].inertia;
     const Quatf& start = context_.world.bodies.pose[std::size_t(body)].rotation;
     const float tensor[6] = {inertia.cx.x, inertia.cx.y, inertia.cx.z, inertia.cy.y, inertia.cy.z, inertia.cz.z};
@@ -42,21 +44,31 @@ class PushedBodies {
     lanes_.start[0][count_] = start.w;
     for (int i = 0; i < 3; ++i) lanes_.start[i + 1][count_] = start.vector()[i];
     lanes_.body[count_] = body;
+    if ((context_.drives[place].flags & BodyDrive<Dim3>::carries) != 0) {
+      carrying_[carry_count_++] = place;
+      context_.flights[place].spin -= context_.bodies[body].angular_velocity;
+    }
     if (++count_ < W) return;
-    turn_(context_.bodies, &lanes_, context_.h);
+    turn();
     clear();
   }
 
  private:
+  void turn() {
+    turn_(context_.bodies, &lanes_, context_.h);
+    for (int k = 0; k < carry_count_; ++k)
+      context_.flights[carrying_[k]].spin += context_.bodies[context_.drives[carrying_[k]].body].angular_velocity;
+  }
   void clear() {
-    count_ = 0;
+    count_ = carry_count_ = 0;
     lanes_ = {};
     for (std::int32_t& body : lanes_.body) body = none;
   }
   StepContext<Dim3>& context_;
   TurnKernel turn_;
   TurnLanes<W> lanes_;
-  int count_ = 0;
+  int carrying_[W] = {};  ///< places of those whose spin turns with them (Flight)
+  int count_ = 0, carry_count_ = 0;
 };
 
 /// The same for bodies that nothing touches: in double, because one near its intermediate axis feels every rounding.
@@ -71,8 +83,9 @@ class FreeBodies {
   ~FreeBodies() {
     if (count_ > 0) turn();
   }
-  /// By so many substeps, each of which adds `gain` to the spin and keeps a part of it.
-  void add(std::int32_t body, const Vec3f& gain, float keep) {
+  /// By its place in the list of awake bodies; each substep adds `gain` to the spin and keeps a part of it.
+  void add(int place, const Vec3f& gain, float keep) {
+    const std::int32_t body = context_.drives[place].body;
     const Mat3f& inertia = context_.world.bodies.motion[std::size_t(body)].inertia;
     const Quatd start = normalize(Quatd(context_.world.bodies.pose[std::size_t(body)].rotation));
     const SolverBody<Dim3>& s = context_.bodies[body];
@@ -90,6 +103,7 @@ class FreeBodies {
     lanes_.keep[count_] = double(keep);
     lanes_.any_gain = lanes_.any_gain || !(gain == Vec3f{});
     lanes_.body[count_] = body;
+    places_[count_] = place;
     if (++count_ == W / 2) turn();
   }
 
@@ -104,6 +118,10 @@ class FreeBodies {
       // intermediate axis that decides when it flips.
       const Quatf now = normalize(s.delta_rotation * context_.world.bodies.pose[std::size_t(lanes_.body[k])].rotation);
       const Vec3d w = rotate(normalize(Quatd(now)), Vec3d{lanes_.spin[0][k], lanes_.spin[1][k], lanes_.spin[2][k]});
+      if ((context_.drives[places_[k]].flags & BodyDrive<Dim3>::carries) != 0) {
+        Vec3f& spin = context_.flights[places_[k]].spin;
+        spin = spin - s.angular_velocity + Vec3f(w);
+      }
       s.angular_velocity = Vec3f(w);
       const Vec3f rest(w - Vec3d(s.angular_velocity));
       s.spin_rest_x = rest.x, s.spin_rest_y = rest.y, s.spin_rest_z = rest.z;
@@ -122,6 +140,7 @@ class FreeBodies {
   FlightKernel fly_;
   int substeps_, count_ = 0;
   FlightLanes<W / 2> lanes_;
+  int places_[W / 2] = {};
 };
 
 /// Moves the centre of the body at a place of the awake list. Returns whether nothing but forces moved it.
@@ -129,12 +148,18 @@ template <class D>
 bool move_center(StepContext<D>& context, int place) {
   const BodyDrive<D>& drive = context.drives[place];
   SolverBody<D>& s = context.bodies[drive.body];
-  if (drive.locks != 0) apply_locks(s, drive.locks);
+  Flight<D>& flight = context.flights[place];
+  const typename D::Vector accelerated = flight.after;
+  if (drive.locks != 0) {  // which take from it what constraints gave
+    flight.after -= s.linear_velocity, flight.spin -= s.angular_velocity;
+    apply_locks(s, drive.locks);
+    flight.after += s.linear_velocity, flight.spin += s.angular_velocity;
+  }
   if ((drive.flags & BodyDrive<D>::in_flight) != 0) return true;
   // What others are near but do not touch flies too: nothing has changed its velocity.
-  const bool flies = (drive.flags & BodyDrive<D>::dynamic) != 0 && s.linear_velocity == context.flights[place].after;
+  const bool flies = (drive.flags & BodyDrive<D>::dynamic) != 0 && s.linear_velocity == accelerated;
   if (flies)
-    s.delta_position += (0.5f * context.h) * (context.flights[place].before + s.linear_velocity);
+    s.delta_position += (0.5f * context.h) * (flight.before + s.linear_velocity);
   else
     s.delta_position += context.h * s.linear_velocity;
   return flies;
@@ -150,6 +175,7 @@ void prepare_drives(StepContext<D>& context) {
   const auto& bodies = context.world.bodies;
   const float h = context.h;
   const typename D::Vector gravity = context.world.definition.gravity;
+  const bool touches = any_contacts(context.world);
   context.drives = context.arena.template allocate<BodyDrive<D>>(bodies.awake.size()).data();
   context.scheduler.parallel_for(int(bodies.awake.size()), 256, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
@@ -158,14 +184,18 @@ void prepare_drives(StepContext<D>& context) {
       const BodyRecord& record = bodies.record[std::size_t(drive.body)];
       const BodyMotion<D>& m = bodies.motion[std::size_t(drive.body)];
       drive.locks = record.locks;
-      if (record.locks != 0) drive.kind = 3;
+      if (record.locks != 0) drive.kind = 4;
       if (record.type != BodyType::dynamic) continue;
       drive.flags = BodyDrive<D>::dynamic;
       if (record.constraint_count == 0) {
         drive.flags |= BodyDrive<D>::in_flight;
         if (D::dimension == 3 && record.locks == 0) drive.flags |= BodyDrive<D>::flies_through;
       }
-      if (record.locks == 0) drive.kind = record.constraint_count == 0 ? 2 : 1;
+      std::uint8_t& again = context.world.scratch.again[std::size_t(drive.body)];
+      const bool carries = touches && record.constraint_count > 0 && again == 0;
+      again = 0;
+      if (carries) drive.flags |= BodyDrive<D>::carries;
+      if (record.locks == 0) drive.kind = record.constraint_count == 0 ? 3.0f : carries ? 2.0f : 1.0f;
       if (may_turn_freely(m, record)) drive.flags |= BodyDrive<D>::gyroscopic;
       const float pace = bodies.pace(drive.body), share = h * load_share(m) * (pace * pace);
       drive.linear_gain = share * (m.gravity_scale * gravity + m.inverse_mass * m.force);
@@ -208,19 +238,32 @@ void spin_up(SolverBody<D>& s, const BodyDrive<D>& drive, float h) {
 }
 
 template <class D>
-void accelerate_bodies(StepContext<D>& context, int begin, int end) {
+void accelerate_bodies(StepContext<D>& context, int begin, int end, bool carry_on) {
   const float h = context.h, max_speed = context.world.definition.maximum_linear_speed;
   for (int i = begin; i < end; ++i) {
     const BodyDrive<D>& drive = context.drives[i];
     if ((drive.flags & BodyDrive<D>::dynamic) == 0 || (drive.flags & BodyDrive<D>::flies_through) != 0) continue;
     SolverBody<D>& s = context.bodies[drive.body];
+    Flight<D>& flight = context.flights[i];
+    const bool carries = (drive.flags & BodyDrive<D>::carries) != 0;
+    typename D::Vector carried{};
+    typename D::Angular carried_spin{};
+    if (carry_on && carries) {
+      carried = s.linear_velocity - flight.after;
+      carried_spin = s.angular_velocity - flight.spin;
+    }
     const typename D::Vector before = accelerate(s, drive, max_speed);
     spin_up(s, drive, h);
     // Free flight: the mean of the velocities makes ½at² exact. In contact it would fight the contact.
-    if ((drive.flags & BodyDrive<D>::in_flight) != 0)
+    if ((drive.flags & BodyDrive<D>::in_flight) != 0) {
       s.delta_position += (0.5f * h) * (before + s.linear_velocity);
-    else
-      context.flights[i] = {s.linear_velocity, before};
+      continue;
+    }
+    flight.after = s.linear_velocity, flight.before = before;
+    if (!carries) continue;
+    flight.spin = s.angular_velocity;
+    s.linear_velocity += carried;
+    s.angular_velocity += carried_spin;
   }
 }
 
@@ -251,9 +294,9 @@ void move_bodies(StepContext<Dim3>& context, int begin, int end) {
     if ((drive.flags & BodyDrive<Dim3>::gyroscopic) == 0 || !spins(s.angular_velocity))
       turn_body(s, context.h);
     else if (flies)
-      free.add(drive.body, {}, 1);
+      free.add(i, {}, 1);
     else
-      pushed.add(drive.body);
+      pushed.add(i);
   }
 }
 
@@ -272,7 +315,7 @@ void fly_bodies(StepContext<Dim3>& context, int begin, int end) {
     }
     const bool spinning = spins(s.angular_velocity) || !(drive.angular_gain == Vec3f{});
     if ((drive.flags & BodyDrive<Dim3>::gyroscopic) != 0 && spinning) {
-      free.add(drive.body, drive.angular_gain, drive.angular_keep);
+      free.add(i, drive.angular_gain, drive.angular_keep);
       continue;
     }
     for (int k = 0; k < context.substeps; ++k) {
@@ -292,16 +335,16 @@ void fly_through(StepContext<Dim3>& context, int begin, int end) {
 }
 
 template <class D>
-void integrate_velocities(StepContext<D>& context, int begin, int end) {
-  static_assert(sizeof(Flight<D>) == 2 * D::dimension * sizeof(float));
+void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on) {
+  static_assert(sizeof(Flight<Dim2>) == 8 * sizeof(float));
   by_lanes(
       context, begin, end,
       [&](int first) {
-        return context.world.kernels.integrate_velocities(context.bodies, context.drives + first,
-                                                          reinterpret_cast<float*>(context.flights + first), context.h,
-                                                          context.world.definition.maximum_linear_speed, max_turn);
+        return context.world.kernels.integrate_velocities(
+            context.bodies, context.drives + first, reinterpret_cast<float*>(context.flights + first), context.h,
+            context.world.definition.maximum_linear_speed, max_turn, carry_on);
       },
-      [&](int first, int last) { accelerate_bodies(context, first, last); });
+      [&](int first, int last) { accelerate_bodies(context, first, last, carry_on); });
 }
 
 template <class D>
@@ -314,8 +357,8 @@ void integrate_positions(StepContext<D>& context, int begin, int end) {
 
 template void prepare_drives<Dim2>(StepContext<Dim2>&);
 template void prepare_drives<Dim3>(StepContext<Dim3>&);
-template void integrate_velocities<Dim2>(StepContext<Dim2>&, int, int);
-template void integrate_velocities<Dim3>(StepContext<Dim3>&, int, int);
+template void integrate_velocities<Dim2>(StepContext<Dim2>&, int, int, bool);
+template void integrate_velocities<Dim3>(StepContext<Dim3>&, int, int, bool);
 template void integrate_positions<Dim2>(StepContext<Dim2>&, int, int);
 template void integrate_positions<Dim3>(StepContext<Dim3>&, int, int);
 

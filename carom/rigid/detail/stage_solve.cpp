@@ -18,10 +18,15 @@ template <class D>
 int joint_units_of(const StepContext<D>& context, SolverPass pass, int color) {
   return pass == SolverPass::settle ? 0 : joint_units(context.world, color);
 }
+template <class D>
+int block_count_of(const StepContext<D>& context, SolverPass pass, int color) {
+  const ColorBlocks& blocks = context.world.scratch.blocks[color];
+  return pass == SolverPass::warm_start_again && !blocks.again ? 0 : blocks.count;
+}
 
 template <class D>
-void add_body_stage(StepContext<D>& context, SolverPass pass) {
-  context.world.scratch.solver_stages.push_back({pass});
+void add_body_stage(StepContext<D>& context, SolverPass pass, std::uint8_t order = 0) {
+  context.world.scratch.solver_stages.push_back({pass, 0, 0, order});
   context.world.scratch.solver_loops.push_back({int(context.world.bodies.awake.size()), body_grain});
 }
 
@@ -50,7 +55,7 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
   bool joining = false;
   for (int rank = 0; rank <= color_count; ++rank) {
     const int color = color_of_rank(rank);
-    const int count = context.world.scratch.blocks[color].count + joint_units_of(context, pass, color);
+    const int count = block_count_of(context, pass, color) + joint_units_of(context, pass, color);
     if (count == 0) continue;
     const bool serial = color == overflow_color || threads == 1 || count <= few_blocks<D>;
     if (serial && joining) {
@@ -89,10 +94,15 @@ void list_stages(StepContext<D>& context) {
     // place of the sequence, so that a tower's faces do not tilt. Within a step, in which a blow is shared out, there
     // is one order, and so it is in the relaxing pass, which says what each one carries.
     const auto order = std::uint8_t(context.world.step_count % 4);
-    add_body_stage(context, SolverPass::velocities);
+    // The impulses of contacts go on from substep to substep. Their arms stay those of the step's start, so what all of
+    // them together did to a body in one substep, which its velocity tells, is what they do to it first in the next: so
+    // many passes over the contacts are saved. Those of joints turn with the bodies, and an impact takes away what
+    // pressed there before it.
+    const bool carry_on = substep > 0 && context.world.scratch.impacts.empty();
+    add_body_stage(context, SolverPass::velocities, carry_on ? 1 : 0);
     add_impact_stage(context, ImpactMoment::after_forces);
     add_tree_stage(context, SolverPass::begin_trees);
-    add_color_stages(context, SolverPass::warm_start);
+    add_color_stages(context, carry_on ? SolverPass::warm_start_again : SolverPass::warm_start);
     add_color_stages(context, SolverPass::solve, order);
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
@@ -105,6 +115,7 @@ void list_stages(StepContext<D>& context) {
   }
 }
 
+bool is_warm_start(SolverPass pass) { return pass == SolverPass::warm_start || pass == SolverPass::warm_start_again; }
 bool is_of_trees(SolverPass pass) {
   return pass == SolverPass::begin_trees || pass == SolverPass::solve_trees || pass == SolverPass::factorise_trees ||
          pass == SolverPass::settle_trees;
@@ -113,8 +124,8 @@ bool is_of_trees(SolverPass pass) {
 template <class D>
 void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b, int begin, int end) {
   const ContactKernels<D>& kernels = context.world.kernels;
-  if (stage.pass == SolverPass::warm_start)
-    kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end);
+  if (is_warm_start(stage.pass))
+    kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end, stage.pass == SolverPass::warm_start_again);
   else if (stage.pass == SolverPass::solve)
     kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, stage.order);
   else
@@ -122,15 +133,15 @@ void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b
                   stage.pass == SolverPass::relax ? 1.0f : 0.0f);
 }
 
-/// The blocks in which something settles; the others are left alone.
+/// The blocks in which something has the mark; the others are left alone.
 template <class D>
-void run_settling(StepContext<D>& context, SolverStage stage, int color, int begin, int end) {
+void run_marked(StepContext<D>& context, SolverStage stage, std::uint8_t mark, int color, int begin, int end) {
   const ColorBlocks& blocks = context.world.scratch.blocks[color];
   const int lanes = color == overflow_color ? 1 : context.world.kernels.width;
   const int count = int(context.world.graph.colors[color].manifolds.size());
   for (int k = begin; k < end; ++k) {
     bool any = false;
-    for (int i = k * lanes; i < min((k + 1) * lanes, count); ++i) any = any || (blocks.marks[i] & mark_settles) != 0;
+    for (int i = k * lanes; i < min((k + 1) * lanes, count); ++i) any = any || (blocks.marks[i] & mark) != 0;
     if (any) run_blocks(context, stage, blocks, k, k + 1);
   }
 }
@@ -138,7 +149,7 @@ void run_settling(StepContext<D>& context, SolverStage stage, int color, int beg
 template <class D>
 void run_joints(StepContext<D>& context, SolverPass pass, int color, int begin, int end) {
   if (begin >= end) return;
-  if (pass == SolverPass::warm_start)
+  if (is_warm_start(pass))
     warm_start_joints(context, color, begin, end);
   else
     solve_joints(context, color, pass == SolverPass::solve, begin, end);
@@ -149,7 +160,7 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
   if constexpr (D::dimension == 3)
     if (stage.pass == SolverPass::flights) return fly_through(context, begin, end);
-  if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end);
+  if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end, stage.order != 0);
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
   if (stage.pass == SolverPass::impacts) return solve_impacts(context, ImpactMoment(stage.order));
   if (is_of_trees(stage.pass)) return run_trees(context, stage.pass, begin, end);
@@ -159,10 +170,13 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
     const ColorBlocks& blocks = context.world.scratch.blocks[color];
     const int units = joint_units_of(context, stage.pass, color);
     run_joints(context, stage.pass, color, whole ? 0 : begin, whole ? units : min(end, units));
-    const int first = whole ? 0 : max(begin - units, 0), last = whole ? blocks.count : end - units;
+    const int first = whole ? 0 : max(begin - units, 0);
+    const int last = whole ? block_count_of(context, stage.pass, color) : end - units;
     if (first >= last) continue;
     if (stage.pass == SolverPass::settle)
-      run_settling(context, stage, color, first, last);
+      run_marked(context, stage, mark_settles, color, first, last);
+    else if (stage.pass == SolverPass::warm_start_again)
+      run_marked(context, stage, mark_again, color, first, last);
     else
       run_blocks(context, stage, blocks, first, last);
   }

@@ -20,6 +20,13 @@ bool passes_one_way(const WorldImplementation<D>& world, std::int32_t other, con
 /// First impulses and masses of what was set down at rest in contact.
 template <class D>
 void hand_down_loads(StepContext<D>& context);
+/// Has the solver any contact in this step?
+template <class D>
+bool any_contacts(const WorldImplementation<D>& world) {
+  for (const GraphColor& color : world.graph.colors)
+    if (!color.manifolds.empty()) return true;
+  return false;
+}
 /// Contact blocks from manifolds, and back.
 template <class D>
 void prepare_contacts(StepContext<D>& context);
@@ -63,7 +70,7 @@ void prepare_drives(StepContext<D>& context);
 void fly_through(StepContext<Dim3>& context, int begin, int end);
 /// Of the others there, by one substep.
 template <class D>
-void integrate_velocities(StepContext<D>& context, int begin, int end);
+void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on);
 template <class D>
 void integrate_positions(StepContext<D>& context, int begin, int end);
 /// New poses from displacements; bounds; sleep timers; quarantine; who is fast.

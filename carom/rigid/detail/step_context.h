@@ -31,14 +31,15 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
 /// cold parts of bodies are read once a step.
 template <class D>
 struct BodyDrive {
-  enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4, flies_through = 8 };
+  enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4, flies_through = 8, carries = 16 };
   std::int32_t body = none;                 ///< slot
   std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint; flies_through: so, in
-                                            ///< space and without locks, all substeps at once
+                                            ///< space and without locks, all substeps at once; carries: nothing but
+                                            ///< contacts moves it, whose impulses go on by their sum (list_stages)
   float linear_keep = 1, angular_keep = 1;  ///< what damping leaves of velocities
   typename D::Vector linear_gain{};         ///< m/s, of gravity and forces
   typename D::Angular angular_gain{};       ///< rad/s
-  float kind = 0;  ///< the same for lanes: 0 kinematic, 1 dynamic, 2 in flight; above: with locks
+  float kind = 0;  ///< the same for lanes: 0 kinematic, 1 dynamic, 2 carries, 3 in flight; above: with locks
 };
 static_assert(sizeof(BodyDrive<Dim2>) == 32);  // a row of eight floats
 
@@ -54,7 +55,7 @@ struct StepContext {
   Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
   float rest_speed = 0;             ///< m/s between bodies at rest with each other (load.h)
   float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
-  Flight<D>* flights = nullptr;     ///< by place in BodyStore::awake, of this substep
+  Flight<D>* flights = nullptr;     ///< by place in BodyStore::awake
   SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones
   BodyDrive<D>* drives = nullptr;   ///< in the order of BodyStore::awake
 };

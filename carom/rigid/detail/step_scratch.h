@@ -36,6 +36,7 @@ enum ContactMark : std::uint8_t {
   mark_anew = 16,      ///< takes an anchor once it bears a load
   mark_anchored = 32,  ///< has one
   mark_open = 64,      ///< that settles, or is watched until it bears a load: asked again once it is solved
+  mark_again = 128,    ///< one of its bodies takes impulses again in every substep
 };
 /// Where a colour's contacts are in the arena of the step.
 struct ColorBlocks {
@@ -44,6 +45,7 @@ struct ColorBlocks {
   std::uint8_t* marks = nullptr;  ///< ContactMark by place in the colour's list
   int count = 0;
   bool bounces = false;
+  bool again = false;  ///< any with mark_again
 };
 
 /// A pass over bodies or over the constraints of some colours: what the solver does between two barriers.
@@ -53,6 +55,7 @@ enum class SolverPass : std::uint8_t {
   impacts,
   begin_trees,
   warm_start,
+  warm_start_again,  ///< joints, and contacts of bodies that take impulses again
   solve,
   solve_trees,
   positions,
@@ -64,7 +67,8 @@ enum class SolverPass : std::uint8_t {
 struct SolverStage {
   SolverPass pass = SolverPass::velocities;
   std::uint8_t first_rank = 0, last_rank = 0;  ///< of the colours, in the order of a sweep
-  std::uint8_t order = 0;                      ///< in which the points of manifolds are solved; impacts: the moment
+  std::uint8_t order = 0;  ///< in which the points of manifolds are solved; impacts: the moment; velocities: 1 where
+                           ///< bodies carry on what contacts did in the substep before
 };
 
 /// Where something is pushed out with the push speed, so many more relaxing passes take that speed from it again: what
@@ -113,16 +117,25 @@ struct BulletMeeting {
   }
 };
 
-/// A body's velocities before and after a substep's forces.
+/// A body's velocities before and after a substep's forces. `spin` turns on with the body: what it has more at the
+/// substep's end is what constraints gave it.
 template <class D>
 struct Flight {
   typename D::Vector after, before;
+  typename D::Angular spin;
+};
+template <>
+struct alignas(32) Flight<Dim2> {
+  Vec2f after, before;
+  float spin, unused[3];
 };
 
 template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
   std::vector<BodyLoad<D>> loads;                   ///< by slot of the body; nothing between steps
+  std::vector<std::uint8_t> again;                  ///< by slot of the body: takes impulses of contacts again in every
+                                                    ///< substep (list_stages); nothing between steps
   std::vector<std::int32_t> hits;                   ///< places in ContactStore::awake of what may be told as a hit
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
   std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now

@@ -95,6 +95,7 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.old_bounds.reserve(shapes);
   s.moved_place.reserve(shapes);
   s.loads.reserve(bodies);
+  s.again.reserve(bodies);
   s.flights.reserve(bodies);
   s.impacts.reserve(manifolds);
   s.impact_queue.resize(manifolds);

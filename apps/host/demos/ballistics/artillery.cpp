@@ -109,8 +109,8 @@ class Artillery final : public Repeatable<Artillery, Demo3> {
         stage.sample(3, 0, state.time, degrees(state.yaw));
       }
     }
-    stage.say(format("t = %.1f s, %.0f m, %.0f m high, drift %.1f m, %.0f m/s", t, point.position.x, point.position.y,
-                     point.position.z, length(point.velocity)));
+    stage.say(format("t = %.1f s, %.0f m, %.0f m high, drift %.1f m, %.0f m/s", t, point.position.x,
+                     max(0.0, point.position.y), point.position.z, length(point.velocity)));
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {

@@ -158,8 +158,8 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       }
       if (open) stage.sample(1, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
     }
-    stage.say(std::string(name) + format(": %.1f s, %.0f m high, %.1f m/s, %.0f g", min(t, end), point.position.y,
-                                         length(point.velocity), 1000 * mass));
+    stage.say(std::string(name) + format(": %.1f s, %.0f m high, %.1f m/s, %.0f g", min(t, end),
+                                         max(0.0, point.position.y), length(point.velocity), 1000 * mass));
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
