@@ -88,10 +88,28 @@ double AimSolver::unsettled(Path& path) const {
     const auto rise = [&](int i) {
       return math::abs(path.rise[0][i]) + math::abs(path.rise[1][i]) + math::abs(path.rise[2][i]);
     };
-    sum +=
-        path.carried(n) * ((lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 + 5e-3 * math::square(h * fades));
+    const double slower = math::length(Path::at(path.w, n + 1)) - math::length(Path::at(path.w, n)),
+                 steeper = math::abs(path.along[n + 1] - path.along[n]) / math::max(math::abs(slower), 1e-3);
+    sum += path.carried(n) * ((lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 +
+                              5e-3 * math::square(h * fades) + h * steeper * path.elements.defect[n]);
   }
   return sum;
+}
+
+double AimSolver::kinks(const Path& path, int n) const {
+  constexpr double most = 1.2e-4;  // of a half of s², that seven of Lobatto's points mistake, wherever it begins
+  const environment::AirColumn::Air air = conditions_.air.at(path.x[1][n]);
+  const Vec3d from = Path::at(path.w, n), to = Path::at(path.w, n + 1);
+  const double speed = math::length(from), h = path.t[n + 1] - path.t[n];
+  const double way[] = {speed, 0.5 * math::length(from + to), math::length(to)};
+  double sum = 0, mach = speed / air.speed_of_sound, turns = projectile_.drag.turns(mach);
+  for (int half = 1; half < 3; ++half) {  // the speed may have its least within
+    const double next = way[half] / air.speed_of_sound, to_turns = projectile_.drag.turns(next);
+    sum += math::square(2 * (next - mach)) * math::abs(to_turns - turns);
+    mach = next;
+    turns = to_turns;
+  }
+  return most * h * medium_.half_area * air.density * math::square(speed) * sum;
 }
 
 void AimSolver::measure(Path& path) const {
@@ -112,10 +130,7 @@ void AimSolver::measure(Path& path) const {
     const double reach = path.reach(n), rest = of.rest[n] * reach;
     const bool lands = (path.x[1][n] > ground_) != (path.x[1][n + 1] > ground_), cut = lands || layered_ || bent_;
     const double h = path.t[n + 1] - path.t[n];
-    // Profiles of wind bend more sharply than the points can tell: what they carry must be little there too.
-    const bool settled = medium_.wind.count > 0
-                             ? rest < 0.25 * options_.tolerance && path.carried(n) < 5 * options_.tolerance
-                             : rest < 0.6 * options_.tolerance;
+    const bool settled = rest < 1.5 * options_.tolerance && reach * kinks(path, n) < 2 * options_.tolerance;
     if (!cut && settled) continue;
     double s[Cuts::most + 1] = {0, 0.5, 1};
     int parts = 2;
@@ -131,8 +146,7 @@ void AimSolver::measure(Path& path) const {
       }
     }
     if (waits + parts > most_waiting) break;
-    // Smooth elements err independently of each other.
-    hard[hards] = {n, (bends ? 0.4 : 0.4) * options_.tolerance / (3 * h * reach), {}};
+    hard[hards] = {n, options_.tolerance / (h * reach), {}};
     for (int i = parts - 1; i >= 0; --i) waiting[waits++] = {hards, s[i], s[i + 1]};
     ++hards;
   }

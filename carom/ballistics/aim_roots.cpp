@@ -38,7 +38,7 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
   // The leap of a wind profile at its beginning they do not know.
-  to.left = to.moved * ((path.lands ? 0.1 : medium_.wind.count > 0 ? 2e-2 : 2e-3) + to.moved / to.scale);
+  to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale);
   return to;
 }
 

@@ -294,20 +294,18 @@ void owe(FlightPath& path) {
   }
 }
 
-/// By eight of Gauss's points in parts of elements: their seventh and fifth Legendre coefficients say what they
+/// By six of Gauss's points in parts of elements: their fifth and third Legendre coefficients say what they
 /// mistake.
 struct Gauss {
-  static constexpr double place[] = {0.019855071751231856, 0.10166676129318658, 0.2372337950418355, 0.4082826787521751,
-                                     0.591717321247825,    0.7627662049581645,  0.8983332387068135, 0.9801449282487682};
-  static constexpr double weight[] = {0.05061426814518809, 0.11119051722668723, 0.1568533229389437,
-                                      0.181341891689181,   0.181341891689181,   0.1568533229389437,
-                                      0.11119051722668723, 0.05061426814518809};
-  static constexpr double seventh[] = {-0.15501881289035005, 0.2265762383999968,   -0.2685203140877153,
-                                       0.28855496859568763,  -0.28855496859568763, 0.2685203140877153,
-                                       -0.2265762383999968,  0.15501881289035005};
-  static constexpr double fifth[] = {-0.4828486810505167,  0.4033170755970801,  -0.031045687085550933,
-                                     -0.29156822258958437, 0.29156822258958437, 0.031045687085550933,
-                                     -0.4033170755970801,  0.4828486810505167};
+  static constexpr int points = 6;
+  static constexpr double place[] = {0.033765242898423975, 0.1693953067668677, 0.3806904069584015,
+                                     0.6193095930415985,   0.8306046932331324, 0.966234757101576};
+  static constexpr double weight[] = {0.08566224618958525, 0.1803807865240693, 0.23395696728634552,
+                                      0.23395696728634552, 0.1803807865240693, 0.08566224618958525};
+  static constexpr double fifth[] = {-0.2057123110596229, 0.2943957149254376,  -0.33461902074104083,
+                                     0.33461902074104083, -0.2943957149254376, 0.2057123110596229};
+  static constexpr double third[] = {-0.6282499246436889, 0.269115769744599,  0.3239618653539353,
+                                     -0.3239618653539353, -0.269115769744599, 0.6282499246436889};
 };
 
 template <bool Plain>
@@ -323,7 +321,7 @@ void measure_parts(const AimMedium& medium, const FlightPath& path, AimPart* par
     const D from = gather([&](int i) { return part(i).from; }),
             width = gather([&](int i) { return part(i).to; }) - from;
     Vector moments[4]{}, high{}, low{};
-    for (int q = 0; q < 8; ++q) {
+    for (int q = 0; q < Gauss::points; ++q) {
       const D s = from + Gauss::place[q] * width, share = Gauss::weight[q] * width, s2 = s * s, s3 = s2 * s;
       const D end = 3.0 * s2 - 2.0 * s3, weights[4] = {D::splat(1) - end, s3 - 2.0 * s2 + s, end, s3 - s2};
       const D t = s + s - D::splat(1), t2 = t * t;
@@ -336,8 +334,8 @@ void measure_parts(const AimMedium& medium, const FlightPath& path, AimPart* par
       for (int j = 0; j < 3; ++j) {
         const D d = share * (f.a[j] - flown.acceleration[j].at(t, t2));
         for (int k = 0; k < 4; ++k) moments[k][j] = moments[k][j] + weights[k] * d;
-        high[j] = high[j] + Gauss::seventh[q] * d;
-        low[j] = low[j] + Gauss::fifth[q] * d;
+        high[j] = high[j] + Gauss::fifth[q] * d;
+        low[j] = low[j] + Gauss::third[q] * d;
       }
     }
     D rest{};

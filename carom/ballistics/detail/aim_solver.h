@@ -119,6 +119,9 @@ class AimSolver {
   /// m, what errors within elements may do beside what the moments of their defects say: they fade on the way to its
   /// end, and wind may change with height. And whether the path lands.
   double unsettled(Path& path) const;
+  /// m/s, what the points of an element may mistake of the drag curve's nodes within it, where its second derivative
+  /// jumps.
+  double kinks(const Path& path, int n) const;
   /// Elements within which something is bent, anew.
   void measure(Path& path) const;
   /// Newton's step for u and T together, from a path with its derivatives.
