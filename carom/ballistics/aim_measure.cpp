@@ -130,7 +130,9 @@ void AimSolver::measure(Path& path) const {
     const double reach = path.reach(n), rest = of.rest[n] * reach;
     const bool lands = (path.x[1][n] > ground_) != (path.x[1][n + 1] > ground_), cut = lands || layered_ || bent_;
     const double h = path.t[n + 1] - path.t[n];
-    const bool settled = rest < 1.5 * options_.tolerance && reach * kinks(path, n) < 2 * options_.tolerance;
+    // Tables of straight lines have bends too that are not worth a cut: not much may hide there.
+    const bool settled =
+        rest < (bent_ ? 0.25 : 1.5) * options_.tolerance && reach * kinks(path, n) < 2 * options_.tolerance;
     if (!cut && settled) continue;
     double s[Cuts::most + 1] = {0, 0.5, 1};
     int parts = 2;
@@ -146,7 +148,8 @@ void AimSolver::measure(Path& path) const {
       }
     }
     if (waits + parts > most_waiting) break;
-    hard[hards] = {n, options_.tolerance / (h * reach), {}};
+    // What is smooth is mistaken by less than its coefficients say.
+    hard[hards] = {n, (bends || bent_ ? 0.15 : 1) * options_.tolerance / (h * reach), {}};
     for (int i = parts - 1; i >= 0; --i) waiting[waits++] = {hards, s[i], s[i + 1]};
     ++hards;
   }
