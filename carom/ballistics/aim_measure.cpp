@@ -7,31 +7,6 @@ namespace carom::ballistics::detail {
 
 namespace {
 
-/// Hermite's quintic over an element, from its start at s = 0 to its end at s = 1.
-struct Interpolant {
-  double by_h, c[3][6];  // by powers of s
-  Interpolant(const FlightPath& p, int n) {
-    const double h = p.t[n + 1] - p.t[n];
-    by_h = 1 / h;
-    for (int i = 0; i < 3; ++i) {
-      const double v = h * p.v[i][n], k = h * h * p.k[i][n];
-      const double d = p.x[i][n + 1] - p.x[i][n] - v - 0.5 * k, dv = h * p.v[i][n + 1] - v - k,
-                   dk = h * h * p.k[i][n + 1] - k;
-      const double all[] = {
-          p.x[i][n], v, 0.5 * k, 10 * d - 4 * dv + 0.5 * dk, 7 * dv - 15 * d - dk, 6 * d - 3 * dv + 0.5 * dk};
-      for (int j = 0; j < 6; ++j) c[i][j] = all[j];
-    }
-  }
-  double height(double s) const {
-    const double* y = c[1];
-    return y[0] + s * (y[1] + s * (y[2] + s * (y[3] + s * (y[4] + s * y[5]))));
-  }
-  double velocity(int i, double s) const {
-    const double* x = c[i];
-    return by_h * (x[1] + s * (2 * x[2] + s * (3 * x[3] + s * (4 * x[4] + s * (5 * x[5])))));
-  }
-};
-
 /// Where in an element its heights pass the bends of the wind and its Mach numbers those of the drag curve, in rising
 /// order of s.
 struct Cuts {
@@ -42,8 +17,8 @@ struct Cuts {
 
   /// `layered`: there are such bends of the wind, by more than `least` m/s; `bent`: of the drag curve.
   Cuts(const Projectile& projectile, const Conditions& conditions, bool layered, bool bent, double least,
-       const Interpolant& flown, const FlightPath& p, int n) {
-    const auto height = [&](double at) { return flown.height(at); };
+       const FlightElement& flown, const FlightPath& p, int n) {
+    const auto height = [&](double at) { return flown.place(1, at); };
     s[count++] = 0;
     const auto levels = conditions.wind.levels();
     const double ground = levels.size() > 1 ? levels.front().height : -1e300;
@@ -104,8 +79,40 @@ struct Cuts {
 
 }  // namespace
 
+double AimSolver::unsettled(Path& path) const {
+  double sum = 0;
+  for (int n = 0; n < path.count; ++n) {
+    const bool lands = (path.x[1][n] > ground_) != (path.x[1][n + 1] > ground_);
+    const double h = path.t[n + 1] - path.t[n], fades = math::max(path.along[n], path.along[n + 1]);
+    path.lands = path.lands || lands;
+    const auto rise = [&](int i) {
+      return math::abs(path.rise[0][i]) + math::abs(path.rise[1][i]) + math::abs(path.rise[2][i]);
+    };
+    const double slower = math::length(Path::at(path.w, n + 1)) - math::length(Path::at(path.w, n)),
+                 steeper = math::abs(path.along[n + 1] - path.along[n]) / math::max(math::abs(slower), 1e-3);
+    sum += path.carried(n) * ((lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 +
+                              5e-3 * math::square(h * fades) + h * steeper * path.elements.defect[n]);
+  }
+  return sum;
+}
+
+double AimSolver::kinks(const Path& path, int n) const {
+  constexpr double most = 1.2e-4;  // of a half of s², that seven of Lobatto's points mistake, wherever it begins
+  const environment::AirColumn::Air air = conditions_.air.at(path.x[1][n]);
+  const Vec3d from = Path::at(path.w, n), to = Path::at(path.w, n + 1);
+  const double speed = math::length(from), h = path.t[n + 1] - path.t[n];
+  const double way[] = {speed, 0.5 * math::length(from + to), math::length(to)};
+  double sum = 0, mach = speed / air.speed_of_sound, turns = projectile_.drag.turns(mach);
+  for (int half = 1; half < 3; ++half) {  // the speed may have its least within
+    const double next = way[half] / air.speed_of_sound, to_turns = projectile_.drag.turns(next);
+    sum += math::square(2 * (next - mach)) * math::abs(to_turns - turns);
+    mach = next;
+    turns = to_turns;
+  }
+  return most * h * medium_.half_area * air.density * math::square(speed) * sum;
+}
+
 void AimSolver::measure(Path& path) const {
-  constexpr double sure = 5;  // times the tolerance: what carries more is not settled by five points alone
   Path::Elements& of = path.elements;
   struct Hard {
     int element;
@@ -123,21 +130,15 @@ void AimSolver::measure(Path& path) const {
     const double reach = path.reach(n), rest = of.rest[n] * reach;
     const bool lands = (path.x[1][n] > ground_) != (path.x[1][n + 1] > ground_), cut = lands || layered_ || bent_;
     const double h = path.t[n + 1] - path.t[n];
-    path.lands = path.lands || lands;
-    // What an error of the height within the element does there; at its beginning there is none.
-    if (medium_.wind.count > 0) {
-      const auto rise = [&](int i) {
-        return math::abs(path.rise[0][i]) + math::abs(path.rise[1][i]) + math::abs(path.rise[2][i]);
-      };
-      path.steep += (lands ? 1 : h * h * math::max(rise(n), rise(n + 1))) / 6 * path.carried(n);
-    }
-    const bool settled = rest < 0.4 * options_.tolerance && path.carried(n) < sure * options_.tolerance;
+    // Tables of straight lines have bends too that are not worth a cut: not much may hide there.
+    const bool settled =
+        rest < (bent_ ? 0.25 : 1.5) * options_.tolerance && reach * kinks(path, n) < 2 * options_.tolerance;
     if (!cut && settled) continue;
     double s[Cuts::most + 1] = {0, 0.5, 1};
     int parts = 2;
     bool bends = false;
     if (cut) {
-      const Cuts cuts(projectile_, conditions_, layered_, bent_, least_bend, Interpolant(path, n), path, n);
+      const Cuts cuts(projectile_, conditions_, layered_, bent_, least_bend, FlightElement(path, n), path, n);
       bends = cuts.count > 1;
       path.bends = path.bends || bends;
       if (!bends && settled) continue;
@@ -147,8 +148,8 @@ void AimSolver::measure(Path& path) const {
       }
     }
     if (waits + parts > most_waiting) break;
-    // Smooth elements err independently of each other.
-    hard[hards] = {n, (bends ? 1 : 2) * 0.4 * options_.tolerance / (3 * h * reach), {}};
+    // What is smooth is mistaken by less than its coefficients say.
+    hard[hards] = {n, (bends || bent_ ? 0.15 : 1) * options_.tolerance / (h * reach), {}};
     for (int i = parts - 1; i >= 0; --i) waiting[waits++] = {hards, s[i], s[i + 1]};
     ++hards;
   }

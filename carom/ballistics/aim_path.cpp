@@ -12,7 +12,6 @@ void AimSolver::linearize(Path& path, bool finely) const {
 #endif
     aim_baseline::linearize(medium_, path, finely);
   path.lands = path.bends = false;
-  path.steep = 0;
 }
 
 void AimSolver::move(Path& path, Vec3d du, double dt) {
@@ -40,61 +39,42 @@ void AimSolver::move(Path& path, Vec3d du, double dt) {
   }
 }
 
-int AimSolver::cut(const Path& path, double enough, double bend, Cut* cuts) const {
-  int count = 0;
-  const double slow = 0.85 * sound_, fast = 1.15 * sound_;
-  for (int n = 0; n < path.count; ++n) {
-    const double carries = path.carried(n);
-    int parts = 1;  // the defect falls as the fourth power of the length
-    while (parts < 8 && math::square(math::square(double(parts))) * parts * enough < carries) ++parts;
-    // In the barrier, where drag bends too sharply for that, no longer than it takes to lose so much speed.
-    const double from = math::length(Path::at(path.w, n)), to = math::length(Path::at(path.w, n + 1));
-    const double lost = math::abs(from - to), usual = 1.0 / parts;
-    const bool barrier = math::max(from, to) > slow && math::min(from, to) < fast && lost > 1.2 * bend;
-    const double within = barrier ? math::min(bend / lost, usual) : usual;
-    const double enters = barrier ? (from > to ? from - fast : slow - from) / lost : 2,
-                 leaves = barrier ? (from > to ? from - slow : fast - from) / lost : 2;
-    double s = 0;
-    for (int j = 1; s < 1 - 0.3 * within; ++j) {
-      if (count == Path::most) return count + 1;
-      cuts[count++] = {n, s};
-      if (!barrier)
-        s = j * usual;
-      else if (s >= leaves - 1e-9)
-        s += usual;
-      else
-        s = s >= enters - 1e-9 ? s + within : math::min(s + usual, math::max(enters, s + within));
-    }
+void AimSolver::divide(Path& path, double enough) const {
+  int parts[Path::most], count = 0;
+  for (int n = 0; n < path.count; ++n) {  // what is mistaken falls as the fourth power of the length, about
+    const double share = path.mistaken(n) / enough;
+    for (parts[n] = 1; parts[n] < 8 && math::square(math::square(double(parts[n]))) < share;) ++parts[n];
+    count += parts[n];
   }
-  return count;
-}
-
-void AimSolver::divide(Path& path, double enough, double bend) const {
-  Cut cuts[Path::most];
-  int count = cut(path, enough, bend, cuts);
-  for (; count > Path::most && bend < sound_; enough *= 4, bend *= 2) count = cut(path, 4 * enough, 2 * bend, cuts);
-  if (count > Path::most) return;
-  Path::Arrival end{Path::at(path.x, path.count), Path::at(path.v, path.count)};
-  Vec3d end_pull = Path::at(path.k, path.count);
-  double end_time = path.time();
+  if (count > Path::most) {
+    if (enough < 1e6) divide(path, 4 * enough);
+    return;
+  }
+  int to = count, n = path.count;
+  const auto bring = [&](int from) {
+    path.put(to, path.t[from], Path::at(path.x, from), Path::at(path.v, from), Path::at(path.k, from));
+  };
+  bring(n);
   path.count = count;
-  path.put(count, end_time, end.position, end.velocity, end_pull);
-  for (int to = count - 1; to >= 0;) {
-    const int n = cuts[to].element;
-    const Vec3d x = Path::at(path.x, n), v = Path::at(path.v, n), k = Path::at(path.k, n);
-    const double t = path.t[n], h = end_time - t;
-    const Vec3d d = end.position - x - h * v - (0.5 * h * h) * k, dv = h * (end.velocity - v - h * k),
-                dk = (h * h) * (end_pull - k);
-    const Vec3d c3 = 10.0 * d - 4.0 * dv + 0.5 * dk, c4 = 7.0 * dv - 15.0 * d - dk, c5 = 6.0 * d - 3.0 * dv + 0.5 * dk;
-    for (; cuts[to].s > 0; --to) {
-      const double s = cuts[to].s, by = s * h;
-      path.put(to, t + by, x + by * (v + (0.5 * by) * k) + (s * s * s) * (c3 + s * (c4 + s * c5)),
-               v + by * k + (s * s / h) * (3.0 * c3 + s * (4.0 * c4 + (5 * s) * c5)), k);
+  while (--n >= 0) {
+    if (parts[n] == 1) {
+      --to;
+      for (auto& power : path.elements.bulge)
+        for (auto& one : power) one[to] = one[n];
+      bring(n);
+      continue;
     }
-    path.put(to--, t, x, v, k);
-    end = {x, v};
-    end_pull = k;
-    end_time = t;
+    const FlightElement flown(path, n);
+    const double t = path.t[n];
+    for (int j = parts[n] - 1; j >= 0; --j) {
+      const double s = double(j) / parts[n];
+      path.flatten(--to);
+      if (j == 0)
+        bring(n);
+      else
+        path.put(to, t + 2 * s * flown.half, {flown.place(0, s), flown.place(1, s), flown.place(2, s)},
+                 {flown.velocity(0, s), flown.velocity(1, s), flown.velocity(2, s)}, {});
+    }
   }
 }
 

@@ -144,14 +144,20 @@ bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late)
       keep(aims, late);
       continue;
     }
-    const double time = math::clamp(peak + side * way, 0.4 * nearest.time, 2 * nearest.time);
-    const Root root = refine(toward(at, time));
-    if (root.found && side * (root.guess.time - nearest.time) > 0 && side * root.slope > 0) {
+    Root root;
+    bool beside = false;
+    // Where both roots are close together, Newton's method may step over both: it begins farther out then.
+    for (double far = way; !beside && far < 5 * way; far *= 2) {
+      const double time = math::clamp(peak + side * far, 0.4 * nearest.time, 2 * nearest.time);
+      root = refine(toward(at, time));
+      beside = root.found && side * root.slope > 0 && (far > way || side * (root.guess.time - nearest.time) > 0);
+    }
+    if (beside) {
       keep(aims, root);
       continue;
     }
     Reach inside = reach_nearest(toward(at, nearest.time)), outside = inside;
-    if (!inside.known) return false;
+    if (!inside.known || inside.gap > 0) return false;
     while (outside.gap <= 0) {
       inside = outside;
       const double next = inside.guess.time * (side > 0 ? 1.3 : 1 / 1.3);

@@ -5,10 +5,10 @@ namespace carom::ballistics::detail {
 
 namespace {
 
-bool none_carries(const FlightPath& path, double too_much) {
+bool any_mistakes(const FlightPath& path, double too_much) {
   for (int n = 0; n < path.count; ++n)
-    if (path.carried(n) > too_much) return false;
-  return true;
+    if (path.mistaken(n) > too_much) return true;
+  return false;
 }
 double all_carry(const FlightPath& path) {
   double sum = 0;
@@ -38,7 +38,7 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
   // The leap of a wind profile at its beginning they do not know.
-  to.left = to.moved * ((path.lands ? 0.1 : 6e-3) + 3 * to.moved / to.scale);
+  to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale);
   return to;
 }
 
@@ -50,34 +50,42 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   // in the few elements of that flight, then in as many as the tolerance wants, at last by more points of them.
   double rough = math::min(2e-5 * math::length(guess.u) * guess.time, 75 * allowed);
   double accuracy = math::max(0.02 * away, rough);
-  double last_missed = 1e300, first_missed = 1e300, piece = (medium_.wind.count > 0 || bent_ ? 4 : 16) * allowed;
+  double last_missed = 1e300, first_missed = 1e300, strict = 1;
   int divisions = 0;
-  enum class Stage { fly, rough, fine, measured } stage = Stage::fly;
+  bool flown = false, flat = true;
   for (int i = 0; i < most; ++i) {
-    if (stage == Stage::fly) {
+    if (!flown) {
       if (!record(guess, accuracy, path, i == 0 && falling)) {
         if (path.count < Path::most) return root;
         rough *= 4;  // too many steps
         accuracy *= 4;
         continue;
       }
+      for (int n = 0; n < path.count; ++n) path.flatten(n);
       guess.time = path.time();
-      stage = Stage::rough;
+      flown = flat = true;
     }
-    linearize(path, stage == Stage::measured);
+    linearize(path, true);
     Newton to = newton(path, guess);
-    bool fine = stage == Stage::measured && (divisions > 6 || none_carries(path, 300 * allowed));
-    if (fine && to.left < allowed) {
+    bool fine = to.left < allowed && unsettled(path) < allowed && (!flat || all_carry(path) < 10 * allowed);
+    flat = false;
+    const bool near = to.left < 20 * allowed;
+    const double enough = (near ? 3 : 8) * allowed * strict;
+    bool hard = !fine && (near || to.moved < 0.05 * to.scale) && divisions < 7 && any_mistakes(path, 2 * enough);
+    if (fine) {
       measure(path);
       to = newton(path, guess);
-      fine = (path.steep < allowed && (!path.bends || all_carry(path) < 100 * allowed)) || divisions > 6;
-      if (!fine) piece *= 0.1;
+      fine = to.left < allowed && (!path.bends || all_carry(path) < 100 * allowed || divisions > 6);
+      if (!fine) {
+        strict *= 0.1;
+        hard = divisions < 7;
+      }
     }
     if (!to.known) return root;
     guess.u += to.du;
     guess.time += to.dt;
     if (!(guess.time > 1e-9) || guess.time > 2 * options_.longest_time) return root;
-    if (fine && to.left < allowed) {
+    if (fine) {
       const Vec3d aimed = guess.u - shooter_.velocity, end = path.arrival.velocity;
       root = {true, to.slope, guess, {target_(guess.time), end + to.dt * Path::at(path.k, path.count)}};
       root.guess.u = shooter_.velocity + (shooter_.muzzle_speed / math::length(aimed)) * aimed;
@@ -86,22 +94,18 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
     if (eager && i >= 4 && to.missed > 0.2 * first_missed) return root;
     if (i == 0) first_missed = to.missed;
     if (to.moved > 1.2 * to.scale || to.missed > last_missed) {
-      stage = Stage::fly;
+      flown = false;
       accuracy = math::max(0.02 * math::min(to.moved, to.scale), rough);
       last_missed = 1e300;
+      divisions = 0;
       continue;
     }
     move(path, to.du, to.dt);
     last_missed = to.missed;
-    if (stage == Stage::fine) {
-      stage = Stage::measured;
-      last_missed = 1e300;  // more points of an element may see more
-    } else if (stage == Stage::measured ? !fine : to.moved < 0.05 * to.scale) {
-      const double bend = speed_of_a_bend(rough / (math::length(guess.u) * guess.time));
-      divide(path, piece, bend);
+    if (hard) {
+      divide(path, enough);
       ++divisions;
-      if (stage == Stage::rough) stage = to.moved < 1e-3 * to.scale ? Stage::measured : Stage::fine;
-      last_missed = 1e300;
+      last_missed = 1e300;  // more points may see more
     }
   }
   return root;

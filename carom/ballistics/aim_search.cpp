@@ -58,7 +58,7 @@ AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions,
   decay_ = k > 0 ? 1 / (k * speed) : 1e30;
   fall_speed_ = math::min(speed, math::sqrt(conditions.gravity * decay_ * speed));
   if (const auto levels = conditions.wind.levels(); levels.size() > 1) ground_ = levels.front().height;
-  conditions.wind.for_each_bend(-1e300, 1e300, least_bend, [&](double) { layered_ = true; });
+  layered_ = conditions.wind.sharpest_bend() > least_bend;
   // Most curves have one bend, at their very end.
   if (projectile.drag.has_bends())
     projectile.drag.for_each_bend(0, fastest(shooter) / sound_, [&](double) { bent_ = true; });

@@ -68,6 +68,7 @@ void DragCurve::prepare(Interpolation interpolation) {
       const double beside = i < intervals ? pieces_[i + 2].start - after.start : x;
       pieces_[i + 1].bends = after.start > 0 && math::abs(jump) * beside > least * after.constant;
       bends_ = bends_ || pieces_[i + 1].bends;
+      pieces_[i + 1].turns = before.turns + math::abs(2 * after.square - (2 * before.square + 6 * x * before.cube));
     }
     prepare_squares();
   };
@@ -127,7 +128,7 @@ DragCurve DragCurve::scaled(double factor) const {
   DragCurve curve = *this;
   for (DragPoint& point : curve.points_) point.coefficient *= factor;
   for (Piece& p : curve.pieces_)
-    p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube, p.bends};
+    p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube, p.bends, factor * p.turns};
   curve.prepare_squares();
   return curve;
 }

@@ -82,6 +82,9 @@ class CAROM_API DragCurve {
       if (p->bends) f(p->start);
   }
 
+  /// By how much its second derivative jumps at the nodes up to a Mach number, in all.
+  double turns(double mach) const { return piece(mach).turns; }
+
   std::span<const DragPoint> points() const { return points_; }
   /// The curve times a form factor.
   DragCurve scaled(double factor) const;
@@ -91,6 +94,7 @@ class CAROM_API DragCurve {
   struct Piece {
     double start = 0, constant = 0, slope = 0, square = 0, cube = 0;
     bool bends = false;  // at its start
+    double turns = 0;    // by how much second derivatives jump at starts up to this one, in all
   };
   /// For kernels in lanes: the pieces, one beyond all at the end, and for each of so many cells the first that can hold
   /// its Mach numbers.

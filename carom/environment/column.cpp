@@ -61,6 +61,7 @@ void WindColumn::prepare() {
     const math::Vec3d below = i > 0 ? legs_[i - 1].shear : math::Vec3d{};
     const double beside = span + (i > 0 ? levels_[i].height - levels_[i - 1].height : 0);
     legs_.back().bend = beside * math::length(legs_.back().shear - below);
+    sharpest_bend_ = math::max(sharpest_bend_, legs_.back().bend);
   }
   legs_.push_back({1e308, {}, {}, 0});
   const double whole = levels_.back().height - levels_.front().height;

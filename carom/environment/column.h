@@ -100,6 +100,9 @@ class CAROM_API WindColumn {
       if (leg->height > low && leg->bend > least) f(leg->height);
   }
 
+  /// m/s, of all its levels, as `for_each_bend` has it.
+  double sharpest_bend() const { return sharpest_bend_; }
+
   /// From a level to the next: velocity at its height and by the metre above it.
   struct Leg {
     double height = 0;
@@ -130,6 +133,7 @@ class CAROM_API WindColumn {
   void prepare();
   std::vector<Level> levels_;
   math::Vec3d lowest_{};
+  double sharpest_bend_ = 0;
   std::vector<Leg> legs_;  // from each level to the next, above the last, and one beyond all; none without shear
   // Sixteen cells an octave of the height above the lowest level, by the first bits of the number: the leg that is at
   // or below the beginning of each.

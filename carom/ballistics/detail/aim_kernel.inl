@@ -25,25 +25,26 @@ void feel_nodes(const AimMedium& medium, FlightPath& path) {
   }
 }
 
-/// Lobatto's points of (0, 1) and their weights: at both ends, where there is no defect, and within. With the values of
-/// two Legendre polynomials that say what they may mistake.
+/// Lobatto's points of (0, 1), at both ends, where there is no defect, and within: the first half of those and the
+/// middle, with their weights.
 struct ManyPoints {
-  static constexpr int count = 5;
-  static constexpr double place[] = {0.08488805186071657, 0.2655756032646429, 0.5, 0.7344243967353571,
-                                     0.9151119481392834};
-  static constexpr double weight[] = {0.13841302368078295, 0.21587269060493133, 0.2438095238095238, 0.21587269060493133,
-                                      0.13841302368078295};
+  static constexpr int pairs = 2;
+  static constexpr double place[] = {0.08488805186071657, 0.2655756032646429, 0.5};
+  static constexpr double weight[] = {0.13841302368078295, 0.21587269060493133, 0.2438095238095238};
   static constexpr double end_weight = 1.0 / 42;
-  static constexpr double sixth[] = {-0.41475046037812563, 0.332105832278952, -0.3125, 0.332105832278952,
-                                     -0.41475046037812563};
-  static constexpr double fifth[] = {0.34433574319845717, -0.15570741876857414, 0.0, 0.15570741876857414,
-                                     -0.34433574319845717};
 };
 struct FewPoints {
-  static constexpr int count = 3;
-  static constexpr double place[] = {0.17267316464601146, 0.5, 0.8273268353539885};
-  static constexpr double weight[] = {49.0 / 180, 16.0 / 45, 49.0 / 180};
+  static constexpr int pairs = 1;
+  static constexpr double place[] = {0.17267316464601146, 0.5};
+  static constexpr double weight[] = {49.0 / 180, 16.0 / 45};
   static constexpr double end_weight = 1.0 / 20;
+};
+/// What a defect with such values at the pairs (their sums, or by how much the later is more) and in the middle of
+/// ManyPoints adds to the bulge, by h².
+struct Bulge {
+  static constexpr double even[] = {0.016050917709345004, 0.004250421576369281, -0.01660714285714286},
+                          odd[] = {0.024574971804006942, -0.017331692522059194},
+                          sharp[] = {0.022200311187888205, -0.027724864759316778, 0.029464285714285714};
 };
 
 /// What is left of a velocity at the end of an element, and the way that it makes, as shares, where drag takes it at a
@@ -64,67 +65,142 @@ CAROM_SIMD_INLINE D polynomial(const D (&c)[N], S s) {
   return r;
 }
 
-/// Hermite's quintic over elements, by powers of s from 0 to 1. `Plain`: of the places the heights alone.
-template <bool Plain>
-struct Quintic {
-  D h, place[3][6], velocity[3][5], acceleration[3][4];
+/// A function of t from −1 to 1 over an element: even(t²) + t odd(t²).
+template <int Even, int Odd>
+struct AboutMiddle {
+  D even[Even], odd[Odd];
+  template <class S>
+  CAROM_SIMD_INLINE D at(S t, S t2) const {
+    return polynomial(even, t2) + t * polynomial(odd, t2);
+  }
+  /// At ∓t.
+  CAROM_SIMD_INLINE void pair(double t, double t2, D& before, D& after) const {
+    const D sum = polynomial(even, t2), more = t * polynomial(odd, t2);
+    before = sum - more;
+    after = sum + more;
+  }
+};
+
+/// The interpolant over elements as FlightElement has it. `Plain`: of the places the heights alone; not `Bulged`:
+/// Hermite's quintic alone.
+template <bool Plain, bool Bulged>
+struct Interpolant {
+  static constexpr int more = Bulged ? 1 : 0;
+  D h;
+  AboutMiddle<3 + 2 * more, 3 + more> place[3];
+  AboutMiddle<3 + more, 2 + 2 * more> velocity[3];
+  AboutMiddle<2 + 2 * more, 2 + more> acceleration[3];
   /// `from` and `to` give the values of an array at the nodes.
   template <class From, class To>
-  CAROM_SIMD_INLINE Quintic(const FlightPath& path, From&& from, To&& to) : h(to(path.t) - from(path.t)) {
-    const D by_h = D::splat(1) / h;
+  CAROM_SIMD_INLINE Interpolant(const FlightPath& path, From&& from, To&& to) : h(to(path.t) - from(path.t)) {
+    const D half = 0.5 * h, by_half = D::splat(1) / half, quarter = 0.5 * half, eighth = quarter * half;
     for (int i = 0; i < 3; ++i) {
-      const D x = from(path.x[i]), va = from(path.v[i]), v = h * va, k = h * h * from(path.k[i]);
-      const D d = to(path.x[i]) - x - v - 0.5 * k, dv = h * to(path.v[i]) - v - k, dk = h * h * to(path.k[i]) - k;
-      const D c3 = 10 * d - 4 * dv + 0.5 * dk, c4 = 7 * dv - 15 * d - dk, c5 = 6 * d - 3 * dv + 0.5 * dk;
-      const D of_x[6] = {x, v, 0.5 * k, c3, c4, c5};
-      const D of_v[5] = {va, by_h * k, 3 * by_h * c3, 4 * by_h * c4, 5 * by_h * c5};
-      for (int j = 0; j < 6 && (!Plain || i == 1); ++j) place[i][j] = of_x[j];
-      for (int j = 0; j < 5; ++j) velocity[i][j] = of_v[j];
-      for (int j = 0; j < 4; ++j) acceleration[i][j] = double(j + 1) * by_h * of_v[j + 1];
+      const D x = 0.5 * from(path.x[i]), to_x = 0.5 * to(path.x[i]), v = quarter * from(path.v[i]),
+              to_v = quarter * to(path.v[i]), k = eighth * from(path.k[i]), to_k = eighth * to(path.k[i]);
+      const D opens = to_v - v, e2 = 0.125 * ((k + to_k) - opens), e1 = 0.5 * opens - 2 * e2;
+      const D way = to_x - x, turn = (v + to_v) - way, o2 = 0.125 * ((to_k - k) - 3 * turn), o1 = 0.5 * turn - 2 * o2;
+      D even[3 + 2 * more] = {(x + to_x) - e1 - e2, e1, e2}, odd[3 + more] = {way - o1 - o2, o1, o2};
+      if constexpr (Bulged) {
+        const auto& bulge = path.elements.bulge;
+        const D b0 = from(bulge[0][i]), b1 = from(bulge[1][i]), b2 = from(bulge[2][i]);
+        even[0] = even[0] + b0;
+        even[1] = even[1] + (b2 - 3 * b0);
+        even[2] = even[2] + 3 * (b0 - b2);
+        even[3] = 3 * b2 - b0;
+        even[4] = D::splat(0) - b2;
+        odd[0] = odd[0] + b1;
+        odd[1] = odd[1] - 3 * b1;
+        odd[2] = odd[2] + 3 * b1;
+        odd[3] = D::splat(0) - b1;
+      }
+      if (!Plain || i == 1) {
+        for (int j = 0; j < 3 + 2 * more; ++j) place[i].even[j] = even[j];
+        for (int j = 0; j < 3 + more; ++j) place[i].odd[j] = odd[j];
+      }
+      for (int j = 0; j < 3 + more; ++j) velocity[i].even[j] = double(2 * j + 1) * by_half * odd[j];
+      for (int j = 0; j < 2 + 2 * more; ++j) velocity[i].odd[j] = double(2 * j + 2) * by_half * even[j + 1];
+      for (int j = 0; j < 2 + 2 * more; ++j) acceleration[i].even[j] = double(2 * j + 1) * by_half * velocity[i].odd[j];
+      for (int j = 0; j < 2 + more; ++j) acceleration[i].odd[j] = double(2 * j + 2) * by_half * velocity[i].even[j + 1];
     }
-  }
-  template <class S>
-  CAROM_SIMD_INLINE Felt feel_at(const AimMedium& medium, S s) const {
-    Vector x{}, v;
-    for (int j = 0; j < 3; ++j) {
-      if (!Plain || j == 1) x[j] = polynomial(place[j], s);
-      v[j] = polynomial(velocity[j], s);
-    }
-    return feel<Plain, true>(medium, x, v);
   }
 };
 
 template <class Points, bool Plain>
 void feel_elements(const AimMedium& medium, FlightPath& path) {
+  constexpr int pairs = Points::pairs, points = 2 * pairs + 1;
+  constexpr bool finely = pairs == 2;
+  FlightPath::Elements& out = path.elements;
   for (int n = 0; n < path.count; n += lanes) {
-    const Quintic<Plain> quintic(
+    const Interpolant<Plain, finely> flown(
         path, [&](const double* a) __attribute__((always_inline)) { return load(a + n); },
         [&](const double* a) __attribute__((always_inline)) { return load(a + n + 1); });
-    const D h = quintic.h;
-    // ∫ H d of the defect d over it, H Hermite's cubics: what is weighted by a cubic in s takes its values (0, 1) and
-    // slopes at both ends of them.
-    Vector start{}, start_slope{}, end{}, end_slope{}, high{}, low{}, w;
-    D defect{};
+    const D h = flown.h;
+    Vector w, defects[points];
     for (int j = 0; j < 3; ++j) w[j] = Points::end_weight * (load(path.w[j] + n) + load(path.w[j] + n + 1));
     D drag = Points::end_weight * (load(path.drag + n) + load(path.drag + n + 1));
     D along = Points::end_weight * (load(path.along + n) + load(path.along + n + 1));
-    for (int q = 0; q < Points::count; ++q) {
-      const double s = Points::place[q], s2 = s * s, s3 = s2 * s, share = Points::weight[q];
-      const Felt f = quintic.feel_at(medium, s);
+    const auto feel_at = [&](int q, double share, const Vector& x, const Vector& v) __attribute__((always_inline)) {
+      const Felt f = feel<Plain, true>(medium, x, v);
       drag = drag + share * f.drag;
       along = along + share * f.along;
-      for (int j = 0; j < 3; ++j) w[j] = w[j] + share * f.w[j];
       for (int j = 0; j < 3; ++j) {
-        const D d = share * (f.a[j] - polynomial(quintic.acceleration[j], s));
-        defect = defect + absolute(d);
-        start[j] = start[j] + (1 - 3 * s2 + 2 * s3) * d;
-        start_slope[j] = start_slope[j] + (s3 - 2 * s2 + s) * d;
-        end[j] = end[j] + (3 * s2 - 2 * s3) * d;
-        end_slope[j] = end_slope[j] + (s3 - s2) * d;
-        if constexpr (Points::count == 5) {
-          high[j] = high[j] + Points::sixth[q] * d;
-          low[j] = low[j] + Points::fifth[q] * d;
+        w[j] = w[j] + share * f.w[j];
+        defects[q][j] = f.a[j] - defects[q][j];
+      }
+    };
+    for (int q = 0; q < pairs; ++q) {
+      const double t = 1 - 2 * Points::place[q], t2 = t * t;
+      const int last = points - 1 - q;
+      Vector x{}, to_x{}, v, to_v;
+      for (int j = 0; j < 3; ++j) {
+        if (!Plain || j == 1) flown.place[j].pair(t, t2, x[j], to_x[j]);
+        flown.velocity[j].pair(t, t2, v[j], to_v[j]);
+        flown.acceleration[j].pair(t, t2, defects[q][j], defects[last][j]);
+      }
+      feel_at(q, Points::weight[q], x, v);
+      feel_at(last, Points::weight[q], to_x, to_v);
+    }
+    Vector x{}, v;
+    for (int j = 0; j < 3; ++j) {
+      if (!Plain || j == 1) x[j] = flown.place[j].even[0];
+      v[j] = flown.velocity[j].even[0];
+      defects[pairs][j] = flown.acceleration[j].even[0];
+    }
+    feel_at(pairs, Points::weight[pairs], x, v);
+    // ∫ H d of the defect d over it, H Hermite's cubics: what is weighted by a cubic in s takes its values (0, 1) and
+    // slopes at both ends of them. Halves of their sums and differences are even and odd about the middle.
+    Vector start, start_slope, end, end_slope;
+    D defect{}, rest{};
+    for (int j = 0; j < 3; ++j) {
+      const D middle = defects[pairs][j];
+      D whole = 0.5 * Points::weight[pairs] * middle, later{}, hump = 0.25 * whole, tilt{};
+      defect = defect + Points::weight[pairs] * absolute(middle);
+      D bulge[3] = {Bulge::even[2] * middle, {}, Bulge::sharp[2] * middle};
+      for (int q = 0; q < pairs; ++q) {
+        const double s = Points::place[q], share = 0.5 * Points::weight[q], t = 1 - 2 * s;
+        const D before = defects[q][j], after = defects[points - 1 - q][j], sum = before + after, more = after - before;
+        defect = defect + Points::weight[q] * (absolute(before) + absolute(after));
+        whole = whole + share * sum;
+        later = later + share * (t * (1 + 2 * s * (1 - s))) * more;
+        hump = hump + share * s * (1 - s) * sum;
+        tilt = tilt - share * (s * (1 - s) * t) * more;
+        if constexpr (finely) {
+          bulge[0] = bulge[0] + Bulge::even[q] * sum;
+          bulge[1] = bulge[1] + Bulge::odd[q] * more;
+          bulge[2] = bulge[2] + Bulge::sharp[q] * sum;
         }
+      }
+      start[j] = whole - later;
+      start_slope[j] = hump + tilt;
+      end[j] = whole + later;
+      end_slope[j] = tilt - hump;
+      if constexpr (finely) {
+        for (int k = 0; k < 3; ++k) {
+          bulge[k] = load(out.bulge[k][j] + n) + h * h * bulge[k];
+          store(bulge[k], out.bulge[k][j] + n);
+        }
+        // Of the sixth and the fifth Legendre coefficient of what they bend the acceleration by.
+        rest = rest + 2.56 * absolute(bulge[2]) + 2.1 * absolute(bulge[1]) + 0.4 * absolute(bulge[0]);
       }
     }
     const D from_drag = h * load(path.drag + n), to_drag = h * load(path.drag + n + 1),
@@ -151,12 +227,7 @@ void feel_elements(const AimMedium& medium, FlightPath& path) {
     Vector rise, q;
     for (int j = 0; j < 3; ++j) rise[j] = 0.5 * (load(path.rise[j] + n) + load(path.rise[j] + n + 1));
     const D turned = d * dot(e, rise);
-    D rest{};
-    for (int j = 0; j < 3; ++j) {
-      q[j] = c * rise[j] + turned * e[j];
-      rest = rest + absolute(high[j]) + 0.1 * absolute(low[j]);
-    }
-    FlightPath::Elements& out = path.elements;
+    for (int j = 0; j < 3; ++j) q[j] = c * rise[j] + turned * e[j];
     store_floats(across.left, out.a + n);
     store_floats(b, out.b + n);
     store_floats(c, out.c + n);
@@ -169,7 +240,7 @@ void feel_elements(const AimMedium& medium, FlightPath& path) {
       store_floats(more_v[j], out.v[j] + n);
     }
     store_floats(h * defect, out.defect + n);
-    store_floats(h * rest, out.rest + n);
+    store_floats(rest / h, out.rest + n);
   }
 }
 
@@ -223,27 +294,25 @@ void owe(FlightPath& path) {
   }
 }
 
-/// By eight of Gauss's points in parts of elements: their seventh and fifth Legendre coefficients say what they
+/// By six of Gauss's points in parts of elements: their fifth and third Legendre coefficients say what they
 /// mistake.
 struct Gauss {
-  static constexpr double place[] = {0.019855071751231856, 0.10166676129318658, 0.2372337950418355, 0.4082826787521751,
-                                     0.591717321247825,    0.7627662049581645,  0.8983332387068135, 0.9801449282487682};
-  static constexpr double weight[] = {0.05061426814518809, 0.11119051722668723, 0.1568533229389437,
-                                      0.181341891689181,   0.181341891689181,   0.1568533229389437,
-                                      0.11119051722668723, 0.05061426814518809};
-  static constexpr double seventh[] = {-0.15501881289035005, 0.2265762383999968,   -0.2685203140877153,
-                                       0.28855496859568763,  -0.28855496859568763, 0.2685203140877153,
-                                       -0.2265762383999968,  0.15501881289035005};
-  static constexpr double fifth[] = {-0.4828486810505167,  0.4033170755970801,  -0.031045687085550933,
-                                     -0.29156822258958437, 0.29156822258958437, 0.031045687085550933,
-                                     -0.4033170755970801,  0.4828486810505167};
+  static constexpr int points = 6;
+  static constexpr double place[] = {0.033765242898423975, 0.1693953067668677, 0.3806904069584015,
+                                     0.6193095930415985,   0.8306046932331324, 0.966234757101576};
+  static constexpr double weight[] = {0.08566224618958525, 0.1803807865240693, 0.23395696728634552,
+                                      0.23395696728634552, 0.1803807865240693, 0.08566224618958525};
+  static constexpr double fifth[] = {-0.2057123110596229, 0.2943957149254376,  -0.33461902074104083,
+                                     0.33461902074104083, -0.2943957149254376, 0.2057123110596229};
+  static constexpr double third[] = {-0.6282499246436889, 0.269115769744599,  0.3239618653539353,
+                                     -0.3239618653539353, -0.269115769744599, 0.6282499246436889};
 };
 
 template <bool Plain>
 void measure_parts(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count) {
   for (int first = 0; first < count; first += lanes) {
     const auto part = [&](int i) -> AimPart& { return parts[first + i < count ? first + i : count - 1]; };
-    const Quintic<Plain> quintic(
+    const Interpolant<Plain, true> flown(
         path,
         [&](const double* a)
             __attribute__((always_inline)) { return gather([&](int i) { return a[part(i).element]; }); },
@@ -252,15 +321,21 @@ void measure_parts(const AimMedium& medium, const FlightPath& path, AimPart* par
     const D from = gather([&](int i) { return part(i).from; }),
             width = gather([&](int i) { return part(i).to; }) - from;
     Vector moments[4]{}, high{}, low{};
-    for (int q = 0; q < 8; ++q) {
+    for (int q = 0; q < Gauss::points; ++q) {
       const D s = from + Gauss::place[q] * width, share = Gauss::weight[q] * width, s2 = s * s, s3 = s2 * s;
       const D end = 3.0 * s2 - 2.0 * s3, weights[4] = {D::splat(1) - end, s3 - 2.0 * s2 + s, end, s3 - s2};
-      const Felt f = quintic.feel_at(medium, s);
+      const D t = s + s - D::splat(1), t2 = t * t;
+      Vector x{}, v;
       for (int j = 0; j < 3; ++j) {
-        const D d = share * (f.a[j] - polynomial(quintic.acceleration[j], s));
+        if (!Plain || j == 1) x[j] = flown.place[j].at(t, t2);
+        v[j] = flown.velocity[j].at(t, t2);
+      }
+      const Felt f = feel<Plain, true>(medium, x, v);
+      for (int j = 0; j < 3; ++j) {
+        const D d = share * (f.a[j] - flown.acceleration[j].at(t, t2));
         for (int k = 0; k < 4; ++k) moments[k][j] = moments[k][j] + weights[k] * d;
-        high[j] = high[j] + Gauss::seventh[q] * d;
-        low[j] = low[j] + Gauss::fifth[q] * d;
+        high[j] = high[j] + Gauss::fifth[q] * d;
+        low[j] = low[j] + Gauss::third[q] * d;
       }
     }
     D rest{};
@@ -285,6 +360,7 @@ void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
       path.k[j][last + i] = path.w[j][last + i] = path.rise[j][last + i] = 0;
     }
     path.drag[last + i] = path.along[last + i] = 0;
+    path.flatten(last + i - 1);
   }
   const bool plain = medium.beside == nullptr;
   plain ? feel_nodes<true>(medium, path) : feel_nodes<false>(medium, path);

@@ -116,6 +116,12 @@ class AimSolver {
   /// How the arrival depends on the start and by how much it is off, to first order in the defects of the elements and
   /// the leaps between them. `finely`: but for what is bent within elements, to about the tolerance.
   void linearize(Path& path, bool finely) const;
+  /// m, what errors within elements may do beside what the moments of their defects say: they fade on the way to its
+  /// end, and wind may change with height. And whether the path lands.
+  double unsettled(Path& path) const;
+  /// m/s, what the points of an element may mistake of the drag curve's nodes within it, where its second derivative
+  /// jumps.
+  double kinks(const Path& path, int n) const;
   /// Elements within which something is bent, anew.
   void measure(Path& path) const;
   /// Newton's step for u and T together, from a path with its derivatives.
@@ -130,14 +136,9 @@ class AimSolver {
   Newton newton(const Path& path, const Guess& guess) const;
   /// To another initial velocity and time, with what the elements owe.
   static void move(Path& path, Vec3d du, double dt);
-  /// Elements into parts of which each moves the arrival by less than `enough` m, and does not lose more than `bend`
-  /// m/s in the barrier; into fewer where there would be too many.
-  void divide(Path& path, double enough, double bend) const;
-  struct Cut {
-    int element;
-    double s;
-  };
-  int cut(const Path& path, double enough, double bend, Cut* cuts) const;
+  /// Elements into parts of which each mistakes the arrival by about `enough` m; into fewer where there would be too
+  /// many.
+  void divide(Path& path, double enough) const;
 
   /// Faster than sound, and most of all through the barrier, drag curves bend too sharply for the estimate of the
   /// error: no longer steps there than it takes to lose so much speed (m/s; above the barrier `far_bend` times that),
