@@ -119,6 +119,10 @@ void SoftState::find_surface() {
       outside[c] = 1;
     }
   }
+  double sum = 0;
+  for (std::size_t k = 0; k < surface.size(); ++k)
+    sum += length(position[surface[k]] - position[surface[k % 3 == 2 ? k - 2 : k + 1]]);
+  mean_edge = float(sum / double(surface.size()));
 }
 
 }  // namespace detail
@@ -192,6 +196,9 @@ core::Result<SoftBody> SoftBody::make(const SoftBodyDef& def) {
   SoftBody body;
   detail::SoftState& s = *body.state_;
   s.material = def.material;
+  s.apart = def.material.skin;
+  s.friction = def.material.friction;
+  s.closed = true;
   s.collide = def.collide;
   s.filter = def.filter;
   s.scheduler = def.scheduler;
@@ -267,7 +274,8 @@ Status SoftBody::set_pressure(double pressure) {
 }
 Status SoftBody::step(rigid::World3& world, double dt) {
   if (!(dt > 0 && dt <= 1)) return core::Error{core::refused("dt", dt, "above 0 and at most 1 s")};
-  state_->step(world, dt);
+  detail::SoftThing* const self = state_.get();
+  detail::step_together({&self, 1}, nullptr, world, dt);
   return {};
 }
 

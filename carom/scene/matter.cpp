@@ -201,11 +201,12 @@ environment::Wind wind_round(const environment::Environment& around, const Exten
       const environment::Wind wind = wind_round(*around, extent, time, matter.cloth_patch);
       if (Status s = cloth.thing.set_air(around->air(extent.middle()).density, wind, matter.cloth_patch); !s) return s;
     }
-    if (Status s = cloth.thing.step(world, dt); !s) return s;
   }
-  for (auto& body : matter.soft_bodies)
-    if (Status s = body.thing.step(world, dt); !s) return s;
-  return {};
+  matter.cloth_list.clear();
+  matter.soft_list.clear();
+  for (auto& cloth : matter.cloths) matter.cloth_list.push_back(&cloth.thing);
+  for (auto& body : matter.soft_bodies) matter.soft_list.push_back(&body.thing);
+  return matter.soft_group.step(matter.cloth_list, matter.soft_list, world, dt);
 }
 
 template <class D>

@@ -1,7 +1,7 @@
 // What a soft body keeps, and the passes of its step.
 #pragma once
 
-#include "carom/particles/detail/soft_touch.h"
+#include "carom/particles/detail/soft_thing.h"
 #include "carom/particles/soft_body.h"
 
 namespace carom::particles::detail {
@@ -15,36 +15,25 @@ struct SoftElement {
   Vec3f force[4] = {};  ///< N on the corners
 };
 
-struct SoftState {
+struct SoftState final : SoftThing {
   SoftMaterial material{};
-  bool collide = true;
-  rigid::Filter filter{};
-  core::TaskScheduler* scheduler = nullptr;
-  int substeps = 2, iterations = 0;
   double pressure = 0;
 
-  std::vector<math::Vec3d> position;
-  std::vector<Vec3f> velocity, load;
-  std::vector<float> mass;
+  std::vector<Vec3f> load;
   std::vector<std::uint32_t> corners;
   std::vector<SoftElement> elements;
   std::vector<std::uint32_t> surface;
-  std::vector<std::uint8_t> outside;  ///< by vertex: on the surface
-  std::vector<SoftPin> pins;
-  std::vector<int> pinned, pin_of;
-  std::vector<SoftTouch> touches;
-  SoftMatrix matrix;
   std::vector<int> first, list;  ///< by vertex: 4·element + corner
-  SoftSolver solver;
-  SoftObstacles obstacles;
 
   core::Status set_mesh();
   void find_surface();
-  void step(rigid::World3& world, double dt);
   void strain();
   void assemble(float h, Vec3f gravity);
   void hold(float h);
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
+
+  std::span<const std::uint32_t> faces() const override { return surface; }
+  void begin_substep(float h, Vec3f gravity) override;
+  void end_substep(float h) override;
 };
 
 }  // namespace carom::particles::detail

@@ -8,7 +8,6 @@ using math::Vec3d;
 
 namespace {
 constexpr int soft_chunk = 64;
-core::SerialScheduler soft_serial;
 
 /// The rotation nearest to f, from a guess: turns that bring the columns together (Müller, Bender, Chentanez, Macklin,
 /// "A robust method to extract the rotational part of deformations", 2016). Works for crushed and inverted elements.
@@ -39,8 +38,7 @@ Mat3f nearest_turn(const Mat3f& f, const Mat3f& guess) {
 void SoftState::strain() {
   const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
   const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
-  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
-  tasks.parallel_for(int(elements.size()), soft_chunk, [&](int from, int to, int) {
+  tasks().parallel_for(int(elements.size()), soft_chunk, [&](int from, int to, int) {
     for (int k = from; k < to; ++k) {
       SoftElement& element = elements[std::size_t(k)];
       const std::uint32_t* c = &corners[4 * std::size_t(k)];
@@ -63,8 +61,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
   const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
   const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
   const float weight = h * h + h * float(material.damping);
-  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
-  tasks.parallel_for(int(position.size()), soft_chunk, [&](int from, int to, int) {
+  tasks().parallel_for(int(position.size()), soft_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
       for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = SoftBlock{};
@@ -95,7 +92,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
           (h * float(pressure) / 6) * cross(Vec3f(position[surface[k + 1]] - a), Vec3f(position[surface[k + 2]] - a));
       for (std::size_t j = 0; j < 3; ++j) solver.right[surface[k + j]] += push;
     }
-  solver.begin(matrix, velocity, tasks);
+  solver.begin(matrix, velocity, tasks());
 }
 
 void SoftState::hold(float h) {
@@ -114,30 +111,19 @@ void SoftState::hold(float h) {
   }
 }
 
-void SoftState::step(rigid::World3& world, double dt) {
-  const float h = float(dt / substeps);
-  const Vec3f gravity = world.definition().gravity;
-  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
-  const core::ParallelRegion region(tasks);
-  obstacles.clear();
-  place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
-  if (collide) gather_near(material.skin, dt, world, filter, pins, position, velocity, obstacles);
-  obstacles.find_pulls(world, dt);
-  iterations = 0;
-  for (int s = 0; s < substeps; ++s) {
-    strain();
-    assemble(h, gravity);
-    obstacles.enter(h, solver);
-    hold(h);
-    iterations += solve_touches(touching(), matrix, h, obstacles, solver, tasks);
-    react_touches(touching(), h, obstacles, solver, nullptr);
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      velocity[i] += solver.change[i].vector();
-      position[i] += Vec3d(h * velocity[i]);
-    }
-    obstacles.advance(double(h), solver);
+void SoftState::begin_substep(float h, Vec3f gravity) {
+  strain();
+  assemble(h, gravity);
+  obstacles.enter(h, solver);
+  hold(h);
+}
+
+void SoftState::end_substep(float h) {
+  react_touches(touching(), h, obstacles, solver, nullptr);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    velocity[i] += solver.change[i].vector();
+    position[i] += Vec3d(h * velocity[i]);
   }
-  obstacles.hand_over(world, dt, double(length(gravity)));
 }
 
 }  // namespace carom::particles::detail
