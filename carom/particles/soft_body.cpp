@@ -46,6 +46,7 @@ namespace detail {
 Status SoftState::set_mesh() {
   const std::size_t n = position.size();
   elements.assign(corners.size() / 4, SoftElement{});
+  crushes.assign(elements.size(), SoftCrush{});
   mass.assign(n, 0.0f);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     std::uint32_t* c = &corners[4 * e];
@@ -93,12 +94,14 @@ Status SoftState::set_mesh() {
 void SoftState::find_surface() {
   struct Face {
     std::uint32_t sorted[3], corner[3];
+    int element;
   };
   std::vector<Face> faces;
   constexpr int of[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};  // outward for a positive volume
   for (std::size_t e = 0; e < elements.size(); ++e)
     for (const auto& f : of) {
       Face face{};
+      face.element = int(e);
       for (int k = 0; k < 3; ++k) face.corner[k] = face.sorted[k] = corners[4 * e + std::size_t(f[k])];
       std::sort(face.sorted, face.sorted + 3);
       faces.push_back(face);
@@ -107,6 +110,7 @@ void SoftState::find_surface() {
     return std::lexicographical_compare(a.sorted, a.sorted + 3, b.sorted, b.sorted + 3);
   });
   surface.clear();
+  behind.clear();
   outside.assign(position.size(), 0);
   const auto same = [](const Face& a, const Face& b) { return std::equal(a.sorted, a.sorted + 3, b.sorted); };
   for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -114,11 +118,13 @@ void SoftState::find_surface() {
       ++k;
       continue;
     }
+    behind.push_back(faces[k].element);
     for (const std::uint32_t c : faces[k].corner) {
       surface.push_back(c);
       outside[c] = 1;
     }
   }
+  folded.assign(behind.size(), 0);
   double sum = 0;
   for (std::size_t k = 0; k < surface.size(); ++k)
     sum += length(position[surface[k]] - position[surface[k % 3 == 2 ? k - 2 : k + 1]]);
@@ -313,6 +319,7 @@ double SoftBody::kinetic_energy() const {
     sum += 0.5 * double(state_->mass[i]) * double(length_squared(state_->velocity[i]));
   return sum;
 }
+double SoftBody::elastic_energy() const { return state_->elastic_energy(); }
 Vec3d SoftBody::center() const {
   Vec3d sum{};
   double all = 0;

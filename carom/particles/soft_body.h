@@ -80,7 +80,8 @@ class CAROM_API SoftBody {
   double rest_volume() const;
   math::Vec3d momentum() const;
   double kinetic_energy() const;
-  math::Vec3d center() const;  ///< of mass
+  double elastic_energy() const;  ///< J, as it is now; without what the pressure does
+  math::Vec3d center() const;     ///< of mass
   int iterations() const;
   std::uint64_t state_hash() const;
 

@@ -30,9 +30,10 @@ struct SoftContact {
 };
 
 /// Whose `filter`s let them meet, do, further apart than the larger of their skins and thicknesses. Of those near one
-/// another the largest count of substeps holds for all; what is near nothing takes its own step. Holds the memory of a
-/// step alone: what is remembered lies in the things, by their numbers, so that copies of these are snapshots. Soft
-/// bodies that overlap at the start by less than a cell are drawn apart.
+/// another the largest count of substeps holds for all, and as
+/// many more (16 at most) as it takes that none passes another by more than half an edge in one; what is near nothing
+/// takes its own step. Holds the memory of a step alone: what is remembered lies in the things, by their numbers, so
+/// that copies of these are snapshots. Soft bodies that overlap at the start by less than a cell are drawn apart.
 class CAROM_API SoftGroup {
  public:
   SoftGroup();
@@ -42,7 +43,8 @@ class CAROM_API SoftGroup {
   SoftGroup(SoftGroup&&) noexcept;
   SoftGroup& operator=(SoftGroup&&) noexcept;
 
-  /// In place of the `step` of each; call it before World3::step with the same dt.
+  /// In place of the `step` of each; call it before World3::step with the same dt. Errors, with nothing moved: a thing
+  /// that is null or was moved away, the same thing twice, one with a place or velocity that is not finite.
   core::Status step(std::span<Cloth* const> cloths, std::span<SoftBody* const> bodies, rigid::World3& world, double dt);
 
   std::span<const SoftContact> contacts() const;  ///< of the last substep

@@ -202,11 +202,11 @@ environment::Wind wind_round(const environment::Environment& around, const Exten
       if (Status s = cloth.thing.set_air(around->air(extent.middle()).density, wind, matter.cloth_patch); !s) return s;
     }
   }
-  matter.cloth_list.clear();
-  matter.soft_list.clear();
-  for (auto& cloth : matter.cloths) matter.cloth_list.push_back(&cloth.thing);
-  for (auto& body : matter.soft_bodies) matter.soft_list.push_back(&body.thing);
-  return matter.soft_group.step(matter.cloth_list, matter.soft_list, world, dt);
+  matter.group_cloths.clear();
+  matter.group_bodies.clear();
+  for (auto& cloth : matter.cloths) matter.group_cloths.push_back(&cloth.thing);
+  for (auto& body : matter.soft_bodies) matter.group_bodies.push_back(&body.thing);
+  return matter.soft_group.step(matter.group_cloths, matter.group_bodies, world, dt);
 }
 
 template <class D>

@@ -61,8 +61,8 @@ class CAROM_API Matter {
   particles::RopeAir rope_air;
   environment::WindPatch cloth_patch;
   particles::SoftGroup soft_group;
-  std::vector<particles::Cloth*> cloth_list;
-  std::vector<particles::SoftBody*> soft_list;
+  std::vector<particles::Cloth*> group_cloths;
+  std::vector<particles::SoftBody*> group_bodies;
   std::vector<Named<int>> ropes;  ///< numbers in `rope_set`
   int rope_substeps = 0;          ///< the most that a rope asked for; 0: as the set has them
   std::vector<Named<particles::Cloth>> cloths;

@@ -5,6 +5,7 @@
 
 #include "carom/core/scheduler.h"
 #include "carom/math/elementary.h"
+#include "tests/particles/soft_depth.h"
 #include "tests/particles/weightless.h"
 
 namespace carom::particles {
@@ -36,31 +37,6 @@ World3 with_ground() {
   world.add_shape(world.create_body(ground).value(), geometry::Plane{}).value();
   return world;
 }
-/// m, of the deepest vertex of a body inside another's tetrahedra; of either in the other.
-double depth(const SoftBody& a, const SoftMesh& mesh_a, const SoftBody& b) {
-  double deepest = 0;
-  const auto x = a.positions();
-  for (std::size_t e = 0; e + 3 < mesh_a.tetrahedra.size(); e += 4) {
-    const Vec3d o = x[mesh_a.tetrahedra[e]];
-    const Vec3d u = x[mesh_a.tetrahedra[e + 1]] - o, v = x[mesh_a.tetrahedra[e + 2]] - o,
-                w = x[mesh_a.tetrahedra[e + 3]] - o;
-    const double six = triple(u, v, w);
-    for (const Vec3d& p : b.positions()) {
-      const Vec3d d = p - o;
-      const double s = triple(d, v, w) / six, t = triple(u, d, w) / six, r = triple(u, v, d) / six;
-      if (!(s > 0 && t > 0 && r > 0 && s + t + r < 1)) continue;
-      double out = 1e9;  // to the surface
-      const auto faces = a.surface();
-      for (std::size_t f = 0; f < faces.size(); f += 3) {
-        const Vec3d n = normalize(cross(x[faces[f + 1]] - x[faces[f]], x[faces[f + 2]] - x[faces[f]]));
-        out = min(out, abs(dot(n, p - x[faces[f]])));
-      }
-      deepest = max(deepest, out);
-    }
-  }
-  return deepest;
-}
-
 TEST(SoftGroup, CubesDroppedOnEachOtherRestApart) {
   World3 world = with_ground();
   const SoftMaterial foam{.density = 200, .youngs_modulus = 5e4, .poisson_ratio = 0.3, .damping = 0.01};
@@ -264,6 +240,33 @@ TEST(SoftGroup, FiltersAndDistanceLeaveEachItsOwnStep) {
   };
   EXPECT_EQ(fall(4, true), fall(4, false));
   EXPECT_NE(fall(~0u, true), fall(4, false));
+}
+
+TEST(SoftGroup, BadInputIsRefusedAndMovesNothing) {
+  World3 world = with_ground();
+  SoftBody a = cube({0, 1, 0}, 0.3, 2, {}), b = cube({0.5, 1, 0}, 0.3, 2, {});
+  SoftGroup group;
+  const auto message = [&](std::span<SoftBody* const> list, double step) {
+    const std::uint64_t before = b.state_hash();
+    const core::Status status = group.step({}, list, world, step);
+    EXPECT_EQ(b.state_hash(), before);
+    return status.ok() ? std::string("none") : status.error().message;
+  };
+  SoftBody* const twice[] = {&b, &a, &b};
+  EXPECT_EQ(message(twice, dt), "SoftGroup: bodies[2] is the same as bodies[0]");
+  SoftBody* const none[] = {&b, nullptr};
+  EXPECT_EQ(message(none, dt), "SoftGroup: bodies[1] is null or was moved away");
+  SoftBody* const both[] = {&b, &a};
+  EXPECT_NE(message(both, nan("")).find("dt"), std::string::npos);
+  a.set_velocity(3, {3e38, 0, 0}).value();
+  a.set_velocity(4, {3e38, 0, 0}).value();
+  a.step(world, dt).value();
+  EXPECT_EQ(message(both, dt), "SoftGroup: bodies[1] has a place or a velocity that is not finite");
+  const SoftBody gone = std::move(a);
+  EXPECT_EQ(message(both, dt), "SoftGroup: bodies[1] is null or was moved away");
+  const SoftGroup empty = std::move(group);
+  SoftBody* const one[] = {&b};
+  EXPECT_TRUE(group.step({}, one, world, dt).ok()) << "a group that was moved away begins anew";
 }
 
 }  // namespace soft_group_test

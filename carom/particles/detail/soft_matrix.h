@@ -184,6 +184,7 @@ class SoftSolver {
   std::vector<SoftVector> right;   ///< b, N·s
   std::vector<SoftVector> change;  ///< x, m/s: at the start the held parts and a guess of the free ones
   std::vector<SoftVector> guess;   ///< x of the last solve
+  std::vector<Mat3f> met;          ///< by particle, its own part of what contacts with other systems add
   std::vector<SoftHold> holds;
   std::vector<SoftVector> reaction;  ///< (D + K) x − b of what is held
   std::vector<SoftMover> movers;
@@ -213,6 +214,7 @@ class SoftSolver {
   void end_iterations(const SoftMatrix& matrix);
   void find_reactions(const SoftMatrix& matrix);
   bool meets = false;
+  bool remade = false;  ///< blocks of the matrix have changed since the last solve
 
   /// After the last solve of a substep: what it left undone gives no momentum.
   void finish(const SoftMatrix& matrix, core::TaskScheduler& scheduler);

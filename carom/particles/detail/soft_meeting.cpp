@@ -40,7 +40,19 @@ void SoftMeeting::give(SoftMeet& meet, Vec3f impulse) {
 }
 
 void SoftMeeting::enter() {
-  for (SoftMeet& meet : meets_) give(meet, impulse_of(meet, {}));
+  for (SoftThing* thing : things_) {
+    std::fill(thing->solver.met.begin(), thing->solver.met.end(), Mat3f::zero());
+    thing->solver.remade = true;
+  }
+  for (SoftMeet& meet : meets_) {
+    give(meet, impulse_of(meet, {}));
+    if (!meet.active && !(meet.grip > 0)) continue;
+    const Mat3f along = math::outer(meet.normal, meet.normal);
+    const Mat3f own = (meet.active ? meet.stiff : 0.0f) * along + meet.grip * (Mat3f::identity() - along);
+    each_node(meet, [&](SoftThing& thing, std::uint32_t i, float share) {
+      thing.solver.met[i] = thing.solver.met[i] + math::square(share) * own;
+    });
+  }
 }
 
 void SoftMeeting::take_from_residuals() {
@@ -64,7 +76,8 @@ void SoftMeeting::answer() {
     });
     const Vec3f impulse = held(meet, motion);
     each_node(meet, [&](SoftThing& thing, std::uint32_t i, float share) {
-      thing.solver.add_answer(thing.matrix, i, share * impulse);
+      const Vec3f own = held(meet, share * thing.solver.back_at(thing.matrix, i));  // of the diagonal
+      thing.solver.add_answer(thing.matrix, i, share * (impulse - own));
     });
   }
 }

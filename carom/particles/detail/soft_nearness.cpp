@@ -67,6 +67,7 @@ void SoftMeeting::lay_faces(const SoftThing& b, Vec3d origin, Vec3f low, Vec3f h
     to = max(face.a, max(p, q)) + margin;
   };
   for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
+    if (!b.folded.empty() && b.folded[k / 3] != 0) continue;  // nothing tells its side
     Face face;
     Vec3f at[3];
     for (std::size_t c = 0; c < 3; ++c) {
@@ -172,7 +173,7 @@ void SoftMeeting::find_pair(std::size_t a, std::size_t b, float h) {
   if (from.x > to.x || from.y > to.y || from.z > to.z) return;
   lay_faces(other, origin, Vec3f(from - origin), Vec3f(to - origin), reach);
   if (faces_.empty()) return;
-  if (!other.closed && one.closed) find_normals(a);
+  if (one.closed) find_normals(a);
 
   const double friction = math::sqrt(one.friction * other.friction);
   const int number = numbers_[b];
@@ -192,6 +193,8 @@ void SoftMeeting::find_pair(std::size_t a, std::size_t b, float h) {
     // Which side it belongs on: outside of what is closed; of a sheet, where its own outside looks, or where it was.
     float side = near.height >= 0 ? 1.0f : -1.0f;
     bool through = other.closed && side < 0;
+    // Into a thin place of a solid it came through the face that it looks at, which need not be the nearest.
+    if (through && one.closed && dot(normals_[a][i], face.normal) > 0) continue;
     if (!other.closed) {
       const float looks = one.closed ? -dot(normals_[a][i], face.normal)
                                      : (before != nullptr ? dot(before->normal, face.normal) : side);

@@ -20,6 +20,7 @@ void SoftSolver::resize(const SoftMatrix& matrix) {
   for (auto* list : {&right, &change, &guess, &reaction, &residual_, &free_, &held_, &image_, &field_, &pull_})
     list->resize(n);
   diagonal.resize(n);
+  met.resize(n);
   holds.resize(n);
   for (auto* list : {&forward_, &from_}) list->assign((tiles + 1) * soft_lanes, SoftVector{});
   for (auto* list : {&swept_, &direction_, &back_, &sum_, &answer_}) *list = AlignedFloats(tiles * soft_vector);
@@ -99,8 +100,9 @@ void SoftSolver::prepare(const SoftMatrix& matrix, bool again) {
     rescaled_[p] = !again || !(holds[i] == scaled_for_[i]);
     if (rescaled_[p] == 0) continue;
     scaled_for_[i] = holds[i];
-    const SoftBlock scale = scale_[p] =
-        scale_of(diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal_[i])].matrix(), holds[i]);
+    Mat3f own = diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal_[i])].matrix();
+    if (meets) own = own + met[i];
+    const SoftBlock scale = scale_[p] = scale_of(own, holds[i]);
     float* const out = &scale_tiles_[p / soft_lanes * soft_block + p % soft_lanes];
     for (int k = 0; k < 3; ++k) {
       out[k * soft_lanes] = scale.x[k];
@@ -177,7 +179,8 @@ void SoftSolver::unscale(const SoftMatrix& matrix, std::vector<SoftVector>& out)
 
 double SoftSolver::open(const SoftMatrix& matrix, float least, bool again, double& small) {
   const std::vector<int>& row = matrix.tiles_.row;
-  prepare(matrix, again);
+  prepare(matrix, again && !remade);
+  remade = false;
   prepare_movers(matrix);
   for (std::size_t p = 0; p < row.size(); ++p) {
     if (row[p] < 0) continue;

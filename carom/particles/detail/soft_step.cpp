@@ -35,18 +35,14 @@ Mat3f nearest_turn(const Mat3f& f, const Mat3f& guess) {
 
 }  // namespace
 
-void SoftState::strain() {
+void SoftState::strain(float h) {
   const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
   const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
   tasks().parallel_for(int(elements.size()), soft_chunk, [&](int from, int to, int) {
     for (int k = from; k < to; ++k) {
       SoftElement& element = elements[std::size_t(k)];
-      const std::uint32_t* c = &corners[4 * std::size_t(k)];
-      Mat3f f = Mat3f::zero();
-      for (int a = 1; a < 4; ++a) {
-        const Vec3f d(position[c[a]] - position[c[0]]);
-        f = f + math::outer(d, element.gradient[a]);
-      }
+      const Mat3f f = deformation(std::size_t(k));
+      find_crush(std::size_t(k), f, h);
       element.turn = nearest_turn(f, element.turn);
       const Mat3f s = transpose(element.turn) * f;
       const Mat3f strain = 0.5f * (s + transpose(s)) - Mat3f::identity();
@@ -57,6 +53,19 @@ void SoftState::strain() {
   });
 }
 
+double SoftState::elastic_energy() const {
+  const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
+  const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
+  double sum = 0;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    const Mat3f f = deformation(k), s = transpose(nearest_turn(f, elements[k].turn)) * f;
+    const Mat3f strain = 0.5f * (s + transpose(s)) - Mat3f::identity();
+    const float squares = dot(strain.cx, strain.cx) + dot(strain.cy, strain.cy) + dot(strain.cz, strain.cz);
+    sum += double(elements[k].volume) * double(mu * squares + 0.5f * lambda * math::square(trace(strain)));
+  }
+  return sum;
+}
+
 void SoftState::assemble(float h, Vec3f gravity) {
   const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
   const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
@@ -65,11 +74,16 @@ void SoftState::assemble(float h, Vec3f gravity) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
       for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = SoftBlock{};
-      Vec3f force = load[i] + mass[i] * gravity;
+      Vec3f force = load[i] + mass[i] * gravity, held{};
       for (int k = first[i]; k < first[i + 1]; ++k) {
         const int place = list[std::size_t(k)], a = place % 4;
         const SoftElement& element = elements[std::size_t(place / 4)];
         force += element.force[a];
+        const SoftCrush& crush = crushes[std::size_t(place / 4)];
+        if (crush.active) {
+          held += (crush.stiff * crush.wanted * crush.weight[a]) * crush.normal;
+          for (int b = 0; b < 4; ++b) crush.add_block(a, b, 1, matrix.blocks[std::size_t(element.slots[4 * a + b])]);
+        }
         // K_ab = V R (λ g_a g_bᵀ + μ (g_b g_aᵀ + g_a·g_b 1)) Rᵀ, with the gradients turned.
         const Vec3f ga = element.turn * element.gradient[a];
         const float s = weight * element.volume;
@@ -82,7 +96,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
         }
       }
       solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]});
-      solver.right[i] = h * force;
+      solver.right[i] = h * force + held;
     }
   });
   if (pressure != 0)
@@ -112,7 +126,8 @@ void SoftState::hold(float h) {
 }
 
 void SoftState::begin_substep(float h, Vec3f gravity) {
-  strain();
+  strain(h);
+  for (std::size_t f = 0; f < behind.size(); ++f) folded[f] = !(elements[std::size_t(behind[f])].thick > 0);
   assemble(h, gravity);
   obstacles.enter(h, solver);
   hold(h);

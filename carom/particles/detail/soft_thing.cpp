@@ -24,7 +24,7 @@ void solve_together(std::span<SoftThing* const> things, SoftMeeting* meeting, fl
     iterations += solve_system(things, meeting, bears ? 5e-5 : 2e-3, h * (bears ? 0.1f : 2.0f), 200, round > 0);
     if (round == 2) break;
     bool again = false;
-    for (SoftThing* thing : things) again |= revise_touches(thing->touching(), h, thing->obstacles, thing->solver);
+    for (SoftThing* thing : things) again |= thing->revise(h);
     if (meeting != nullptr) again |= meeting->revise(h);
     if (!again) break;
   }
@@ -50,13 +50,40 @@ void SoftThing::end_step(rigid::World3& world, double dt) {
   obstacles.hand_over(world, dt, double(length(world.definition().gravity)));
 }
 
-int step_together(std::span<SoftThing* const> things, SoftMeeting* meeting, rigid::World3& world, double dt) {
+namespace {
+constexpr float meeting_stride = 0.5f;  // of an edge
+constexpr int most_substeps = 16;
+
+/// Things that meet, and what they are near, pass by each other by a part of an edge a substep at most: what goes
+/// deeper is through before it is seen, or crushes an element in one go.
+int substeps_of(std::span<SoftThing* const> things, bool meet, double dt) {
   int substeps = 1;
   for (const SoftThing* thing : things) substeps = math::max(substeps, thing->substeps);
-  const float h = float(dt / substeps);
+  if (!meet) return substeps;
+  Vec3f low = things[0]->velocity[0], high = low;
+  float edge = things[0]->mean_edge;
+  for (const SoftThing* thing : things) {
+    edge = math::min(edge, thing->mean_edge);
+    for (const Vec3f v : thing->velocity) {
+      low = min(low, v);
+      high = max(high, v);
+    }
+    if (!thing->obstacles.empty()) {
+      low = min(low, Vec3f{});
+      high = max(high, Vec3f{});
+    }
+  }
+  const float needed = math::ceil(float(dt) * length(high - low) / (meeting_stride * edge));
+  return math::max(substeps, int(math::min(needed, float(most_substeps))));
+}
+}  // namespace
+
+int step_together(std::span<SoftThing* const> things, SoftMeeting* meeting, rigid::World3& world, double dt) {
   const Vec3f gravity = world.definition().gravity;
   const core::ParallelRegion region(things.front()->tasks());
   for (SoftThing* thing : things) thing->begin_step(world, dt);
+  const int substeps = substeps_of(things, meeting != nullptr, dt);
+  const float h = float(dt / substeps);
   for (int s = 0; s < substeps; ++s) {
     for (SoftThing* thing : things) thing->begin_substep(h, gravity);
     if (meeting != nullptr) meeting->find(things, h);

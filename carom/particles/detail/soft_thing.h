@@ -34,6 +34,7 @@ struct SoftThing {
 
   std::vector<std::uint8_t> outside;  ///< by vertex: on the surface. Of what is all surface: empty
   bool closed = false;                ///< the faces close a volume
+  std::vector<std::uint8_t> folded;   ///< by face: what lies behind it is inside out. Of what has nothing behind: empty
   float mean_edge = 0;                ///< m, of the faces at rest
   double apart = 0;                   ///< m: vertices keep so far from what they meet
   double friction = 0;
@@ -48,6 +49,8 @@ struct SoftThing {
   virtual void begin_step(rigid::World3& world, double dt);
   /// Makes the linear system of a substep, with what is held.
   virtual void begin_substep(float h, Vec3f gravity) = 0;
+  /// After a solve: lets go of what is drawn, holds what would give way. True: solve again.
+  virtual bool revise(float h) { return revise_touches(touching(), h, obstacles, solver); }
   virtual void end_substep(float h) = 0;  ///< moves on by what the solver found
   virtual void end_step(rigid::World3& world, double dt);
 
