@@ -68,6 +68,8 @@ Status SoftState::set_mesh() {
     element.gradient[1] = Vec3f(g1);
     element.gradient[2] = Vec3f(g2);
     element.gradient[3] = Vec3f(g3);
+    steepest =
+        math::max(steepest, length(element.gradient[1]) + length(element.gradient[2]) + length(element.gradient[3]));
     for (int a = 0; a < 4; ++a) mass[c[a]] += 0.25f * element.volume * float(material.density);
   }
   for (std::size_t i = 0; i < n; ++i)

@@ -35,7 +35,7 @@ Mat3f SoftState::rate(std::size_t k, const SoftVector* change) const {
 /// normal of the face opposite to corner a is q_a/|q_a|, the height J/|q_a| and its rate Σ_b (q_b·q_a)/|q_a|² n·v_b:
 /// all finite, and of the right sign, where the element is flat or inside out.
 void SoftState::foresee_crush(std::size_t k, const Mat3f& f, float h, const SoftVector* change) {
-  const SoftElement& element = elements[k];
+  SoftElement& element = elements[k];
   SoftCrush& crush = crushes[k];
   const std::uint32_t* const c = &corners[4 * k];
   const Mat3f cofactor = cofactors(f);
@@ -57,7 +57,8 @@ void SoftState::foresee_crush(std::size_t k, const Mat3f& f, float h, const Soft
     worst = share;
     corner = a;
   }
-  const bool was = crush.active;
+  const bool was = element.crushed;
+  element.crushed = false;
   crush = {};
   if (corner < 0) return;
   const Vec3f way = q[corner];
@@ -72,17 +73,30 @@ void SoftState::foresee_crush(std::size_t k, const Mat3f& f, float h, const Soft
   crush.gap = j / size - crush_limit / length(element.gradient[corner]);
   crush.stiff = crush_stiffness / lightness;
   crush.wanted = crush.gap >= 0 ? -crush.gap / h : math::min(-0.5f * crush.gap / h, crush_recovery);
-  crush.active = was || worst < crush_limit;
+  element.crushed = was || worst < crush_limit;
+}
+
+/// What the deformation of any element changes by in a substep, at most: where nothing moves against the rest of the
+/// body no element needs a look of its own.
+float SoftState::greatest_way(float h, const SoftVector* change) const {
+  const auto after = [&](std::size_t i) { return change != nullptr ? velocity[i] + change[i].vector() : velocity[i]; };
+  Vec3f low = after(0), high = low;
+  for (std::size_t i = 1; i < velocity.size(); ++i) {
+    const Vec3f v = after(i);
+    low = min(low, v);
+    high = max(high, v);
+  }
+  return h * steepest * length(high - low);
 }
 
 void SoftState::find_crush(std::size_t k, const Mat3f& f, float h) {
   const Mat3f cofactor = cofactors(f);
   SoftElement& element = elements[k];
   element.thick = dot(f.cx, cofactor.cx) / (size_of(cofactor) + 1e-10f);
-  if (element.thick - h * size_of(rate(k, nullptr)) < crush_limit)
+  if (element.thick - way < crush_limit && element.thick - h * size_of(rate(k, nullptr)) < crush_limit)
     foresee_crush(k, f, h, nullptr);
   else
-    crushes[k].active = false;
+    element.crushed = false;
 }
 
 /// Adds what holds an element's height to the system, or takes it out again.
@@ -100,9 +114,12 @@ void SoftState::enter_crush(std::size_t k, float sign) {
 bool SoftState::revise(float h) {
   bool again = SoftThing::revise(h);
   const SoftVector* const change = solver.change.data();
+  const float most = greatest_way(h, change);
+  if (slimmest - math::max(way, most) >= crush_limit) return again;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    SoftCrush& crush = crushes[k];
-    if (crush.active) {
+    const SoftCrush& crush = crushes[k];
+    SoftElement& element = elements[k];
+    if (element.crushed) {
       float along = 0;
       for (int b = 0; b < 4; ++b) {
         const std::uint32_t i = corners[4 * k + std::size_t(b)];
@@ -110,13 +127,13 @@ bool SoftState::revise(float h) {
       }
       if (along <= crush.wanted) continue;
       enter_crush(k, -1);  // it would be drawn together
-      crush.active = false;
+      element.crushed = false;
       again = true;
       continue;
     }
-    if (elements[k].thick - h * size_of(rate(k, change)) >= crush_limit) continue;
+    if (element.thick - most >= crush_limit || element.thick - h * size_of(rate(k, change)) >= crush_limit) continue;
     foresee_crush(k, deformation(k), h, change);
-    if (!crush.active) continue;
+    if (!element.crushed) continue;
     enter_crush(k, 1);
     again = true;
   }

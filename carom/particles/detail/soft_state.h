@@ -11,15 +11,15 @@ struct SoftElement {
   Vec3f gradient[4] = {};  ///< of the corners' shares, 1/m
   Vec3f rest[4] = {};      ///< m, about the first corner
   int slots[16] = {};
-  float thick = 0;      ///< at most its least height, as a share of that at rest
-  Mat3f turn{};         ///< of this substep; kept as the next one's first guess
-  Vec3f force[4] = {};  ///< N on the corners
+  bool crushed = false;  ///< its height is held
+  float thick = 0;       ///< at most its least height, as a share of that at rest
+  Mat3f turn{};          ///< of this substep; kept as the next one's first guess
+  Vec3f force[4] = {};   ///< N on the corners
 };
 
 /// An element crushed to its limit: the height of a corner above the opposite face is held from below, as a contact is.
 /// An elastic law, however stiff, would give way to a heavy load and let the element turn inside out.
 struct SoftCrush {
-  bool active = false;
   Vec3f normal{};        ///< from the face to the corner
   float weight[4] = {};  ///< of the corners' velocities along it in the height's rate; their sum is 0
   float gap = 0;         ///< m, above the limit
@@ -42,6 +42,9 @@ struct SoftState final : SoftThing {
   std::vector<std::uint32_t> corners;
   std::vector<SoftElement> elements;
   std::vector<SoftCrush> crushes;  ///< by element
+  float steepest = 0;  ///< 1/m: the greatest rate of an element's deformation for velocities that differ by 1 m/s
+  float slimmest = 0;  ///< the least `thick`
+  float way = 0;       ///< of this substep: the rate times it, at most, before the solve
   std::vector<std::uint32_t> surface;
   std::vector<int> behind;       ///< by face of the surface: its element
   std::vector<int> first, list;  ///< by vertex: 4·element + corner
@@ -53,6 +56,7 @@ struct SoftState final : SoftThing {
   Mat3f rate(std::size_t element, const SoftVector* change) const;  ///< `change`: of the velocities, or null
   void find_crush(std::size_t element, const Mat3f& f, float h);
   void foresee_crush(std::size_t element, const Mat3f& f, float h, const SoftVector* change);
+  float greatest_way(float h, const SoftVector* change) const;
   void enter_crush(std::size_t element, float sign);
   double elastic_energy() const;
   void assemble(float h, Vec3f gravity);

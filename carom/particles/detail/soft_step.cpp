@@ -79,8 +79,8 @@ void SoftState::assemble(float h, Vec3f gravity) {
         const int place = list[std::size_t(k)], a = place % 4;
         const SoftElement& element = elements[std::size_t(place / 4)];
         force += element.force[a];
-        const SoftCrush& crush = crushes[std::size_t(place / 4)];
-        if (crush.active) {
+        if (element.crushed) {
+          const SoftCrush& crush = crushes[std::size_t(place / 4)];
           held += (crush.stiff * crush.wanted * crush.weight[a]) * crush.normal;
           for (int b = 0; b < 4; ++b) crush.add_block(a, b, 1, matrix.blocks[std::size_t(element.slots[4 * a + b])]);
         }
@@ -126,7 +126,10 @@ void SoftState::hold(float h) {
 }
 
 void SoftState::begin_substep(float h, Vec3f gravity) {
+  way = greatest_way(h, nullptr);
   strain(h);
+  slimmest = elements[0].thick;
+  for (const SoftElement& element : elements) slimmest = math::min(slimmest, element.thick);
   for (std::size_t f = 0; f < behind.size(); ++f) folded[f] = !(elements[std::size_t(behind[f])].thick > 0);
   assemble(h, gravity);
   obstacles.enter(h, solver);
