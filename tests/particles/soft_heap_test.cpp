@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "carom/core/scheduler.h"
 #include "carom/math/elementary.h"
 #include "carom/particles/soft_group.h"
 #include "tests/particles/soft_depth.h"
@@ -166,6 +167,33 @@ TEST(SoftHeap, WhatIsCrushedFlatDoesNotTurnInsideOut) {
   EXPECT_GT(least, 0);
   EXPECT_LT(jelly.kinetic_energy() + block.kinetic_energy(), 5e-3);  // 1 cm/s: it sways
   EXPECT_GT(block.center().y, 0.15 + 0.02);
+}
+
+TEST(SoftHeap, ThreadsAndLanesGiveTheSameBitsWhereElementsAreCrushed) {
+  const auto pool = core::make_thread_pool(3);
+  const auto run = [&](int lanes, core::TaskScheduler* scheduler) {
+    World3 world = with_bin();
+    const SoftMesh low = make_soft_box({-0.15, 0.006, -0.15}, {0.3, 0.2, 0.3}, 4, 3, 4),
+                   high = make_soft_ball({0, 0.4, 0.03}, 0.15, 4);
+    const auto solid = [&](const SoftMesh& mesh, SoftMaterial material, Vec3d velocity) {
+      return SoftBody::make({.material = material,
+                             .points = mesh.points,
+                             .tetrahedra = mesh.tetrahedra,
+                             .velocity = velocity,
+                             .scheduler = scheduler,
+                             .lanes = lanes})
+          .value();
+    };
+    SoftBody jelly = solid(low, {.density = 1000, .youngs_modulus = 3e3}, {}),
+             ball = solid(high, {.density = 2000, .youngs_modulus = 2e6}, {0, -5, 0});
+    SoftBody* const both[] = {&jelly, &ball};
+    SoftGroup group;
+    for (int i = 0; i < 60; ++i) group.step({}, both, world, dt).value();
+    return jelly.state_hash() * 31 + ball.state_hash();
+  };
+  const std::uint64_t one = run(4, nullptr);
+  EXPECT_EQ(run(8, nullptr), one);
+  EXPECT_EQ(run(16, pool.get()), one);
 }
 
 }  // namespace soft_heap_test
