@@ -99,6 +99,8 @@ core::Result<Cloth> Cloth::make(const ClothDef& def) {
   Cloth cloth;
   detail::ClothState& s = *cloth.state_;
   s.fabric = def.fabric;
+  s.apart = def.fabric.thickness;
+  s.friction = def.fabric.friction;
   s.collide = def.collide;
   s.self_collide = def.self_collide;
   s.filter = def.filter;
@@ -181,7 +183,8 @@ Status Cloth::set_substeps(int substeps) {
 
 Status Cloth::step(rigid::World3& world, double dt) {
   if (!(dt > 0 && dt <= 1)) return core::Error{core::refused("dt", dt, "above 0 and at most 1 s")};
-  state_->step(world, dt);
+  detail::SoftThing* const self = state_.get();
+  detail::step_together({&self, 1}, nullptr, world, dt);
   return {};
 }
 

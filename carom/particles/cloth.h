@@ -60,7 +60,8 @@ namespace detail {
 struct ClothState;
 }
 
-/// A value: a copy is a snapshot. Call `step` before World3::step with the same dt.
+/// A value: a copy is a snapshot. Call `step` before World3::step with the same dt; of several that are to meet, that
+/// of a SoftGroup.
 class CAROM_API Cloth {
  public:
   /// Errors: a number out of its range, an index beyond the points, a triangle without area.
@@ -104,6 +105,7 @@ class CAROM_API Cloth {
   std::uint64_t state_hash() const;
 
  private:
+  friend class SoftGroup;
   Cloth();
   std::unique_ptr<detail::ClothState> state_;
 };

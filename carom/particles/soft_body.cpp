@@ -46,6 +46,7 @@ namespace detail {
 Status SoftState::set_mesh() {
   const std::size_t n = position.size();
   elements.assign(corners.size() / 4, SoftElement{});
+  crushes.assign(elements.size(), SoftCrush{});
   mass.assign(n, 0.0f);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     std::uint32_t* c = &corners[4 * e];
@@ -67,6 +68,8 @@ Status SoftState::set_mesh() {
     element.gradient[1] = Vec3f(g1);
     element.gradient[2] = Vec3f(g2);
     element.gradient[3] = Vec3f(g3);
+    steepest =
+        math::max(steepest, length(element.gradient[1]) + length(element.gradient[2]) + length(element.gradient[3]));
     for (int a = 0; a < 4; ++a) mass[c[a]] += 0.25f * element.volume * float(material.density);
   }
   for (std::size_t i = 0; i < n; ++i)
@@ -93,12 +96,14 @@ Status SoftState::set_mesh() {
 void SoftState::find_surface() {
   struct Face {
     std::uint32_t sorted[3], corner[3];
+    int element;
   };
   std::vector<Face> faces;
   constexpr int of[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};  // outward for a positive volume
   for (std::size_t e = 0; e < elements.size(); ++e)
     for (const auto& f : of) {
       Face face{};
+      face.element = int(e);
       for (int k = 0; k < 3; ++k) face.corner[k] = face.sorted[k] = corners[4 * e + std::size_t(f[k])];
       std::sort(face.sorted, face.sorted + 3);
       faces.push_back(face);
@@ -107,6 +112,7 @@ void SoftState::find_surface() {
     return std::lexicographical_compare(a.sorted, a.sorted + 3, b.sorted, b.sorted + 3);
   });
   surface.clear();
+  behind.clear();
   outside.assign(position.size(), 0);
   const auto same = [](const Face& a, const Face& b) { return std::equal(a.sorted, a.sorted + 3, b.sorted); };
   for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -114,11 +120,17 @@ void SoftState::find_surface() {
       ++k;
       continue;
     }
+    behind.push_back(faces[k].element);
     for (const std::uint32_t c : faces[k].corner) {
       surface.push_back(c);
       outside[c] = 1;
     }
   }
+  folded.assign(behind.size(), 0);
+  double sum = 0;
+  for (std::size_t k = 0; k < surface.size(); ++k)
+    sum += length(position[surface[k]] - position[surface[k % 3 == 2 ? k - 2 : k + 1]]);
+  mean_edge = float(sum / double(surface.size()));
 }
 
 }  // namespace detail
@@ -192,6 +204,9 @@ core::Result<SoftBody> SoftBody::make(const SoftBodyDef& def) {
   SoftBody body;
   detail::SoftState& s = *body.state_;
   s.material = def.material;
+  s.apart = def.material.skin;
+  s.friction = def.material.friction;
+  s.closed = true;
   s.collide = def.collide;
   s.filter = def.filter;
   s.scheduler = def.scheduler;
@@ -267,7 +282,8 @@ Status SoftBody::set_pressure(double pressure) {
 }
 Status SoftBody::step(rigid::World3& world, double dt) {
   if (!(dt > 0 && dt <= 1)) return core::Error{core::refused("dt", dt, "above 0 and at most 1 s")};
-  state_->step(world, dt);
+  detail::SoftThing* const self = state_.get();
+  detail::step_together({&self, 1}, nullptr, world, dt);
   return {};
 }
 
@@ -305,6 +321,7 @@ double SoftBody::kinetic_energy() const {
     sum += 0.5 * double(state_->mass[i]) * double(length_squared(state_->velocity[i]));
   return sum;
 }
+double SoftBody::elastic_energy() const { return state_->elastic_energy(); }
 Vec3d SoftBody::center() const {
   Vec3d sum{};
   double all = 0;

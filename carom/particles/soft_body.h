@@ -47,7 +47,8 @@ namespace detail {
 struct SoftState;
 }
 
-/// A value: a copy is a snapshot. Call `step` before World3::step with the same dt.
+/// A value: a copy is a snapshot. Call `step` before World3::step with the same dt; of several that are to meet, that
+/// of a SoftGroup.
 class CAROM_API SoftBody {
  public:
   /// Errors: a number out of its range, an index beyond the points, a tetrahedron without volume.
@@ -79,11 +80,13 @@ class CAROM_API SoftBody {
   double rest_volume() const;
   math::Vec3d momentum() const;
   double kinetic_energy() const;
-  math::Vec3d center() const;  ///< of mass
+  double elastic_energy() const;  ///< J, as it is now; without what the pressure does
+  math::Vec3d center() const;     ///< of mass
   int iterations() const;
   std::uint64_t state_hash() const;
 
  private:
+  friend class SoftGroup;
   SoftBody();
   std::unique_ptr<detail::SoftState> state_;
 };

@@ -201,11 +201,12 @@ environment::Wind wind_round(const environment::Environment& around, const Exten
       const environment::Wind wind = wind_round(*around, extent, time, matter.cloth_patch);
       if (Status s = cloth.thing.set_air(around->air(extent.middle()).density, wind, matter.cloth_patch); !s) return s;
     }
-    if (Status s = cloth.thing.step(world, dt); !s) return s;
   }
-  for (auto& body : matter.soft_bodies)
-    if (Status s = body.thing.step(world, dt); !s) return s;
-  return {};
+  matter.group_cloths.clear();
+  matter.group_bodies.clear();
+  for (auto& cloth : matter.cloths) matter.group_cloths.push_back(&cloth.thing);
+  for (auto& body : matter.soft_bodies) matter.group_bodies.push_back(&body.thing);
+  return matter.soft_group.step(matter.group_cloths, matter.group_bodies, world, dt);
 }
 
 template <class D>

@@ -13,6 +13,7 @@
 #include "carom/particles/granular.h"
 #include "carom/particles/rope.h"
 #include "carom/particles/soft_body.h"
+#include "carom/particles/soft_group.h"
 #include "carom/scene/scene_world.h"
 
 namespace carom::scene {
@@ -59,6 +60,9 @@ class CAROM_API Matter {
   // Kept for their memory alone.
   particles::RopeAir rope_air;
   environment::WindPatch cloth_patch;
+  particles::SoftGroup soft_group;
+  std::vector<particles::Cloth*> group_cloths;
+  std::vector<particles::SoftBody*> group_bodies;
   std::vector<Named<int>> ropes;  ///< numbers in `rope_set`
   int rope_substeps = 0;          ///< the most that a rope asked for; 0: as the set has them
   std::vector<Named<particles::Cloth>> cloths;

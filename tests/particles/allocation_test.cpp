@@ -11,6 +11,7 @@
 #include "carom/particles/granular.h"
 #include "carom/particles/rope.h"
 #include "carom/particles/soft_body.h"
+#include "carom/particles/soft_group.h"
 
 namespace particles_allocation_test {
 std::atomic<long> allocations{0};
@@ -132,6 +133,14 @@ TEST(ParticleAllocation, NoneInAWarmStepOfClothAndSoftBodies) {
   const SoftMesh mesh = make_soft_box({.3, .02, .3}, {.4, .4, .4}, 4, 4, 4);
   auto soft = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
   EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(240, [&](rigid::World3& w) { return soft.step(w, 1.0 / 60); }), 0);
+  const SoftMesh beside = make_soft_box({.4, .5, .35}, {.3, .3, .3}, 3, 3, 3);
+  auto second = SoftBody::make({.points = beside.points, .tetrahedra = beside.tetrahedra}).value();
+  Cloth* const cloths[] = {&cloth};
+  SoftBody* const bodies[] = {&soft, &second};
+  SoftGroup group;
+  EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(
+                240, [&](rigid::World3& w) { return group.step(cloths, bodies, w, 1.0 / 60); }),
+            0);
 }
 
 }  // namespace particles_allocation_test

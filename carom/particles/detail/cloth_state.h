@@ -2,7 +2,7 @@
 #pragma once
 
 #include "carom/particles/cloth.h"
-#include "carom/particles/detail/soft_touch.h"
+#include "carom/particles/detail/soft_thing.h"
 
 namespace carom::particles::detail {
 
@@ -28,35 +28,24 @@ struct ClothPair {
   float mass = 0;    ///< kg, of the two against each other
 };
 
-struct ClothState {
+struct ClothState final : SoftThing {
   Fabric fabric{};
-  bool collide = true, self_collide = true, torn = false;
-  rigid::Filter filter{};
-  core::TaskScheduler* scheduler = nullptr;
-  int substeps = 2;
+  bool self_collide = true, torn = false;
   double air_density = 1.225;
   environment::Wind wind{};
   environment::WindPatch beyond{};
 
-  std::vector<math::Vec3d> position;
-  std::vector<Vec3f> velocity;
   std::vector<std::uint32_t> corners;  ///< three a triangle
   std::vector<ClothTriangle> triangles;
   std::vector<ClothPatch> patches;
-  std::vector<float> mass;
-  std::vector<SoftPin> pins;
-  std::vector<int> pin_of;  ///< by vertex, −1: free
   std::vector<math::Vec3d> pin_impulse;
-  std::vector<int> pinned;  ///< vertex of each pin
-  std::vector<SoftTouch> touches;
 
   // What follows from the mesh.
-  SoftMatrix matrix;
   std::vector<ClothTile> tiles;  ///< of triangles, in their order
   std::vector<ClothEdges> edges;
   std::vector<ClothCorners> vertices;  ///< in their order
   std::vector<ClothSide> edge_sides, vertex_sides;
-  float smallest_edge = 0, mean_edge = 0;
+  float smallest_edge = 0;
   float far_share = 0;  ///< 1/s²: greatest sum of a vertex's links to those beyond its triangles, by its mass
 
   std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
@@ -64,17 +53,14 @@ struct ClothState {
   std::vector<FoldTriangles> fold_triangles;
 
   // Of a step.
-  SoftSolver solver;
-  SoftObstacles obstacles;
   AlignedFloats records, rows;       ///< by vertex: cloth_record and cloth_row floats
   std::vector<ClothStrain> strains;  ///< by triangle, those that fill the last tile, and one that is none
   std::vector<ClothPair> pairs;
   std::vector<SoftVector> fold_records;  ///< by vertex: place from the first, velocity
   std::vector<FoldHit> fold_hits;
   std::vector<std::uint8_t> tangled;  ///< by vertex: where folds cross
-  math::Vec3d wind_force{}, wind_impulse{};
+  math::Vec3d wind_force{};
   double greatest_tension = 0;
-  int iterations = 0;
   double last_step = 0;  ///< s
 
   core::Status set_mesh(std::span<const math::Vec3d> rest, math::Vec3d warp);
@@ -83,12 +69,10 @@ struct ClothState {
   void tile_sides();
   void connect();  ///< matrix and incidences, after the mesh changed
 
-  void step(rigid::World3& world, double dt);
   ClothLaw law() const;                   ///< without the weight
   void stretch();                         ///< triangles: strains, stresses, wind
   void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
   void hold(float h);
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
   void keep_apart(float h);  ///< folds
   void tile_folds();
   void find_fold_pairs(float h, float apart);
@@ -96,6 +80,12 @@ struct ClothState {
   /// the vertices of both as tangled.
   bool tangle(std::uint32_t vertex, std::uint32_t triangle);
   void tear();
+
+  std::span<const std::uint32_t> faces() const override { return corners; }
+  void begin_step(rigid::World3& world, double dt) override;
+  void begin_substep(float h, Vec3f gravity) override;
+  void end_substep(float h) override;
+  void end_step(rigid::World3& world, double dt) override;
 };
 
 }  // namespace carom::particles::detail

@@ -10,7 +10,6 @@ using math::Vec3d;
 
 namespace {
 constexpr int cloth_chunk = 128;
-core::SerialScheduler cloth_serial;
 }  // namespace
 
 ClothLaw ClothState::law() const {
@@ -29,9 +28,8 @@ ClothLaw ClothState::law() const {
 }
 
 void ClothState::stretch() {
-  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
   // A place is told in two floats, so that differences far from the first vertex are as exact as near it.
-  tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
+  tasks().parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
     for (std::size_t i = std::size_t(from); i < std::size_t(to); ++i) {
       const Vec3d place = position[i] - position[0];
       const Vec3f high(place), low(place - Vec3d(high));
@@ -42,7 +40,7 @@ void ClothState::stretch() {
   const ClothLaw law = this->law();
   const bool same = wind.profile == environment::WindProfile::uniform && beyond.nodes().empty();
   const Vec3f everywhere(wind.velocity);
-  tasks.parallel_for(int(tiles.size()), cloth_chunk / cloth_lanes, [&](int from, int to, int) {
+  tasks().parallel_for(int(tiles.size()), cloth_chunk / cloth_lanes, [&](int from, int to, int) {
     for (int k = from; k < to; ++k) {
       ClothTile& tile = tiles[std::size_t(k)];
       for (std::size_t lane = 0; lane < cloth_lanes; ++lane) {
@@ -67,13 +65,12 @@ void ClothState::assemble(float h, Vec3f gravity) {
   // Half of what is stable for any mesh: of the eigenvalues of the links beyond triangles, at most twice `far_share`,
   // the weight must stay below 1.
   matrix.far_ahead = law.weight * far_share < 0.25f;
-  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
   const SoftKernels& kernels = solver.kernels();
   float* const blocks = reinterpret_cast<float*>(matrix.blocks.data());
-  tasks.parallel_for(int(edges.size()), cloth_chunk / cloth_lanes, [&](int from, int to, int) {
+  tasks().parallel_for(int(edges.size()), cloth_chunk / cloth_lanes, [&](int from, int to, int) {
     kernels.join_edges(edges.data(), from, to, edge_sides.data(), strains.data(), law, blocks);
   });
-  tasks.parallel_for(int(vertices.size()), cloth_chunk / cloth_lanes, [&](int first, int last, int) {
+  tasks().parallel_for(int(vertices.size()), cloth_chunk / cloth_lanes, [&](int first, int last, int) {
     kernels.join_corners(vertices.data(), first, last, vertex_sides.data(), strains.data(), law, blocks, rows.data());
     const std::size_t end = std::min(position.size(), std::size_t(last) * cloth_lanes);
     for (std::size_t i = std::size_t(first) * cloth_lanes; i < end; ++i) {
@@ -89,7 +86,7 @@ void ClothState::assemble(float h, Vec3f gravity) {
       solver.right[i] = h * force + (h * mass[i]) * gravity;
     }
   });
-  solver.begin(matrix, velocity, tasks);
+  solver.begin(matrix, velocity, tasks());
 }
 
 void ClothState::hold(float h) {
@@ -98,9 +95,8 @@ void ClothState::hold(float h) {
     for (SoftTouch& touch : touches) touch = {};
     return;
   }
-  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
   const double radius = fabric.thickness;
-  tasks.parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
+  tasks().parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
       SoftTouch& touch = touches[i];
@@ -117,40 +113,36 @@ void ClothState::hold(float h) {
   });
 }
 
-void ClothState::step(rigid::World3& world, double dt) {
-  const float h = float(dt / substeps);
+void ClothState::begin_step(rigid::World3& world, double dt) {
   last_step = dt;
-  const Vec3f gravity = world.definition().gravity;
-  core::TaskScheduler& tasks = scheduler ? *scheduler : cloth_serial;
-  const core::ParallelRegion region(tasks);
-  obstacles.clear();
-  place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
-  pin_impulse.assign(pins.size(), Vec3d{});
-  if (collide) gather_near(fabric.thickness, dt, world, filter, pins, position, velocity, obstacles);
-  obstacles.find_pulls(world, dt);
-  iterations = 0;
   greatest_tension = 0;
-  wind_impulse = {};
-  for (int s = 0; s < substeps; ++s) {
-    stretch();
-    assemble(h, gravity);
-    obstacles.enter(h, solver);
-    hold(h);
-    iterations += solve_touches(touching(), matrix, h, obstacles, solver, tasks);
-    wind_force = {};
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const ClothStrain& strain = strains[t];
-      wind_force += 3.0 * Vec3d(strain.wind[0], strain.wind[1], strain.wind[2]);
-      greatest_tension = math::max(greatest_tension, double(strain.tension()));
-    }
-    react_touches(touching(), h, obstacles, solver, pin_impulse.data());
-    for (std::size_t i = 0; i < position.size(); ++i) velocity[i] += solver.change[i].vector();
-    if (self_collide) keep_apart(h);
-    for (std::size_t i = 0; i < position.size(); ++i) position[i] += Vec3d(h * velocity[i]);
-    obstacles.advance(double(h), solver);
+  SoftThing::begin_step(world, dt);
+  pin_impulse.assign(pins.size(), Vec3d{});
+}
+
+void ClothState::begin_substep(float h, Vec3f gravity) {
+  stretch();
+  assemble(h, gravity);
+  obstacles.enter(h, solver);
+  hold(h);
+}
+
+void ClothState::end_substep(float h) {
+  wind_force = {};
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const ClothStrain& strain = strains[t];
+    wind_force += 3.0 * Vec3d(strain.wind[0], strain.wind[1], strain.wind[2]);
+    greatest_tension = math::max(greatest_tension, double(strain.tension()));
   }
+  react_touches(touching(), h, obstacles, solver, pin_impulse.data());
+  for (std::size_t i = 0; i < position.size(); ++i) velocity[i] += solver.change[i].vector();
+  if (self_collide) keep_apart(h);
+  for (std::size_t i = 0; i < position.size(); ++i) position[i] += Vec3d(h * velocity[i]);
+}
+
+void ClothState::end_step(rigid::World3& world, double dt) {
   tear();
-  obstacles.hand_over(world, dt, double(length(gravity)));
+  SoftThing::end_step(world, dt);
 }
 
 }  // namespace carom::particles::detail

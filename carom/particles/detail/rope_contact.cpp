@@ -1,5 +1,6 @@
 // Particles of ropes against the shapes of the world; segments between them are in rope_edges.cpp.
 #include "carom/math/elementary.h"
+#include "carom/particles/detail/checks.h"
 #include "carom/particles/detail/rope_solver.h"
 #include "carom/particles/detail/soft_obstacles.h"
 
@@ -37,11 +38,7 @@ void RopeSolver::find_contacts(Rope& rope) {
     const auto definition = world.shape_definition(id);
     const auto owner = world.body_of(id);
     if (!definition || !owner || definition->sensor) continue;
-    const rigid::Filter& other = definition->filter;
-    const bool same_group = other.group != 0 && other.group == rope.filter.group;
-    if (same_group ? other.group < 0
-                   : (other.category & rope.filter.mask) == 0 || (rope.filter.category & other.mask) == 0)
-      continue;
+    if (!filters_meet(definition->filter, rope.filter)) continue;
     bool ignored = false;
     for (const RopeGrip& grip : rope.grips) ignored |= grip.attachment.body == *owner && !grip.attachment.collide;
     if (ignored) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "carom/math/elementary.h"
+#include "carom/particles/detail/checks.h"
 #include "carom/particles/detail/rope_solver.h"
 
 namespace carom::particles::detail {
@@ -24,11 +25,6 @@ void nearest_shares(Vec3d a, Vec3d u, Vec3d b, Vec3d v, double (&share)[2]) {
   s = math::clamp((uv * t - uw) / uu, 0.0, 1.0);
   share[0] = s;
   share[1] = math::clamp((uv * s + vw) / vv, 0.0, 1.0);
-}
-
-bool filters_meet(const rigid::Filter& a, const rigid::Filter& b) {
-  if (a.group != 0 && a.group == b.group) return a.group > 0;
-  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
 double largest(const Mat3d& m) {

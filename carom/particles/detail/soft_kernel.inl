@@ -176,7 +176,8 @@ double down(const SoftSweep& sweep) {
     for (int lane = 0; lane < soft_lanes; lane += width) {
       const V direction = load(sweep.direction + std::ptrdiff_t(tile) * soft_vector, lane);
       const V back = load(sweep.back + std::ptrdiff_t(tile) * soft_vector, lane);
-      const V v = direction - back - below(sweep, tile, lane);
+      V v = direction - back - below(sweep, tile, lane);
+      if (sweep.answer != nullptr) v = v + load(sweep.answer + std::ptrdiff_t(tile) * soft_vector, lane);
       write_records(v, sweep.forward + 4 * (std::ptrdiff_t(tile) * soft_lanes + lane));
       curvature.add(dot(direction, back + v), lane);
     }

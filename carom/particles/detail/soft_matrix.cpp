@@ -75,13 +75,15 @@ void SoftMatrix::build(int vertices, std::span<const std::uint32_t> elements, in
 /// each tile takes the rows that have waited longest since all that they hang on was in earlier tiles.
 void SoftMatrix::find_tiles() {
   const std::size_t n = diagonal_.size();
-  std::vector<int> waits(n), ready, place(n);
+  std::vector<int> waits(n), ready;
   ready.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {
     waits[i] = diagonal_[i] - first_[i] + far_middle_[i] - far_first_[i];
     if (waits[i] == 0) ready.push_back(int(i));
   }
   tiles_ = {};
+  std::vector<int>& place = tiles_.place;
+  place.resize(n);
   for (std::size_t taken = 0; taken < n;) {
     const std::size_t end = math::min(ready.size(), taken + soft_lanes);
     for (std::size_t k = taken; k < end; ++k) {

@@ -184,6 +184,7 @@ class SoftSolver {
   std::vector<SoftVector> right;   ///< b, N·s
   std::vector<SoftVector> change;  ///< x, m/s: at the start the held parts and a guess of the free ones
   std::vector<SoftVector> guess;   ///< x of the last solve
+  std::vector<Mat3f> met;          ///< by particle, its own part of what contacts with other systems add
   std::vector<SoftHold> holds;
   std::vector<SoftVector> reaction;  ///< (D + K) x − b of what is held
   std::vector<SoftMover> movers;
@@ -195,11 +196,26 @@ class SoftSolver {
   /// Takes the forces at the end of the step, −K v, to the right-hand side, and starts from the last solution, nothing
   /// held. What is common to all velocities drops out of K v exactly.
   void begin(const SoftMatrix& matrix, const std::vector<Vec3f>& velocity, core::TaskScheduler& scheduler);
-  /// Iterations used. `tolerance` is relative to the right-hand side, or to that of changes of `least` m/s if it is
-  /// less.
-  /// `again`: of the same system with other holds.
-  int solve(const SoftMatrix& matrix, double tolerance, float least, int most, bool again,
-            core::TaskScheduler& scheduler);
+  // The parts of `solve_system`, in their order.
+  /// `again`: of the same system with other holds. Returns the square of the right-hand side; adds that of changes of
+  /// `least` m/s to `small`.
+  double open(const SoftMatrix& matrix, float least, bool again, double& small);
+  void find_residual(const SoftMatrix& matrix, bool again, core::TaskScheduler& scheduler);
+  void add_residual(std::uint32_t node, Vec3f impulse) { residual_[node] += impulse; }
+  double begin_iterations(const SoftMatrix& matrix);  ///< the residual's square
+  void go_up(const SoftMatrix& matrix, bool first, float keep);
+  Vec3f back_at(const SoftMatrix& matrix, std::uint32_t node) const;  ///< the motion that the way up has for it
+  /// What contacts with other systems answer to that motion, N·s, until it is cleared; `meets` says whether there is
+  /// any.
+  void add_answer(const SoftMatrix& matrix, std::uint32_t node, Vec3f impulse);
+  void clear_answer(const SoftMatrix& matrix, std::uint32_t node);
+  double go_down(const SoftMatrix& matrix);              ///< curvature
+  double go_on(const SoftMatrix& matrix, double along);  ///< the residual's square
+  void end_iterations(const SoftMatrix& matrix);
+  void find_reactions(const SoftMatrix& matrix);
+  bool meets = false;
+  bool remade = false;  ///< blocks of the matrix have changed since the last solve
+
   /// After the last solve of a substep: what it left undone gives no momentum.
   void finish(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
 
@@ -221,12 +237,12 @@ class SoftSolver {
   void scale_guess(const SoftMatrix& matrix, core::TaskScheduler& scheduler);
   double start_sweep(const SoftMatrix& matrix, const std::vector<SoftVector>& from);
   void unscale(const SoftMatrix& matrix, std::vector<SoftVector>& out) const;
-  void find_reactions(const SoftMatrix& matrix);
+  std::size_t bodies() const { return ties.empty() ? 0 : movers.size(); }
 
   const SoftKernels* kernels_ = &soft_kernels(4);
   std::vector<SoftVector> residual_, free_, held_, image_;  // by vertex
   std::vector<SoftVector> forward_, from_;                  ///< scaled, by place; what no one hangs on after the last
-  AlignedFloats swept_, direction_, back_, sum_;            ///< scaled, by tile
+  AlignedFloats swept_, direction_, back_, sum_, answer_;   ///< scaled, by tile
   std::vector<SoftVector> field_, pull_;                    ///< of the particles, by the bodies' motion
   std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_;
   std::vector<SoftBlock> scale_;      ///< W by place, with W Wᵀ the inverse of the diagonal within what is free

@@ -2,6 +2,7 @@
 
 #include "carom/geometry/mass_properties.h"
 #include "carom/math/elementary.h"
+#include "carom/particles/detail/checks.h"
 
 namespace carom::particles::detail {
 
@@ -58,10 +59,7 @@ void SoftObstacles::gather(rigid::World3& world, const geometry::Bounds3d& bound
     const auto definition = world.shape_definition(id);
     const auto owner = world.body_of(id);
     if (!definition || !owner || definition->sensor) continue;
-    const rigid::Filter& other = definition->filter;
-    const bool same_group = other.group != 0 && other.group == filter.group;
-    if (same_group ? other.group < 0 : (other.category & filter.mask) == 0 || (filter.category & other.mask) == 0)
-      continue;
+    if (!filters_meet(definition->filter, filter)) continue;
     bool pinned = false;
     for (const SoftPin& pin : pins) pinned |= pin.body == *owner;
     if (pinned) continue;

@@ -20,9 +20,10 @@ void SoftSolver::resize(const SoftMatrix& matrix) {
   for (auto* list : {&right, &change, &guess, &reaction, &residual_, &free_, &held_, &image_, &field_, &pull_})
     list->resize(n);
   diagonal.resize(n);
+  met.resize(n);
   holds.resize(n);
   for (auto* list : {&forward_, &from_}) list->assign((tiles + 1) * soft_lanes, SoftVector{});
-  for (auto* list : {&swept_, &direction_, &back_, &sum_}) *list = AlignedFloats(tiles * soft_vector);
+  for (auto* list : {&swept_, &direction_, &back_, &sum_, &answer_}) *list = AlignedFloats(tiles * soft_vector);
   scale_.assign((tiles + 1) * soft_lanes, SoftBlock{});
   scale_tiles_ = AlignedFloats(tiles * soft_block);
   lower_ = AlignedFloats(matrix.tiles_.column.size() * 9);
@@ -86,6 +87,7 @@ SoftSweep SoftSolver::sweep(const SoftMatrix& matrix) {
   sweep.back = back_.data();
   sweep.sum = sum_.data();
   sweep.forward = reinterpret_cast<float*>(forward_.data());
+  sweep.answer = meets ? answer_.data() : nullptr;
   return sweep;
 }
 
@@ -98,8 +100,9 @@ void SoftSolver::prepare(const SoftMatrix& matrix, bool again) {
     rescaled_[p] = !again || !(holds[i] == scaled_for_[i]);
     if (rescaled_[p] == 0) continue;
     scaled_for_[i] = holds[i];
-    const SoftBlock scale = scale_[p] =
-        scale_of(diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal_[i])].matrix(), holds[i]);
+    Mat3f own = diagonal[i] + matrix.blocks[std::size_t(matrix.diagonal_[i])].matrix();
+    if (meets) own = own + met[i];
+    const SoftBlock scale = scale_[p] = scale_of(own, holds[i]);
     float* const out = &scale_tiles_[p / soft_lanes * soft_block + p % soft_lanes];
     for (int k = 0; k < 3; ++k) {
       out[k * soft_lanes] = scale.x[k];
@@ -174,15 +177,11 @@ void SoftSolver::unscale(const SoftMatrix& matrix, std::vector<SoftVector>& out)
     if (row[p] >= 0) out[std::size_t(row[p])] = scale_[p].times(forward_[p].v);
 }
 
-int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, int most, bool again,
-                      core::TaskScheduler& scheduler) {
-  const std::size_t bodies = ties.empty() ? 0 : movers.size();
+double SoftSolver::open(const SoftMatrix& matrix, float least, bool again, double& small) {
   const std::vector<int>& row = matrix.tiles_.row;
-  prepare(matrix, again);
+  prepare(matrix, again && !remade);
+  remade = false;
   prepare_movers(matrix);
-  // Against the right-hand side, not the first residual: a good guess needs fewer iterations. At rest nothing is left
-  // to be relative to: a change of `least` for every particle is what does not matter.
-  double small = 0;
   for (std::size_t p = 0; p < row.size(); ++p) {
     if (row[p] < 0) continue;
     const SoftVector scaled =
@@ -190,65 +189,90 @@ int SoftSolver::solve(const SoftMatrix& matrix, double tolerance, float least, i
     small += double(dot(scaled, scaled));
   }
   double scale = start_sweep(matrix, right);
-  if (bodies > 0) {
+  if (bodies() > 0) {
     right_of_movers(mover_residual_);
     scale += start_movers(matrix);
   }
-  scale = math::max(scale, small);
+  return scale;
+}
 
-  if (again) {
-    matrix.multiply(change.data(), image_.data(), scheduler);
-    for (std::size_t i = 0; i < right.size(); ++i)
-      residual_[i].v = right[i].v - image_[i].v - lanes_of(diagonal[i] * change[i].vector());
-  } else {
-    scale_guess(matrix, scheduler);
-  }
-  if (bodies > 0) residual_of_movers(mover_residual_);
+void SoftSolver::find_residual(const SoftMatrix& matrix, bool again, core::TaskScheduler& scheduler) {
+  if (!again) return scale_guess(matrix, scheduler);
+  matrix.multiply(change.data(), image_.data(), scheduler);
+  for (std::size_t i = 0; i < right.size(); ++i)
+    residual_[i].v = right[i].v - image_[i].v - lanes_of(diagonal[i] * change[i].vector());
+}
+
+double SoftSolver::begin_iterations(const SoftMatrix& matrix) {
+  if (bodies() > 0) residual_of_movers(mover_residual_);
   double size = start_sweep(matrix, residual_);
-  if (bodies > 0) size += start_movers(matrix);
+  if (bodies() > 0) size += start_movers(matrix);
   for (SoftVector& v : forward_) v = {};
   for (auto* list : {&direction_, &sum_}) std::fill_n(list->data(), list->size(), 0.0f);
-  const SoftSweep sweeps = sweep(matrix);
-  int iterations = 0;
-  float keep = 0;
-  while (iterations < most && size > tolerance * tolerance * scale && size > 1e-30) {
-    // q ← r + β q, t = (1 + Lᵀ)⁻¹ q
-    if (bodies > 0) {
-      for (std::size_t b = 0; b < bodies; ++b)
-        mover_direction_[b] =
-            iterations == 0 ? mover_residual_[b] : mover_residual_[b] + double(keep) * mover_direction_[b];
-      sweep_up(matrix, mover_direction_, mover_back_);
-      for (std::size_t p = 0; p < row.size(); ++p)
-        if (row[p] >= 0) forward_[p] = scale_[p].transposed_times(pull_[std::size_t(row[p])].v);
-    }
-    kernels_->up(sweeps, keep);
-    // w = t + u, u = (1 + L)⁻¹ (q − t)
-    double curvature = kernels_->down(sweeps);
-    if (bodies > 0) curvature += finish_movers(matrix);
-    ++iterations;
-    if (!(curvature > 0)) break;
-    const double along = size / curvature;
-    double next = kernels_->go(sweeps, float(along));
-    for (std::size_t b = 0; b < bodies; ++b) {
-      if (movers[b].from == movers[b].to) continue;
-      movers[b].change = movers[b].change + along * mover_back_[b];
-      mover_residual_[b] = mover_residual_[b] - along * mover_image_[b];
-      next += dot(mover_residual_[b], times(movers[b].full, mover_residual_[b]));
-    }
-    keep = float(next / size);
-    size = next;
+  return size;
+}
+
+// q ← r + β q, t = (1 + Lᵀ)⁻¹ q
+void SoftSolver::go_up(const SoftMatrix& matrix, bool first, float keep) {
+  if (bodies() > 0) {
+    const std::vector<int>& row = matrix.tiles_.row;
+    for (std::size_t b = 0; b < bodies(); ++b)
+      mover_direction_[b] = first ? mover_residual_[b] : mover_residual_[b] + double(keep) * mover_direction_[b];
+    sweep_up(matrix, mover_direction_, mover_back_);
+    for (std::size_t p = 0; p < row.size(); ++p)
+      if (row[p] >= 0) forward_[p] = scale_[p].transposed_times(pull_[std::size_t(row[p])].v);
   }
+  kernels_->up(sweep(matrix), keep);
+}
+
+// w = t + u, u = (1 + L)⁻¹ (q − t + what contacts with other systems answer to t)
+double SoftSolver::go_down(const SoftMatrix& matrix) {
+  double curvature = kernels_->down(sweep(matrix));
+  if (bodies() > 0) curvature += finish_movers(matrix);
+  return curvature;
+}
+
+double SoftSolver::go_on(const SoftMatrix& matrix, double along) {
+  double next = kernels_->go(sweep(matrix), float(along));
+  for (std::size_t b = 0; b < bodies(); ++b) {
+    if (movers[b].from == movers[b].to) continue;
+    movers[b].change = movers[b].change + along * mover_back_[b];
+    mover_residual_[b] = mover_residual_[b] - along * mover_image_[b];
+    next += dot(mover_residual_[b], times(movers[b].full, mover_residual_[b]));
+  }
+  return next;
+}
+
+void SoftSolver::end_iterations(const SoftMatrix& matrix) {
+  const std::vector<int>& row = matrix.tiles_.row;
   for (std::size_t p = 0; p < row.size(); ++p) {
     if (row[p] < 0) continue;
     const float* const sum = &sum_[p / soft_lanes * soft_vector + p % soft_lanes];
     change[std::size_t(row[p])].v += scale_[p].times(SoftBlock::Lanes{sum[0], sum[soft_lanes], sum[2 * soft_lanes], 0});
   }
-  if (bodies > 0)
+  if (bodies() > 0)
     for (const SoftTie& tie : ties)
       change[std::size_t(tie.node)] +=
           carried(tie, movers[std::size_t(tie.body)].change - mover_start_[std::size_t(tie.body)]);
-  find_reactions(matrix);
-  return iterations;
+}
+
+Vec3f SoftSolver::back_at(const SoftMatrix& matrix, std::uint32_t node) const {
+  const std::size_t p = std::size_t(matrix.tiles_.place[node]);
+  const float* const t = back_.data() + p / soft_lanes * soft_vector + p % soft_lanes;
+  return SoftVector(scale_[p].times(SoftBlock::Lanes{t[0], t[soft_lanes], t[2 * soft_lanes], 0}));
+}
+
+void SoftSolver::add_answer(const SoftMatrix& matrix, std::uint32_t node, Vec3f impulse) {
+  const std::size_t p = std::size_t(matrix.tiles_.place[node]);
+  float* const out = &answer_[p / soft_lanes * soft_vector + p % soft_lanes];
+  const Vec3f scaled = SoftVector(scale_[p].transposed_times(lanes_of(impulse)));
+  for (int k = 0; k < 3; ++k) out[k * soft_lanes] += scaled[k];
+}
+
+void SoftSolver::clear_answer(const SoftMatrix& matrix, std::uint32_t node) {
+  const std::size_t p = std::size_t(matrix.tiles_.place[node]);
+  float* const out = &answer_[p / soft_lanes * soft_vector + p % soft_lanes];
+  for (int k = 0; k < 3; ++k) out[k * soft_lanes] = 0;
 }
 
 /// What the holds had to give.
@@ -265,29 +289,28 @@ void SoftSolver::find_reactions(const SoftMatrix& matrix) {
 /// What is left of the residual would be momentum out of nothing: where nothing is pinned, all that is free takes it as
 /// a shift of the whole, which the elements do not feel.
 void SoftSolver::finish(const SoftMatrix& matrix, core::TaskScheduler& scheduler) {
-  const std::size_t bodies = ties.empty() ? 0 : movers.size();
   bool pinned = false;
   for (std::size_t i = 0; i < right.size(); ++i) pinned |= holds[i].rank == 3;
   if (!pinned) matrix.multiply(change.data(), image_.data(), scheduler);
   for (int pass = 0; pass < 3 && !pinned; ++pass) {
-    Vec3f lost{};
-    float all = 0;
+    Vec3d lost{};
+    double all = 0;
     for (std::size_t i = 0; i < right.size(); ++i) {
       reaction[i] = right[i].v - image_[i].v - lanes_of(diagonal[i] * change[i].vector());
-      all += (1.0f / 3) * trace(diagonal[i]);
+      all += double((1.0f / 3) * trace(diagonal[i]));
     }
-    if (bodies > 0)  // which go along with the shift, so that nothing rubs more
+    if (bodies() > 0)  // which go along with the shift, so that nothing rubs more
       for (const SoftTie& tie : ties) {
         if (!(tie.grip > 0)) continue;
-        all -= (2.0f / 3) * tie.grip;
+        all -= double((2.0f / 3) * tie.grip);
         const Vec3f body(movers[std::size_t(tie.body)].change.at(tie.arm));
         reaction[std::size_t(tie.node)] += tie.grip * (body - dot(tie.normal, body) * tie.normal);
       }
-    for (std::size_t i = 0; i < right.size(); ++i) lost += holds[i].filter(reaction[i]);
+    for (std::size_t i = 0; i < right.size(); ++i) lost += Vec3d(holds[i].filter(reaction[i]));
     if (!(all > 0)) break;
-    const Vec3f shift = lost * (1 / all);
+    const Vec3f shift(lost / all);
     for (SoftVector& x : change) x += shift;
-    for (std::size_t b = 0; b < bodies; ++b)
+    for (std::size_t b = 0; b < bodies(); ++b)
       if (movers[b].from != movers[b].to) movers[b].change.linear += Vec3d(shift);
   }
   if (!pinned) find_reactions(matrix);

@@ -1,7 +1,7 @@
 // What a soft body keeps, and the passes of its step.
 #pragma once
 
-#include "carom/particles/detail/soft_touch.h"
+#include "carom/particles/detail/soft_thing.h"
 #include "carom/particles/soft_body.h"
 
 namespace carom::particles::detail {
@@ -11,40 +11,61 @@ struct SoftElement {
   Vec3f gradient[4] = {};  ///< of the corners' shares, 1/m
   Vec3f rest[4] = {};      ///< m, about the first corner
   int slots[16] = {};
-  Mat3f turn{};         ///< of this substep; kept as the next one's first guess
-  Vec3f force[4] = {};  ///< N on the corners
+  bool crushed = false;  ///< its height is held
+  float thick = 0;       ///< at most its least height, as a share of that at rest
+  Mat3f turn{};          ///< of this substep; kept as the next one's first guess
+  Vec3f force[4] = {};   ///< N on the corners
 };
 
-struct SoftState {
+/// An element crushed to its limit: the height of a corner above the opposite face is held from below, as a contact is.
+/// An elastic law, however stiff, would give way to a heavy load and let the element turn inside out.
+struct SoftCrush {
+  Vec3f normal{};        ///< from the face to the corner
+  float weight[4] = {};  ///< of the corners' velocities along it in the height's rate; their sum is 0
+  float gap = 0;         ///< m, above the limit
+  float stiff = 0;       ///< kg: impulse for what the rate lacks
+  float wanted = 0;      ///< m/s, where it is held
+  float before = 0;      ///< m/s, the rate before the solve
+
+  /// Its part of the block of two corners, times `sign`.
+  void add_block(int a, int b, float sign, SoftBlock& block) const {
+    const Vec3f along = (sign * stiff * weight[a]) * normal, way = weight[b] * normal;
+    block.add(way.x * along, way.y * along, way.z * along);
+  }
+};
+
+struct SoftState final : SoftThing {
   SoftMaterial material{};
-  bool collide = true;
-  rigid::Filter filter{};
-  core::TaskScheduler* scheduler = nullptr;
-  int substeps = 2, iterations = 0;
   double pressure = 0;
 
-  std::vector<math::Vec3d> position;
-  std::vector<Vec3f> velocity, load;
-  std::vector<float> mass;
+  std::vector<Vec3f> load;
   std::vector<std::uint32_t> corners;
   std::vector<SoftElement> elements;
+  std::vector<SoftCrush> crushes;  ///< by element
+  float steepest = 0;  ///< 1/m: the greatest rate of an element's deformation for velocities that differ by 1 m/s
+  float slimmest = 0;  ///< the least `thick`
+  float way = 0;       ///< of this substep: the rate times it, at most, before the solve
   std::vector<std::uint32_t> surface;
-  std::vector<std::uint8_t> outside;  ///< by vertex: on the surface
-  std::vector<SoftPin> pins;
-  std::vector<int> pinned, pin_of;
-  std::vector<SoftTouch> touches;
-  SoftMatrix matrix;
+  std::vector<int> behind;       ///< by face of the surface: its element
   std::vector<int> first, list;  ///< by vertex: 4·element + corner
-  SoftSolver solver;
-  SoftObstacles obstacles;
 
   core::Status set_mesh();
   void find_surface();
-  void step(rigid::World3& world, double dt);
-  void strain();
+  void strain(float h);
+  Mat3f deformation(std::size_t element) const;
+  Mat3f rate(std::size_t element, const SoftVector* change) const;  ///< `change`: of the velocities, or null
+  void find_crush(std::size_t element, const Mat3f& f, float h);
+  void foresee_crush(std::size_t element, const Mat3f& f, float h, const SoftVector* change);
+  float greatest_way(float h, const SoftVector* change) const;
+  void enter_crush(std::size_t element, float sign);
+  double elastic_energy() const;
   void assemble(float h, Vec3f gravity);
   void hold(float h);
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
+
+  std::span<const std::uint32_t> faces() const override { return surface; }
+  void begin_substep(float h, Vec3f gravity) override;
+  bool revise(float h) override;
+  void end_substep(float h) override;
 };
 
 }  // namespace carom::particles::detail

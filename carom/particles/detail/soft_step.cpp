@@ -8,7 +8,6 @@ using math::Vec3d;
 
 namespace {
 constexpr int soft_chunk = 64;
-core::SerialScheduler soft_serial;
 
 /// The rotation nearest to f, from a guess: turns that bring the columns together (Müller, Bender, Chentanez, Macklin,
 /// "A robust method to extract the rotational part of deformations", 2016). Works for crushed and inverted elements.
@@ -36,19 +35,14 @@ Mat3f nearest_turn(const Mat3f& f, const Mat3f& guess) {
 
 }  // namespace
 
-void SoftState::strain() {
+void SoftState::strain(float h) {
   const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
   const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
-  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
-  tasks.parallel_for(int(elements.size()), soft_chunk, [&](int from, int to, int) {
+  tasks().parallel_for(int(elements.size()), soft_chunk, [&](int from, int to, int) {
     for (int k = from; k < to; ++k) {
       SoftElement& element = elements[std::size_t(k)];
-      const std::uint32_t* c = &corners[4 * std::size_t(k)];
-      Mat3f f = Mat3f::zero();
-      for (int a = 1; a < 4; ++a) {
-        const Vec3f d(position[c[a]] - position[c[0]]);
-        f = f + math::outer(d, element.gradient[a]);
-      }
+      const Mat3f f = deformation(std::size_t(k));
+      find_crush(std::size_t(k), f, h);
       element.turn = nearest_turn(f, element.turn);
       const Mat3f s = transpose(element.turn) * f;
       const Mat3f strain = 0.5f * (s + transpose(s)) - Mat3f::identity();
@@ -59,20 +53,37 @@ void SoftState::strain() {
   });
 }
 
+double SoftState::elastic_energy() const {
+  const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
+  const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
+  double sum = 0;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    const Mat3f f = deformation(k), s = transpose(nearest_turn(f, elements[k].turn)) * f;
+    const Mat3f strain = 0.5f * (s + transpose(s)) - Mat3f::identity();
+    const float squares = dot(strain.cx, strain.cx) + dot(strain.cy, strain.cy) + dot(strain.cz, strain.cz);
+    sum += double(elements[k].volume) * double(mu * squares + 0.5f * lambda * math::square(trace(strain)));
+  }
+  return sum;
+}
+
 void SoftState::assemble(float h, Vec3f gravity) {
   const float e = float(material.youngs_modulus), nu = float(material.poisson_ratio);
   const float lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
   const float weight = h * h + h * float(material.damping);
-  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
-  tasks.parallel_for(int(position.size()), soft_chunk, [&](int from, int to, int) {
+  tasks().parallel_for(int(position.size()), soft_chunk, [&](int from, int to, int) {
     for (int row = from; row < to; ++row) {
       const std::size_t i = std::size_t(row);
       for (int k = matrix.first(row); k < matrix.first(row + 1); ++k) matrix.blocks[std::size_t(k)] = SoftBlock{};
-      Vec3f force = load[i] + mass[i] * gravity;
+      Vec3f force = load[i] + mass[i] * gravity, held{};
       for (int k = first[i]; k < first[i + 1]; ++k) {
         const int place = list[std::size_t(k)], a = place % 4;
         const SoftElement& element = elements[std::size_t(place / 4)];
         force += element.force[a];
+        if (element.crushed) {
+          const SoftCrush& crush = crushes[std::size_t(place / 4)];
+          held += (crush.stiff * crush.wanted * crush.weight[a]) * crush.normal;
+          for (int b = 0; b < 4; ++b) crush.add_block(a, b, 1, matrix.blocks[std::size_t(element.slots[4 * a + b])]);
+        }
         // K_ab = V R (λ g_a g_bᵀ + μ (g_b g_aᵀ + g_a·g_b 1)) Rᵀ, with the gradients turned.
         const Vec3f ga = element.turn * element.gradient[a];
         const float s = weight * element.volume;
@@ -85,7 +96,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
         }
       }
       solver.diagonal[i] = Mat3f::diagonal({mass[i], mass[i], mass[i]});
-      solver.right[i] = h * force;
+      solver.right[i] = h * force + held;
     }
   });
   if (pressure != 0)
@@ -95,7 +106,7 @@ void SoftState::assemble(float h, Vec3f gravity) {
           (h * float(pressure) / 6) * cross(Vec3f(position[surface[k + 1]] - a), Vec3f(position[surface[k + 2]] - a));
       for (std::size_t j = 0; j < 3; ++j) solver.right[surface[k + j]] += push;
     }
-  solver.begin(matrix, velocity, tasks);
+  solver.begin(matrix, velocity, tasks());
 }
 
 void SoftState::hold(float h) {
@@ -114,30 +125,23 @@ void SoftState::hold(float h) {
   }
 }
 
-void SoftState::step(rigid::World3& world, double dt) {
-  const float h = float(dt / substeps);
-  const Vec3f gravity = world.definition().gravity;
-  core::TaskScheduler& tasks = scheduler ? *scheduler : soft_serial;
-  const core::ParallelRegion region(tasks);
-  obstacles.clear();
-  place_pins(pins, pinned, pin_of, world, obstacles, position, velocity);
-  if (collide) gather_near(material.skin, dt, world, filter, pins, position, velocity, obstacles);
-  obstacles.find_pulls(world, dt);
-  iterations = 0;
-  for (int s = 0; s < substeps; ++s) {
-    strain();
-    assemble(h, gravity);
-    obstacles.enter(h, solver);
-    hold(h);
-    iterations += solve_touches(touching(), matrix, h, obstacles, solver, tasks);
-    react_touches(touching(), h, obstacles, solver, nullptr);
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      velocity[i] += solver.change[i].vector();
-      position[i] += Vec3d(h * velocity[i]);
-    }
-    obstacles.advance(double(h), solver);
+void SoftState::begin_substep(float h, Vec3f gravity) {
+  way = greatest_way(h, nullptr);
+  strain(h);
+  slimmest = elements[0].thick;
+  for (const SoftElement& element : elements) slimmest = math::min(slimmest, element.thick);
+  for (std::size_t f = 0; f < behind.size(); ++f) folded[f] = !(elements[std::size_t(behind[f])].thick > 0);
+  assemble(h, gravity);
+  obstacles.enter(h, solver);
+  hold(h);
+}
+
+void SoftState::end_substep(float h) {
+  react_touches(touching(), h, obstacles, solver, nullptr);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    velocity[i] += solver.change[i].vector();
+    position[i] += Vec3d(h * velocity[i]);
   }
-  obstacles.hand_over(world, dt, double(length(gravity)));
 }
 
 }  // namespace carom::particles::detail

@@ -18,6 +18,7 @@ inline constexpr int soft_vector = 3 * soft_lanes;  ///< floats: vectors of a ti
 struct SoftTiles {
   int count = 0;
   std::vector<int> row;     ///< by place; −1: none
+  std::vector<int> place;   ///< by row
   std::vector<int> first;   ///< by tile: first entry below the diagonal; one more than tiles
   std::vector<int> far;     ///< by tile: first entry that is a link
   std::vector<int> column;  ///< by entry and lane: place; the lane's own beyond the last tile where there is none
@@ -33,7 +34,8 @@ struct SoftSweep {
   float* lower = nullptr;        ///< by entry: soft_block floats, Wᵀ K W
   const float* scale = nullptr;  ///< by tile: soft_block floats, W
   float *swept = nullptr, *direction = nullptr, *back = nullptr, *sum = nullptr;
-  float* forward = nullptr;  ///< by place, and sixteen more: four floats each
+  float* forward = nullptr;       ///< by place, and sixteen more: four floats each
+  const float* answer = nullptr;  ///< of contacts with other systems; null: none
 };
 
 /// What the blocks below the diagonal are made from.
@@ -52,7 +54,7 @@ struct SoftKernels {
   double (*start)(const SoftSweep& sweep, const float* from);
   /// direction ← swept + keep direction, back ← (1 + Lᵀ)⁻¹ (direction − what `forward` holds); it is left in disorder.
   void (*up)(const SoftSweep& sweep, float keep);
-  /// forward ← (1 + L)⁻¹ (direction − back); returns direction · (back + forward).
+  /// forward ← (1 + L)⁻¹ (direction − back + answer); returns direction · (back + forward).
   double (*down)(const SoftSweep& sweep);
   /// sum ← sum + stride back, swept ← swept − stride (back + forward), forward ← 0; returns the square of swept.
   double (*go)(const SoftSweep& sweep, float stride);

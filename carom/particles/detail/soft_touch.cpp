@@ -97,20 +97,6 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
   return again;
 }
 
-int solve_touches(const SoftTouching& all, const SoftMatrix& matrix, float h, const SoftObstacles& obstacles,
-                  SoftSolver& solver, core::TaskScheduler& scheduler) {
-  int iterations = 0;
-  for (int round = 0; round < 3; ++round) {
-    tie_touches(all, obstacles, solver);
-    // What a solve leaves undone of a stiff solid's forces would throw a light body that lies on it.
-    const bool bears = !solver.ties.empty();
-    iterations += solver.solve(matrix, bears ? 5e-5 : 2e-3, h * (bears ? 0.1f : 2.0f), 200, round > 0, scheduler);
-    if (round == 2 || !revise_touches(all, h, obstacles, solver)) break;
-  }
-  solver.finish(matrix, scheduler);
-  return iterations;
-}
-
 void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, const SoftSolver& solver,
                    Vec3d* pin_impulse) {
   for (std::size_t k = 0; k < all.pins.size(); ++k) {

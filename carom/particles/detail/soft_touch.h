@@ -39,9 +39,6 @@ void hold_touch(SoftTouch& touch, std::size_t i, math::Vec3d position, Vec3f vel
 void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSolver& solver);
 /// After a solve: lets go of what is pulled, holds what would pass through. True: solve again.
 bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obstacles, SoftSolver& solver);
-/// Solves with contacts that begin and end; iterations.
-int solve_touches(const SoftTouching& all, const SoftMatrix& matrix, float h, const SoftObstacles& obstacles,
-                  SoftSolver& solver, core::TaskScheduler& scheduler);
 /// Hands the bodies what the solution has for them. `pin_impulse`: by pin, may be null.
 void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, const SoftSolver& solver,
                    Vec3d* pin_impulse);
