@@ -41,7 +41,9 @@ void turn_bodies(SolverBody<Dim3>* bodies, const void* lanes, float h) {
   const Lanes<3, W> column[3] = {{{tensor.v[0], tensor.v[1], tensor.v[2]}},
                                  {{tensor.v[1], tensor.v[3], tensor.v[4]}},
                                  {{tensor.v[2], tensor.v[4], tensor.v[5]}}};
-  Lanes<3, W> angle = multiply(w, F::splat(h)), turned_m = m;
+  // Euler's equation gives the angle to the second order.
+  const Lanes<6, W> factor = factorise(tensor);
+  Lanes<3, W> angle = multiply(add(w, multiply(solve_factor(factor, cross(m, w)), half)), F::splat(h)), turned_m = m;
   Turn<W> r = turn_by(angle);
   for (int i = 0; i < 8; ++i) {
     turned_m = turned(conjugated(r), m);
@@ -74,7 +76,7 @@ void turn_bodies(SolverBody<Dim3>* bodies, const void* lanes, float h) {
   r.w = select(found, r.w, plain.w);
   for (int k = 0; k < 3; ++k) r.u.v[k] = select(found, r.u.v[k], plain.u.v[k]);
   const Turn<W> now = product(q, r), total = normalized(product(now, conjugated(start)));
-  Lanes<3, W> spin = turned(now, solve_factor(factorise(tensor), turned(conjugated(r), m)));
+  Lanes<3, W> spin = turned(now, solve_factor(factor, turned(conjugated(r), m)));
   for (int k = 0; k < 3; ++k) spin.v[k] = select(found, spin.v[k], motion.w.v[k]);
   const F velocity[4] = {spin.v[0], spin.v[1], spin.v[2], F::zero()};
   const F rotation[4] = {total.w, total.u.v[0], total.u.v[1], total.u.v[2]};
