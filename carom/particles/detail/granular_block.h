@@ -28,6 +28,7 @@ struct alignas(64) GrainBlock {
   float normal[N][grain_lanes] = {};                       ///< from a to b
   float gap[grain_lanes] = {};                             ///< m
   float push[grain_lanes] = {};                            ///< N·s along the normal, ≥ 0
+  float gain[grain_lanes] = {};                            ///< N·s of it, by the last sweep
   float grip[turns][grain_lanes] = {};  ///< N·s on b across it; in the plane along the normal turned left
   float roll[turns][grain_lanes] = {};  ///< N·m·s on b
   // Of a pair, as long as it is watched.
