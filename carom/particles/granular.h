@@ -71,7 +71,7 @@ class CAROM_API Granular {
   using Position = typename D::Position;
   using Angular = typename D::Angular;
 
-  /// Errors: a field out of range, or a domain of more than 2^24 cells of two radii.
+  /// Errors: a field out of range, or a domain of more than 2^24 cells of seven radii (in space four).
   static core::Result<Granular> create(const GranularDef<D>& definition);
   Granular(const Granular& other);
   Granular& operator=(const Granular& other);

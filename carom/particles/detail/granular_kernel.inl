@@ -148,15 +148,27 @@ CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lan
 }
 
 template <int N>
-int find(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<N>& reach, int* first, int* found,
+int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first, int* found,
          int at) {
+  using Four = math::WideFloat<4>;
   for (int i = runs.begin; i < runs.end; ++i) {
     first[i] = at;
     F x[N];
-    for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
+    float place[4] = {};
+    for (int k = 0; k < N; ++k) {
+      place[k] = grains.column[k][i];
+      x[k] = splat(place[k]);
+    }
+    const Four here = Four::load(place);
     const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
-    for (int run = 0; run < runs.count; ++run)
-      for (int j = run == 0 ? i + 1 : runs.from[run]; j < runs.to[run]; j += width) {
+    int from[GrainRuns<N>::most] = {i + 1}, to[GrainRuns<N>::most] = {runs.to[0]}, last = 0;
+    for (int run = 1; run < runs.count; ++run) {
+      if (math::any((here < Four::load(runs.low[run])) | (here > Four::load(runs.high[run])))) continue;
+      if (to[last] != runs.from[run]) from[++last] = runs.from[run];
+      to[last] = runs.to[run];
+    }
+    for (int run = 0; run <= last; ++run)
+      for (int j = from[run]; j < to[run]; j += width) {
         // They close by no more than s = Σ |d| way / |d|. Few are left of those that d² < u² + 2 |d| s leaves, with u
         // the sum of radii and slack: it holds wherever |d| < u + s does, and asks for no root.
         F square = F::zero(), way = F::zero();
@@ -167,7 +179,7 @@ int find(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<
         }
         const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
         std::uint32_t hits = math::bitmask(square < math::min(touch * touch + (way + way), farthest * farthest));
-        if (runs.to[run] - j < width) hits &= (1u << (runs.to[run] - j)) - 1;
+        if (to[run] - j < width) hits &= (1u << (to[run] - j)) - 1;
         if (hits == 0) continue;
         const F open = square - touch * math::sqrt(square);
         hits &= math::bitmask(open <= way);

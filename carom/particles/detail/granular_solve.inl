@@ -8,7 +8,7 @@
 
 namespace carom::particles::detail {
 
-constexpr float pair_way = 0.45f;                        ///< radii
+constexpr float pair_way = 0.4f;                         ///< radii
 constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
 /// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
 /// layer by layer, and not pushed into it.
