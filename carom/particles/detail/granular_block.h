@@ -16,7 +16,7 @@ template <int N>
 inline constexpr int grain_held = N == 2 ? 4 : 8;
 
 /// Of the time until the next search: pairs are solved from that stage on in which the two may first touch.
-inline constexpr int grain_stages = 4;
+inline constexpr int grain_stages = 8;
 inline constexpr int grain_stage_bit = 24;  ///< of what is found of a pair: its stage, above the other's number
 
 /// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
