@@ -236,6 +236,7 @@ void GranularState<D>::for_slabs_in_turn(bool back, F&& f) {
   }
 }
 
+/// `f` captures pointers by value: after each store through a member they would be loaded anew.
 template <class D>
 template <class F>
 void GranularState<D>::for_grains(int count, F&& f) {
