@@ -16,7 +16,7 @@ template <int N>
 inline constexpr int grain_held = N == 2 ? 4 : 8;
 
 /// Of the time until the next search: pairs are solved from that stage on in which the two may first touch.
-inline constexpr int grain_stages = 4;
+inline constexpr int grain_stages = 8;
 inline constexpr int grain_stage_bit = 24;  ///< of what is found of a pair: its stage, above the other's number
 
 /// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
@@ -28,6 +28,7 @@ struct alignas(64) GrainBlock {
   float normal[N][grain_lanes] = {};                       ///< from a to b
   float gap[grain_lanes] = {};                             ///< m
   float push[grain_lanes] = {};                            ///< N·s along the normal, ≥ 0
+  float gain[grain_lanes] = {};                            ///< N·s of it, by the last sweep
   float grip[turns][grain_lanes] = {};  ///< N·s on b across it; in the plane along the normal turned left
   float roll[turns][grain_lanes] = {};  ///< N·m·s on b
   // Of a pair, as long as it is watched.
@@ -50,11 +51,15 @@ template <int N>
 struct GrainColumns {
   const float* column[N + 1];
 };
-/// Where the neighbours of a cell's grains lie, which are begin … end − 1; the first run begins behind each grain
-/// itself.
+/// Where the neighbours of a cell's grains lie, which are begin … end − 1: runs of cells; the first run begins behind
+/// each grain itself. Grains outside of `low` … `high` reach none of a run. Where one run goes on from another in
+/// memory they are read as one.
+template <int N>
 struct GrainRuns {
+  static constexpr int most = 5;
   int begin = 0, end = 0, count = 0;
-  int from[8], to[8];
+  int from[most], to[most];
+  float low[most][4] = {}, high[most][4] = {};  ///< m
 };
 
 /// m: how far two grains may close by axis, what is added in any direction, and no more than `most` in all.
@@ -70,8 +75,8 @@ struct GrainKernels {
   using Block = GrainBlock<N>;
   /// Neighbours that may come to touch: their numbers and stages go to found[at …], for each grain where they begin to
   /// first[grain]. Returns where they end.
-  int (*find)(const GrainColumns<N>& grains, const GrainRuns& runs, const GrainReach<N>& reach, int* first, int* found,
-              int at);
+  int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first,
+              int* found, int at);
   /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1. And
   /// what their masses and radii come to.
   void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale, float* motion,

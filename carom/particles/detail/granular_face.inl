@@ -62,8 +62,8 @@ Status check_granular(const GranularDef<D>& d) {
     cells *= (d.upper[a] - d.lower[a]) / (double(detail::GranularState<D>::cell_radii) * double(d.radius)) + 1;
   }
   if (!(cells <= double(1 << 24)))
-    return core::Error{
-        core::text("Granular::create: the domain has ", cells, " cells of three radii, expected 2^24 at most")};
+    return core::Error{core::text("Granular::create: the domain has ", cells, " cells of ",
+                                  int(detail::GranularState<D>::cell_radii), " radii, expected 2^24 at most")};
   return {};
 }
 
@@ -76,7 +76,7 @@ void GranularState<D>::make_grid() {
   }
   const int across = N == 2 ? cells[0] : cells[2];
   // Narrow ones leave lanes empty. Four or a multiple of it share evenly between two threads, every second at a time.
-  const int wanted = (across + 2) / (N == 2 ? 16 : 4);
+  const int wanted = (across + 2) / (N == 2 ? 14 : 3);
   const int count = wanted < 3 ? math::max(wanted, 1) : 4 * ((wanted + 2) / 4);
   slab_cells = (across + count - 1) / count;
   slabs.resize(std::size_t((across + slab_cells - 1) / slab_cells));

@@ -85,7 +85,16 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   Vector pace{};
   for (int k = 0; k < N; ++k) pace[k] = dt * closing[k] + 1.1f * dt * dt * math::abs(definition.gravity[k]);
   std::fill(paces.begin() + begin, paces.begin() + end, pace);
-  GrainRuns runs;
+  // Along an axis they are as far apart, at most, as where they come closest askew to it.
+  const float radii = 2 * definition.radius + reach.slack, width = cell_radii * definition.radius;
+  float ways = 0, square = 0, far[N];
+  for (int k = 0; k < N; ++k) {
+    ways += reach.way[k];
+    square += reach.way[k] * reach.way[k];
+  }
+  for (int k = 0; k < N; ++k)
+    far[k] = 1.001f * (radii + math::min(math::min(0.5f * (ways + reach.way[k]), math::sqrt(square)), reach.most));
+  GrainRuns<N> runs;
   runs.begin = begin;
   runs.end = end;
   const auto add = [&](int x0, int x1, int row, int across) {
@@ -93,19 +102,25 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
     x0 = math::max(x0, 0);
     x1 = math::min(x1, cells[0] - 1);
     if (x0 > x1) return;
-    const bool next_slab = N == 2 && x1 > x0 && x1 % slab_cells == 0;  // the last column is another slab's
-    runs.from[runs.count] = cell_start[cell_at(x0, row, across)];
-    runs.to[runs.count++] = cell_start[cell_at(next_slab ? x1 - 1 : x1, row, across) + 1];
-    if (!next_slab) return;
-    runs.from[runs.count] = cell_start[cell_at(x1, row, across)];
-    runs.to[runs.count++] = cell_start[cell_at(x1, row, across) + 1];
+    const int run = runs.count++, low[3] = {x0, row, across}, high[3] = {x1, row, across};
+    runs.from[run] = cell_start[cell_at(x0, row, across)];
+    runs.to[run] = cell_start[cell_at(x1, row, across) + 1];
+    for (int k = 0; k < N; ++k) {
+      runs.low[run][k] = float(low[k]) * width - far[k];
+      runs.high[run][k] = float(high[k] + 1) * width + far[k];
+    }
   };
-  add(x, x + 1, y, z);
-  add(N == 2 ? x : x - 1, x + 1, y + 1, z);
-  if constexpr (N == 2)
+  if constexpr (N == 2) {
+    add(x, x, y, z);
+    add(x + 1, x + 1, y, z);
+    add(x, x, y + 1, z);
+    add(x + 1, x + 1, y + 1, z);
     add(x + 1, x + 1, y - 1, z);
-  else
+  } else {
+    add(x, x + 1, y, z);
+    add(x - 1, x + 1, y + 1, z);
     for (int row = -1; row <= 1; ++row) add(x - 1, x + 1, y + row, z + 1);
+  }
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
   most = most * std::size_t(end - begin) + std::size_t(slab.pair_count);
@@ -177,12 +192,12 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
     const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
     int next = old_begin;
     for (int k = first_pair[grain], to = first_pair[grain + 1]; k < to; ++k) {
-      const Vector passing = grains[pairs[k]].v - grains[grain].v;
-      fastest = math::max(fastest, dot(passing, passing));
       if (stages[k] > 0) {
         slab.later[stages[k]].push_back({grain, k});
         continue;
       }
+      const Vector passing = grains[pairs[k]].v - grains[grain].v;
+      fastest = math::max(fastest, dot(passing, passing));
       const int other = places[pairs[k]];
       int old = next, was = -1;
       if (old >= old_end || others[old] != other) {

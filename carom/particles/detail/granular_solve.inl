@@ -3,11 +3,12 @@
 
 #include <chrono>
 
+#include "carom/math/elementary.h"
 #include "carom/particles/detail/granular_find.inl"
 
 namespace carom::particles::detail {
 
-constexpr float pair_way = 0.3f;                         ///< radii
+constexpr float pair_way = 0.4f;                         ///< radii
 constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
 /// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
 /// layer by layer, and not pushed into it.
@@ -235,6 +236,7 @@ void GranularState<D>::for_slabs_in_turn(bool back, F&& f) {
   }
 }
 
+/// `f` captures pointers by value: after each store through a member they would be loaded anew.
 template <class D>
 template <class F>
 void GranularState<D>::for_grains(int count, F&& f) {
@@ -308,9 +310,9 @@ float GranularState<D>::fastest_beside_solids() const {
   return math::sqrt(most);
 }
 
-/// `dt` seconds with one search, in `parts` to `most` substeps and with `sweeps` at least. How fast grains fall
-/// together does not matter, nor on a wall: no two pass each other by more than `pair_way` in a substep, nor one a
-/// shape, which may be hollow, by more than half a radius.
+/// `dt` seconds with one search, in `parts` to `most` substeps and with `sweeps` at least, two in each substep. How
+/// fast grains fall together does not matter, nor on a wall: no two pass each other by more than `pair_way` in a
+/// substep, nor one a shape, which may be hollow, by more than half a radius.
 template <class D>
 void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
   sort();
@@ -322,7 +324,7 @@ void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
   for (const GrainSlab<N>& slab : slabs) ways = math::max(ways, slab.fastest / pair_way);
   ways *= dt / definition.radius;
   parts = math::max(parts, ways < float(most) ? int(math::ceil(ways)) : most);
-  sweeps = math::max(sweeps, math::min(definition.iterations, 2) * parts);
+  sweeps = math::max(sweeps, 2 * parts);
   const float h = dt / float(parts), scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with it
   last_h = h;
   scale_surfaces(scale);
@@ -389,14 +391,10 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
   for (const Grain<D>& g : grains) fastest = math::max(fastest, dot(g.v, g.v));
   fastest = math::sqrt(fastest) + dt * length(definition.gravity);
   statistics.max_speed = fastest;
-  const auto times = [&](float radii) {
-    const float ways = fastest * dt / (radii * definition.radius);
-    return ways < 64 ? math::max(1, int(ways) + (ways > float(int(ways)) ? 1 : 0)) : 64;
-  };
-  const int rounds = times(search_way), parts = math::max(definition.substeps, rounds);
-  // An impact goes through a heap in sweeps: one there and one back for each half of a radius.
-  const int sweeps =
-      math::max(math::min(definition.iterations, 2) * times(0.5f), definition.substeps * definition.iterations);
+  const float ways = fastest * dt / (search_way * definition.radius);
+  const int rounds = ways < 64 ? math::max(1, int(math::ceil(ways))) : 64;
+  const int parts = math::max(definition.substeps, rounds);
+  const int sweeps = definition.substeps * definition.iterations;
   const auto share = [&](int all, int k) { return (k + 1) * all / rounds - k * all / rounds; };
   for (int k = 0; k < rounds; ++k) round(dt / float(rounds), share(parts, k), share(64, k), share(sweeps, k));
   for (const GrainSlab<N>& slab : slabs)

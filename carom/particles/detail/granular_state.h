@@ -107,7 +107,7 @@ struct GrainSlab {
     int grain = 0, pair = 0;
   };
   std::vector<Later> later[grain_stages];  ///< pairs that do not touch at once
-  float fastest = 0;                       ///< m/s, that two of its pairs pass each other
+  float fastest = 0;                       ///< m/s, that two pass each other that may touch at once
 
   void add_block(std::uint32_t none);
 };
@@ -115,9 +115,9 @@ struct GrainSlab {
 template <class D>
 struct GranularState {
   static constexpr int N = D::dimension;
-  static constexpr float cell_radii = N == 2 ? 6 : 3;  ///< width of a cell in the largest radii
+  static constexpr float cell_radii = N == 2 ? 7 : 4;  ///< width of a cell in the largest radii
   /// Largest radii that the fastest grain moves from search to search: no more than cells have room for.
-  static constexpr float search_way = N == 2 ? 3.8f : 1;
+  static constexpr float search_way = N == 2 ? 4.8f : 2;
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   using Position = typename D::Position;
