@@ -8,7 +8,8 @@ namespace carom::particles::detail {
 
 namespace {
 
-constexpr double rope_slip = 0.01;  // m/s: friction grows up to here
+constexpr double rope_slip = 0.01;                             // m/s: friction grows up to here
+constexpr int touch_iterations = 6, friction_iterations = 15;  // in which what touches, and how it rubs, is found anew
 
 }  // namespace
 
@@ -135,7 +136,7 @@ bool RopeSolver::update_hold(RopeContact& contact, RopeNode& node, Vec3d velocit
   const Vec3d against = velocity - node.target - change_at(node);
   const double closing = dot(node.normal, against);
   if (node.hold == RopeHold::none) {
-    if (closing >= -1e-9 || iteration > 5) return false;
+    if (closing >= -1e-9 || iteration >= touch_iterations) return false;
     node.hold = RopeHold::slide;
     node.resistance = 0;
     node.grip = {};
@@ -146,7 +147,7 @@ bool RopeSolver::update_hold(RopeContact& contact, RopeNode& node, Vec3d velocit
     node.hold = RopeHold::none;
     return true;
   }
-  if (contact.friction == 0 || iteration > 6) return false;
+  if (contact.friction == 0 || iteration >= friction_iterations) return false;
   const double most = contact.friction * push, speed = length(against - closing * node.normal);
   contact.slip = speed;
   const Vec3d along = node.reaction - push * node.normal;

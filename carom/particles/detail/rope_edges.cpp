@@ -9,8 +9,12 @@ namespace carom::particles::detail {
 namespace {
 
 constexpr double edge_stiffness = 1e6;  // over the mass of a segment's ends
-constexpr double edge_depth = 0.25;     // radii by which the middle is deeper than the ends, to be touched first
-constexpr double edge_kept = 0.1;       // likewise, to stay touched
+// By which the middle is deeper than the ends, to be touched first, and to stay touched: in radii, or in fifths of a
+// segment's length if that is more. On what is rounder than that (its radius more than two and a half segments) the
+// particles lie: would now they and now the segments between them, a taut rope's way would change by more than it can
+// stretch.
+constexpr double edge_depth = 0.25, edge_kept = 0.1;
+constexpr double edge_length = 0.2;
 
 /// Where a segment is nearest to a shape: along it the distance to a convex shape has one least value.
 template <class Distance>
@@ -94,8 +98,9 @@ void RopeSolver::place_edges(Rope& rope) {
     edge.share = nearest_share([&](double s) { return separation(lerp(then[0], then[1], s)); });
     contact.separation = separation(lerp(now[0], now[1], edge.share));
     const double ahead = separation(lerp(then[0], then[1], edge.share));
-    const double depth = before == RopeHold::none ? edge_depth : edge_kept;
-    if (!good || edge.share < 0.01 || edge.share > 0.99 || ends - ahead < depth * rope.material.radius) continue;
+    const double depth = (before == RopeHold::none ? edge_depth : edge_kept) *
+                         math::max(rope.material.radius, edge_length * distance(then[0], then[1]));
+    if (!good || edge.share < 0.01 || edge.share > 0.99 || ends - ahead < depth) continue;
     contact.state = before;
     edge.point.normal = rotate(body.rotation, rotate(near.turn, Vec3d(normal)));
     place_hold(contact, edge.point, lerp(rope.position[e], rope.position[e + 1], edge.share),

@@ -7,7 +7,8 @@ namespace carom::particles::detail {
 
 namespace {
 
-constexpr int most_iterations = 10;
+constexpr int most_iterations = 20;
+constexpr int turn_iterations = 7;   // in which segments still turn
 constexpr int cross_iterations = 6;  // in which what ropes push on each other is still found anew
 constexpr int most_substeps = 256;
 constexpr double gap_rate = 0.4;  // share of a gap between a particle and its anchor that is closed in a step
@@ -354,7 +355,7 @@ Status RopeSolver::run() {
         if (iteration + 1 == most_iterations) continue;
         again |= update_holds(rope, iteration);
         const double off = change(rope);
-        again |= iteration < 7 && off > 2e-9;
+        again |= iteration < turn_iterations && off > 2e-9;
         // A guess turns no segment by more than about a third in one iteration.
         const double share = off > 0.1 ? math::sqrt(0.1 / off) : 1;
         for (std::size_t i = 0; i < rope.position.size(); ++i)
