@@ -30,10 +30,10 @@ struct SoftContact {
 };
 
 /// Whose `filter`s let them meet, do, further apart than the larger of their skins and thicknesses. Of those near one
-/// another the largest count of substeps holds for all, and as
-/// many more (16 at most) as it takes that none passes another by more than half an edge in one; what is near nothing
-/// takes its own step. Holds the memory of a step alone: what is remembered lies in the things, by their numbers, so
-/// that copies of these are snapshots. Soft bodies that overlap at the start by less than a cell are drawn apart.
+/// another the largest count of substeps holds for all, and as many more (16 at most) as it takes that none passes
+/// another by more than half an edge in one; what is near nothing takes its own step. Holds the memory of a step alone:
+/// what is remembered lies in the things, by their numbers, so that copies of these are snapshots. Soft bodies that
+/// overlap at the start by less than a cell are drawn apart.
 class CAROM_API SoftGroup {
  public:
   SoftGroup();

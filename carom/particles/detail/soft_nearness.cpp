@@ -103,7 +103,10 @@ void SoftMeeting::lay_faces(const SoftThing& b, Vec3d origin, Vec3f low, Vec3f h
     }
     for (int z = begin[2]; z <= end[2]; ++z)
       for (int y = begin[1]; y <= end[1]; ++y)
-        for (int x = begin[0]; x <= end[0]; ++x) see(std::size_t((z * grid_.count[1] + y) * grid_.count[0] + x));
+        for (int x = begin[0]; x <= end[0]; ++x) {
+          const int cell = (z * grid_.count[1] + y) * grid_.count[0] + x;
+          see(std::size_t(cell));
+        }
   };
   for (const Face& face : faces_) each_cell(face, [&](std::size_t c) { ++first_[c + 1]; });
   for (std::size_t c = 0; c < cells; ++c) first_[c + 1] += first_[c];

@@ -52,7 +52,7 @@ void SoftThing::end_step(rigid::World3& world, double dt) {
 
 namespace {
 constexpr float meeting_stride = 0.5f;  // of an edge
-constexpr int most_substeps = 16;
+constexpr int most_meeting_substeps = 16;
 
 /// Things that meet, and what they are near, pass by each other by a part of an edge a substep at most: what goes
 /// deeper is through before it is seen, or crushes an element in one go.
@@ -74,7 +74,7 @@ int substeps_of(std::span<SoftThing* const> things, bool meet, double dt) {
     }
   }
   const float needed = math::ceil(float(dt) * length(high - low) / (meeting_stride * edge));
-  return math::max(substeps, int(math::min(needed, float(most_substeps))));
+  return math::max(substeps, int(math::min(needed, float(most_meeting_substeps))));
 }
 }  // namespace
 
