@@ -5,7 +5,7 @@
 
 #include "carom/core/scheduler.h"
 #include "carom/math/elementary.h"
-#include "tests/particles/soft_depth.h"
+#include "tests/particles/soft_pieces.h"
 #include "tests/particles/weightless.h"
 
 namespace carom::particles {
@@ -16,16 +16,6 @@ using rigid::Dim3;
 using rigid::World3;
 constexpr double dt = 1.0 / 60, g = 9.80665;
 
-SoftBody solid(const SoftMesh& mesh, SoftMaterial material, Vec3d velocity = {}, int lanes = 0,
-               core::TaskScheduler* scheduler = nullptr) {
-  return SoftBody::make({.material = material,
-                         .points = mesh.points,
-                         .tetrahedra = mesh.tetrahedra,
-                         .velocity = velocity,
-                         .scheduler = scheduler,
-                         .lanes = lanes})
-      .value();
-}
 SoftBody cube(Vec3d middle, double size, int cells, SoftMaterial material, Vec3d velocity = {}) {
   return solid(make_soft_box(middle - 0.5 * Vec3d{size, size, size}, {size, size, size}, cells, cells, cells), material,
                velocity);

@@ -7,7 +7,7 @@
 #include "carom/core/scheduler.h"
 #include "carom/math/elementary.h"
 #include "carom/particles/soft_group.h"
-#include "tests/particles/soft_depth.h"
+#include "tests/particles/soft_pieces.h"
 
 namespace carom::particles {
 namespace soft_heap_test {
@@ -180,17 +180,8 @@ TEST(SoftHeap, ThreadsAndLanesGiveTheSameBitsWhereElementsAreCrushed) {
     World3 world = with_bin();
     const SoftMesh low = make_soft_box({-0.15, 0.006, -0.15}, {0.3, 0.2, 0.3}, 4, 3, 4),
                    high = make_soft_ball({0, 0.4, 0.03}, 0.15, 4);
-    const auto solid = [&](const SoftMesh& mesh, SoftMaterial material, Vec3d velocity) {
-      return SoftBody::make({.material = material,
-                             .points = mesh.points,
-                             .tetrahedra = mesh.tetrahedra,
-                             .velocity = velocity,
-                             .scheduler = scheduler,
-                             .lanes = lanes})
-          .value();
-    };
-    SoftBody jelly = solid(low, {.density = 1000, .youngs_modulus = 3e3}, {}),
-             ball = solid(high, {.density = 2000, .youngs_modulus = 2e6}, {0, -5, 0});
+    SoftBody jelly = solid(low, {.density = 1000, .youngs_modulus = 3e3}, {}, lanes, scheduler),
+             ball = solid(high, {.density = 2000, .youngs_modulus = 2e6}, {0, -5, 0}, lanes, scheduler);
     SoftBody* const both[] = {&jelly, &ball};
     SoftGroup group;
     for (int i = 0; i < 60; ++i) group.step({}, both, world, dt).value();

@@ -33,6 +33,14 @@ Vec3f impulse_of(const SoftMeet& meet, Vec3f change) {
 }
 }  // namespace
 
+Vec3f SoftMeeting::change_of(const SoftMeet& meet) const {
+  Vec3f change{};
+  each_node(meet, [&](const SoftThing& thing, std::uint32_t i, float share) {
+    change += share * thing.solver.change[i].vector();
+  });
+  return change;
+}
+
 void SoftMeeting::give(SoftMeet& meet, Vec3f impulse) {
   const Vec3f more = impulse - meet.impulse;
   each_node(meet, [&](SoftThing& thing, std::uint32_t i, float share) { thing.solver.right[i] += share * more; });
@@ -57,11 +65,7 @@ void SoftMeeting::enter() {
 
 void SoftMeeting::take_from_residuals() {
   for (const SoftMeet& meet : meets_) {
-    Vec3f change{};
-    each_node(meet, [&](const SoftThing& thing, std::uint32_t i, float share) {
-      change += share * thing.solver.change[i].vector();
-    });
-    const Vec3f impulse = held(meet, change);
+    const Vec3f impulse = held(meet, change_of(meet));
     each_node(meet,
               [&](SoftThing& thing, std::uint32_t i, float share) { thing.solver.add_residual(i, -share * impulse); });
   }
@@ -88,22 +92,13 @@ void SoftMeeting::clear_answers() {
 }
 
 void SoftMeeting::settle() {
-  for (SoftMeet& meet : meets_) {
-    Vec3f change{};
-    each_node(meet, [&](const SoftThing& thing, std::uint32_t i, float share) {
-      change += share * thing.solver.change[i].vector();
-    });
-    give(meet, impulse_of(meet, change));
-  }
+  for (SoftMeet& meet : meets_) give(meet, impulse_of(meet, change_of(meet)));
 }
 
 bool SoftMeeting::revise(float h) {
   bool again = false;
   for (SoftMeet& meet : meets_) {
-    Vec3f change{};
-    each_node(meet, [&](const SoftThing& thing, std::uint32_t i, float share) {
-      change += share * thing.solver.change[i].vector();
-    });
+    const Vec3f change = change_of(meet);
     if (meet.grip > 0) {  // what slides faster than was foreseen is not rubbed more for it
       const float slides = length(meet.slip + change - dot(meet.normal, change) * meet.normal);
       if (meet.grip * slides > meeting_rub * meet.rub) {

@@ -58,11 +58,12 @@ class SoftMeeting {
   };
   void find_pair(std::size_t a, std::size_t b, float h);
   void lay_faces(const SoftThing& b, Vec3d origin, Vec3f low, Vec3f high, float reach);
-  void find_near(const SoftThing& b, Vec3f at, float reach, Near& near) const;
+  void find_near(Vec3f at, float reach, Near& near) const;
   void find_normals(std::size_t thing);
   template <class See>
   void each_node(const SoftMeet& meet, const See& see) const;
   Vec3f against(const SoftMeet& meet, Vec3f vertex, Vec3f a, Vec3f b, Vec3f c) const;
+  Vec3f change_of(const SoftMeet& meet) const;  ///< m/s, of the vertex against the face, by the solve
   void give(SoftMeet& meet, Vec3f impulse);
 
   struct Face {

@@ -74,7 +74,9 @@ void SoftMeeting::lay_faces(const SoftThing& b, Vec3d origin, Vec3f low, Vec3f h
       face.corner[c] = corners[k + c];
       at[c] = Vec3f(b.position[corners[k + c]] - origin);
     }
-    face = {at[0], at[1] - at[0], at[2] - at[0], {}, {face.corner[0], face.corner[1], face.corner[2]}};
+    face.a = at[0];
+    face.u = at[1] - at[0];
+    face.v = at[2] - at[0];
     Vec3f from, to;
     bounds_of(face, from, to);
     if (from.x > high.x || from.y > high.y || from.z > high.z || to.x < low.x || to.y < low.y || to.z < low.z) continue;
@@ -120,8 +122,7 @@ void SoftMeeting::lay_faces(const SoftThing& b, Vec3d origin, Vec3f low, Vec3f h
 
 /// The nearest face. Of those that are equally near, at an edge or a corner, the one that the point stands out from
 /// most tells the side.
-void SoftMeeting::find_near(const SoftThing& b, Vec3f at, float reach, Near& near) const {
-  static_cast<void>(b);
+void SoftMeeting::find_near(Vec3f at, float reach, Near& near) const {
   near.face = -1;
   std::size_t cell = 0;
   for (int k = 3; k-- > 0;) {
@@ -187,7 +188,7 @@ void SoftMeeting::find_pair(std::size_t a, std::size_t b, float h) {
     if (p.x < from.x || p.y < from.y || p.z < from.z || p.x > to.x || p.y > to.y || p.z > to.z) continue;
     const float margin_of = apart + 2 * h * (length(one.velocity[i] - mean) + spread);
     Near near;
-    find_near(other, Vec3f(p - origin), math::max(deep, margin_of), near);
+    find_near(Vec3f(p - origin), math::max(deep, margin_of), near);
     if (near.face < 0) continue;
     const Face& face = faces_[std::size_t(near.face)];
     while (old != one.met.end() && (old->other < number || (old->other == number && old->vertex < i))) ++old;

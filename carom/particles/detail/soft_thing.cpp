@@ -10,6 +10,32 @@ namespace {
 
 core::SerialScheduler soft_serial;
 
+constexpr float meeting_stride = 0.5f;  // of an edge
+constexpr int most_meeting_substeps = 16;
+
+/// Things that meet, and what they are near, pass by each other by a part of an edge a substep at most: what goes
+/// deeper is through before it is seen, or crushes an element in one go.
+int substeps_of(std::span<SoftThing* const> things, bool meet, double dt) {
+  int substeps = 1;
+  for (const SoftThing* thing : things) substeps = math::max(substeps, thing->substeps);
+  if (!meet) return substeps;
+  Vec3f low = things[0]->velocity[0], high = low;
+  float edge = things[0]->mean_edge;
+  for (const SoftThing* thing : things) {
+    edge = math::min(edge, thing->mean_edge);
+    for (const Vec3f v : thing->velocity) {
+      low = min(low, v);
+      high = max(high, v);
+    }
+    if (!thing->obstacles.empty()) {
+      low = min(low, Vec3f{});
+      high = max(high, Vec3f{});
+    }
+  }
+  const float needed = math::ceil(float(dt) * length(high - low) / (meeting_stride * edge));
+  return math::max(substeps, int(math::min(needed, float(most_meeting_substeps))));
+}
+
 /// Solves with contacts that begin and end.
 void solve_together(std::span<SoftThing* const> things, SoftMeeting* meeting, float h) {
   int iterations = 0;
@@ -49,34 +75,6 @@ void SoftThing::begin_step(rigid::World3& world, double dt) {
 void SoftThing::end_step(rigid::World3& world, double dt) {
   obstacles.hand_over(world, dt, double(length(world.definition().gravity)));
 }
-
-namespace {
-constexpr float meeting_stride = 0.5f;  // of an edge
-constexpr int most_meeting_substeps = 16;
-
-/// Things that meet, and what they are near, pass by each other by a part of an edge a substep at most: what goes
-/// deeper is through before it is seen, or crushes an element in one go.
-int substeps_of(std::span<SoftThing* const> things, bool meet, double dt) {
-  int substeps = 1;
-  for (const SoftThing* thing : things) substeps = math::max(substeps, thing->substeps);
-  if (!meet) return substeps;
-  Vec3f low = things[0]->velocity[0], high = low;
-  float edge = things[0]->mean_edge;
-  for (const SoftThing* thing : things) {
-    edge = math::min(edge, thing->mean_edge);
-    for (const Vec3f v : thing->velocity) {
-      low = min(low, v);
-      high = max(high, v);
-    }
-    if (!thing->obstacles.empty()) {
-      low = min(low, Vec3f{});
-      high = max(high, Vec3f{});
-    }
-  }
-  const float needed = math::ceil(float(dt) * length(high - low) / (meeting_stride * edge));
-  return math::max(substeps, int(math::min(needed, float(most_meeting_substeps))));
-}
-}  // namespace
 
 int step_together(std::span<SoftThing* const> things, SoftMeeting* meeting, rigid::World3& world, double dt) {
   const Vec3f gravity = world.definition().gravity;

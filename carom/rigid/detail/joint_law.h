@@ -75,8 +75,10 @@ template <class D>
 void fill_twist(AxisLaw& law, const JointData<D>& data, const Clock& t) {
   law.flags = AxisLaw::periodic;
   if (const auto* hinge = data.template get<HingeJointDef>()) {
-    if (hinge->spring.hertz > 0) law.flags |= AxisLaw::spring;
-    law.rest = hinge->spring.hertz > 0 ? hinge->target_angle : 0;
+    if (spring_of_twist(data) != nullptr) {
+      law.flags |= AxisLaw::spring;
+      law.rest = hinge->target_angle;
+    }
     law.max_spring_impulse = hinge->max_spring_torque * t.push();
     fill_motor(law, hinge->motor, t);
     fill_limit(law, hinge->limit);

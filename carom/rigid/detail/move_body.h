@@ -11,9 +11,8 @@ inline bool may_turn_freely(const BodyMotion<Dim2>&, const BodyRecord&) { return
 inline bool may_turn_freely(const BodyMotion<Dim3>& m, const BodyRecord& r) {
   return m.gyroscopic && (r.locks & 56) == 0 && r.type == BodyType::dynamic;
 }
-/// Below a hundredth of a radian per second precession is not worth its cost.
 inline bool spins(float) { return false; }
-inline bool spins(const Vec3f& w) { return dot(w, w) > 1e-4f; }
+inline bool spins(const Vec3f& w) { return dot(w, w) > least_spin_squared; }
 
 template <class D>
 void turn_body(SolverBody<D>& s, float h) {

@@ -71,7 +71,7 @@ void turn_bodies(SolverBody<Dim3>* bodies, const void* lanes, float h) {
     r = turn_by(angle);
   }
   // Where the method found nothing (a thin piece that a blow spins past half a turn a substep), it turns as it spins.
-  const auto found = F::splat(9) > dot(angle, angle);  // greatest_free_turn², rotation_step.h
+  const auto found = F::splat(greatest_free_turn * greatest_free_turn) > dot(angle, angle);
   const Turn<W> plain = turn_by(multiply(w, F::splat(h)));
   r.w = select(found, r.w, plain.w);
   for (int k = 0; k < 3; ++k) r.u.v[k] = select(found, r.u.v[k], plain.u.v[k]);
@@ -192,7 +192,7 @@ LeftOver move_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, co
   for (int k = 0; k < 3; ++k) moved[k] = row[8 + k] + select(flies, share * (flight[4 + k] + row[k]), whole * row[k]);
   moved[3] = row[11];
   const Lanes<3, W> w = {{row[4], row[5], row[6]}};
-  const auto by_itself = driven.gyroscopic() & (dot(w, w) > F::splat(1e-4f));  // spins, move_body.h
+  const auto by_itself = driven.gyroscopic() & (dot(w, w) > F::splat(least_spin_squared));
   const Turn<W> old = {row[12], {{row[13], row[14], row[15]}}};
   const Turn<W> turned = normalized(product(turn_by(multiply(w, whole)), old));
   moved[4] = select(by_itself, old.w, turned.w);

@@ -8,7 +8,8 @@ namespace carom::rigid::detail {
 
 /// tan(y)/y by the continued fraction of the tangent, as a function of y²: error below 10⁻⁵ for |y| ≤ 1.25.
 inline float tangent_over_angle(float yy) { return (105 - 10 * yy) / (105 - 45 * yy + yy * yy); }
-inline constexpr float max_turn = 2.5f;  ///< rad in a substep; faster bodies are slowed to this
+inline constexpr float max_turn = 2.5f;             ///< rad in a substep; faster bodies are slowed to this
+inline constexpr float least_spin_squared = 1e-4f;  ///< (rad/s)²: below it precession is not worth its cost
 /// rad: a torque-free turn beyond it is none, Newton's method went astray (or to infinity).
 inline constexpr float greatest_free_turn = 3.0f;
 

@@ -3,6 +3,7 @@
 #include "carom/rigid/detail/flight_lanes.h"
 #include "carom/rigid/detail/move_body.h"
 #include "carom/rigid/detail/move_lanes.h"
+#include "carom/rigid/detail/set_lane.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -39,12 +40,8 @@ class PushedBodies {
   /// By its place in the list of awake bodies.
   void add(int place) {
     const std::int32_t body = context_.drives[place].body;
-    const Mat3f& inertia = context_.world.bodies.motion[std::size_t(body)].inertia;
-    const Quatf& start = context_.world.bodies.pose[std::size_t(body)].rotation;
-    const float tensor[6] = {inertia.cx.x, inertia.cx.y, inertia.cx.z, inertia.cy.y, inertia.cy.z, inertia.cz.z};
-    for (int i = 0; i < 6; ++i) lanes_.inertia[i][count_] = tensor[i];
-    lanes_.start[0][count_] = start.w;
-    for (int i = 0; i < 3; ++i) lanes_.start[i + 1][count_] = start.vector()[i];
+    set_lane(lanes_.inertia, count_, context_.world.bodies.motion[std::size_t(body)].inertia);
+    set_lane(lanes_.start, count_, context_.world.bodies.pose[std::size_t(body)].rotation);
     lanes_.body[count_] = body;
     if ((context_.drives[place].flags & BodyDrive<Dim3>::carries) != 0) {
       carrying_[carry_count_++] = place;

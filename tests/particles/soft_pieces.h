@@ -1,10 +1,21 @@
-// How deep one soft body is within another.
+// Soft bodies for tests, and how deep one is within another.
 #pragma once
 
 #include "carom/math/elementary.h"
 #include "carom/particles/soft_body.h"
 
 namespace carom::particles {
+
+inline SoftBody solid(const SoftMesh& mesh, SoftMaterial material, math::Vec3d velocity = {}, int lanes = 0,
+                      core::TaskScheduler* scheduler = nullptr) {
+  return SoftBody::make({.material = material,
+                         .points = mesh.points,
+                         .tetrahedra = mesh.tetrahedra,
+                         .velocity = velocity,
+                         .scheduler = scheduler,
+                         .lanes = lanes})
+      .value();
+}
 
 /// m, of the deepest vertex of b inside the tetrahedra of a: to the nearest plane of a face.
 inline double depth(const SoftBody& a, const SoftMesh& mesh_a, const SoftBody& b) {
