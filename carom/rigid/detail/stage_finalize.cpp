@@ -5,6 +5,7 @@
 #include "carom/rigid/detail/coarse.h"
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
+#include "carom/rigid/detail/step_end_lanes.h"
 
 namespace carom::rigid::detail {
 namespace {
@@ -15,22 +16,24 @@ constexpr float settling_resistance =
     0.014f;                           ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
 constexpr float quick_share = 0.25f;  ///< of a body's half thickness in a step
 
-/// m/s, rad/s or of a unit quaternion: less than that is the rounding of bodies that turn about one axis. Products of
-/// it are too small for floats to be fast with.
-constexpr float trace = 1e-15f;
-float without_trace(float x) { return math::abs(x) < trace ? 0.0f : x; }
-Vec2f without_trace(const Vec2f& v) { return {without_trace(v.x), without_trace(v.y)}; }
-Vec3f without_trace(const Vec3f& v) { return {without_trace(v.x), without_trace(v.y), without_trace(v.z)}; }
-Rot2f without_trace(const Rot2f& q) { return q; }
-Quatf without_trace(const Quatf& q) { return {q.w, without_trace(q.vector())}; }
+StepEndKernels kernels_of(int width) {
+#if defined(__x86_64__)
+  if (width == 16) return pin_kernels_avx512::step_end_kernels();
+  if (width == 8) return pin_kernels_avx2::step_end_kernels();
+#else
+  (void)width;
+#endif
+  return pin_kernels_baseline::step_end_kernels();
+}
+StepEndKernel<Dim2> kernel_for(Dim2, int width) { return kernels_of(width).plane; }
+StepEndKernel<Dim3> kernel_for(Dim3, int width) { return kernels_of(width).space; }
 
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
-float turn_of(const Rot2f& q) { return math::abs(q.s) + max(0.0f, -2 * q.c); }
-float turn_of(const Quatf& q) { return 2 * math::length(q.vector()); }
-/// rad, or a little less; what it moves by are chords.
-float small_turn(const Rot2f& q) { return q.s; }
-Vec3f small_turn(const Quatf& q) { return 2 * q.vector(); }
+Rot2f turn_of(Dim2, const BodyEnds& ends, int lane) { return {ends.turn[0][lane], ends.turn[1][lane]}; }
+Quatf turn_of(Dim3, const BodyEnds& ends, int lane) {
+  return {ends.turn[0][lane], ends.turn[1][lane], ends.turn[2][lane], ends.turn[3][lane]};
+}
 
 /// m/s², of what acts on the body from afar; `gravity` is that of the world.
 template <class D>
@@ -96,12 +99,6 @@ struct NoBoxes {
   static Dim2::Bounds bounds(const ShapeRecord<Dim2>&) { return {}; }
 };
 
-template <class D>
-void reset_delta(SolverBody<D>& s) {
-  s.delta_position = {};
-  s.delta_rotation = {};
-}
-
 }  // namespace
 
 // Puts the body back where the step began, at rest and for good: one broken number must not spread.
@@ -156,6 +153,65 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   return any;
 }
 
+/// Sleep, loads and bounds of the body at a place of the awake list, which has come to the end of the step. Returns
+/// BodyChange.
+template <class D>
+static std::uint8_t finalize_body(StepContext<D>& context, int place, const BodyEnds& ends, int lane, float gravity) {
+  WorldImplementation<D>& world = context.world;
+  const std::int32_t body = world.bodies.awake[std::size_t(place)];
+  BodyRecord& record = world.bodies.record[std::size_t(body)];
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+  const typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
+  const BodyLoad<D> load = world.scratch.loads[std::size_t(body)];
+  world.scratch.loads[std::size_t(body)] = {};
+  std::uint8_t change = 0;
+  const float travel = ends.travel[lane], spin = ends.spin[lane];
+  float turned = ends.turned[lane], surface_way = ends.surface_way[lane];
+  if ((ends.whirling >> lane & 1) != 0) {
+    const float slowed = min(1.0f, max_turn / (context.h * spin));
+    const typename D::Angular whole = whole_turn(turn_of(D{}, ends, lane), s.angular_velocity, slowed * context.dt);
+    world.scratch.swept[std::size_t(place)].turn = whole;
+    turned = max(turned, spin_of(whole));
+    surface_way = turned * m.outer_extent;
+  }
+  const bool bullet = (record.flags & body_bullet) != 0;
+  if (world.definition.continuous && record.type == BodyType::dynamic && (record.flags & body_has_collider) != 0 &&
+      travel + surface_way > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
+    record.flags |= body_fast;
+    change = body_flew;
+  }
+  const float pace = world.bodies.pace(body);
+  m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
+                     ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
+                     : 0;
+  m.force = {};
+  m.torque = {};
+  float speed = ends.speed[lane];
+  // What is still being pushed out of an overlap is not at rest: that way is not in its velocity.
+  const float pushed_squared = ends.pushed_squared[lane];
+  const float sleep_speed = record.sleep_speed * pace;
+  const bool may_sleep = record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0;
+  const float slow = settling_speed * sleep_speed;
+  if (may_sleep && world.definition.allow_sleep && load.size > 0 && spin > 0 && record.joint_count == 0 &&
+      speed < slow && rolls(world.shapes.at(record.first_shape).geometry.type)) {
+    const float left = settle(context, m, s, load.size, spin, 1 - speed / slow);
+    speed = max(math::length(s.linear_velocity), D::dimension == 3 && m.slender != 0
+                                                     ? way_of_turn(m, pose.rotation, s.angular_velocity)
+                                                     : left * max(m.outer_extent, 0.01f));
+  }
+  if (may_sleep && speed < sleep_speed && pushed_squared < square(0.2f * sleep_speed))
+    record.sleep_timer += context.dt * pace;
+  else
+    record.sleep_timer = 0;
+  if (record.flags & body_fast) return change;  // its bounds wait for the end of its way
+  if (D::dimension == 3 && (record.locks >> 3 & 7) != 0) update_world_inertia(world, body);
+  // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
+  m.slack = turned < small_turn ? coarse(m.slack - (travel + surface_way)) : 0;
+  const bool quick = travel > quick_share * m.inner_extent;
+  return (m.slack <= 0 || quick) && leave_bounds(world, body) ? std::uint8_t(body_outgrew) : change;
+}
+
 template <class D>
 void finalize_bodies(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
@@ -164,77 +220,34 @@ void finalize_bodies(StepContext<D>& context) {
   scratch.body_changes.resize(count);
   scratch.swept.resize(count);
   const float gravity = math::length(world.definition.gravity);
+  const int width = world.kernels.width;
+  const StepEndKernel<D> bring_to_end = kernel_for(D{}, width);
   context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const std::int32_t body = world.bodies.awake[std::size_t(i)];
-      BodyRecord& record = world.bodies.record[std::size_t(body)];
-      BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
-      SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
-      typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
-      scratch.body_changes[std::size_t(i)] = 0;
-      const BodyLoad<D> load = scratch.loads[std::size_t(body)];
-      scratch.loads[std::size_t(body)] = {};
-      record.flags &= std::uint16_t(~body_fast);
-      if (record.locks != 0) apply_locks(s, record.locks);  // the last relaxation may have moved them
-      if (!(is_finite(s.linear_velocity) && is_finite(s.angular_velocity) && is_finite(s.delta_position) &&
-            is_finite(s.delta_rotation))) {
-        quarantine(world, body);
-        scratch.body_changes[std::size_t(i)] = body_broke;
-        continue;
+    for (int first = begin; first < end; first += width) {
+      const int lanes = min(width, end - first);
+      const std::int32_t* const slots = &world.bodies.awake[std::size_t(first)];
+      StepEndTerms terms{context.dt, context.inverse_dt, 0};
+      for (int k = 0; k < lanes; ++k) {
+        const std::size_t body = std::size_t(slots[k]);
+        BodyRecord& record = world.bodies.record[body];
+        record.flags &= std::uint16_t(~body_fast);
+        if (record.locks != 0) apply_locks(context.bodies[body], record.locks);  // the last pass may have moved them
+        if (record.type == BodyType::dynamic && (record.locks & 0x38) == 0) terms.turning |= 1u << k;
+        scratch.swept[std::size_t(first + k)] = {
+            world.bodies.pose[body].rotation, world.bodies.motion[body].center, {}, 1};
       }
-      const float travel = math::length(s.delta_position), spin = spin_of(s.angular_velocity);
-      float turned = turn_of(s.delta_rotation);
-      float surface_way =
-          turned < 0.2f ? reach_of_turn(m, pose.rotation, small_turn(s.delta_rotation)) : turned * m.outer_extent;
-      typename D::Angular whole{};
-      if (spin * context.dt > 2) {
-        const float slowed = min(1.0f, max_turn / (context.h * spin));
-        whole = whole_turn(s.delta_rotation, s.angular_velocity, slowed * context.dt);
-        turned = max(turned, spin_of(whole));
-        surface_way = turned * m.outer_extent;
+      BodyEnds ends;
+      bring_to_end(context.bodies, world.bodies.pose.data(), world.bodies.motion.data(), slots, lanes, terms, ends);
+      for (int k = 0; k < lanes; ++k) {
+        std::uint8_t& change = scratch.body_changes[std::size_t(first + k)];
+        if ((ends.broken >> k & 1) != 0) {
+          scratch.loads[std::size_t(slots[k])] = {};
+          quarantine(world, slots[k]);
+          change = body_broke;
+        } else {
+          change = finalize_body(context, first + k, ends, k, gravity);
+        }
       }
-      const bool bullet = (record.flags & body_bullet) != 0;
-      if (context.world.definition.continuous && record.type == BodyType::dynamic &&
-          (record.flags & body_has_collider) != 0 && travel + surface_way > (bullet ? 0.25f : 0.5f) * m.inner_extent) {
-        record.flags |= body_fast;
-        scratch.body_changes[std::size_t(i)] = body_flew;
-      }
-      const float pace = world.bodies.pace(body);
-      scratch.swept[std::size_t(i)] = {pose.rotation, m.center, whole, 1};
-      pose.rotation = without_trace(normalize(s.delta_rotation * pose.rotation));
-      s.linear_velocity = without_trace(s.linear_velocity);
-      s.angular_velocity = without_trace(s.angular_velocity);
-      m.center = m.center + typename D::Position(s.delta_position);
-      m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
-                         ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
-                         : 0;
-      m.force = {};
-      m.torque = {};
-      pose_from_center(world, body);
-      const float linear = math::length(s.linear_velocity);
-      float speed = max(max(linear, 0.01f * spin), way_of_turn(m, pose.rotation, s.angular_velocity));
-      // What is still being pushed out of an overlap is not at rest: that way is not in its velocity.
-      const auto pushed_squared = math::length_squared(s.delta_position * context.inverse_dt - s.linear_velocity);
-      const float sleep_speed = record.sleep_speed * pace;
-      const bool may_sleep = record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0;
-      const float slow = settling_speed * sleep_speed;
-      if (may_sleep && world.definition.allow_sleep && load.size > 0 && spin > 0 && record.joint_count == 0 &&
-          speed < slow && rolls(world.shapes.at(record.first_shape).geometry.type)) {
-        const float left = settle(context, m, s, load.size, spin, 1 - speed / slow);
-        speed = max(linear, D::dimension == 3 && m.slender != 0 ? way_of_turn(m, pose.rotation, s.angular_velocity)
-                                                                : left * max(m.outer_extent, 0.01f));
-      }
-      if (may_sleep && speed < sleep_speed && pushed_squared < square(0.2f * sleep_speed))
-        record.sleep_timer += context.dt * pace;
-      else
-        record.sleep_timer = 0;
-      reset_delta(s);
-      if (record.flags & body_fast) continue;  // its bounds wait for the end of its way
-      if constexpr (D::dimension == 3) update_world_inertia(world, body);
-      // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
-      m.slack = turned < 0.2f ? coarse(m.slack - (travel + surface_way)) : 0;
-      const bool quick = travel > quick_share * m.inner_extent;
-      if ((m.slack <= 0 || quick) && leave_bounds(world, body)) scratch.body_changes[std::size_t(i)] = body_outgrew;
     }
   });
   for (std::size_t i = 0; i < count; ++i)
