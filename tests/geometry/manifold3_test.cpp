@@ -198,6 +198,37 @@ TEST(Manifold3, BoxesRestOnFourPointsWithSteadyNames) {
   }
 }
 
+// The edge of a card is a strip of 2 mm under the rounding; the card leans, so that one border of it is .8 mm lower. Of
+// either end the manifold holds the lower corner, however it is turned: by the other one the card would sink there.
+TEST(Manifold3, ACardThatLeansStandsOnTheLowerBorderOfItsEdge) {
+  const Shape3 ground(Box{{20, 1, 20}}), card(Box{{0.001f, 0.49f, 0.3f}, 0.01f});
+  for (const float lean : {0.4f, -0.4f, 0.2f}) {
+    for (int i = 0; i < 8; ++i) {
+      const Quatf q = from_axis_angle(Vec3f{0, 1, 0}, 0.7f * float(i)) * from_axis_angle(Vec3f{0, 0, 1}, lean);
+      const float height = 0.49f * std::cos(lean) + 0.001f * std::abs(std::sin(lean)) + 0.01f;
+      for (const bool mirrored : {false, true}) {
+        const Transform3f place{{0, 1 + height - 1e-4f, 0}, q};
+        PairCache cache;
+        Manifold3 m;
+        if (mirrored)
+          collide(card, ground, inverse(place), 0.02f, cache, m);
+        else
+          collide(ground, card, place, 0.02f, cache, m);
+        ASSERT_GE(m.count, 2);
+        int deep[2] = {};
+        for (int k = 0; k < m.count; ++k) {
+          if (m.points[k].separation > 0) continue;
+          EXPECT_NEAR(m.points[k].separation, -1e-4, 3e-5);
+          const Vec3f on_card = mirrored ? m.points[k].point : inverse_transform_point(place, m.points[k].point);
+          ++deep[on_card.z > 0];
+        }
+        EXPECT_EQ(deep[0], 1) << lean << ' ' << i << ' ' << mirrored;
+        EXPECT_EQ(deep[1], 1) << lean << ' ' << i << ' ' << mirrored;
+      }
+    }
+  }
+}
+
 TEST(Manifold3, OctagonOfCrossedSquaresKeepsFourSpreadPoints) {
   const Box box{{0.5f, 0.5f, 0.5f}};
   const Transform3f x{{0, 1, 0}, normalize(Quatf{0.92388f, 0, 0.38268f, 0})};  // 45°

@@ -239,26 +239,32 @@ TYPED_TEST(QualityStacks, CardTentStandsIffTheLawSays) {
 }
 
 // Two tents, a floor card across their tops, and a tent on it, at the default friction of .6. The least friction of
-// the lower feet is tan θ (½ m + W)/(m + W) under a load W on each card, here W = 1: .35.
+// the lower feet is tan θ (½ m + W)/(m + W) under a load W on each card, here W = 1: .35. In several places, a
+// hundredth of a millimetre apart: what stands by luck falls in one of them.
 TYPED_TEST(QualityStacks, CardHouseStands) {
   using D = TypeParam;
   const double theta = math::radians(25.0);
-  World<D> world(world_with<D>());
-  add_ground(world);
-  std::vector<BodyId> cards;
-  add_tent<D>(world, cards, -0.45, 0, theta, 0.6f);
-  add_tent<D>(world, cards, 0.45, 0, theta, 0.6f);
-  const double top = 2 * (card_half * std::cos(theta) + card_core<D>() * std::sin(theta) + card_round);
-  BodyDef<D> floor;
-  floor.position = rigid::test::at<D>(0, top + 0.01);
-  floor.sleep_speed = 0;
-  const BodyId id = world.create_body(floor).value();
-  ShapeDef<D> def;
-  def.density = 350;
-  world.add_shape(id, box_shape<D>(1.0f, 0.01f, 0.3f), def).value();
-  cards.push_back(id);
-  add_tent<D>(world, cards, 0, top + 0.02, theta, 0.6f);
-  Gate(18, "card house of two storeys, 60 s: moved", D::dimension, "m").at_most(furthest_moved(world, cards, 60), 0.01);
+  double moved = 0;
+  for (int place = 0; place < 4; ++place) {
+    const double x = 1e-5 * place;
+    World<D> world(world_with<D>());
+    add_ground(world);
+    std::vector<BodyId> cards;
+    add_tent<D>(world, cards, x - 0.45, 0, theta, 0.6f);
+    add_tent<D>(world, cards, x + 0.45, 0, theta, 0.6f);
+    const double top = 2 * (card_half * std::cos(theta) + card_core<D>() * std::sin(theta) + card_round);
+    BodyDef<D> floor;
+    floor.position = rigid::test::at<D>(x, top + 0.01);
+    floor.sleep_speed = 0;
+    const BodyId id = world.create_body(floor).value();
+    ShapeDef<D> def;
+    def.density = 350;
+    world.add_shape(id, box_shape<D>(1.0f, 0.01f, 0.3f), def).value();
+    cards.push_back(id);
+    add_tent<D>(world, cards, x, top + 0.02, theta, 0.6f);
+    moved = std::max(moved, furthest_moved(world, cards, 60));
+  }
+  Gate(18, "card house of two storeys, four places, 60 s: moved", D::dimension, "m").at_most(moved, 0.01);
 }
 
 // Gate 16: half inside each other and half inside a wall. What touches parts no faster than the push speed.

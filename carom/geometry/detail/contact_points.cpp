@@ -32,15 +32,25 @@ void write_points(const ContactPoints& c, Vec3f normal, Manifold3& out) {
   const Vec3f p1 = c.point[chosen[1]].point;
   const Vec3f along = normalize(p1 - p0), across = cross(normal, along);
   float low_t = 0, high_t = 0, width = 0;
-  int first = chosen[0], last = chosen[0];
   for (int i = 0; i < c.count; ++i) {
     const Vec3f d = c.point[i].point - p0;
-    const float t = dot(d, along);
-    if (t < low_t) low_t = t, first = i;
-    if (t > high_t) high_t = t, last = i;
+    low_t = min(low_t, dot(d, along)), high_t = max(high_t, dot(d, along));
     width = max(width, abs(dot(d, across)));
   }
-  if (width < 0.01f * (high_t - low_t)) {  // a line: its ends, and the deepest where it is neither
+  const float narrow = 0.01f * (high_t - low_t);
+  if (width < narrow) {  // a line: its ends, and the deepest where it is neither
+    // The edge of a thin plate is a strip, and the plate stands on its lower border: of what lies side by side at an
+    // end, the deeper one carries.
+    const auto end_at = [&](float from, float to) {
+      int end = -1;
+      for (int i = 0; i < c.count; ++i) {
+        const float t = dot(c.point[i].point - p0, along);
+        if (t < from || t > to) continue;
+        if (end < 0 || c.point[i].separation < c.point[end].separation - 0.05f * width) end = i;
+      }
+      return end;
+    };
+    const int first = end_at(low_t, low_t + narrow), last = end_at(high_t - narrow, high_t);
     out.points[out.count++] = c.point[first];
     out.points[out.count++] = c.point[last];
     const float ends = min(c.point[first].separation, c.point[last].separation);
