@@ -129,6 +129,16 @@ CAROM_SIMD_INLINE void read_flights(const Flight<Dim3>* flights, int count, Wide
   gather_rows<Columns, W>(rows, columns);
 }
 
+/// No faster than `most`.
+template <int W>
+CAROM_SIMD_INLINE Lanes<3, W> limited(const Lanes<3, W>& v, float most) {
+  using F = WideFloat<W>;
+  const F top = F::splat(most), speed2 = dot(v, v);
+  const auto fast = speed2 > top * top;
+  if (!any(fast)) return v;
+  return multiply(v, select(fast, top / sqrt(select(fast, speed2, top)), F::splat(1)));
+}
+
 template <int W>
 std::uint32_t accelerate_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, Flight<Dim3>* flights,
                                 int count, float h, float max_speed, bool carry_on) {
@@ -143,14 +153,8 @@ std::uint32_t accelerate_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>*
   const F* const drive = driven.drive;
   Lanes<3, W> v = {{row[0] + drive[4], row[1] + drive[5], row[2] + drive[6]}};
   Lanes<3, W> w = {{row[4] + drive[7], row[5] + drive[8], row[6] + drive[9]}};
-  v = multiply(v, drive[2]);
-  w = multiply(w, drive[3]);
-  const F top = F::splat(max_speed), speed2 = dot(v, v);
-  const auto fast = speed2 > top * top;
-  v = multiply(v, select(fast, top / sqrt(select(fast, speed2, one)), one));
-  const F most = F::splat(max_turn), turn = sqrt(dot(w, w)) * F::splat(h);
-  const auto spins = turn > most;
-  w = multiply(w, select(spins, most / select(spins, turn, one), one));
+  v = limited(multiply(v, drive[2]), max_speed);
+  w = limited(multiply(w, drive[3]), max_turn / h);
   Lanes<3, W> carried = {{zero, zero, zero}}, carried_spin = carried;
   if (carry_on && (driven.which(carries) & which) != 0) {
     F last[12];
@@ -205,9 +209,45 @@ LeftOver move_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, co
   return left;
 }
 
+template <int W>
+std::uint32_t fly_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, int count, float h, int substeps,
+                         float max_speed) {
+  using F = WideFloat<W>;
+  const Driven3<W> driven(drives, count);
+  const F* const drive = driven.drive;
+  const std::uint32_t which = driven.which(driven.kind() == F::splat(3));
+  if (which == 0) return 0;
+  F row[16];
+  read_bodies<0>(bodies, driven.body, row);
+  Lanes<3, W> v = {{row[0], row[1], row[2]}}, w = {{row[4], row[5], row[6]}}, moved = {{row[8], row[9], row[10]}};
+  const Lanes<3, W> gain = {{drive[4], drive[5], drive[6]}}, spin_gain = {{drive[7], drive[8], drive[9]}};
+  const auto by_itself =
+      driven.gyroscopic() & ((dot(w, w) > F::splat(least_spin_squared)) | (dot(spin_gain, spin_gain) > F::zero()));
+  const std::uint32_t left = driven.which(by_itself) & which;
+  Turn<W> q = {row[12], {{row[13], row[14], row[15]}}};
+  const F share = F::splat(0.5f * h);
+  for (int k = 0; k < substeps; ++k) {  // the mean of the velocities makes ½at² exact
+    const Lanes<3, W> before = v;
+    v = limited(multiply(add(v, gain), drive[2]), max_speed);
+    moved = add(moved, multiply(add(before, v), share));
+  }
+  if (left != which)
+    for (int k = 0; k < substeps; ++k) {
+      w = limited(multiply(add(w, spin_gain), drive[3]), max_turn / h);
+      q = normalized(product(turn_by(multiply(w, F::splat(h))), q));
+    }
+  F now[16] = {v.v[0],     v.v[1],     v.v[2],     row[3],  w.v[0], w.v[1],   w.v[2],   row[7],
+               moved.v[0], moved.v[1], moved.v[2], row[11], q.w,    q.u.v[0], q.u.v[1], q.u.v[2]};
+  for (const int k : {4, 5, 6, 12, 13, 14, 15}) now[k] = select(by_itself, row[k], now[k]);
+  std::int32_t index[W];
+  choose_lanes<W>(which, driven.body, index);
+  scatter_rows<16, 16, W>(reinterpret_cast<float*>(bodies), index, now);
+  return left;
+}
+
 MoveKernels move_kernels() {
   constexpr int W = CAROM_PIN_WIDTH;
-  return {accelerate_bodies<W>, move_bodies<W>, turn_bodies<W>};
+  return {accelerate_bodies<W>, move_bodies<W>, turn_bodies<W>, fly_bodies<W>};
 }
 
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -35,6 +35,9 @@ struct MoveKernels {
                    float h) = nullptr;
   /// Turns the bodies of `lanes` (TurnLanes<W>) for a time h (s): their angular momentum stays, their velocity follows.
   void (*turn)(SolverBody<Dim3>* bodies, const void* lanes, float h) = nullptr;
+  /// All substeps of those that fly through. Returns those that turn by themselves, which are not turned.
+  std::uint32_t (*fly)(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, int count, float h, int substeps,
+                       float max_speed) = nullptr;
 };
 
 namespace pin_kernels_baseline {

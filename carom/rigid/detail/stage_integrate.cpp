@@ -313,26 +313,12 @@ void move_bodies(StepContext<Dim3>& context, int begin, int end) {
 /// All substeps of the bodies that nothing touches.
 template <int W>
 void fly_bodies(StepContext<Dim3>& context, int begin, int end) {
-  const float h = context.h, max_speed = context.world.definition.maximum_linear_speed;
+  const MoveKernels kernels = move_kernels_of(W);
   FreeBodies<W> free(context, context.substeps);
-  for (int i = begin; i < end; ++i) {
-    const BodyDrive<Dim3>& drive = context.drives[i];
-    if ((drive.flags & BodyDrive<Dim3>::flies_through) == 0) continue;
-    SolverBody<Dim3>& s = context.bodies[drive.body];
-    for (int k = 0; k < context.substeps; ++k) {
-      const Vec3f before = accelerate(s, drive, max_speed);
-      s.delta_position += (0.5f * h) * (before + s.linear_velocity);
-    }
-    const bool spinning = spins(s.angular_velocity) || !(drive.angular_gain == Vec3f{});
-    if ((drive.flags & BodyDrive<Dim3>::gyroscopic) != 0 && spinning) {
-      free.add(i, drive.angular_gain, drive.angular_keep);
-      continue;
-    }
-    for (int k = 0; k < context.substeps; ++k) {
-      spin_up(s, drive, h);
-      turn_body(s, h);
-    }
-  }
+  for (int first = begin; first < end; first += W)
+    for_places(kernels.fly(context.bodies, context.drives + first, min(W, end - first), context.h, context.substeps,
+                           context.world.definition.maximum_linear_speed),
+               first, [&](int i) { free.add(i, context.drives[i].angular_gain, context.drives[i].angular_keep); });
 }
 
 }  // namespace
