@@ -26,14 +26,44 @@ CAROM_SIMD_INLINE Turn<W> turn_by(const Lanes<3, W>& angle) {
   return {s, multiply(t, s)};
 }
 
+/// Columns floats of each body from byte Offset on.
+template <int Offset, int Columns, class Record, int W>
+CAROM_SIMD_INLINE void read_records(const Record* records, const std::int32_t (&index)[W],
+                                    WideFloat<W> (&columns)[Columns]) {
+  const float* rows[W];
+  for (int i = 0; i < W; ++i)
+    rows[i] = reinterpret_cast<const float*>(reinterpret_cast<const char*>(records + index[i]) + Offset);
+  gather_rows<Columns, W>(rows, columns);
+}
+/// Mass, flags (BodyMotion::gyroscopic, slender, load_level), nine moments and a damping.
 template <int W>
-void turn_bodies(SolverBody<Dim3>* bodies, const void* lanes, float h) {
+CAROM_SIMD_INLINE void read_inertia(const BodyMotion<Dim3>* motions, const std::int32_t (&index)[W],
+                                    WideFloat<W> (&row)[12]) {
+  using Motion = BodyMotion<Dim3>;
+  static_assert(offsetof(Motion, gyroscopic) == offsetof(Motion, mass) + 4 &&
+                offsetof(Motion, inertia) == offsetof(Motion, mass) + 8);
+  read_records<offsetof(Motion, mass)>(motions, index, row);
+}
+/// xx, xy, xz, yy, yz, zz.
+template <int W>
+CAROM_SIMD_INLINE Lanes<6, W> tensor_of(const WideFloat<W> (&row)[12]) {
+  return {{row[2], row[3], row[4], row[6], row[7], row[10]}};
+}
+
+template <int W>
+void turn_bodies(SolverBody<Dim3>* bodies, const Pose3* poses, const BodyMotion<Dim3>* motions,
+                 const std::int32_t* slots, int count, float h) {
   using F = WideFloat<W>;
-  const TurnLanes<W>& c = *static_cast<const TurnLanes<W>*>(lanes);
-  const Motion3<W> motion = read_motion<W>(bodies, c.body);
-  const Turn<W> turned_so_far = read_placement<W>(bodies, c.body).turn, start = load_turn(c.start);
+  std::int32_t all[W], index[W];
+  for (int i = 0; i < W; ++i) all[i] = slots[i < count ? i : 0], index[i] = i < count ? slots[i] : -1;
+  const Motion3<W> motion = read_motion<W>(bodies, all);
+  F before[4], inertia[12];
+  read_records<offsetof(Pose3, rotation)>(poses, all, before);
+  read_inertia(motions, all, inertia);
+  const Turn<W> turned_so_far = read_placement<W>(bodies, all).turn,
+                start = {before[0], {{before[1], before[2], before[3]}}};
   const Turn<W> q = normalized(product(turned_so_far, start));
-  Lanes<6, W> tensor = load(c.inertia);
+  Lanes<6, W> tensor = tensor_of(inertia);
   tensor = multiply(tensor, reciprocal_above(tensor.v[0], F::zero()));
   const F half = F::splat(0.5f * h);
   const Lanes<3, W> w = turned(conjugated(q), motion.w), m = times(tensor, w);
@@ -81,8 +111,8 @@ void turn_bodies(SolverBody<Dim3>* bodies, const void* lanes, float h) {
   const F velocity[4] = {spin.v[0], spin.v[1], spin.v[2], F::zero()};
   const F rotation[4] = {total.w, total.u.v[0], total.u.v[1], total.u.v[2]};
   float* const floats = reinterpret_cast<float*>(bodies);
-  scatter_rows<16, 4, W>(floats + 4, c.body, velocity);
-  scatter_rows<16, 4, W>(floats + 12, c.body, rotation);
+  scatter_rows<16, 4, W>(floats + 4, index, velocity);
+  scatter_rows<16, 4, W>(floats + 12, index, rotation);
 }
 
 /// What drives the bodies of a few places, and who they are.

@@ -8,19 +8,11 @@
 
 namespace carom::rigid::detail {
 
-/// Bodies that constraints push about, to be turned with the arithmetic of `torque_free_turn`.
-template <int W>
-struct alignas(64) TurnLanes {
-  std::int32_t body[W];  ///< slots; −1: none in this lane
-  float inertia[6][W];   ///< about the centre of mass, body axes: xx, xy, xz, yy, yz, zz
-  float start[4][W];     ///< attitude at the start of the step: w, x, y, z
-};
-
 /// Which of as many bodies as there are lanes were not wholly moved. Bits by lane.
 struct LeftOver {
   std::uint32_t locked = 0;  ///< not at all: axes are locked
   std::uint32_t free = 0;    ///< not turned: by themselves, and nothing pushed them
-  std::uint32_t pushed = 0;  ///< not turned: constraints pushed them about (TurnLanes)
+  std::uint32_t pushed = 0;  ///< not turned: constraints pushed them about
 };
 
 /// `drives`, `flights`: those of `count` places of the awake list, at most as many as there are lanes. Bodies that fly
@@ -33,8 +25,10 @@ struct MoveKernels {
   /// Moves their centres, and turns those whose spin stays as it is.
   LeftOver (*move)(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, const Flight<Dim3>* flights, int count,
                    float h) = nullptr;
-  /// Turns the bodies of `lanes` (TurnLanes<W>) for a time h (s): their angular momentum stays, their velocity follows.
-  void (*turn)(SolverBody<Dim3>* bodies, const void* lanes, float h) = nullptr;
+  /// Turns `count` bodies that constraints push about for a time h (s), with the arithmetic of `torque_free_turn`:
+  /// their angular momentum stays, their velocity follows.
+  void (*turn)(SolverBody<Dim3>* bodies, const Pose3* poses, const BodyMotion<Dim3>* motions, const std::int32_t* slots,
+               int count, float h) = nullptr;
   /// All substeps of those that fly through. Returns those that turn by themselves, which are not turned.
   std::uint32_t (*fly)(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, int count, float h, int substeps,
                        float max_speed) = nullptr;

@@ -379,7 +379,7 @@ void stop_fast_bodies(StepContext<D>& context) {
       const std::int32_t body = world.bodies.awake[place];
       slow_what_jams(world, body, scratch.swept[place], context.dt);
       take_back_gravity(world, body, scratch.swept[place], context.dt);
-      if constexpr (D::dimension == 3) update_world_inertia(world, body);
+      if (D::dimension == 3 && scratch.swept[place].fraction < 1) update_world_inertia(world, body);
       if (leave_bounds(world, body)) scratch.body_changes[place] = body_outgrew;
     }
   });

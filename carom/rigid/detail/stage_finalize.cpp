@@ -204,8 +204,8 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
     record.sleep_timer += context.dt * pace;
   else
     record.sleep_timer = 0;
+  if (D::dimension == 3 && (record.locks >> 3 & 7) != 0) update_world_inertia(world, body);  // the others have it
   if (record.flags & body_fast) return change;  // its bounds wait for the end of its way
-  if (D::dimension == 3 && (record.locks >> 3 & 7) != 0) update_world_inertia(world, body);
   // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
   m.slack = turned < small_turn ? coarse(m.slack - (travel + surface_way)) : 0;
   const bool quick = travel > quick_share * m.inner_extent;

@@ -3,7 +3,6 @@
 #include "carom/rigid/detail/flight_lanes.h"
 #include "carom/rigid/detail/move_body.h"
 #include "carom/rigid/detail/move_lanes.h"
-#include "carom/rigid/detail/set_lane.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -32,40 +31,33 @@ FlightKernel flight_kernel_of(int width) {
 template <int W>
 class PushedBodies {
  public:
-  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(move_kernels_of(W).turn) { clear(); }
+  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(move_kernels_of(W).turn) {}
   PushedBodies(const PushedBodies&) = delete;
   ~PushedBodies() {
     if (count_ > 0) turn();
   }
   /// By its place in the list of awake bodies.
   void add(int place) {
-    const std::int32_t body = context_.drives[place].body;
-    set_lane(lanes_.inertia, count_, context_.world.bodies.motion[std::size_t(body)].inertia);
-    set_lane(lanes_.start, count_, context_.world.bodies.pose[std::size_t(body)].rotation);
-    lanes_.body[count_] = body;
-    if ((context_.drives[place].flags & BodyDrive<Dim3>::carries) != 0) {
+    const BodyDrive<Dim3>& drive = context_.drives[place];
+    body_[count_++] = drive.body;
+    if ((drive.flags & BodyDrive<Dim3>::carries) != 0) {
       carrying_[carry_count_++] = place;
-      context_.flights[place].spin -= context_.bodies[body].angular_velocity;
+      context_.flights[place].spin -= context_.bodies[drive.body].angular_velocity;
     }
-    if (++count_ < W) return;
-    turn();
-    clear();
+    if (count_ == W) turn();
   }
 
  private:
   void turn() {
-    turn_(context_.bodies, &lanes_, context_.h);
+    const BodyStore<Dim3>& bodies = context_.world.bodies;
+    turn_(context_.bodies, bodies.pose.data(), bodies.motion.data(), body_, count_, context_.h);
     for (int k = 0; k < carry_count_; ++k)
       context_.flights[carrying_[k]].spin += context_.bodies[context_.drives[carrying_[k]].body].angular_velocity;
-  }
-  void clear() {
     count_ = carry_count_ = 0;
-    lanes_ = {};
-    for (std::int32_t& body : lanes_.body) body = none;
   }
   StepContext<Dim3>& context_;
   decltype(MoveKernels::turn) turn_;
-  TurnLanes<W> lanes_;
+  std::int32_t body_[W] = {};
   int carrying_[W] = {};  ///< places of those whose spin turns with them (Flight)
   int count_ = 0, carry_count_ = 0;
 };

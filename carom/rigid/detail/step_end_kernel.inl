@@ -33,15 +33,6 @@ template <int W>
 CAROM_SIMD_INLINE void repeat_first(const std::int32_t* slots, int count, std::int32_t (&index)[W]) {
   for (int i = 0; i < W; ++i) index[i] = slots[i < count ? i : 0];
 }
-/// Columns floats of each body from byte Offset on.
-template <int Offset, int Columns, class Record, int W>
-CAROM_SIMD_INLINE void read_records(const Record* records, const std::int32_t (&index)[W],
-                                    WideFloat<W> (&columns)[Columns]) {
-  const float* rows[W];
-  for (int i = 0; i < W; ++i)
-    rows[i] = reinterpret_cast<const float*>(reinterpret_cast<const char*>(records + index[i]) + Offset);
-  gather_rows<Columns, W>(rows, columns);
-}
 /// Centres and origins, in double.
 template <class D, int W>
 CAROM_SIMD_INLINE void place_bodies(typename D::Pose* poses, BodyMotion<D>* motions, const std::int32_t (&index)[W],
@@ -171,13 +162,11 @@ void end_bodies(SolverBody<Dim3>* bodies, Pose3* poses, BodyMotion<Dim3>* motion
   read_records<0>(bodies, all, row);
   const std::uint32_t finite = finite_bodies<W>(row, all, count, index);
   ends.broken = ~finite & ((1u << count) - 1);
-  static_assert(offsetof(Motion, gyroscopic) == offsetof(Motion, mass) + 4 &&
-                offsetof(Motion, slender) == offsetof(Motion, mass) + 5 &&
-                offsetof(Motion, inertia) == offsetof(Motion, mass) + 8);
+  static_assert(offsetof(Motion, slender) == offsetof(Motion, gyroscopic) + 1);
   F before[4], center[4], tensor[12], extents[4];
   read_records<offsetof(Pose3, rotation)>(poses, all, before);
   read_records<offsetof(Motion, local_center)>(motions, all, center);
-  read_records<offsetof(Motion, mass)>(motions, all, tensor);  // mass, flags, nine moments and a damping
+  read_inertia(motions, all, tensor);
   read_records<offsetof(Motion, inner_extent) - 4>(motions, all, extents);
   const F zero = F::zero(), one = F::splat(1), two = F::splat(2), outer = extents[2];
   const auto flags = bits(tensor[1]);
@@ -213,8 +202,7 @@ void end_bodies(SolverBody<Dim3>* bodies, Pose3* poses, BodyMotion<Dim3>* motion
   const auto unlike_a_ball = (flags & WideInt<W>::splat(255)) != WideInt<W>::zero();
   const std::uint32_t turning = bitmask(unlike_a_ball) & terms.turning & finite;
   if (turning == 0) return;
-  const Lanes<6, W> inverse =
-      inverse_in_world(Lanes<6, W>{{tensor[2], tensor[3], tensor[4], tensor[6], tensor[7], tensor[10]}}, now);
+  const Lanes<6, W> inverse = inverse_in_world(tensor_of(tensor), now);
   alignas(64) float i[6][W];
   store(inverse, i);
   for (int k = 0; k < W; ++k)
