@@ -389,6 +389,18 @@ static typename D::Bounds bounds_of_turn(const WorldImplementation<D>& world, co
 }
 
 template <class D>
+typename D::Position bounds_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  using P = typename D::Position;
+  if (is_quick_bullet(world, shape.body))
+    return P(world.bodies.solver[std::size_t(shape.body)].linear_velocity * world.last_dt);
+  if (!has_several_shapes(world, shape.body)) return way_ahead(world, shape);
+  // A body of several shapes would have all of them leave their bounds in every step of a fall. What is long has few
+  // others beside it.
+  const double steps = world.bodies.motion[std::size_t(shape.body)].slender != 0 ? 5 : 3;
+  return P(way_of_middle(world, shape)) * steps;
+}
+
+template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
   using P = typename D::Position;
   const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
@@ -404,12 +416,7 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   const bool bullet = is_quick_bullet(world, shape.body);
   if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
-  // A body of several shapes would have all of them leave their bounds in every step of a fall. What is long has few
-  // others beside it.
-  const double steps = world.bodies.motion[std::size_t(shape.body)].slender != 0 ? 5 : 3;
-  const P ahead = bullet                                  ? P(s.linear_velocity * world.last_dt)
-                  : has_several_shapes(world, shape.body) ? P(way_of_middle(world, shape)) * steps
-                                                          : way_ahead(world, shape);
+  const P ahead = bounds_ahead(world, shape);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 
@@ -422,7 +429,7 @@ void insert_into_tree(WorldImplementation<D>& world, std::int32_t s) {
                                               : (record.type == BodyType::kinematic ? tree_kinematic : tree_dynamic);
   learn_bounce(world);
   shape.leaf = world.shapes.trees[shape.tree].insert(fat_bounds(world, shape), std::uint32_t(s));
-  world.bodies.motion[std::size_t(shape.body)].slack = 0;
+  look_at_bounds(world.bodies.motion[std::size_t(shape.body)]);
   world.scratch.old_bounds.clear();  // its pairs have not been looked for
   if ((shape.flags & shape_moved) == 0) {
     shape.flags |= shape_moved;
@@ -442,7 +449,7 @@ void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
 template <class D>
 void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
   learn_bounce(world);
-  world.bodies.motion[std::size_t(body)].slack = 0;
+  look_at_bounds(world.bodies.motion[std::size_t(body)]);
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
@@ -512,26 +519,27 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
   return false;
 }
 
-#define CAROM_INSTANTIATE(D)                                                                \
-  template void activate_body<D>(WorldImplementation<D>&, std::int32_t);                    \
-  template void deactivate_body<D>(WorldImplementation<D>&, std::int32_t);                  \
-  template void wake_body<D>(WorldImplementation<D>&, std::int32_t);                        \
-  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<const std::int32_t>);    \
-  template void wake_touching<D>(WorldImplementation<D>&, std::int32_t);                    \
-  template void update_world_inertia<D>(WorldImplementation<D>&, std::int32_t);             \
-  template void pose_from_center<D>(WorldImplementation<D>&, std::int32_t);                 \
-  template void center_from_pose<D>(WorldImplementation<D>&, std::int32_t);                 \
-  template void update_mass<D>(WorldImplementation<D>&, std::int32_t);                      \
-  template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&); \
-  template void learn_bounce<D>(WorldImplementation<D>&);                                   \
-  template D::Position way_ahead<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);  \
-  template bool has_several_shapes<D>(const WorldImplementation<D>&, std::int32_t);         \
-  template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);   \
-  template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
-  template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                 \
-  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t);                   \
-  template void attach_joint<D>(WorldImplementation<D>&, std::int32_t);                     \
-  template void detach_joint<D>(WorldImplementation<D>&, std::int32_t);                     \
+#define CAROM_INSTANTIATE(D)                                                                  \
+  template void activate_body<D>(WorldImplementation<D>&, std::int32_t);                      \
+  template void deactivate_body<D>(WorldImplementation<D>&, std::int32_t);                    \
+  template void wake_body<D>(WorldImplementation<D>&, std::int32_t);                          \
+  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<const std::int32_t>);      \
+  template void wake_touching<D>(WorldImplementation<D>&, std::int32_t);                      \
+  template void update_world_inertia<D>(WorldImplementation<D>&, std::int32_t);               \
+  template void pose_from_center<D>(WorldImplementation<D>&, std::int32_t);                   \
+  template void center_from_pose<D>(WorldImplementation<D>&, std::int32_t);                   \
+  template void update_mass<D>(WorldImplementation<D>&, std::int32_t);                        \
+  template D::Bounds shape_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);   \
+  template void learn_bounce<D>(WorldImplementation<D>&);                                     \
+  template D::Position way_ahead<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);    \
+  template D::Position bounds_ahead<D>(const WorldImplementation<D>&, const ShapeRecord<D>&); \
+  template bool has_several_shapes<D>(const WorldImplementation<D>&, std::int32_t);           \
+  template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);     \
+  template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                   \
+  template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                   \
+  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t);                     \
+  template void attach_joint<D>(WorldImplementation<D>&, std::int32_t);                       \
+  template void detach_joint<D>(WorldImplementation<D>&, std::int32_t);                       \
   template bool joints_forbid_collision<D>(const WorldImplementation<D>&, std::int32_t, std::int32_t);
 CAROM_INSTANTIATE(Dim2)
 CAROM_INSTANTIATE(Dim3)

@@ -57,9 +57,13 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
 /// Finds out what ShapeStore::bounce says.
 template <class D>
 void learn_bounce(WorldImplementation<D>& world);
-/// How far fat bounds reach ahead along the velocity: for a step where anything rebounds; else as far as contacts look.
+/// How far fat bounds must reach ahead along the velocity: for a step where anything rebounds; else as far as contacts
+/// look.
 template <class D>
 typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
+/// How far fat bounds that are made now do: of bodies of several shapes for some steps.
+template <class D>
+typename D::Position bounds_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
 /// Has the body more than one shape?
 template <class D>
 bool has_several_shapes(const WorldImplementation<D>& world, std::int32_t body);

@@ -73,8 +73,22 @@ struct BodyMotion {
   float gravity_scale = 1;
   float inner_extent = 0;  ///< m: half the smallest extent of its shapes; how far is "fast"
   float outer_extent = 0;  ///< m: farthest point of its shapes from the centre of mass
-  float slack = 0;         ///< m: its surface may move so far before a shape can leave its fat bounds; 0: look
+  /// m: its surface may go so far along each axis, down and up, before a shape can leave its fat bounds; 0: look.
+  typename D::Vector room_below{}, room_above{};
+  float unused = 0;  ///< whole words of eight bytes, for snapshots
 };
+
+/// Lets the next step ask whether its shapes have left their fat bounds.
+template <class D>
+void look_at_bounds(BodyMotion<D>& m) {
+  m.room_below = m.room_above = {};
+}
+template <class D>
+bool looks_at_bounds(const BodyMotion<D>& m) {
+  for (int k = 0; k < D::dimension; ++k)
+    if (!(m.room_below[k] > 0 && m.room_above[k] > 0)) return true;
+  return false;
+}
 
 /// How far a turn (rad, world axes) moves the surface of a body at most: a long one that rolls moves it little.
 inline float way_of_turn(const BodyMotion<Dim2>& m, const Rot2f&, float turn) {

@@ -316,6 +316,7 @@ void add_who_is_driven_over(WorldImplementation<D>& world) {
   }
   for (const std::int32_t body : bodies) {
     world.bodies.record[std::size_t(body)].flags |= body_fast;
+    look_at_bounds(world.bodies.motion[std::size_t(body)]);
     scratch.fast.push_back(world.bodies.record[std::size_t(body)].awake_index);
   }
   std::sort(scratch.fast.begin(), scratch.fast.end());
@@ -379,8 +380,10 @@ void stop_fast_bodies(StepContext<D>& context) {
       const std::int32_t body = world.bodies.awake[place];
       slow_what_jams(world, body, scratch.swept[place], context.dt);
       take_back_gravity(world, body, scratch.swept[place], context.dt);
-      if (D::dimension == 3 && scratch.swept[place].fraction < 1) update_world_inertia(world, body);
-      if (leave_bounds(world, body)) scratch.body_changes[place] = body_outgrew;
+      const bool stopped = scratch.swept[place].fraction < 1;
+      if (D::dimension == 3 && stopped) update_world_inertia(world, body);
+      if ((stopped || looks_at_bounds(world.bodies.motion[std::size_t(body)])) && leave_bounds(world, body))
+        scratch.body_changes[place] = body_outgrew;
     }
   });
   report_crossed(world);

@@ -13,8 +13,7 @@ namespace {
 constexpr int finalize_grain = 128;
 constexpr float settling_speed = 3;  ///< of its sleep speed, below which a body that lies on something settles
 constexpr float settling_resistance =
-    0.014f;                           ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
-constexpr float quick_share = 0.25f;  ///< of a body's half thickness in a step
+    0.014f;  ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
 
 StepEndKernels kernels_of(int width) {
 #if defined(__x86_64__)
@@ -72,8 +71,8 @@ float settle(const StepContext<D>& context, const BodyMotion<D>& m, SolverBody<D
 /// several shapes, all of which are asked in every step while they are quick.
 class BoxesOfHulls {
  public:
-  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body)
-      : several_(has_several_shapes(world, body)), position_(world.bodies.pose[std::size_t(body)].position) {
+  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body, bool several)
+      : several_(several), position_(world.bodies.pose[std::size_t(body)].position) {
     if (several_) turn_ = math::to_matrix(world.bodies.pose[std::size_t(body)].rotation);
   }
   bool know(const ShapeRecord<Dim3>& shape) const {
@@ -94,7 +93,7 @@ class BoxesOfHulls {
   Mat3f turn_{};
 };
 struct NoBoxes {
-  NoBoxes(const WorldImplementation<Dim2>&, std::int32_t) {}
+  NoBoxes(const WorldImplementation<Dim2>&, std::int32_t, bool) {}
   static bool know(const ShapeRecord<Dim2>&) { return false; }
   static Dim2::Bounds bounds(const ShapeRecord<Dim2>&) { return {}; }
 };
@@ -115,41 +114,56 @@ void quarantine(WorldImplementation<D>& world, std::int32_t body) {
 template <class D>
 bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   bool any = false;
-  double slack = 1e6;
   using P = typename D::Position;
+  P least_below{}, least_above{};
+  for (int k = 0; k < D::dimension; ++k) least_below[k] = least_above[k] = 1e6;
   // What moves far in a step must have its next way within its bounds, so that its contacts are foreseen.
   const BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
   const P way = P(world.bodies.solver[std::size_t(body)].linear_velocity) * double(world.last_dt);
   const double most_slow = quick_share * double(motion.inner_extent);
   const bool quick = math::length_squared(way) > most_slow * most_slow;
   double farthest = 0;
+  const bool several = has_several_shapes(world, body);
   const bool bullet = (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;  // looks one step ahead
-  if (quick && (bullet || !has_several_shapes(world, body)))
+  if (quick && (bullet || !several))
     for (int k = 0; k < D::dimension; ++k) farthest = max(farthest, math::abs(way[k]));
-  const std::conditional_t<D::dimension == 2, NoBoxes, BoxesOfHulls> boxes(world, body);
+  const std::conditional_t<D::dimension == 2, NoBoxes, BoxesOfHulls> boxes(world, body, several);
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
     if (farthest > double(shape.margin)) {  // with the way of the next step it has left them, or nearly so
       shape.flags |= shape_outgrown;
       any = true;
-      continue;
+      least_below = least_above = P{};
+      if (several) continue;
+      look_at_bounds(world.bodies.motion[std::size_t(body)]);
+      return true;
     }
     const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf);
     const P ahead = quick ? way_ahead(world, shape) : P{};
     const auto stays_within = [&](const typename D::Bounds& box) {
       const typename D::Bounds next{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
       if (!geometry::contains(fat, next)) return false;
-      const P below = box.low - fat.low, above = fat.high - box.high;
-      for (int k = 0; k < D::dimension; ++k) slack = min(slack, min(below[k], above[k]));
+      least_below = math::min(least_below, box.low - fat.low);
+      least_above = math::min(least_above, fat.high - box.high);
       return true;
     };
     if (quick && boxes.know(shape) && stays_within(boxes.bounds(shape))) continue;
     if (stays_within(shape_bounds(world, shape))) continue;
     shape.flags |= shape_outgrown;
     any = true;
+    // It gets new ones in this step (update_trees), with so much room.
+    const P reach = several ? bounds_ahead(world, shape) : ahead;
+    for (int k = 0; k < D::dimension; ++k) {
+      least_below[k] = min(least_below[k], double(shape.margin) + max(-reach[k], 0.0));
+      least_above[k] = min(least_above[k], double(shape.margin) + max(reach[k], 0.0));
+    }
   }
-  world.bodies.motion[std::size_t(body)].slack = any ? 0 : coarse(0.98f * float(slack));
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  for (int k = 0; k < D::dimension; ++k) {
+    m.room_below[k] = coarse(0.98f * float(least_below[k]));
+    m.room_above[k] = coarse(0.98f * float(least_above[k]));
+  }
   return any;
 }
 
@@ -167,13 +181,12 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
   world.scratch.loads[std::size_t(body)] = {};
   std::uint8_t change = 0;
   const float travel = ends.travel[lane], spin = ends.spin[lane];
-  float turned = ends.turned[lane], surface_way = ends.surface_way[lane];
+  float surface_way = ends.surface_way[lane];
   if ((ends.whirling >> lane & 1) != 0) {
     const float slowed = min(1.0f, max_turn / (context.h * spin));
     const typename D::Angular whole = whole_turn(turn_of(D{}, ends, lane), s.angular_velocity, slowed * context.dt);
     world.scratch.swept[std::size_t(place)].turn = whole;
-    turned = max(turned, spin_of(whole));
-    surface_way = turned * m.outer_extent;
+    surface_way = max(ends.turned[lane], spin_of(whole)) * m.outer_extent;
   }
   const bool bullet = (record.flags & body_bullet) != 0;
   if (world.definition.continuous && record.type == BodyType::dynamic && (record.flags & body_has_collider) != 0 &&
@@ -205,11 +218,10 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
   else
     record.sleep_timer = 0;
   if (D::dimension == 3 && (record.locks >> 3 & 7) != 0) update_world_inertia(world, body);  // the others have it
+  const bool near = bullet || (ends.near_bounds >> lane & 1) != 0;
+  if (near) look_at_bounds(m);
   if (record.flags & body_fast) return change;  // its bounds wait for the end of its way
-  // A surface moves at most by its centre's way and its turn; most bodies need no look at their bounds for long.
-  m.slack = turned < small_turn ? coarse(m.slack - (travel + surface_way)) : 0;
-  const bool quick = travel > quick_share * m.inner_extent;
-  return (m.slack <= 0 || quick) && leave_bounds(world, body) ? std::uint8_t(body_outgrew) : change;
+  return near && leave_bounds(world, body) ? std::uint8_t(body_outgrew) : change;
 }
 
 template <class D>

@@ -51,6 +51,28 @@ CAROM_SIMD_INLINE void place_bodies(typename D::Pose* poses, BodyMotion<D>* moti
   }
 }
 
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> coarse_lanes(WideFloat<W> x) {  // as `coarse`
+  const WideInt<W> high = bits(x) & WideInt<W>::splat(std::int32_t(0xFFFE0000u));
+  return select(x > WideFloat<W>::zero(), float_of_bits(high), x);
+}
+/// Takes from a body's room (BodyMotion) what it went in a step: its surface goes as the centre does, and by the turn
+/// at most any way. `next`, `next_turn`: what there must still be room for. Where there may not be: bits by lane.
+template <int N, int W>
+CAROM_SIMD_INLINE std::uint32_t use_room(WideFloat<W>* below, WideFloat<W>* above, const Lanes<N, W>& way,
+                                         WideFloat<W> surface_way, const Lanes<N, W>& next, WideFloat<W> next_turn) {
+  using F = WideFloat<W>;
+  const F zero = F::zero();
+  WideMask<W> near = zero != zero;
+  for (int k = 0; k < N; ++k) {
+    below[k] = coarse_lanes(below[k] + way.v[k] - surface_way);
+    above[k] = coarse_lanes(above[k] - way.v[k] - surface_way);
+    near =
+        near | !(below[k] > max(zero - next.v[k], zero) + next_turn) | !(above[k] > max(next.v[k], zero) + next_turn);
+  }
+  return bitmask(near);
+}
+
 // The plane -----------------------------------------------------------------------------------------------------------
 template <int W>
 void end_bodies(SolverBody<Dim2>* bodies, Pose2* poses, BodyMotion<Dim2>* motions, const std::int32_t* slots, int count,
@@ -66,11 +88,15 @@ void end_bodies(SolverBody<Dim2>* bodies, Pose2* poses, BodyMotion<Dim2>* motion
   const std::uint32_t finite = finite_bodies<W>(row, all, count, index);
   ends.broken = ~finite & ((1u << count) - 1);
   static_assert(sizeof(bool) == 1 && offsetof(Motion, slender) == offsetof(Motion, gyroscopic) + 1);
-  F before[4], center[4], flags[4], extents[4];
+  F before[4], center[4], flags[4], extents[8];
   read_records<offsetof(Pose2, rotation) - 8>(poses, all, before);  // half of the position, and the rotation
   read_records<offsetof(Motion, local_center)>(motions, all, center);
   read_records<offsetof(Motion, gyroscopic)>(motions, all, flags);
-  read_records<offsetof(Motion, inner_extent) - 4>(motions, all, extents);
+  constexpr int extents_at = offsetof(Motion, gravity_scale);  // scale, inner and outer extent, room below and above
+  static_assert(offsetof(Motion, inner_extent) == extents_at + 4 && offsetof(Motion, outer_extent) == extents_at + 8 &&
+                offsetof(Motion, room_below) == extents_at + 12 && offsetof(Motion, room_above) == extents_at + 20 &&
+                sizeof(Motion) == extents_at + 32);
+  read_records<extents_at>(motions, all, extents);
   const auto wheel = ((bits(flags[0]) >> 8) & WideInt<W>::splat(255)) != WideInt<W>::zero();
   const F outer = extents[2], spin = abs(row[2]);
   const Lanes<2, W> moved = {{row[4], row[5]}}, turn = {{row[6], row[7]}};
@@ -78,7 +104,9 @@ void end_bodies(SolverBody<Dim2>* bodies, Pose2* poses, BodyMotion<Dim2>* motion
   const F reach = select(wheel, zero, abs(turn.v[1]) * outer);
   travel.store_aligned(ends.travel);
   turned_by.store_aligned(ends.turned);
-  select(turned_by < F::splat(small_turn), reach, turned_by * outer).store_aligned(ends.surface_way);
+  const auto turns_little = turned_by < F::splat(small_turn);
+  const F surface_way = select(turns_little, reach, turned_by * outer);
+  surface_way.store_aligned(ends.surface_way);
   spin.store_aligned(ends.spin);
   const auto whirls = spin * F::splat(terms.dt) > F::splat(2);
   ends.whirling = bitmask(whirls) & finite;
@@ -92,6 +120,11 @@ void end_bodies(SolverBody<Dim2>* bodies, Pose2* poses, BodyMotion<Dim2>* motion
   const Lanes<2, W> v = without_trace(Lanes<2, W>{{row[0], row[1]}});
   const F w = without_trace(row[2]);
   max(max(length_of(v), F::splat(0.01f) * spin), spin * outer).store_aligned(ends.speed);
+  const F ahead = keep(travel > F::splat(quick_share) * extents[1], F::splat(terms.dt));
+  ends.near_bounds = use_room<2, W>(extents + 3, extents + 5, moved, surface_way, multiply(v, ahead),
+                                    select(wheel, zero, spin * outer * ahead)) |
+                     bitmask(!turns_little | whirls);
+  scatter_rows<sizeof(Motion) / 4, 8, W>(reinterpret_cast<float*>(motions) + extents_at / 4, index, extents);
   const Lanes<2, W> pushed = subtract(multiply(moved, F::splat(terms.inverse_dt)), v);
   (pushed.v[0] * pushed.v[0] + pushed.v[1] * pushed.v[1]).store_aligned(ends.pushed_squared);
   place_bodies<Dim2, W>(poses, motions, index, moved, turned(now, Lanes<2, W>{{center[0], center[1]}}));
@@ -163,12 +196,16 @@ void end_bodies(SolverBody<Dim3>* bodies, Pose3* poses, BodyMotion<Dim3>* motion
   const std::uint32_t finite = finite_bodies<W>(row, all, count, index);
   ends.broken = ~finite & ((1u << count) - 1);
   static_assert(offsetof(Motion, slender) == offsetof(Motion, gyroscopic) + 1);
-  F before[4], center[4], tensor[12], extents[4];
+  F before[4], center[4], tensor[12], extents[12];
   read_records<offsetof(Pose3, rotation)>(poses, all, before);
   read_records<offsetof(Motion, local_center)>(motions, all, center);
   read_inertia(motions, all, tensor);
-  read_records<offsetof(Motion, inner_extent) - 4>(motions, all, extents);
-  const F zero = F::zero(), one = F::splat(1), two = F::splat(2), outer = extents[2];
+  constexpr int extents_at = offsetof(Motion, linear_damping);  // dampings, scale, extents, room below and above
+  static_assert(offsetof(Motion, inner_extent) == extents_at + 12 &&
+                offsetof(Motion, outer_extent) == extents_at + 16 && offsetof(Motion, room_below) == extents_at + 20 &&
+                offsetof(Motion, room_above) == extents_at + 32 && sizeof(Motion) == extents_at + 48);
+  read_records<extents_at>(motions, all, extents);
+  const F zero = F::zero(), one = F::splat(1), two = F::splat(2), outer = extents[4];
   const auto flags = bits(tensor[1]);
   const LongBodies<W> shape = {(flags >> 8) & WideInt<W>::splat(255), outer};
   const Lanes<3, W> moved = {{row[8], row[9], row[10]}};
@@ -179,7 +216,9 @@ void end_bodies(SolverBody<Dim3>* bodies, Pose3* poses, BodyMotion<Dim3>* motion
   turned_by.store_aligned(ends.turned);
   spin.store_aligned(ends.spin);
   const F ball = turned_by * outer, reach = shape.way(old, multiply(turn.u, two), ball);
-  select(turned_by < F::splat(small_turn), reach, ball).store_aligned(ends.surface_way);
+  const auto turns_little = turned_by < F::splat(small_turn);
+  const F surface_way = select(turns_little, reach, ball);
+  surface_way.store_aligned(ends.surface_way);
   const auto whirls = spin * F::splat(terms.dt) > two;
   ends.whirling = bitmask(whirls) & finite;
   if (ends.whirling != 0)
@@ -187,7 +226,14 @@ void end_bodies(SolverBody<Dim3>* bodies, Pose3* poses, BodyMotion<Dim3>* motion
   Turn<W> now = normalized(product(turn, old));
   now.u = without_trace(now.u);
   const Lanes<3, W> v = without_trace(Lanes<3, W>{{row[0], row[1], row[2]}}), w = without_trace(w0);
-  max(max(length_of(v), F::splat(0.01f) * spin), shape.way(now, w, spin * outer)).store_aligned(ends.speed);
+  const F surface_speed = shape.way(now, w, spin * outer);
+  max(max(length_of(v), F::splat(0.01f) * spin), surface_speed).store_aligned(ends.speed);
+  const F ahead = keep(travel > F::splat(quick_share) * extents[3], F::splat(terms.dt));
+  ends.near_bounds =
+      use_room<3, W>(extents + 5, extents + 8, moved, surface_way, multiply(v, ahead), surface_speed * ahead) |
+      bitmask(!turns_little | whirls);
+  const F room[8] = {extents[4], extents[5], extents[6], extents[7], extents[8], extents[9], extents[10], extents[11]};
+  scatter_rows<sizeof(Motion) / 4, 8, W>(reinterpret_cast<float*>(motions) + extents_at / 4 + 4, index, room);
   const Lanes<3, W> pushed = subtract(multiply(moved, F::splat(terms.inverse_dt)), v);
   dot(pushed, pushed).store_aligned(ends.pushed_squared);
   place_bodies<Dim3, W>(poses, motions, index, moved, turned(now, Lanes<3, W>{{center[0], center[1], center[2]}}));

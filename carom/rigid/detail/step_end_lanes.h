@@ -19,6 +19,7 @@ struct alignas(64) BodyEnds {
   float turn[4][most];             ///< of whirling ones: c, s or w, x, y, z, since the step began
   std::uint32_t broken;            ///< bits by lane: not finite, and left alone
   std::uint32_t whirling;          ///< bits by lane: may have turned by more than half a revolution
+  std::uint32_t near_bounds;       ///< bits by lane: a shape may have left its fat bounds, or will in the next step
 };
 
 struct StepEndTerms {
@@ -41,6 +42,8 @@ struct StepEndKernels {
 /// it are too small for floats to be fast with.
 inline constexpr float motion_trace = 1e-15f;
 inline constexpr float small_turn = 0.2f;  ///< rad: up to it chords serve for arcs
+inline constexpr float quick_share =
+    0.25f;  ///< of a body's half thickness in a step: then bounds hold the next one too
 
 namespace pin_kernels_baseline {
 StepEndKernels step_end_kernels();

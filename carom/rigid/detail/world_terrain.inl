@@ -51,7 +51,7 @@ inline void terrain_changed(WorldImplementation<Dim3>& world, std::int32_t slot,
   auto& tree = world.shapes.trees[shape.tree];
   if (geometry::contains(tree.bounds(shape.leaf), shape_bounds(world, shape))) return;
   tree.update(shape.leaf, fat_bounds(world, shape));
-  world.bodies.motion[std::size_t(shape.body)].slack = 0;
+  look_at_bounds(world.bodies.motion[std::size_t(shape.body)]);
   shape.outer_extent = extents_of(shape.geometry).outer;
   world.scratch.old_bounds.clear();
   if ((shape.flags & shape_moved) == 0) {
