@@ -283,7 +283,8 @@ function partsOf(functions, first, sets, called) {
 export async function split(modulePath, files, out) {
   const scratch = mkdtempSync(join(tmpdir(), 'carom-split-'));
   const path = (name) => join(scratch, name);
-  const wasmSplit = (...args) => execFileSync('wasm-split', [...features, ...args], {stdio: 'inherit'});
+  // Whoever loads what comes out validates it.
+  const wasmSplit = (...args) => execFileSync('wasm-split', [...features, '--no-validation', ...args], {stdio: 'inherit'});
   try {
     const whole = readFileSync(modulePath), functions = functionsOf(whole);
     wasmSplit('--instrument', modulePath, '-o', path('instrumented.wasm'));
@@ -298,7 +299,9 @@ export async function split(modulePath, files, out) {
     }
     const starts = [1, 2].map((threads) => ({demos: [demos[0].id], frames: 1200, patience: 60, threads}));
     const all = await runAll(data, [...starts, ...sets]);
-    const parts = partsOf(functions, all.slice(0, starts.length), sets, all.slice(starts.length));
+    // The largest first: each cut reads all that is left.
+    const sizeOf = (part) => part.functions.reduce((sum, i) => sum + functions[i].code.length, 0);
+    const parts = partsOf(functions, all.slice(0, starts.length), sets, all.slice(starts.length)).sort((a, b) => sizeOf(b) - sizeOf(a));
     // Texts go where the functions are that say them.
     const partOf = Array(functions.length);
     parts.forEach((part, k) => { for (const i of part.functions) partOf[i] = k; });

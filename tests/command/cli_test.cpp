@@ -103,7 +103,7 @@ TEST_F(Cli, ASweepThatWasKilledGoesOnAndShardsMakeTheSameTable) {
 }
 
 TEST_F(Cli, ARecordingIsRunAgainAndCompared) {
-  ASSERT_EQ(carom("run wrecking-ball --steps 40 --set 'ball_mass=2 t' --out run --quiet"), 0) << err_;
+  ASSERT_EQ(carom("run wrecking-ball --steps 40 --set 'ball_mass=2 t' --no-pictures --out run --quiet"), 0) << err_;
   ASSERT_EQ(carom("replay run/recording.carom-rec --json"), 0) << err_ << out_;
   const Json report = Json::parse(out_);
   EXPECT_EQ(report["equal"], true);
@@ -113,7 +113,7 @@ TEST_F(Cli, ARecordingIsRunAgainAndCompared) {
   EXPECT_EQ(carom("replay nothing.carom-rec"), 2);
   // A scene takes what it was read from along: the recording runs again where its files are gone.
   fs::copy_file(fs::path(CAROM_SOURCE_DIR) / "scenes/heap.json", folder_ / "mine.json");
-  ASSERT_EQ(carom("run mine.json --steps 30 --out mine --quiet"), 0) << err_;
+  ASSERT_EQ(carom("run mine.json --steps 30 --no-pictures --out mine --quiet"), 0) << err_;
   fs::remove(folder_ / "mine.json");
   EXPECT_EQ(carom("replay mine/recording.carom-rec"), 0) << err_ << out_;
 }

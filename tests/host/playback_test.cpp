@@ -129,14 +129,11 @@ struct Recorded {
 TEST(Playback, HoldsWhatEveryDemoDraws) {
   for (const std::string& id : demo_ids()) {
     SCOPED_TRACE(id);
-    Page live;
-    live.open(id);
-    live.send({{"type", "pause"}});
-    live.send({{"type", "step"}, {"count", 30}});
+    Recorded recorded(id, 30);
+    Page& live = recorded.page;
     live.ack();
     live.send({{"type", "seek"}, {"step", 30}});  // where it is: for the key frame
     live.advance();
-    const Recorded recorded(id, 30);
     Page page;
     page.hello();
     upload(page, recorded.file, 4 << 20);

@@ -48,7 +48,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
   note(allocations);
   return __libc_memalign(alignment, size);
 }
-int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept {  // as the C library has it
   note(allocations);
   *out = __libc_memalign(alignment, size);
   return *out != nullptr ? 0 : 12;

@@ -9,7 +9,7 @@ namespace carom::rigid::test {
 namespace {
 
 constexpr float ice = 0.05f, asphalt = 0.8f;  ///< Coulomb's μ against a body of μ = 1
-constexpr float g = 9.81f;
+constexpr float gravity = 9.81f;
 
 /// What two materials a road has: number 0 for x < 0, number 1 beyond. Against μ = 1 friction mixes to √μ.
 template <class D>
@@ -48,7 +48,7 @@ geometry::Shape2 road_chain() {
 /// A box slides from the ice onto the asphalt: μg on each, the whole way of v²/2μg at the end.
 template <class D>
 void slide_over(const typename D::Shape& road, typename D::Position place) {
-  World<D> world(world_with<D>(g));
+  World<D> world(world_with<D>(gravity));
   BodyDef<D> ground;
   ground.type = BodyType::fixed;
   ground.position = place;
@@ -66,16 +66,16 @@ void slide_over(const typename D::Shape& road, typename D::Position place) {
   run(world, 60);
   const auto [v1, x1] = speed_and_place();
   ASSERT_LT(x1, -0.4);
-  EXPECT_NEAR((v0 - v1) / 1.0, double(ice * g), 0.01 * double(ice * g)) << "on the ice";
+  EXPECT_NEAR((v0 - v1) / 1.0, double(ice * gravity), 0.01 * double(ice * gravity)) << "on the ice";
   while (speed_and_place().second < 0.45) world.step(frame).value();
   const auto [v2, x2] = speed_and_place();
   run(world, 12);
   const auto [v3, x3] = speed_and_place();
-  EXPECT_NEAR((v2 - v3) / 0.2, double(asphalt * g), 0.01 * double(asphalt * g)) << "on the asphalt";
+  EXPECT_NEAR((v2 - v3) / 0.2, double(asphalt * gravity), 0.01 * double(asphalt * gravity)) << "on the asphalt";
   run(world, 120);
   const auto [v4, x4] = speed_and_place();
   EXPECT_NEAR(v4, 0, 1e-4);
-  const double way = v2 * v2 / (2 * double(asphalt * g));
+  const double way = v2 * v2 / (2 * double(asphalt * gravity));
   EXPECT_NEAR(x4 - x2, way, 0.015 * way);
 }
 
@@ -85,7 +85,7 @@ TEST(PartMaterial, ABoxSlowsDownAsTheSegmentsUnderItSay) { slide_over<Dim2>(road
 
 /// The road with what a test wants on both halves.
 struct Road {
-  World3 world{world_with<Dim3>(g)};
+  World3 world{world_with<Dim3>(gravity)};
   ShapeId shape;
   explicit Road(std::vector<rigid::SurfaceMaterial<Dim3>> surfaces, bool hits = false) {
     const BodyId ground = world.create_body({.type = BodyType::fixed}).value();
@@ -115,7 +115,7 @@ TEST(PartMaterial, BallsBounceAndRollAsTheTrianglesUnderThemSay) {
   run(road.world, 10);
   const float v0 = speed(road.world, slow), w0 = speed(road.world, free);
   run(road.world, 60);
-  EXPECT_NEAR(v0 - speed(road.world, slow), 5.0f / 7.0f * 0.05f * g, 0.02f * 5.0f / 7.0f * 0.05f * g);
+  EXPECT_NEAR(v0 - speed(road.world, slow), 5.0f / 7.0f * 0.05f * gravity, 0.02f * 5.0f / 7.0f * 0.05f * gravity);
   EXPECT_NEAR(speed(road.world, free), w0, 2e-3f);
 }
 
