@@ -67,35 +67,50 @@ float settle(const StepContext<D>& context, const BodyMotion<D>& m, SolverBody<D
   return left;
 }
 
-/// Bounds of the box that a hull has in its own frame: found far sooner than its own, and no smaller. For bodies of
-/// several shapes, all of which are asked in every step while they are quick.
+/// Where the hulls of a body of several shapes are and go, all of which are asked in every step while it is quick: as
+/// the boxes that they have in their own frame, found far sooner than their bounds, and no smaller.
 class BoxesOfHulls {
  public:
-  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body, bool several)
-      : several_(several), position_(world.bodies.pose[std::size_t(body)].position) {
-    if (several_) turn_ = math::to_matrix(world.bodies.pose[std::size_t(body)].rotation);
+  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body, bool several) : several_(several) {
+    if (!several_) return;
+    const SolverBody<Dim3>& s = world.bodies.solver[std::size_t(body)];
+    position_ = world.bodies.pose[std::size_t(body)].position;
+    turn_ = math::to_matrix(world.bodies.pose[std::size_t(body)].rotation);
+    center_ = turn_ * world.bodies.motion[std::size_t(body)].local_center;
+    way_ = s.linear_velocity * world.last_dt;
+    spin_ = s.angular_velocity * world.last_dt;
+    bounces_ = world.shapes.bounce != Bounce::none;
   }
   bool know(const ShapeRecord<Dim3>& shape) const {
     return several_ && shape.at_origin && shape.geometry.type == geometry::ShapeType3::hull;
   }
   Dim3::Bounds bounds(const ShapeRecord<Dim3>& shape) const {
     const geometry::Bounds3f& own = shape.geometry.hull->bounds;
-    const Vec3f e = own.extents(), middle = turn_ * own.center();
+    const Vec3f e = own.extents(), middle = turn_ * own.center(), size = abs(middle) + e;
     Vec3f half = abs(turn_.cx) * e.x + abs(turn_.cy) * e.y + abs(turn_.cz) * e.z;
-    const float rounding = 1e-6f * (math::length(middle) + math::length(e)) + shape.geometry.hull->radius;
+    const float rounding = 1e-6f * (size.x + size.y + size.z) + shape.geometry.hull->radius;
     half += Vec3f{rounding, rounding, rounding};
     return {position_ + Vec3d(middle - half), position_ + Vec3d(middle + half)};
   }
+  /// As the function of that name.
+  Vec3d way_ahead(const ShapeRecord<Dim3>& shape) const {
+    Vec3f way = way_ + cross(spin_, turn_ * shape.geometry.hull->bounds.center() - center_);
+    const float most = 0.5f * shape.inner_extent, length_squared = math::length_squared(way);
+    if (!bounces_ && length_squared > most * most) way *= most / math::sqrt(length_squared);
+    return Vec3d(way);
+  }
 
  private:
-  bool several_;
-  Vec3d position_;
+  bool several_, bounces_ = false;
+  Vec3d position_{};
+  Vec3f center_{}, way_{}, spin_{};
   Mat3f turn_{};
 };
 struct NoBoxes {
   NoBoxes(const WorldImplementation<Dim2>&, std::int32_t, bool) {}
   static bool know(const ShapeRecord<Dim2>&) { return false; }
   static Dim2::Bounds bounds(const ShapeRecord<Dim2>&) { return {}; }
+  static Vec2d way_ahead(const ShapeRecord<Dim2>&) { return {}; }
 };
 
 }  // namespace
@@ -140,7 +155,8 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
       return true;
     }
     const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf);
-    const P ahead = quick ? way_ahead(world, shape) : P{};
+    const bool known = boxes.know(shape);
+    const P ahead = !quick ? P{} : known ? boxes.way_ahead(shape) : way_ahead(world, shape);
     const auto stays_within = [&](const typename D::Bounds& box) {
       const typename D::Bounds next{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
       if (!geometry::contains(fat, next)) return false;
@@ -148,7 +164,7 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
       least_above = math::min(least_above, fat.high - box.high);
       return true;
     };
-    if (quick && boxes.know(shape) && stays_within(boxes.bounds(shape))) continue;
+    if (quick && known && stays_within(boxes.bounds(shape))) continue;
     if (stays_within(shape_bounds(world, shape))) continue;
     shape.flags |= shape_outgrown;
     any = true;
