@@ -57,10 +57,12 @@ float bend_of(const BodyMotion<Dim3>& m, const Vec3f& turn, const Vec3f& arm) {
 /// turn, at most.
 template <class D>
 struct Moved {
-  typename D::Vector way;
-  float turn;
+  typename D::Vector way{};
+  float turn = 0;
   float extent;  ///< m per radian of what it turns from here
 
+  /// Not yet.
+  Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b) : extent(way_of_more(b, {}, 0, c.extent)) {}
   Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b, const typename D::Transform& now) {
     const typename D::Vector middle = ball_about(b).middle;
     way = transform_point(now, middle) - transform_point(c.base, middle);

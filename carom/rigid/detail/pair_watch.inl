@@ -43,15 +43,16 @@ bool pressed_any(const ContactStore<D>& store, const ContactRecord<D>& c) {
   return false;
 }
 
-/// The watch on a pair that has just been looked at; the caller says what it watches for.
+/// The watch on a pair that has just been looked at, when B's shape stood there seen from A's; the caller says what it
+/// watches for.
 template <class D>
 ContactWatch<D>& watch_contact(WorldImplementation<D>& world, const ContactRecord<D>& c,
-                               const typename D::Vector& normal, float extent) {
+                               const typename D::Transform& now, const typename D::Vector& normal, float extent) {
   const std::int32_t a = c.body[0], b = c.body[1];
   ContactWatch<D>& w = world.scratch.watches[std::size_t(c.awake_index)];
   w.body[0] = a, w.body[1] = b;
-  w.base = relative(world.bodies.pose[std::size_t(a)], world.bodies.pose[std::size_t(b)]);
   const bool at_origin = (c.flags & contact_at_origin) != 0;
+  w.base = at_origin ? now : relative(world.bodies.pose[std::size_t(a)], world.bodies.pose[std::size_t(b)]);
   w.normal = at_origin ? normal : rotate(world.shapes.at(c.shape[0]).local.q, normal);
   const ShapeRecord<D>& shape = world.shapes.at(c.shape[1]);
   w.middle = ball_about(shape).middle;
@@ -65,8 +66,9 @@ float rounding_of(const ContactWatch<D>& w) {
   return 1e-5f + 1e-6f * (math::length(w.base.p) + math::length(w.middle));
 }
 template <class D>
-void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const Moved<D>& moved) {
-  ContactWatch<D>& w = watch_contact(world, c, c.axis, moved.extent);
+void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Transform& now,
+                 const Moved<D>& moved) {
+  ContactWatch<D>& w = watch_contact(world, c, now, c.axis, moved.extent);
   w.gap = slack_of(c, moved) - rounding_of(w);
   w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
   w.most_way = 0;
@@ -77,12 +79,12 @@ void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const
 /// What touches is watched until it parts; in the plane, what does not until it comes near or bears a load
 /// (store_contacts).
 template <class D>
-void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, float slack, float separation,
-                    const typename D::Vector& normal, float extent) {
+void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Transform& now,
+                    float slack, float separation, const typename D::Vector& normal, float extent) {
   const bool touching = (c.flags & contact_touching) != 0;
   if (c.first_manifold != none) world.contacts.manifold(c.first_manifold).waits = !touching;
   if (!touching && (D::dimension == 3 || c.manifold_count != 1)) return;
-  ContactWatch<D>& w = watch_contact(world, c, normal, extent);
+  ContactWatch<D>& w = watch_contact(world, c, now, normal, extent);
   const float most = touching ? min(c.margin(), 2 * touch_distance) : c.margin(), rounding = rounding_of(w);
   w.most_way = slack - rounding;
   w.gap = separation - most + rounding;
@@ -102,7 +104,7 @@ bool slides_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D
   if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf))) return false;
   c.gap = coarse(gap);
   c.base = now;
-  watch_apart(world, c, Moved<D>(c, b, now));
+  watch_apart(world, c, now, Moved<D>(c, b));
   return true;
 }
 
@@ -116,7 +118,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
     if (slides_on(world, c, moved, now, sweep)) return true;
     const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, sweep, c.axis);
     if (!(near < slack_of(c, moved))) return false;
-    watch_apart(world, c, moved);
+    watch_apart(world, c, now, moved);
     return true;
   }
   // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
@@ -129,7 +131,7 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   if (!(separation < c.margin() && far < most)) return false;
   c.flags |= contact_recycled;
   change = touch_change(c, separation, pressed_any(world.contacts, c));
-  watch_recycled(world, c, most - far, separation, normal, moved.extent);
+  watch_recycled(world, c, now, most - far, separation, normal, moved.extent);
   return true;
 }
 
@@ -144,7 +146,7 @@ std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const Shap
   else if (c.first_manifold != none)
     change = change_empty;
   else
-    watch_apart(world, c, Moved<D>(c, b, c.base));
+    watch_apart(world, c, c.base, Moved<D>(c, b));
   return std::uint8_t(change | touch_change(c, c.gap, false));
 }
 
