@@ -271,7 +271,11 @@ core::Status BatchHits<D>::collect(ProjectileBatch& batch, rigid::World<D>& worl
   cast_ = 0;
   if (!(dt > 0) || !math::is_finite(dt))
     return core::Error{core::text("BatchHits::collect: ", core::refused("dt", dt, "a finite number of seconds > 0"))};
-  world.find_ways(steps_);
+  double sum = 0;  // m/s, of some of them
+  int some = 0;
+  for (std::size_t i = 0; i < batch.size(); i += 1 + batch.size() / 64, ++some)
+    sum += math::length(batch.at(i).velocity);
+  world.find_ways(steps_, some > 0 ? dt * sum / some : 0);
   if (!(math::abs(dt - double(steps_.dt)) < 1e-4 * dt)) steps_.clear();
   if (const core::Status s = cast_batch(batch, world, dt, options); !s.ok()) return s;
   for (int order = 0; order < options.most_hits && !met_.empty(); ++order) {

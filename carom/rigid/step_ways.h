@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "carom/geometry/box_cells.h"
 #include "carom/geometry/static_tree.h"
 #include "carom/rigid/state.h"
 
@@ -25,9 +26,11 @@ struct StepWays {
   float dt = 0;  ///< s, of the step
   std::vector<Way> ways;
   std::vector<std::int32_t> of_body;  ///< by slot: its place in `ways`, −1: it stands
+  bool whole_tree[3]{};               ///< all shapes of that tree of the world are on their ways
   std::vector<std::int32_t> shapes;   ///< slots of shapes, beside their boxes
   std::vector<geometry::Bounds<typename D::Position>> boxes;
-  geometry::WideTree<typename D::Position> tree;  ///< over the boxes; empty where they are few
+  geometry::BoxCells<typename D::Position> cells;  ///< where the boxes are
+  geometry::WideTree<typename D::Position> tree;   ///< over the boxes; empty where they are few
   std::vector<geometry::detail::BuildItem<typename D::Position>> order;
 
   /// As if nothing had moved.
@@ -36,7 +39,9 @@ struct StepWays {
     ways.clear();
     shapes.clear();
     boxes.clear();
+    cells.clear();
     tree.nodes.clear();
+    for (bool& whole : whole_tree) whole = false;
   }
   const Way* way_of(BodyId body) const {
     const std::size_t slot = std::size_t(body.index) - 1;

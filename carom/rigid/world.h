@@ -228,8 +228,8 @@ class CAROM_API World {
   // Many queries at once, on the world's threads: the same answers as one by one, to the bit. Errors: a bad query,
   // which the message names by its number, and then none is answered; results that are not as many as queries.
   Status cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const;
-  /// Bodies on their ways through the last step, for what flies meanwhile.
-  void find_ways(StepWays<D>& into) const;
+  /// Bodies on their ways through the last step, for what flies meanwhile: about `ray_length` (m) each, or any length.
+  void find_ways(StepWays<D>& into, double ray_length = 0) const;
   /// Where a body was at a fraction of the last step; where it is now, if it stood.
   Result<Pose> pose_in_step(BodyId body, double fraction, const StepWays<D>& ways) const;
   /// Rays that go their way within the last step, ray i from the fraction begins[i] of it (none given: from 0) to its

@@ -117,9 +117,14 @@ const QueryTree<typename D::Position>* query_tree(const WorldImplementation<D>& 
   };
   return world.query_trees.of(index, world.shapes.trees[index], index == tree_fixed ? 0 : world.moves, tight);
 }
-/// Every shape that the moving box may meet before `limit`, of all trees: visit(slot, limit) → new limit.
-template <class D, class Visit>
-void cast_in_trees(const WorldImplementation<D>& world, const typename D::Position& origin,
+/// What of a world is seen: all of it.
+struct Everything {
+  constexpr bool tree(int) const { return true; }
+  constexpr bool body(std::int32_t) const { return true; }
+};
+/// Every shape that the moving box may meet before `limit`, of the trees that are seen: visit(slot, limit) → new limit.
+template <class D, class Seen, class Visit>
+void cast_in_trees(const WorldImplementation<D>& world, const Seen& seen, const typename D::Position& origin,
                    const typename D::Position& translation, typename D::Position extents, Visit&& visit) {
   // What is touched within rounding is asked too, whichever tree is walked.
   const double slack = 2e-5 + 4e-6 * math::length(translation);
@@ -127,7 +132,7 @@ void cast_in_trees(const WorldImplementation<D>& world, const typename D::Positi
   float limit = 1;
   for (int t = 0; t < 3; ++t) {
     const auto& tree = world.shapes.trees[t];
-    if (tree.empty()) continue;
+    if (tree.empty() || !seen.tree(t)) continue;
     if (const auto* made = query_tree<D>(world, t)) {
       if (made->wide.nodes.empty())
         for (const std::int32_t slot : made->slots) limit = visit(slot, limit);
@@ -201,50 +206,47 @@ typename D::Bounds bounds_of_rays(std::span<const RayQuery<D>> rays, std::span<c
   }
   return {low, high};
 }
-/// Around all shapes; upside down where there is none.
-template <class D>
-typename D::Bounds bounds_of_shapes(const WorldImplementation<D>& world) {
+/// Around all shapes that are seen; upside down where there is none.
+template <class D, class Seen>
+typename D::Bounds bounds_of_shapes(const WorldImplementation<D>& world, const Seen& seen) {
   typename D::Bounds all;
   for (int k = 0; k < D::dimension; ++k) all.low[k] = 1e300, all.high[k] = -1e300;
-  for (const auto& tree : world.shapes.trees) {
-    if (tree.empty()) continue;
-    const typename D::Bounds box = tree.root_bounds();
-    all = {min(all.low, box.low), max(all.high, box.high)};
-  }
+  for (int t = 0; t < 3; ++t)
+    if (const auto& tree = world.shapes.trees[t]; !tree.empty() && seen.tree(t)) all = merge(all, tree.root_bounds());
   return all;
 }
-/// False: no shape's box meets `box`. True where one may.
-template <class D>
-bool anything_near(const WorldImplementation<D>& world, const typename D::Bounds& box) {
+/// False: no box of a shape that is seen meets `box`. True where one may.
+template <class D, class Seen>
+bool anything_near(const WorldImplementation<D>& world, const Seen& seen, const typename D::Bounds& box) {
   bool any = false;
   for (int t = 0; t < 3 && !any; ++t) {
     const auto& tree = world.shapes.trees[t];
-    if (tree.empty()) continue;
-    const auto found = [&](std::uint32_t) {
-      any = true;
-      return false;
+    if (tree.empty() || !seen.tree(t)) continue;
+    const auto found = [&](std::int32_t slot) {
+      any = seen.body(world.shapes.at(slot).body);
+      return !any;
     };
     const auto* made = query_tree<D>(world, t);
     if (made == nullptr)
-      tree.query(box, found);
+      tree.query(box, [&](std::uint32_t item) { return found(std::int32_t(item)); });
     else if (made->wide.nodes.empty())
-      any = !made->slots.empty();
+      for (std::size_t i = 0; i < made->slots.size() && !any; ++i) found(made->slots[i]);
     else
-      query(made->wide, box, found);
+      query(made->wide, box, [&](std::size_t place) { return found(made->slots[place]); });
   }
   return any;
 }
 
-/// `sees(body)` adds to the filter of the ray.
-template <class D, class Sees>
-RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray, const Sees& sees) {
+/// `seen` adds to the filter of the ray.
+template <class D, class Seen>
+RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray, const Seen& seen) {
   const SeenFilter filter(world, ray.filter);
   RayHit<D> best;
   std::int32_t best_slot = none;
   geometry::CastHit<typename D::Vector> best_hit;
-  cast_in_trees(world, ray.origin, typename D::Position(ray.translation), {}, [&](std::int32_t slot, float limit) {
+  const auto visit = [&](std::int32_t slot, float limit) {
     const auto& shape = world.shapes.at(slot);
-    if (!query_sees<D>(shape, filter) || !sees(shape.body)) return limit;
+    if (!query_sees<D>(shape, filter) || !seen.body(shape.body)) return limit;
     if (limit == 0 && best_slot != none && slot > best_slot) return limit;  // at best as near
     const typename D::Pose pose = shape_pose<D>(world, shape);
     const auto hit = geometry::ray_cast(shape.geometry, local_point(pose, ray.origin),
@@ -253,15 +255,11 @@ RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>&
     best_hit = hit;
     best_slot = slot;
     return hit.fraction;
-  });
+  };
+  cast_in_trees(world, seen, ray.origin, typename D::Position(ray.translation), {}, visit);
   if (best_slot != none)
     best = world_hit<D>(world, best_slot, shape_pose<D>(world, world.shapes.at(best_slot)), best_hit);
   return best;
-}
-
-template <class D>
-RayHit<D> closest_on_ray(const WorldImplementation<D>& world, const RayQuery<D>& ray) {
-  return closest_on_ray(world, ray, [](std::int32_t) { return true; });
 }
 
 template <class D>
@@ -272,20 +270,20 @@ RayHit<D> first_on_way(const WorldImplementation<D>& world, const typename D::Sh
   RayHit<D> best;
   std::int32_t best_slot = none;
   geometry::CastHit<typename D::Vector> best_hit;
-  cast_in_trees(
-      world, box.center(), typename D::Position(query.translation), box.extents(), [&](std::int32_t slot, float limit) {
-        const auto& shape = world.shapes.at(slot);
-        if (!query_sees<D>(shape, filter)) return limit;
-        if (limit == 0 && best_slot != none && slot > best_slot) return limit;  // at best as near
-        const typename D::Pose placed = shape_pose<D>(world, shape);
-        const auto hit = geometry::detail::shape_cast_within(shape.geometry, moving, relative(placed, query.pose),
-                                                             inverse_rotate(placed.rotation, query.translation),
-                                                             min(1.0f, 1.000001f * limit));
-        if (!hit.hit || !is_nearer(hit.fraction, slot, best_hit.fraction, best_slot)) return limit;
-        best_hit = hit;
-        best_slot = slot;
-        return hit.fraction;
-      });
+  cast_in_trees(world, Everything{}, box.center(), typename D::Position(query.translation), box.extents(),
+                [&](std::int32_t slot, float limit) {
+                  const auto& shape = world.shapes.at(slot);
+                  if (!query_sees<D>(shape, filter)) return limit;
+                  if (limit == 0 && best_slot != none && slot > best_slot) return limit;  // at best as near
+                  const typename D::Pose placed = shape_pose<D>(world, shape);
+                  const auto hit = geometry::detail::shape_cast_within(
+                      shape.geometry, moving, relative(placed, query.pose),
+                      inverse_rotate(placed.rotation, query.translation), min(1.0f, 1.000001f * limit));
+                  if (!hit.hit || !is_nearer(hit.fraction, slot, best_hit.fraction, best_slot)) return limit;
+                  best_hit = hit;
+                  best_slot = slot;
+                  return hit.fraction;
+                });
   if (best_slot != none)
     best = world_hit<D>(world, best_slot, shape_pose<D>(world, world.shapes.at(best_slot)), best_hit);
   return best;
@@ -314,11 +312,11 @@ void for_queries(const WorldImplementation<D>& world, std::size_t count, Body&& 
   });
 }
 
-/// Answers every ray by closest(i) that comes where anything is: within `more`, or near a shape of the world.
-/// near(box): whether a group of rays in that box is worth asking for more than the world's shapes.
-template <class D, class Near, class Closest>
+/// Answers every ray by what is `seen` of the world's shapes, and then by meet(i, best): what is met beside these,
+/// before `best`.
+template <class D, class Seen, class Meet>
 Status cast_in_groups(const WorldImplementation<D>& world, std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits,
-                      const typename D::Bounds& more, const Near& near, const Closest& closest) {
+                      const Seen& seen, const Meet& meet) {
   constexpr std::string_view call = "World::cast_rays";
   if (const Status s = check_batch(call, rays.size(), "hits", hits.size()); !s.ok()) return s;
   double nothing = 0, longest = 0;  // nothing: NaN as soon as one number is not finite
@@ -338,13 +336,13 @@ Status cast_in_groups(const WorldImplementation<D>& world, std::span<const RayQu
         return check_query<D>(core::text(call, ": ray ", i), rays[i].origin, rays[i].translation);
   // Each is asked first whether it comes where anything is. What does asks with its neighbours whether there is
   // anything at all where they go: one walk for a group.
-  typename D::Bounds all = bounds_of_shapes<D>(world);
-  all = {min(all.low, more.low), max(all.high, more.high)};
+  typename D::Bounds all = bounds_of_shapes<D>(world, seen);
   const double slack = 2e-5 + 4e-6 * math::sqrt(longest);
   for (int k = 0; k < D::dimension; ++k) all.low[k] -= slack, all.high[k] += slack;
   world.scheduler->parallel_for(int(rays.size()), rays_a_chunk, [&](int begin, int end, int) {
     int chosen[rays_a_group];
     for (int next = begin; next < end;) {
+      const int first = next;
       int count = 0;
       for (; next < end && count < rays_a_group; ++next) {
         hits[std::size_t(next)] = {};
@@ -352,11 +350,9 @@ Status cast_in_groups(const WorldImplementation<D>& world, std::span<const RayQu
         count += reaches<D>(rays[std::size_t(next)], all);
       }
       const std::span<const int> group(chosen, std::size_t(count));
-      if (count > 2) {
-        const typename D::Bounds box = bounds_of_rays<D>(rays, group);
-        if (!anything_near<D>(world, box) && !near(box)) continue;
-      }
-      for (const int i : group) hits[std::size_t(i)] = closest(std::size_t(i));
+      if (count < 3 || anything_near<D>(world, seen, bounds_of_rays<D>(rays, group)))
+        for (const int i : group) hits[std::size_t(i)] = closest_on_ray(world, rays[std::size_t(i)], seen);
+      for (int i = first; i < next; ++i) meet(std::size_t(i), hits[std::size_t(i)]);
     }
   });
   return {};
@@ -367,17 +363,12 @@ Status cast_in_groups(const WorldImplementation<D>& world, std::span<const RayQu
 template <class D>
 Result<RayHit<D>> World<D>::ray_cast(Position origin, Vector translation, QueryFilter filter) const {
   if (const Status s = detail::check_query<D>("World::ray_cast", origin, translation); !s.ok()) return s.error();
-  return detail::closest_on_ray<D>(*self_, {origin, translation, filter});
+  return detail::closest_on_ray<D>(*self_, {origin, translation, filter}, detail::Everything{});
 }
 
 template <class D>
 Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<RayHit<D>> hits) const {
-  constexpr double inside_out = 1e300;
-  typename D::Bounds nowhere;
-  for (int k = 0; k < D::dimension; ++k) nowhere.low[k] = inside_out, nowhere.high[k] = -inside_out;
-  return detail::cast_in_groups<D>(
-      *self_, rays, hits, nowhere, [](const typename D::Bounds&) { return false; },
-      [&](std::size_t i) { return detail::closest_on_ray<D>(*self_, rays[i]); });
+  return detail::cast_in_groups<D>(*self_, rays, hits, detail::Everything{}, [](std::size_t, RayHit<D>&) {});
 }
 
 template <class D>
@@ -386,15 +377,16 @@ Status World<D>::ray_cast_all(Position origin, Vector translation, std::vector<R
   if (const Status s = detail::check_query<D>("World::ray_cast_all", origin, translation); !s.ok()) return s;
   hits.clear();
   const detail::SeenFilter seen(*self_, filter);
-  detail::cast_in_trees<D>(*self_, origin, Position(translation), {}, [&](std::int32_t slot, float limit) {
-    const auto& shape = self_->shapes.at(slot);
-    if (!detail::query_sees<D>(shape, seen)) return limit;
-    const Pose pose = detail::shape_pose<D>(*self_, shape);
-    const auto hit =
-        geometry::ray_cast(shape.geometry, local_point(pose, origin), inverse_rotate(pose.rotation, translation));
-    if (hit.hit) hits.push_back(detail::world_hit<D>(*self_, slot, pose, hit));
-    return limit;
-  });
+  detail::cast_in_trees<D>(
+      *self_, detail::Everything{}, origin, Position(translation), {}, [&](std::int32_t slot, float limit) {
+        const auto& shape = self_->shapes.at(slot);
+        if (!detail::query_sees<D>(shape, seen)) return limit;
+        const Pose pose = detail::shape_pose<D>(*self_, shape);
+        const auto hit =
+            geometry::ray_cast(shape.geometry, local_point(pose, origin), inverse_rotate(pose.rotation, translation));
+        if (hit.hit) hits.push_back(detail::world_hit<D>(*self_, slot, pose, hit));
+        return limit;
+      });
   std::sort(hits.begin(), hits.end(), [](const RayHit<D>& a, const RayHit<D>& b) {
     return a.fraction != b.fraction ? a.fraction < b.fraction : a.shape.index < b.shape.index;
   });

@@ -38,28 +38,31 @@ typename D::Pose pose_on_way(const WorldImplementation<D>& world, const ShapeRec
   return shape.at_origin ? body : body * shape.local;
 }
 
-/// Round all places of a shape on its body's way.
+/// How far a chord of cast_on_way may stray from the curve of its ray (m).
+inline double stray_of_chord(double reach) { return 3e-4 * reach + 1e-6; }
+/// The ball about a body in which cast_on_way follows rays (m).
+inline double ball_of_chords(double reach) { return 1.001 * reach + 1e-3; }
+/// Bodies that reach farther are not followed in a ball.
+inline constexpr double most_reach = 1e5;  // m
+
+/// Round all places of a shape on its body's way, so that no ray meets it (cast_on_way) that goes by the box.
 template <class D>
 typename D::Bounds bounds_on_way(const WorldImplementation<D>& world, const ShapeRecord<D>& shape,
                                  const typename StepWays<D>::Way& way) {
-  const BodyMotion<D>& m = world.bodies.motion[std::size_t(way.body)];
-  const auto& fat = world.shapes.trees[shape.tree].bounds(shape.leaf);  // finite, where a plane's own is not
-  typename D::Bounds box;
-  double slack = 1e-5;
-  if (way.angle > 0.5f && m.outer_extent < 1e5f) {  // the balls about the body
-    box = {min(way.from, way.to), max(way.from, way.to)};
-    slack += double(m.outer_extent);
-  } else {
-    const typename D::Bounds now = world_bounds<D>(shape.geometry, shape_pose<D>(world, shape)),
-                             then = world_bounds<D>(shape.geometry, pose_on_way(world, shape, way, 0));
-    const typename D::Position far = way.from - way.to;
-    box = {min(max(now.low, fat.low), max(then.low, fat.low + math::min(far, typename D::Position{}))),
-           max(min(now.high, fat.high), min(then.high, fat.high + math::max(far, typename D::Position{})))};
-    // An arc strays from its chord by 1 − cos(θ/2) of the arm.
-    slack += double(m.outer_extent) * 0.125 * double(way.angle) * double(way.angle);
-  }
-  for (int k = 0; k < D::dimension; ++k) box.low[k] -= slack, box.high[k] += slack;
-  return box;
+  using Position = typename D::Position;
+  const double reach = double(world.bodies.motion[std::size_t(way.body)].outer_extent), angle = double(way.angle);
+  if (angle > 0.5 && reach < most_reach)
+    return geometry::grow(typename D::Bounds{min(way.from, way.to), max(way.from, way.to)}, ball_of_chords(reach));
+  const typename D::Bounds now = world_bounds<D>(shape.geometry, shape_pose<D>(world, shape)),
+                           then = world_bounds<D>(shape.geometry, pose_on_way(world, shape, way, 0));
+  // An arc strays from its chord by 1 − cos(θ/2) of the arm.
+  double slack = 1e-5 + 0.125 * angle * angle * reach;
+  if (angle > 0) slack += stray_of_chord(math::min(reach, most_reach));
+  // A plane has no end.
+  Position far{};
+  for (int k = 0; k < D::dimension; ++k) far[k] = 1e15;
+  const typename D::Bounds box = geometry::grow(merge(now, then), slack);
+  return {max(box.low, -far), min(box.high, far)};
 }
 
 template <class D>
@@ -120,12 +123,13 @@ MetOnWay<D> cast_on_way(const WorldImplementation<D>& world, const ShapeRecord<D
     } else {
       const Position back = (way.to - way.from) * (math::max(double(way.end) - begin, 0.0) / double(way.end));
       const Position from = ray.origin - (way.to - back), to = ray.origin + whole * stop - way.to;
-      const PartOfLine near = reach < 1e5 ? part_in_ball(from, to, 1.001 * reach + 1e-3) : PartOfLine{};
+      const PartOfLine near = reach < most_reach ? part_in_ball(from, to, ball_of_chords(reach)) : PartOfLine{};
       if (near.first <= near.last) {
         const double part = near.last - near.first;
         const double turn = double(way.angle) * part * math::min(1.0, (double(way.end) - begin) / double(way.end));
-        const double curve = turn * (0.25 * math::length(to - from) * part + 0.125 * turn * math::min(reach, 1e5));
-        const int pieces = 1 + int(math::min(63.0, math::sqrt(curve / (3e-4 * math::min(reach, 1e5) + 1e-6))));
+        const double arm = math::min(reach, most_reach);
+        const double curve = turn * (0.25 * math::length(to - from) * part + 0.125 * turn * arm);
+        const int pieces = 1 + int(math::min(63.0, math::sqrt(curve / stray_of_chord(arm))));
         if (look(near.first * stop, near.last * stop, pieces)) return met;
       }
     }
@@ -134,31 +138,38 @@ MetOnWay<D> cast_on_way(const WorldImplementation<D>& world, const ShapeRecord<D
   return met;
 }
 
+/// What of a world is met where it stands, while the rest is on its ways.
 template <class D>
-RayHit<D> closest_in_step(const WorldImplementation<D>& world, const RayQuery<D>& ray, double begin,
-                          const StepWays<D>& ways) {
-  RayHit<D> best = closest_on_ray(world, ray, [&](std::int32_t body) {
-    return std::size_t(body) >= ways.of_body.size() || ways.of_body[std::size_t(body)] < 0;
-  });
+struct Standing {
+  const StepWays<D>& ways;
+  bool tree(int t) const { return !ways.whole_tree[t]; }
+  bool body(std::int32_t slot) const {
+    return std::size_t(slot) >= ways.of_body.size() || ways.of_body[std::size_t(slot)] < 0;
+  }
+};
+/// What is on its ways and meets a ray before `best`.
+template <class D>
+void meet_on_ways(const WorldImplementation<D>& world, const RayQuery<D>& ray, double begin, const StepWays<D>& ways,
+                  RayHit<D>& best) {
+  const typename D::Position way(ray.translation);
   const SeenFilter filter(world, ray.filter);
   std::int32_t best_slot = best.shape == ShapeId{} ? none : world.shapes.slots.slot(best.shape);
   const auto visit = [&](std::size_t place) {
     const std::int32_t slot = ways.shapes[place];
     const auto& shape = world.shapes.at(slot);
     if (!query_sees<D>(shape, filter)) return best.fraction;
-    const auto& way = ways.ways[std::size_t(ways.of_body[std::size_t(shape.body)])];
-    const MetOnWay<D> met = cast_on_way(world, shape, way, ray, begin);
+    const auto& body = ways.ways[std::size_t(ways.of_body[std::size_t(shape.body)])];
+    const MetOnWay<D> met = cast_on_way(world, shape, body, ray, begin);
     if (!met.hit || !is_nearer(met.fraction, slot, best.fraction, best_slot)) return best.fraction;
     best_slot = slot;
     best = {world.shapes.slots.handle_at(slot),
-            ray.origin + typename D::Position(ray.translation) * double(met.fraction),
+            ray.origin + way * double(met.fraction),
             met.normal,
             met.fraction,
             met.child,
             material_at(world, slot, geometry::material_of_part(shape.geometry, met.child)).user_id};
     return met.fraction;
   };
-  const typename D::Position way(ray.translation);
   typename D::Position extents{};
   const double slack = 2e-5 + 4e-6 * math::length(way);
   for (int k = 0; k < D::dimension; ++k) extents[k] = slack;
@@ -166,24 +177,21 @@ RayHit<D> closest_in_step(const WorldImplementation<D>& world, const RayQuery<D>
     cast(ways.tree, ray.origin, way, extents, best.fraction,
          [&](std::uint32_t place, float) { return visit(std::size_t(place)); });
   } else {
-    for (std::size_t i = 0; i < ways.shapes.size(); ++i) {
-      typename D::Bounds box = ways.boxes[i];
-      for (int k = 0; k < D::dimension; ++k) box.low[k] -= slack, box.high[k] += slack;
-      if (reaches<D>(ray, box)) visit(i);
-    }
+    for (std::size_t i = 0; i < ways.shapes.size(); ++i)
+      if (reaches<D>(ray, geometry::grow(ways.boxes[i], slack))) visit(i);
   }
-  return best;
 }
 
 }  // namespace detail
 
 template <class D>
-void World<D>::find_ways(StepWays<D>& out) const {
+void World<D>::find_ways(StepWays<D>& out, double ray_length) const {
   using namespace detail;
   const WorldImplementation<D>& world = *self_;
   out.clear();
   out.dt = world.last_dt;
   const std::size_t count = math::min(world.scratch.swept.size(), world.bodies.awake.size());
+  int on_way[3] = {};  // shapes of each tree
   for (std::size_t place = 0; place < count; ++place) {
     const std::int32_t body = world.bodies.awake[place];
     const BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
@@ -198,11 +206,15 @@ void World<D>::find_ways(StepWays<D>& out) const {
     out.ways.push_back({body, start.rotation, rotation, start.center, m.center, start.turn, angle, start.fraction});
     for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
       const ShapeRecord<D>& shape = world.shapes.at(s);
-      if (shape.leaf == none || (shape.flags & shape_sensor) != 0) continue;
+      if (shape.leaf == none) continue;
+      ++on_way[shape.tree];
+      if ((shape.flags & shape_sensor) != 0) continue;
       out.shapes.push_back(s);
       out.boxes.push_back(bounds_on_way(world, shape, out.ways.back()));
     }
   }
+  for (int t = 0; t < 3; ++t) out.whole_tree[t] = on_way[t] == world.shapes.trees[t].size();
+  out.cells.fill(out.boxes, ray_length);
   constexpr std::size_t few = 3;
   if (out.boxes.size() <= few) return;
   out.order.clear();
@@ -225,22 +237,9 @@ Status World<D>::cast_rays(std::span<const RayQuery<D>> rays, std::span<const fl
   if (!begins.empty())
     if (const Status s = detail::check_batch(call, rays.size(), "begins", begins.size()); !s.ok()) return s;
   if (ways.shapes.empty()) return cast_rays(rays, hits);
-  typename D::Bounds all = ways.boxes.front();
-  for (const auto& box : ways.boxes) all = {min(all.low, box.low), max(all.high, box.high)};
-  const auto met = [&](const typename D::Bounds& box) {
-    bool any = false;
-    const auto found = [&](std::size_t) {
-      any = true;
-      return false;
-    };
-    if (ways.tree.nodes.empty())
-      for (const auto& one : ways.boxes) any = any || overlaps(one, box);
-    else
-      query(ways.tree, box, found);
-    return any;
-  };
-  return detail::cast_in_groups<D>(*self_, rays, hits, all, met, [&](std::size_t i) {
-    return detail::closest_in_step<D>(*self_, rays[i], begins.empty() ? 0.0 : double(begins[i]), ways);
+  return detail::cast_in_groups<D>(*self_, rays, hits, detail::Standing<D>{ways}, [&](std::size_t i, RayHit<D>& best) {
+    if (!ways.cells.crosses(rays[i].origin, rays[i].translation)) return;
+    detail::meet_on_ways<D>(*self_, rays[i], begins.empty() ? 0.0 : double(begins[i]), ways, best);
   });
 }
 
