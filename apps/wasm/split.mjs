@@ -299,9 +299,7 @@ export async function split(modulePath, files, out) {
     }
     const starts = [1, 2].map((threads) => ({demos: [demos[0].id], frames: 1200, patience: 60, threads}));
     const all = await runAll(data, [...starts, ...sets]);
-    // The largest first: each cut reads all that is left.
-    const sizeOf = (part) => part.functions.reduce((sum, i) => sum + functions[i].code.length, 0);
-    const parts = partsOf(functions, all.slice(0, starts.length), sets, all.slice(starts.length)).sort((a, b) => sizeOf(b) - sizeOf(a));
+    const parts = partsOf(functions, all.slice(0, starts.length), sets, all.slice(starts.length));
     // Texts go where the functions are that say them.
     const partOf = Array(functions.length);
     parts.forEach((part, k) => { for (const i of part.functions) partOf[i] = k; });
