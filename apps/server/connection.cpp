@@ -1,6 +1,5 @@
 // Requests for files and pages, plain or under TLS; a request for the WebSocket becomes a Session.
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <type_traits>
 
@@ -78,7 +77,6 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
     const auto text = [](boost::string_view v) { return std::string_view(v.data(), v.size()); };
     const std::string_view authority = text(request[http::field::host]);
     head_ = request.method() == http::verb::head;
-    cache_ = "no-cache";
     // Who comes without TLS where it is spoken is told where to go.
     if (!secure && server_.secure()) return redirect(authority, text(request.target()));
     keep_alive_ = request.keep_alive();
@@ -117,42 +115,32 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
     }
     const std::optional<std::filesystem::path> file = resolve_target(root, target);
     if (!file) return answer(http::status::not_found, "not found\n");
-    const std::uintmax_t size = std::filesystem::file_size(*file, missing);
-    if (missing) return answer(http::status::not_found, "not found\n");
-    std::string content(std::size_t(size), '\0');
-    if (!std::ifstream(*file, std::ios::binary).read(content.data(), std::streamsize(size)))
-      return answer(http::status::not_found, "not found\n");
-    cache_ = file->parent_path().filename() == "assets" ? "public, max-age=31536000, immutable" : "no-cache";
-    answer(http::status::ok, std::move(content), true, std::string(content_type(*file)));
+    const auto response = std::make_shared<http::response<http::file_body>>();
+    beast::error_code error;
+    response->body().open(file->c_str(), beast::file_mode::scan, error);
+    if (error) return answer(http::status::not_found, "not found\n");
+    const std::uint64_t size = response->body().size();
+    const std::string type(content_type(*file));
+    const bool hashed = file->parent_path().filename() == "assets";
+    if (head_) {
+      const auto empty = std::make_shared<http::response<http::empty_body>>();
+      fields(*empty, type, hashed);
+      empty->content_length(size);
+      return send(empty);
+    }
+    fields(*response, type, hashed);
+    response->content_length(size);
+    send(response);
   }
 
-  /// All answers are of one type: what Beast makes of each takes the compiler seconds.
-  void answer(http::status status, std::string body, bool keep = true,
-              const std::string& type = "text/plain; charset=utf-8") {
+  void answer(http::status status, std::string body, bool keep = true, const char* type = "text/plain; charset=utf-8") {
+    const auto response = std::make_shared<http::response<http::string_body>>();
+    response->result(status);
     keep_alive_ = keep_alive_ && keep;
-    const auto response = std::make_shared<http::response<http::string_body>>(status, 11);
-    response->keep_alive(keep_alive_);
-    response->set(http::field::server, "carom");
-    response->set(http::field::content_type, type);
-    response->set(http::field::cache_control, cache_);
-    response->set("X-Content-Type-Options", "nosniff");
-    response->set("Cross-Origin-Opener-Policy", "same-origin");
-    response->set("Cross-Origin-Embedder-Policy", "require-corp");
-    response->set("Cross-Origin-Resource-Policy", "same-origin");
-    response->set("Referrer-Policy", "no-referrer");
-    response->set("Content-Security-Policy", security_policy);
-    if (!location_.empty()) response->set(http::field::location, location_);
+    fields(*response, type, false);
     response->content_length(body.size());
     if (!head_) response->body() = std::move(body);
-    lowest().expires_after(std::chrono::seconds(30));
-    http::async_write(stream_, *response,
-                      [self = this->shared_from_this(), response](beast::error_code error, std::size_t) {
-                        if (error || !response->keep_alive()) {
-                          self->end();
-                          return;
-                        }
-                        self->read();
-                      });
+    send(response);
   }
 
   void redirect(std::string_view authority, std::string_view target) {
@@ -175,6 +163,40 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
     }
   }
 
+  template <class Response>
+  void fields(Response& response, const std::string& type, bool immutable) {
+    response.version(11);
+    response.keep_alive(keep_alive_);
+    response.set(http::field::server, "carom");
+    response.set(http::field::content_type, type);
+    response.set(http::field::cache_control, immutable ? "public, max-age=31536000, immutable" : "no-cache");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Embedder-Policy", "require-corp");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Content-Security-Policy", security_policy);
+    if (!location_.empty()) response.set(http::field::location, location_);
+  }
+
+  template <class Response>
+  void send(const std::shared_ptr<Response>& response) {
+    lowest().expires_after(std::chrono::seconds(30));
+    const auto serializer = std::make_shared<http::response_serializer<typename Response::body_type>>(*response);
+    if (head_) serializer->split(true);
+    const auto done = [self = this->shared_from_this(), response, serializer](beast::error_code error, std::size_t) {
+      if (error || !response->keep_alive()) {
+        self->end();
+        return;
+      }
+      self->read();
+    };
+    if (head_)
+      http::async_write_header(stream_, *serializer, done);
+    else
+      http::async_write(stream_, *serializer, done);
+  }
+
   static constexpr bool secure = !std::is_same_v<Transport, beast::tcp_stream>;
   beast::tcp_stream& lowest() { return beast::get_lowest_layer(stream_); }
 
@@ -182,7 +204,6 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
   Transport stream_;
   beast::flat_buffer buffer_;
   std::string location_;
-  const char* cache_ = "no-cache";
   std::optional<http::request_parser<http::string_body>> parser_;
   bool head_ = false, keep_alive_ = true;
 };
