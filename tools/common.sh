@@ -62,7 +62,7 @@ setup_build() {
 jobs=$(nproc)
 # Sources to a translation unit: what all of them include is then read a few times only, as long as every processor has
 # units enough.
-unity=(-DCAROM_UNITY=ON "-DCAROM_UNITY_BATCH=$((jobs < 6 ? 128 / jobs : 8))")
+unity=(-DCAROM_UNITY=ON "-DCAROM_UNITY_BATCH=$((jobs < 6 ? 48 / jobs : 8))")
 
 # build_native: the release build in build/release, as few translation units (a cold build is short).
 build_native() {
@@ -89,16 +89,13 @@ build_wasm() {
   quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "$@" "${wasm_too[@]}"
 }
 
-# build_page: for `carom serve`, in apps/playground/dist; once.
-page_built=no
+# build_page: for `carom serve`, in apps/playground/dist.
 build_page() {
-  [ $page_built = yes ] && return
   say "building the page"
   if [ ! -d apps/playground/node_modules ] || [ apps/playground/package-lock.json -nt apps/playground/node_modules/.package-lock.json ]; then
     quietly npm-ci npm ci --prefix apps/playground --no-audit --no-fund
   fi
   quietly page npm run --prefix apps/playground build
-  page_built=yes
 }
 
 # build_web: the page with the engine in it, in out/web, for any web server. The native command draws the demos' pictures.
