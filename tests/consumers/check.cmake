@@ -34,7 +34,7 @@ else()
   if(clang)
     list(APPEND options -DCMAKE_CXX_COMPILER=${clang})
   endif()
-  run(${CMAKE_COMMAND} ${options} -DWAY=${WAY} -DCAROM_UNITY=ON -DCAROM_UNITY_BATCH=64 -DCMAKE_BUILD_TYPE=None
+  run(${CMAKE_COMMAND} ${options} -DWAY=${WAY} -DCAROM_UNITY=ON -DCAROM_UNITY_BATCH=16 -DCMAKE_BUILD_TYPE=None
       -DBUILD_SHARED_LIBS=ON)
 endif()
 if(WAY STREQUAL "fetchcontent")

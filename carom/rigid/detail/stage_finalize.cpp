@@ -15,7 +15,7 @@ constexpr float settling_speed = 3;  ///< of its sleep speed, below which a body
 constexpr float settling_resistance =
     0.014f;  ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
 
-StepEndKernels kernels_of(int width) {
+StepEndKernels end_kernels_of(int width) {
 #if defined(__x86_64__)
   if (width == 16) return pin_kernels_avx512::step_end_kernels();
   if (width == 8) return pin_kernels_avx2::step_end_kernels();
@@ -24,8 +24,8 @@ StepEndKernels kernels_of(int width) {
 #endif
   return pin_kernels_baseline::step_end_kernels();
 }
-StepEndKernel<Dim2> kernel_for(Dim2, int width) { return kernels_of(width).plane; }
-StepEndKernel<Dim3> kernel_for(Dim3, int width) { return kernels_of(width).space; }
+StepEndKernel<Dim2> kernel_for(Dim2, int width) { return end_kernels_of(width).plane; }
+StepEndKernel<Dim3> kernel_for(Dim3, int width) { return end_kernels_of(width).space; }
 
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
