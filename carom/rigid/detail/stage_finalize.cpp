@@ -254,6 +254,8 @@ void finalize_bodies(StepContext<D>& context) {
     for (int first = begin; first < end; first += width) {
       const int lanes = min(width, end - first);
       const std::int32_t* const slots = &world.bodies.awake[std::size_t(first)];
+      SweepStart<D>* const starts = &scratch.swept[std::size_t(first)];
+      std::uint8_t* const changes = &scratch.body_changes[std::size_t(first)];
       StepEndTerms terms{context.dt, context.inverse_dt, 0};
       for (int k = 0; k < lanes; ++k) {
         const std::size_t body = std::size_t(slots[k]);
@@ -261,19 +263,17 @@ void finalize_bodies(StepContext<D>& context) {
         record.flags &= std::uint16_t(~body_fast);
         if (record.locks != 0) apply_locks(context.bodies[body], record.locks);  // the last pass may have moved them
         if (record.type == BodyType::dynamic && (record.locks & 0x38) == 0) terms.turning |= 1u << k;
-        scratch.swept[std::size_t(first + k)] = {
-            world.bodies.pose[body].rotation, world.bodies.motion[body].center, {}, 1};
+        starts[k] = {world.bodies.pose[body].rotation, world.bodies.motion[body].center, {}, 1};
       }
       BodyEnds ends;
       bring_to_end(context.bodies, world.bodies.pose.data(), world.bodies.motion.data(), slots, lanes, terms, ends);
       for (int k = 0; k < lanes; ++k) {
-        std::uint8_t& change = scratch.body_changes[std::size_t(first + k)];
         if ((ends.broken >> k & 1) != 0) {
           scratch.loads[std::size_t(slots[k])] = {};
           quarantine(world, slots[k]);
-          change = body_broke;
+          changes[k] = body_broke;
         } else {
-          change = finalize_body(context, first + k, ends, k, gravity);
+          changes[k] = finalize_body(context, first + k, ends, k, gravity);
         }
       }
     }

@@ -8,7 +8,7 @@ CAROM_SIMD_INLINE std::uint32_t finite_bodies(const WideFloat<W> (&row)[N], cons
                                               std::int32_t (&finite)[W]) {
   using F = WideFloat<W>;
   F none = F::zero();
-  for (int i = 0; i < N; ++i) none += row[i] - row[i];
+  for (int i = 0; i < N; ++i) none += row[i] * F::zero();  // no number times nothing is no number
   const std::uint32_t which = bitmask(none == F::zero()) & ((1u << count) - 1);
   choose_lanes<W>(which, slots, finite);
   return which;
@@ -63,7 +63,7 @@ CAROM_SIMD_INLINE std::uint32_t use_room(WideFloat<W>* below, WideFloat<W>* abov
                                          WideFloat<W> surface_way, const Lanes<N, W>& next, WideFloat<W> next_turn) {
   using F = WideFloat<W>;
   const F zero = F::zero();
-  WideMask<W> near = zero != zero;
+  WideMask<W> near = WideMask<W>::none();
   for (int k = 0; k < N; ++k) {
     below[k] = coarse_lanes(below[k] + way.v[k] - surface_way);
     above[k] = coarse_lanes(above[k] - way.v[k] - surface_way);
