@@ -83,8 +83,9 @@ template <class D>
 void look_at_bounds(BodyMotion<D>& m) {
   m.room_below = m.room_above = {};
 }
+/// May they have, as far as its room tells?
 template <class D>
-bool looks_at_bounds(const BodyMotion<D>& m) {
+bool may_leave_bounds(const BodyMotion<D>& m) {
   for (int k = 0; k < D::dimension; ++k)
     if (!(m.room_below[k] > 0 && m.room_above[k] > 0)) return true;
   return false;

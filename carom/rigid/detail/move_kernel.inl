@@ -26,6 +26,11 @@ CAROM_SIMD_INLINE Turn<W> turn_by(const Lanes<3, W>& angle) {
   return {s, multiply(t, s)};
 }
 
+/// Lanes without a body are like the first.
+template <int W>
+CAROM_SIMD_INLINE void repeat_first(const std::int32_t* slots, int count, std::int32_t (&index)[W]) {
+  for (int i = 0; i < W; ++i) index[i] = slots[i < count ? i : 0];
+}
 /// Columns floats of each body from byte Offset on.
 template <int Offset, int Columns, class Record, int W>
 CAROM_SIMD_INLINE void read_records(const Record* records, const std::int32_t (&index)[W],
@@ -55,7 +60,8 @@ void turn_bodies(SolverBody<Dim3>* bodies, const Pose3* poses, const BodyMotion<
                  const std::int32_t* slots, int count, float h) {
   using F = WideFloat<W>;
   std::int32_t all[W], index[W];
-  for (int i = 0; i < W; ++i) all[i] = slots[i < count ? i : 0], index[i] = i < count ? slots[i] : -1;
+  repeat_first<W>(slots, count, all);
+  for (int i = 0; i < W; ++i) index[i] = i < count ? slots[i] : -1;
   const Motion3<W> motion = read_motion<W>(bodies, all);
   F before[4], inertia[12];
   read_records<offsetof(Pose3, rotation)>(poses, all, before);
@@ -144,14 +150,6 @@ template <int W>
 CAROM_SIMD_INLINE void choose_lanes(std::uint32_t which, const std::int32_t (&index)[W], std::int32_t (&chosen)[W]) {
   for (int i = 0; i < W; ++i) chosen[i] = (which >> i & 1) != 0 ? index[i] : -1;
 }
-/// Floats [First, First + Columns) of each body.
-template <int First, int Columns, int W>
-CAROM_SIMD_INLINE void read_bodies(const SolverBody<Dim3>* bodies, const std::int32_t (&index)[W],
-                                   WideFloat<W> (&columns)[Columns]) {
-  const float* rows[W];
-  for (int i = 0; i < W; ++i) rows[i] = reinterpret_cast<const float*>(bodies + index[i]) + First;
-  gather_rows<Columns, W>(rows, columns);
-}
 template <int Columns, int W>
 CAROM_SIMD_INLINE void read_flights(const Flight<Dim3>* flights, int count, WideFloat<W> (&columns)[Columns]) {
   const float* rows[W];
@@ -179,7 +177,7 @@ std::uint32_t accelerate_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>*
   const std::uint32_t which = driven.which((kind == one) | carries);
   if (which == 0) return driven.locked();
   F row[8];
-  read_bodies<0>(bodies, driven.body, row);
+  read_records<0>(bodies, driven.body, row);
   const F* const drive = driven.drive;
   Lanes<3, W> v = {{row[0] + drive[4], row[1] + drive[5], row[2] + drive[6]}};
   Lanes<3, W> w = {{row[4] + drive[7], row[5] + drive[8], row[6] + drive[9]}};
@@ -217,7 +215,7 @@ LeftOver move_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives, co
   const std::uint32_t which = driven.which(kind < F::splat(3));
   if (which == 0) return left;
   F row[16], flight[8];
-  read_bodies<0>(bodies, driven.body, row);
+  read_records<0>(bodies, driven.body, row);
   read_flights(flights, count, flight);
   // What others are near but do not touch flies too: nothing has changed its velocity.
   const auto flies = (kind > F::zero()) & (row[0] == flight[0]) & (row[1] == flight[1]) & (row[2] == flight[2]);
@@ -248,7 +246,7 @@ std::uint32_t fly_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives
   const std::uint32_t which = driven.which(driven.kind() == F::splat(3));
   if (which == 0) return 0;
   F row[16];
-  read_bodies<0>(bodies, driven.body, row);
+  read_records<0>(bodies, driven.body, row);
   Lanes<3, W> v = {{row[0], row[1], row[2]}}, w = {{row[4], row[5], row[6]}}, moved = {{row[8], row[9], row[10]}};
   const Lanes<3, W> gain = {{drive[4], drive[5], drive[6]}}, spin_gain = {{drive[7], drive[8], drive[9]}};
   const auto by_itself =

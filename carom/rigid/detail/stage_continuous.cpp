@@ -382,7 +382,7 @@ void stop_fast_bodies(StepContext<D>& context) {
       take_back_gravity(world, body, scratch.swept[place], context.dt);
       const bool stopped = scratch.swept[place].fraction < 1;
       if (D::dimension == 3 && stopped) update_world_inertia(world, body);
-      if ((stopped || looks_at_bounds(world.bodies.motion[std::size_t(body)])) && leave_bounds(world, body))
+      if ((stopped || may_leave_bounds(world.bodies.motion[std::size_t(body)])) && leave_bounds(world, body))
         scratch.body_changes[place] = body_outgrew;
     }
   });

@@ -29,10 +29,6 @@ CAROM_SIMD_INLINE WideFloat<W> length_of(const Lanes<N, W>& a) {
   for (int i = 1; i < N; ++i) sum += a.v[i] * a.v[i];
   return sqrt(sum);
 }
-template <int W>
-CAROM_SIMD_INLINE void repeat_first(const std::int32_t* slots, int count, std::int32_t (&index)[W]) {
-  for (int i = 0; i < W; ++i) index[i] = slots[i < count ? i : 0];
-}
 /// Centres and origins, in double.
 template <class D, int W>
 CAROM_SIMD_INLINE void place_bodies(typename D::Pose* poses, BodyMotion<D>* motions, const std::int32_t (&index)[W],
