@@ -3,6 +3,7 @@
 
 #include "carom/ballistics/aim.h"
 #include "carom/ballistics/hits.h"
+#include "carom/ballistics/sights.h"
 #include "carom/math/random.h"
 
 namespace {
@@ -90,6 +91,24 @@ BENCHMARK(batch_hits)
     ->Args({8, 1, 1000})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(96);
+
+/// The 168 SMK (G7 .218, 2650 ft/s, zero at 100 yd) to 1000 yd, as shooters' solvers fly it.
+void rifle_flight(benchmark::State& state) {
+  constexpr double foot = 0.3048, yard = 0.9144, inch = 0.0254;
+  const Gun gun{.projectile = projectile_from_coefficient(DragFunction::g7, .218),
+                .muzzle_speed = 2650 * foot,
+                .sight_height = 1.5 * inch};
+  const Conditions still{};
+  const double elevation = *zero_elevation(gun, still, 100 * yard);
+  double speed = 0, height = 0;
+  for (auto _ : state) {
+    const auto flight = SightedFlight::fire(gun, still, {.elevation = elevation}, 1000 * yard);
+    const auto end = flight->at(1000 * yard);
+    speed = end->speed / foot, height = end->height / inch;
+  }
+  state.SetLabel(std::to_string(speed) + " ft/s, " + std::to_string(height) + " in");
+}
+BENCHMARK(rifle_flight)->Unit(benchmark::kMicrosecond);
 
 enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again, just_out, flees, flees_fast, edge };
 void take_aim(benchmark::State& state) {

@@ -34,7 +34,7 @@ Result<Muzzle> muzzle_of(const GunDef& gun, const rigid::World<D>& world) {
 /// The bore as the hands hold it.
 template <class D>
 Vec3d held(const SceneGun& gun, Vec3d bore, double time) {
-  if (!gun.sway && !gun.definition.climbs) return bore;
+  if (!gun.sway && !gun.definition.climbs && gun.definition.pattern.empty()) return bore;
   const math::Vec2d swing = gun.swing(time);
   return ballistics::swung(bore, swing.y, D::dimension == 3 ? swing.x : 0);
 }
@@ -201,6 +201,8 @@ math::Vec2d SceneGun::swing(double time) const {
     const ballistics::RecoilMotion motion = ballistics::recoil_at(definition.weapon.mount, impulse, recent, time);
     sum += math::Vec2d{motion.swing, motion.rise};
   }
+  if (const auto& pattern = definition.pattern; !pattern.empty())
+    sum += pattern[math::min(std::size_t(shots), pattern.size() - 1)];
   return sum;
 }
 

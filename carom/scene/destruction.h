@@ -42,6 +42,7 @@ struct GunDef {
   int rounds = 1;                          ///< how many it has
   double lifetime = 60;                    ///< s that a projectile flies at most
   bool climbs = false;                     ///< the mount's motion turns the bore from shot to shot
+  std::vector<math::Vec2d> pattern{};      ///< rad, right and up: instead of that, of each shot; the last stays
   bool recoils = true;                     ///< its body takes the recoil
   std::uint64_t seed = 1;                  ///< of dispersion, muzzle speeds and sway
   std::optional<ballistics::Sway> sway{};  ///< of the hands that hold it; none: it stands still
@@ -64,7 +65,7 @@ struct SceneGun {
   std::optional<ballistics::SpinningRounds> spinning{};  ///< those of `batch`, where its ammunition spins
   std::optional<ballistics::SwayMotion> sway{};
   /// rad (x to the right, y up), by which the hands hold it beside its aim at a time (s) of the world: sway, and what
-  /// its shots raised it by if it climbs.
+  /// its shots raised it by if it climbs or has a pattern.
   math::Vec2d swing(double time) const;
   double next = 0;  ///< s, the time of the next shot
   int shots = 0, hits = 0, passed = 0, ricochets = 0;

@@ -137,4 +137,24 @@ TEST(WindField, RocketsFeelGustsAsBodiesToo) {
   EXPECT_LT(math::length(Vec3d{off.x, 0, off.z}), 1.5) << off.x << ' ' << off.z;
 }
 
+// The centre of mass of a body's rocket goes forward as its motor burns: Σ m x / Σ m of what is left.
+TEST(BodyRocket, CentreOfMassMovesAsItBurns) {
+  rigid::World3 world;
+  const double dt = 1.0 / 240;
+  const Rocket rocket = small_rocket();
+  auto flown = BodyRocket::make(world, {.rocket = rocket}).value();
+  const Stage& stage = rocket.stages[0];
+  for (int i = 0; i < 480; ++i) {
+    flown.before_step(world, dt).value();
+    const auto now = world.mass_properties3(flown.body()).value();
+    const double motor = flown.mass() - stage.dry_mass;
+    const double centre = (stage.dry_mass * stage.dry_centre + motor * stage.motor_centre) / flown.mass();
+    EXPECT_NEAR(now.mass, flown.mass(), 1e-7);
+    EXPECT_NEAR(now.center.x, rocket.length - centre, 1e-7);
+    if (i == 0) EXPECT_NEAR(flown.mass(), .76, 2e-4);
+    if (i == 479) EXPECT_NEAR(centre, (.6 * .5 + .1 * .9) / .7, 1e-9) << "burnt out: only the casing is left";
+    world.step(float(dt)).value();
+  }
+}
+
 }  // namespace ballistics_field_test

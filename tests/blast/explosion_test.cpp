@@ -79,6 +79,28 @@ TEST(Explosion, ImpulseOnABoxIsThatOfItsFaces) {
   }
 }
 
+// What is struck beside its centre of mass turns: Δω = r × J / I. The charge faces the middle of the plate.
+TEST(Explosion, TurnsWhatItStrikesBesideItsCentre) {
+  rigid::World3 world({.gravity = {0, 0, 0}});
+  rigid::BodyDef<Dim3> body;
+  body.position = {20, 0, 0};
+  const auto id = world.create_body(body).value();
+  rigid::ShapeDef<Dim3> shape;
+  shape.local.p = {0, 0.4f, 0};
+  world.add_shape(id, geometry::Box{{0.05f, 0.3f, 0.3f}}, shape).value();
+  const double mass = 5000, inertia = 800;
+  world.set_mass_properties(id, {mass, {}, math::Mat3d::diagonal({inertia, inertia, inertia})}).value();
+  auto explosion = Explosion3::make({.position = {0, 0.4, 0}, .mass = 10, .burst = Burst::free_air}).value();
+  run(world, explosion, 1.0 / 240, 0.15);
+  const double given = explosion.impulse_given().x, spin = -0.4 * given / inertia;
+  const auto s = world.state(id).value();
+  EXPECT_GT(given, 1);
+  EXPECT_NEAR(double(s.linear_velocity.x) * mass, given, 1e-4 * given);
+  EXPECT_NEAR(double(s.angular_velocity.z), spin, 2e-3 * math::abs(spin));
+  EXPECT_NEAR(double(s.angular_velocity.x), 0, 1e-3 * math::abs(spin));
+  EXPECT_NEAR(double(s.angular_velocity.y), 0, 1e-3 * math::abs(spin));
+}
+
 TEST(Explosion, StepsOfAnyLengthGiveTheSame) {
   double given[3];
   int i = 0;

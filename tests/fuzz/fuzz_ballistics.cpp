@@ -14,6 +14,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (curve)
     for (const double mach : {0.0, 0.3, 0.99, 1.0, 1.7, 5.0, 1e6})
       require(math::is_finite((*curve)(mach)) && (*curve)(mach) >= 0, "a drag that cannot be");
+  // The same numbers as coefficients that hold from a Mach number upward.
+  if (curve) {
+    std::vector<ballistics::BallisticCoefficientBand> bands;
+    for (const ballistics::DragPoint& p : curve->points()) bands.push_back({p.mach, p.coefficient});
+    const auto banded = ballistics::banded_drag(ballistics::drag_table(ballistics::DragFunction::g7), bands, 0.5);
+    if (banded)
+      for (const double mach : {0.0, 0.5, 1.0, 2.5, 9.0})
+        require(math::is_finite((*banded)(mach)) && (*banded)(mach) >= 0, "a drag of bands that cannot be");
+  }
   const auto motors = ballistics::read_rasp(text, "f");
   require(motors.ok() || motors.error().message.starts_with("f:"), "an error that does not name the file");
   if (motors)

@@ -356,6 +356,67 @@ TEST(Cloth, TearsAndKeepsItsMass) {
   for (const Vec3d& p : cloth.positions()) ASSERT_TRUE(is_finite(p.y));
 }
 
+// A strip under a load that rises slowly, F to the metre of its width, holds .9 of its strength and tears at 1.1.
+TEST(Cloth, TearsAtItsStrength) {
+  World3 world = weightless();
+  const int columns = 5, rows = 9;
+  const double width = 0.2, strength = 400;
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {width, 0, 0}, {0, -0.4, 0}, columns, rows);
+  const Fabric fabric{
+      .warp_stiffness = 20000, .weft_stiffness = 20000, .poisson_ratio = 0, .damping = 0.02, .tear_tension = strength};
+  Cloth cloth = Cloth::make({.fabric = fabric, .points = sheet.points, .triangles = sheet.triangles}).value();
+  cloth.set_air(0, {}).value();
+  for (int i = 0; i < columns; ++i) cloth.pin(i).value();
+  rigid::BodyDef<Dim3> def;
+  def.position = {width / 2, -0.4, 0};
+  const auto bar = world.create_body(def).value();  // sewn to the lower edge
+  world.set_mass_properties(bar, {2, {}, Mat3d::diagonal({0.02, 0.02, 0.02})}).value();
+  for (int i = 0; i < columns; ++i)
+    cloth.pin((rows - 1) * columns + i, bar, {width * i / (columns - 1) - width / 2, 0, 0}, world).value();
+  bool torn = false;
+  const auto pull = [&](double share) {
+    world.add_force(bar, {0, float(-share * strength * width), 0}).value();
+    cloth.step(world, dt).value();
+    world.step(float(dt)).value();
+    torn = torn || cloth.torn();
+  };
+  for (int i = 0; i < 300; ++i) pull(0.9 * min(i / 240.0, 1.0));
+  EXPECT_FALSE(torn);
+  EXPECT_NEAR(cloth.greatest_tension(), 0.9 * strength, 0.05 * strength);
+  for (int i = 0; i < 120 && !torn; ++i) pull(0.9 + 0.2 * min(i / 60.0, 1.0));
+  EXPECT_TRUE(torn);
+}
+
+// A square whose edges are held sheared by γ: S = G γ, the energy of all of it is A (G γ²/2 + E γ⁴/8), and each inner
+// vertex of an edge takes its share of the force S l.
+TEST(Cloth, ShearsByItsStiffness) {
+  World3 world = weightless();
+  const int n = 9;
+  const double size = 0.4, shear = 0.04, shear_stiffness = 300, stiffness = 1000;
+  const ClothSheet sheet = make_cloth_sheet({0, 0, 0}, {size, 0, 0}, {0, size, 0}, n, n);
+  const Fabric fabric{.warp_stiffness = stiffness,
+                      .weft_stiffness = stiffness,
+                      .poisson_ratio = 0,
+                      .shear_stiffness = shear_stiffness,
+                      .damping = 0.02};
+  Cloth cloth = Cloth::make({.fabric = fabric, .points = sheet.points, .triangles = sheet.triangles}).value();
+  cloth.set_air(0, {}).value();
+  for (int i = 0; i < n * n; ++i) {
+    const int column = i % n, row = i / n;
+    if (column > 0 && column < n - 1 && row > 0 && row < n - 1) continue;
+    const Vec3d p = sheet.points[std::size_t(i)];
+    cloth.pin(i, {}, {p.x + shear * p.y, p.y, p.z}, world).value();
+  }
+  for (int i = 0; i < 180; ++i) cloth.step(world, dt).value();
+  const double energy = size * size * (0.5 * shear_stiffness * square(shear) + stiffness * square(square(shear)) / 8);
+  EXPECT_NEAR(cloth.elastic_energy(), energy, 0.01 * energy);
+  const double share = (shear_stiffness * shear + 0.5 * stiffness * shear * shear * shear) * size / (n - 1);
+  for (int i = 1; i < n - 1; ++i) {
+    EXPECT_NEAR(cloth.pin_force(i).x, share, 0.02 * share) << "the lower edge is pulled along";
+    EXPECT_NEAR(cloth.pin_force((n - 1) * n + i).x, -share, 0.02 * share);
+  }
+}
+
 TEST(Cloth, RefusesBadInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   World3 world;

@@ -111,10 +111,7 @@ TEST(Chapter02, CoastingAgainstQuadraticDrag) {
 }
 
 // 2.4: 800 m/s over 500 m, g = 9.81.
-TEST(Chapter02, FlatShotDrop) {
-  EXPECT_EQ(500.0 / 800.0, 0.625);
-  EXPECT_NEAR(forces::flat_shot_drop(500, 800, 9.81), 1.916, 5e-4);
-}
+TEST(Chapter02, FlatShotDrop) { EXPECT_NEAR(forces::flat_shot_drop(500, 800, 9.81), 1.916, 5e-4); }
 
 // 2.5: L = Y_b = 0, 50 m/s, 45° from the vertical, g = 9.81.
 TEST(Chapter02, CannonRange) {

@@ -142,6 +142,31 @@ TYPED_TEST(JointSprings, TwoFreeMassesSwingWithTheReducedMass) {
   EXPECT_FALSE(world.effector_definition(id).ok());
 }
 
+// A torsion spring that swings through its rest with ω twists by √(kI) ω = 2π f I ω at most: it breaks above its
+// torque.
+TYPED_TEST(JointSprings, TorsionSpringsBreakByTorque) {
+  using D = TypeParam;
+  const double hertz = 1, inertia = 1, strength = 5;
+  for (const double share : {0.9, 1.1}) {
+    World<D> world(weightless<D>());
+    HingeJointDef<D> def;
+    def.body_a = add_fixed(world);
+    def.body_b = add_mass(world, 0, 0, 2, inertia);
+    def.spring = {float(hertz), 0};
+    def.break_torque = float(strength);
+    const JointId joint = world.create_joint(def).value();
+    typename D::Angular spin{};
+    const double speed = share * strength / (2 * pi * hertz * inertia);
+    if constexpr (D::dimension == 2)
+      spin = float(speed);
+    else
+      spin = {0, 0, float(speed)};
+    world.set_velocity(def.body_b, {}, spin).value();
+    run(world, 60);
+    EXPECT_EQ(world.contains(joint), share < 1) << share;
+  }
+}
+
 // Above its force a spring gives way: of a mass that runs away from it with v it takes F²/2k of the energy, no more.
 TYPED_TEST(JointSprings, SpringsGiveWay) {
   using D = TypeParam;

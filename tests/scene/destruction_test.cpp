@@ -274,6 +274,23 @@ TEST(SceneGuns, RecoilIsTheImpulseOfBulletAndGas) {
   }
 }
 
+// A pattern of one's own: where the shots point beside each other, so far apart do they strike.
+TEST(SceneGuns, ShootByAPatternOfTheirOwn) {
+  SceneWorld world = start(R"({"step": "1/240 s", "gravity": [0, 0, 0], "environment": {"air": {"vacuum": true}},
+      "bodies": [{"name": "plate", "type": "fixed", "position": [100.005, 0, 0],
+                  "shape": {"type": "box", "size": ["1 cm", "4 m", "4 m"]}}],
+      "guns": [{"name": "g", "rounds": 4, "rounds_per_minute": 120, "pattern": [0, 0, 0.002, 0.004, "-0.1 deg", "0.2 deg"],
+                "ammunition": {"mass": 0.01, "diameter": 0.008, "muzzle_speed": 1000}}]})");
+  const double degree = math::pi / 180;
+  const math::Vec2d expected[] = {{0, 0}, {0.2, 0.4}, {-10 * degree, 20 * degree}, {-10 * degree, 20 * degree}};
+  for (int shot = 0; shot < 4; ++shot) {
+    run(world, 0.5 * shot + 0.3);
+    ASSERT_EQ(read(world, "gun.g.hits"), shot + 1);
+    EXPECT_NEAR(read(world, "gun.g.last_hit.z"), expected[shot].x, 1e-4) << shot;
+    EXPECT_NEAR(read(world, "gun.g.last_hit.y"), expected[shot].y, 1e-4) << shot;
+  }
+}
+
 // 168 SMK, zero 100 yd by 1.14214 mrad: 15.565 in low at 300 yd (reference solution), which is 4.954 minutes of arc, so
 // 20 quarters of one. Small angles add; what cant turns about the muzzle is what the bore is raised by.
 TEST(SceneGuns, SightsAreTurnedHeldAndCanted) {
@@ -501,6 +518,8 @@ TEST(SceneDestruction, ErrorsNameTheirPlace) {
       {R"("guns": [{"ammunition": {}, "start": "-1 s"}])", "a time of zero or more"},
       {R"("guns": [{"ammunition": {}, "lifetime": "2 h"}])", "1 ms to 600 s"},
       {R"("guns": [{"ammunition": {}, "target": "drone"}])", "expected the name of a body"},
+      {R"("guns": [{"ammunition": {}, "pattern": [0, 0, 1]}])", "two angles a shot"},
+      {R"("guns": [{"ammunition": {}, "climb": true, "pattern": [0, 0]}])", "a pattern beside climb"},
       {R"("guns": [{"ammunition": {}, "sighted": true, "zero": "90 km"}])", "guns[0]"},
       {R"("guns": [{"ammunition": {}, "calibre": 5}])", "calibre"},
       {R"("penetration": [{"wall": []}])", "a list of 1 to 100 layers"},

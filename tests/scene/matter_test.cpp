@@ -177,6 +177,28 @@ TEST(SceneMatter, TheSameFileGivesTheSameBits) {
   EXPECT_EQ(a.state_hash(), b.state_hash());
 }
 
+// An emitter's mesh from a file is the one that is written out.
+TEST(SceneMatter, EmittersReadMeshFiles) {
+  const auto emits = [](const std::string& mesh) {
+    const scene::Resolver files = [](std::string_view path) -> scene::Result<std::string> {
+      if (path != "tetra.obj") return core::Error{"no such file"};
+      return std::string("v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    };
+    return scene::parse_scene(
+        R"({"particles": [{"name": "p", "emitters": [{"form": "mesh", "burst": 500, "along_normal": true, "speed": 1, )" +
+            mesh + "}]}]}",
+        "t", files);
+  };
+  SceneWorld file = scene::test::started(emits(R"("file": "tetra.obj")")),
+             inline_mesh = scene::test::started(
+                 emits(R"("vertices": [[0,0,0],[2,0,0],[0,2,0],[0,0,2]], "indices": [0,2,1, 0,1,3, 0,3,2, 1,2,3])"));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(file.step().ok() && inline_mesh.step().ok());
+  EXPECT_EQ(read(file, "particles.p.count"), 500);
+  EXPECT_EQ(file.state_hash(), inline_mesh.state_hash());
+  EXPECT_FALSE(emits(R"("file": "none.obj")").ok());
+  EXPECT_FALSE(emits(R"("file": "tetra.obj", "vertices": [])").ok());
+}
+
 TEST(SceneMatter, GroupsRepeatRopesWithNames) {
   SceneWorld world = start(R"({"bodies": [{"repeat": {"i": 3},
       "ropes": [{"name": "r{i}", "points": [["=i", 0, 0], ["=i", -1, 0]], "attachments": [{"node": 0}]}]}]})");

@@ -130,6 +130,8 @@ constexpr Field gun_fields[] = {
     {"lifetime", T::quantity, M::time, "a projectile flies no longer; 60 s unless given"},
     {"recoil", T::flag, M::plain, "its body takes the recoil; true unless given"},
     {"climb", T::flag, M::plain, "the mount's motion turns the bore from shot to shot"},
+    {"pattern", T::number_list, M::angle,
+     "instead of climb: how far each shot points beside the aim, to the right and up by turns; the last stays"},
     {"mount_mass", T::quantity, M::mass, "what moves back"},
     {"mount_inertia", T::quantity, M::inertia, "about the shoulder"},
     {"mount_bore_above_shoulder", T::quantity, M::length, "lever that lifts the muzzle"},

@@ -164,6 +164,19 @@ ballistics::Conditions conditions_at(math::Vec3d point, double gravity, int dime
   return conditions;
 }
 
+bool read_pattern(Reader& r, const Object& o, GunDef& gun) {
+  const std::vector<double> numbers = r.numbers(o, "pattern");
+  if (numbers.size() % 2 != 0 || numbers.size() > 20000)
+    return r.expected(*o.find("pattern"), o.path_of("pattern"),
+                      "two angles a shot, right and up, of 10000 shots at most"),
+           false;
+  if (!numbers.empty() && gun.climbs)
+    return r.fail(*o.find("pattern"), o.path_of("pattern"), "found a pattern beside climb, expected one of them"),
+           false;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) gun.pattern.push_back({numbers[i], numbers[i + 1]});
+  return !r.failed();
+}
+
 template <class D>
 void read_gun(DestructionPlace<D>& place, const Object& o) {
   Reader& r = place.reader;
@@ -179,6 +192,7 @@ void read_gun(DestructionPlace<D>& place, const Object& o) {
   gun.lifetime = r.number(o, "lifetime", gun.lifetime);
   gun.recoils = r.flag(o, "recoil", true);
   gun.climbs = r.flag(o, "climb", false);
+  if (o.has("pattern") && !read_pattern(r, o, gun)) return;
   gun.seed = std::uint64_t(r.integer(o, "seed", 1, 0, 0x7FFFFFFF));
   const bool sighted = r.flag(o, "sighted", false);
   if (o.has("sway") && !read_sway(r, o, gun)) return;

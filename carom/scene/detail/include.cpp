@@ -119,8 +119,10 @@ class PartReader {
         }
       }
     }
-    if (node.is_object() && node.find("file") != nullptr && node.find("type") != nullptr)
-      if (const core::Status read = read_mesh(node, from); !read) return read;
+    if (node.is_object() && node.find("file") != nullptr)
+      for (const char* kind : {"type", "form"})  // of a shape, of an emitter
+        if (const Node* of = node.find(kind); of != nullptr)
+          if (const core::Status read = read_mesh(node, of->text, from); !read) return read;
     if (node.is_object() && list == "guns")
       for (const char* key : {"ammunition", "sight"}) spell_out(node, key, "preset", std::string(key) + "/");
     if (node.is_object() && list == "effectors") {
@@ -233,12 +235,11 @@ class PartReader {
     return {};
   }
 
-  /// Puts vertices and indices of a mesh file into the shape that names it.
-  core::Status read_mesh(Node& shape, const std::string& from) {
+  /// Puts vertices and indices of a mesh file into the shape or emitter that names it.
+  core::Status read_mesh(Node& shape, const std::string& kind, const std::string& from) {
     const Node file = *shape.find("file");
-    const bool hull = shape.find("type")->text == "hull";
-    if (!hull && shape.find("type")->text != "mesh")
-      return error(file, "file", "only meshes and hulls are read from files");
+    const bool hull = kind == "hull";
+    if (!hull && kind != "mesh") return error(file, "file", "only meshes and hulls are read from files");
     if (shape.find("vertices") != nullptr || shape.find("points") != nullptr || shape.find("indices") != nullptr)
       return error(file, "file", "found a file beside vertices, points or indices, expected one of them");
     if (!file.is_text() || !is_inside(file.text))

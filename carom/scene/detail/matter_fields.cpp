@@ -193,6 +193,7 @@ constexpr Field emitter_fields[] = {
     {"size", T::vector, M::length, "half extents of a box"},
     {"radius", T::quantity, M::length, "of a disc or sphere; half the length of a segment"},
     {"surface_only", T::flag, M::plain, "of a disc, box or sphere: the rim or surface"},
+    {"file", T::text, M::plain, "an OBJ, STL or glTF file of a mesh, beside the scene", nullptr, {}, false, 3},
     {"vertices", T::point_list, M::length, "of a mesh", nullptr, {}, false, 3},
     {"indices", T::number_list, M::plain, "of a mesh, three a triangle", nullptr, {}, false, 3},
     {"position", T::vector, M::length},
