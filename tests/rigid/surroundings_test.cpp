@@ -7,8 +7,6 @@
 
 namespace surroundings_test {
 
-// --- input, snapshots -----------------------------------------------------------------------------------------------
-
 TEST(Surroundings3, RefusesBadInput) {
   World3 world;
   const auto message = [&](const EffectorDef<Dim3>& e) {

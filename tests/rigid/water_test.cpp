@@ -7,8 +7,6 @@
 
 namespace surroundings_test {
 
-// --- water ----------------------------------------------------------------------------------------------------------
-
 // A sphere let go under water speeds up by (m − m_w) g/(m + m_w/2): added mass (reference "mechanics", Lamb art. 92).
 TEST(AddedMass3, SlowsWhatStartsUnderWater) {
   const double radius = 0.2, volume = 4.0 / 3 * math::pi * radius * radius * radius;
