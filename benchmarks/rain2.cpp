@@ -33,7 +33,7 @@ constexpr Bone bones[11] = {
 };
 constexpr int first_shin = 4, second_shin = 6, first_forearm = 8, second_forearm = 10;
 
-class Rain final : public Scene<Dim2> {
+class Rain2 final : public Scene<Dim2> {
   static constexpr int rows = 5, columns = 40, group = 5;
   using Ragdoll = std::array<BodyId, 11>;
 
@@ -104,6 +104,6 @@ class Rain final : public Scene<Dim2> {
 
 }  // namespace
 
-std::unique_ptr<Scene<Dim2>> make_rain2() { return std::make_unique<Rain>(); }
+std::unique_ptr<Scene<Dim2>> make_rain2() { return std::make_unique<Rain2>(); }
 
 }  // namespace carom::bench

@@ -13,7 +13,7 @@ using math::Vec3f;
 Vec3f vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 Quatf rotation(const float (&q)[4]) { return math::normalize(Quatf{q[3], q[0], q[1], q[2]}); }
 
-class Rain final : public Scene<Dim3> {
+class Rain3 final : public Scene<Dim3> {
   static constexpr int rows = 10, columns = 10, group = 3;
   using Ragdoll = std::array<BodyId, 14>;
 
@@ -90,6 +90,6 @@ class Rain final : public Scene<Dim3> {
 
 }  // namespace
 
-std::unique_ptr<Scene<Dim3>> make_rain3() { return std::make_unique<Rain>(); }
+std::unique_ptr<Scene<Dim3>> make_rain3() { return std::make_unique<Rain3>(); }
 
 }  // namespace carom::bench

@@ -16,6 +16,7 @@ namespace carom::bench {
 template <class D>
 class Scene {
  public:
+  using Dimensions = D;
   virtual ~Scene() = default;
   virtual void define(rigid::WorldDef<D>&) {}  ///< the suite's settings are there already
   virtual void build(rigid::World<D>& world) = 0;
@@ -23,6 +24,10 @@ class Scene {
 };
 template <class D>
 using SceneMaker = std::unique_ptr<Scene<D>> (*)();
+template <class S>
+std::unique_ptr<Scene<typename S::Dimensions>> make() {
+  return std::make_unique<S>();
+}
 
 struct SceneInfo {
   const char* suite;

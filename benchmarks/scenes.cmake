@@ -5,3 +5,4 @@ add_library(carom_benchmark_scenes STATIC EXCLUDE_FROM_ALL ${folder}/recipe.cpp 
   ${folder}/ragdolls_jolt.cpp ${folder}/characters_jolt.cpp
   ${folder}/measure.cpp)
 target_link_libraries(carom_benchmark_scenes PUBLIC carom carom_flags)
+set_target_properties(carom_benchmark_scenes PROPERTIES UNITY_BUILD ${CAROM_UNITY} UNITY_BUILD_BATCH_SIZE ${CAROM_UNITY_BATCH})

@@ -150,11 +150,6 @@ class Washer final : public Scene<Dim3> {
   }
 };
 
-template <class S>
-std::unique_ptr<Scene<Dim3>> make() {
-  return std::make_unique<S>();
-}
-
 }  // namespace
 
 std::unique_ptr<Scene<Dim3>> make_rain3();  // rain3.cpp

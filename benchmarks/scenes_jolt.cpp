@@ -82,11 +82,6 @@ class LargeMesh final : public Scene<Dim3> {
   }
 };
 
-template <class S>
-std::unique_ptr<Scene<Dim3>> make() {
-  return std::make_unique<S>();
-}
-
 }  // namespace
 
 std::unique_ptr<Scene<Dim3>> make_characters();           // characters_jolt.cpp

@@ -358,10 +358,7 @@ static typename D::Vector way_of_middle(const WorldImplementation<D>& world, con
 
 template <class D>
 typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
-  typename D::Vector way = way_of_middle(world, shape);
-  const float most = 0.5f * shape.inner_extent, length_squared = math::length_squared(way);
-  if (world.shapes.bounce == Bounce::none && length_squared > most * most) way *= most / math::sqrt(length_squared);
-  return typename D::Position(way);
+  return typename D::Position(within_foresight(way_of_middle(world, shape), shape, world.shapes.bounce));
 }
 
 /// A bullet asks the pairs of its fat bounds what it meets, so they must hold how it turns as well.
@@ -389,15 +386,19 @@ static typename D::Bounds bounds_of_turn(const WorldImplementation<D>& world, co
 }
 
 template <class D>
-typename D::Position bounds_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+static typename D::Position bounds_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape,
+                                         bool quick_bullet) {
   using P = typename D::Position;
-  if (is_quick_bullet(world, shape.body))
-    return P(world.bodies.solver[std::size_t(shape.body)].linear_velocity * world.last_dt);
+  if (quick_bullet) return P(world.bodies.solver[std::size_t(shape.body)].linear_velocity * world.last_dt);
   if (!has_several_shapes(world, shape.body)) return way_ahead(world, shape);
   // A body of several shapes would have all of them leave their bounds in every step of a fall. What is long has few
   // others beside it.
   const double steps = world.bodies.motion[std::size_t(shape.body)].slender != 0 ? 5 : 3;
   return P(way_of_middle(world, shape)) * steps;
+}
+template <class D>
+typename D::Position bounds_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
+  return bounds_ahead(world, shape, is_quick_bullet(world, shape.body));
 }
 
 template <class D>
@@ -416,7 +417,7 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   const bool bullet = is_quick_bullet(world, shape.body);
   if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
-  const P ahead = bounds_ahead(world, shape);
+  const P ahead = bounds_ahead(world, shape, bullet);
   return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
 }
 

@@ -175,17 +175,17 @@ struct ContactKernels {
 };
 
 namespace contact_kernels_baseline {
-ContactKernels<Dim2> kernels2();
-ContactKernels<Dim3> kernels3();
+ContactKernels<Dim2> kernels(Dim2);
+ContactKernels<Dim3> kernels(Dim3);
 }  // namespace contact_kernels_baseline
 #if defined(__x86_64__)
 namespace contact_kernels_avx2 {
-ContactKernels<Dim2> kernels2();
-ContactKernels<Dim3> kernels3();
+ContactKernels<Dim2> kernels(Dim2);
+ContactKernels<Dim3> kernels(Dim3);
 }  // namespace contact_kernels_avx2
 namespace contact_kernels_avx512 {
-ContactKernels<Dim2> kernels2();
-ContactKernels<Dim3> kernels3();
+ContactKernels<Dim2> kernels(Dim2);
+ContactKernels<Dim3> kernels(Dim3);
 }  // namespace contact_kernels_avx512
 #endif
 

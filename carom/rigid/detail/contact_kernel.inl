@@ -178,7 +178,7 @@ std::uint32_t strikes(const SolverBody<D>* bodies, const void* block) {
   return bitmask(apart & (parting < F::splat(-least_blow)));
 }
 
-ContactKernels<Dim2> kernels2() {
+ContactKernels<Dim2> kernels(Dim2) {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim2> k;
   k.width = W;
@@ -198,7 +198,7 @@ ContactKernels<Dim2> kernels2() {
   k.integrate_positions = integrate_positions2<W>;
   return k;
 }
-ContactKernels<Dim3> kernels3() {
+ContactKernels<Dim3> kernels(Dim3) {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim3> k;
   k.width = W;

@@ -171,6 +171,4 @@ void fly(void* lanes, float h, int substeps, float max_turn) {
   (turn.u.z * scale).store_aligned(c.so_far[3]);
 }
 
-FlightKernel flight_kernel() { return fly<CAROM_PIN_WIDTH / 2>; }
-
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -22,16 +22,4 @@ struct alignas(64) FlightLanes {
 /// max_turn (rad) in a substep are slowed to it.
 using FlightKernel = void (*)(void* lanes, float h, int substeps, float max_turn);
 
-namespace pin_kernels_baseline {
-FlightKernel flight_kernel();
-}
-#if defined(__x86_64__)
-namespace pin_kernels_avx2 {
-FlightKernel flight_kernel();
-}
-namespace pin_kernels_avx512 {
-FlightKernel flight_kernel();
-}
-#endif
-
 }  // namespace carom::rigid::detail

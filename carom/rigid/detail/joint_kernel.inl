@@ -275,13 +275,4 @@ void relax(SolverBody<D>* bodies, void* blocks, int begin, int end) {
   }
 }
 
-PinKernels<Dim2> kernels2() {
-  constexpr int W = CAROM_PIN_WIDTH;
-  return {W, begin<Dim2, W>, warm_start<Dim2, W>, solve<Dim2, W>, relax<Dim2, W>};
-}
-PinKernels<Dim3> kernels3() {
-  constexpr int W = CAROM_PIN_WIDTH;
-  return {W, begin<Dim3, W>, warm_start<Dim3, W>, solve<Dim3, W>, relax<Dim3, W>};
-}
-
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -40,7 +40,6 @@ struct PinResponse {
 /// The kernels of one width. Blocks [begin, end).
 template <class D>
 struct PinKernels {
-  int width = 4;
   /// Of a block whose arms are in the frames of their bodies: turns them (by BodyTurns), and what follows from that.
   void (*begin)(void* block, const void* turns) = nullptr;
   void (*warm_start)(SolverBody<D>* bodies, void* blocks, int begin, int end) = nullptr;
@@ -48,20 +47,5 @@ struct PinKernels {
   /// Brings the arms to where the bodies are now, and removes the velocity that is left.
   void (*relax)(SolverBody<D>* bodies, void* blocks, int begin, int end) = nullptr;
 };
-
-namespace pin_kernels_baseline {
-PinKernels<Dim2> kernels2();
-PinKernels<Dim3> kernels3();
-}  // namespace pin_kernels_baseline
-#if defined(__x86_64__)
-namespace pin_kernels_avx2 {
-PinKernels<Dim2> kernels2();
-PinKernels<Dim3> kernels3();
-}  // namespace pin_kernels_avx2
-namespace pin_kernels_avx512 {
-PinKernels<Dim2> kernels2();
-PinKernels<Dim3> kernels3();
-}  // namespace pin_kernels_avx512
-#endif
 
 }  // namespace carom::rigid::detail

@@ -537,13 +537,4 @@ void relax_limbs(SolverBody<D>* bodies, void* blocks, int begin, int end, LimbPa
   }
 }
 
-LimbKernels<Dim2> limb_kernels2() {
-  constexpr int W = CAROM_PIN_WIDTH;
-  return {begin_limbs<Dim2, W>, warm_start_limbs<Dim2, W>, solve_limbs<Dim2, W>, relax_limbs<Dim2, W>};
-}
-LimbKernels<Dim3> limb_kernels3() {
-  constexpr int W = CAROM_PIN_WIDTH;
-  return {begin_limbs<Dim3, W>, warm_start_limbs<Dim3, W>, solve_limbs<Dim3, W>, relax_limbs<Dim3, W>};
-}
-
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -106,19 +106,4 @@ struct LimbKernels {
   void (*relax)(SolverBody<D>* bodies, void* blocks, int begin, int end, LimbPass pass) = nullptr;  ///< places first
 };
 
-namespace pin_kernels_baseline {
-LimbKernels<Dim2> limb_kernels2();
-LimbKernels<Dim3> limb_kernels3();
-}  // namespace pin_kernels_baseline
-#if defined(__x86_64__)
-namespace pin_kernels_avx2 {
-LimbKernels<Dim2> limb_kernels2();
-LimbKernels<Dim3> limb_kernels3();
-}  // namespace pin_kernels_avx2
-namespace pin_kernels_avx512 {
-LimbKernels<Dim2> limb_kernels2();
-LimbKernels<Dim3> limb_kernels3();
-}  // namespace pin_kernels_avx512
-#endif
-
 }  // namespace carom::rigid::detail

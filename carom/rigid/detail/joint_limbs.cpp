@@ -169,33 +169,9 @@ std::uint32_t limb_parts(const WorldImplementation<D>& world, std::int32_t joint
 }
 
 template <class D>
-LimbKernels<D> limb_kernels_of(int width) {
-#if defined(__x86_64__)
-  if (width == 16) {
-    if constexpr (D::dimension == 2)
-      return pin_kernels_avx512::limb_kernels2();
-    else
-      return pin_kernels_avx512::limb_kernels3();
-  }
-  if (width == 8) {
-    if constexpr (D::dimension == 2)
-      return pin_kernels_avx2::limb_kernels2();
-    else
-      return pin_kernels_avx2::limb_kernels3();
-  }
-#else
-  (void)width;
-#endif
-  if constexpr (D::dimension == 2)
-    return pin_kernels_baseline::limb_kernels2();
-  else
-    return pin_kernels_baseline::limb_kernels3();
-}
-
-template <class D>
 void prepare_limbs(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
-  for_width(joints.pin_kernels.width, [&]<int W>() {
+  for_width(context.world.kernels.width, [&]<int W>() {
     const int count = int(joints.limbs.size()) / W;
     if (count == 0) return;
     const auto blocks = context.arena.template allocate<LimbLanes<D, W>>(std::size_t(count));
@@ -209,7 +185,7 @@ void prepare_limbs(StepContext<D>& context) {
         for (int lane = 0; lane < W; ++lane)
           fill_lane(block, raw, lane, joints.limbs[std::size_t(b) * W + std::size_t(lane)].joint, context.world,
                     context.h, same);
-        joints.limb_kernels.begin(context.bodies, &block, &raw);
+        context.world.kernels.limbs.begin(context.bodies, &block, &raw);
         if (block.parts & part_twist) stiffen_springs(block, raw, context.world, context.h);
       }
     });
@@ -219,7 +195,7 @@ void prepare_limbs(StepContext<D>& context) {
 template <class D>
 void store_limbs(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
-  for_width(joints.pin_kernels.width, [&]<int W>() {
+  for_width(context.world.kernels.width, [&]<int W>() {
     const auto* const blocks = static_cast<const LimbLanes<D, W>*>(joints.limb_blocks);
     context.scheduler.parallel_for(int(joints.limbs.size()) / W, 4, [&](int begin, int end, int) {
       for (int b = begin; b < end; ++b)
@@ -239,8 +215,6 @@ void store_limbs(StepContext<D>& context) {
 
 template std::uint32_t limb_parts(const WorldImplementation<Dim2>&, std::int32_t);
 template std::uint32_t limb_parts(const WorldImplementation<Dim3>&, std::int32_t);
-template LimbKernels<Dim2> limb_kernels_of(int);
-template LimbKernels<Dim3> limb_kernels_of(int);
 template void prepare_limbs(StepContext<Dim2>&);
 template void prepare_limbs(StepContext<Dim3>&);
 template void store_limbs(StepContext<Dim2>&);

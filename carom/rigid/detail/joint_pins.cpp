@@ -9,33 +9,9 @@ bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint) {
 }
 
 template <class D>
-PinKernels<D> pin_kernels_of(int width) {
-#if defined(__x86_64__)
-  if (width == 16) {
-    if constexpr (D::dimension == 2)
-      return pin_kernels_avx512::kernels2();
-    else
-      return pin_kernels_avx512::kernels3();
-  }
-  if (width == 8) {
-    if constexpr (D::dimension == 2)
-      return pin_kernels_avx2::kernels2();
-    else
-      return pin_kernels_avx2::kernels3();
-  }
-#else
-  (void)width;
-#endif
-  if constexpr (D::dimension == 2)
-    return pin_kernels_baseline::kernels2();
-  else
-    return pin_kernels_baseline::kernels3();
-}
-
-template <class D>
 void prepare_pins(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
-  for_width(joints.pin_kernels.width, [&]<int W>() {
+  for_width(context.world.kernels.width, [&]<int W>() {
     const int count = int(joints.pins.size()) / W;
     if (count == 0) return;
     const auto blocks = context.arena.template allocate<PinLanes<D, W>>(std::size_t(count));
@@ -47,7 +23,7 @@ void prepare_pins(StepContext<D>& context) {
         for (int lane = 0; lane < W; ++lane)
           put_joint(block, turns, block.inverse_inertia_a, block.inverse_inertia_b, lane,
                     joints.pins[std::size_t(b) * W + std::size_t(lane)], context.world);
-        joints.pin_kernels.begin(&block, &turns);
+        context.world.kernels.pins.begin(&block, &turns);
       }
     });
   });
@@ -56,7 +32,7 @@ void prepare_pins(StepContext<D>& context) {
 template <class D>
 void store_pins(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
-  for_width(joints.pin_kernels.width, [&]<int W>() {
+  for_width(context.world.kernels.width, [&]<int W>() {
     const auto* const blocks = static_cast<const PinLanes<D, W>*>(joints.pin_blocks);
     context.scheduler.parallel_for(int(joints.pins.size()) / W, 8, [&](int begin, int end, int) {
       for (int b = begin; b < end; ++b) {
@@ -74,8 +50,6 @@ void store_pins(StepContext<D>& context) {
 
 template bool goes_wide(const WorldImplementation<Dim2>&, std::int32_t);
 template bool goes_wide(const WorldImplementation<Dim3>&, std::int32_t);
-template PinKernels<Dim2> pin_kernels_of(int);
-template PinKernels<Dim3> pin_kernels_of(int);
 template void prepare_pins(StepContext<Dim2>&);
 template void prepare_pins(StepContext<Dim3>&);
 template void store_pins(StepContext<Dim2>&);

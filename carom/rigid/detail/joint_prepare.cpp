@@ -415,9 +415,7 @@ void prepare_joints(StepContext<D>& context) {
   joints.pin_begin.clear();
   joints.limbs.clear();
   joints.limb_begin.clear();
-  joints.pin_kernels = pin_kernels_of<D>(world.kernels.width);
-  joints.limb_kernels = limb_kernels_of<D>(world.kernels.width);
-  const std::size_t width = std::size_t(joints.pin_kernels.width);
+  const std::size_t width = std::size_t(world.kernels.width);
   std::uint32_t units = 0;
   for (const GraphColor& color : world.graph.colors) {
     const bool overflows = &color == &world.graph.colors[overflow_color];

@@ -130,8 +130,6 @@ bool holds_axes(const JointData<D>& data);
 template <class D>
 bool goes_wide(const WorldImplementation<D>& world, std::int32_t joint);
 template <class D>
-PinKernels<D> pin_kernels_of(int width);
-template <class D>
 void prepare_pins(StepContext<D>& context);
 template <class D>
 void store_pins(StepContext<D>& context);
@@ -142,8 +140,6 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
 // joint_limbs.cpp: likewise for joints of figures.
 template <class D>
 std::uint32_t limb_parts(const WorldImplementation<D>& world, std::int32_t joint);  ///< 0: it is none
-template <class D>
-LimbKernels<D> limb_kernels_of(int width);
 template <class D>
 void prepare_limbs(StepContext<D>& context);
 template <class D>

@@ -104,15 +104,14 @@ int joint_units(const WorldImplementation<D>& world, int color) {
 template <class D>
 void warm_start_joints(StepContext<D>& context, int color, int begin, int end) {
   const JointStore<D>& joints = context.world.joints;
+  const LaneKernels<D>& kernels = context.world.kernels;
   const JointUnits units(joints, color);
   for_each_record<true>(context, units, begin, end, [](auto& pair, auto& block) { block.warm_start(pair); });
   const int from = units.record_units();
-  for_blocks(begin, end, from, units.limbs, units.first_limb, [&](int first, int last) {
-    joints.limb_kernels.warm_start(context.bodies, joints.limb_blocks, first, last);
-  });
-  for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin, [&](int first, int last) {
-    joints.pin_kernels.warm_start(context.bodies, joints.pin_blocks, first, last);
-  });
+  for_blocks(begin, end, from, units.limbs, units.first_limb,
+             [&](int first, int last) { kernels.limbs.warm_start(context.bodies, joints.limb_blocks, first, last); });
+  for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin,
+             [&](int first, int last) { kernels.pins.warm_start(context.bodies, joints.pin_blocks, first, last); });
 }
 
 template <class D>
@@ -121,20 +120,20 @@ void solve_joints(StepContext<D>& context, int color, bool use_bias, int begin, 
   const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
   const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
   const JointStore<D>& joints = context.world.joints;
+  const LaneKernels<D>& kernels = context.world.kernels;
   const JointUnits units(joints, color);
   for_each_record<false>(context, units, begin, end, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
   const int from = units.record_units();
   const LimbPass limb_pass{biased.velocity, biased.position, biased.memory, context.inverse_h};
   for_blocks(begin, end, from, units.limbs, units.first_limb, [&](int first, int last) {
-    (use_bias ? joints.limb_kernels.solve : joints.limb_kernels.relax)(context.bodies, joints.limb_blocks, first, last,
-                                                                       limb_pass);
+    (use_bias ? kernels.limbs.solve : kernels.limbs.relax)(context.bodies, joints.limb_blocks, first, last, limb_pass);
   });
   for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin, [&](int first, int last) {
     if (use_bias)
-      joints.pin_kernels.solve(context.bodies, joints.pin_blocks, first, last,
-                               {biased.velocity, biased.position, biased.memory});
+      kernels.pins.solve(context.bodies, joints.pin_blocks, first, last,
+                         {biased.velocity, biased.position, biased.memory});
     else
-      joints.pin_kernels.relax(context.bodies, joints.pin_blocks, first, last);
+      kernels.pins.relax(context.bodies, joints.pin_blocks, first, last);
   });
 }
 

@@ -9,8 +9,6 @@
 
 #include "carom/core/pool.h"
 #include "carom/rigid/detail/joint_header.h"
-#include "carom/rigid/detail/joint_lanes.h"
-#include "carom/rigid/detail/joint_limb_lanes.h"
 #include "carom/rigid/detail/joint_tree.h"
 #include "carom/rigid/state.h"
 
@@ -157,7 +155,6 @@ struct JointStore {
   std::vector<std::int32_t> pins;       ///< slots, each colour filled up with `none` to whole blocks
   std::vector<std::int32_t> pin_begin;  ///< block at which each colour begins, one more at the end
   void* pin_blocks = nullptr;           ///< PinLanes, in the arena of the step
-  PinKernels<D> pin_kernels{};
   // Limbs likewise (joint_limb_lanes.h), in each colour those with the same parts together.
   struct Limb {
     std::uint32_t parts = 0;
@@ -169,7 +166,6 @@ struct JointStore {
   std::vector<Limb> limbs;
   std::vector<std::int32_t> limb_begin;
   void* limb_blocks = nullptr;  ///< LimbLanes
-  LimbKernels<D> limb_kernels{};
 
   explicit JointStore(std::uint16_t world) : slots(world) {}
   int count() const { return slots.size() - internal_count; }

@@ -273,9 +273,4 @@ std::uint32_t fly_bodies(SolverBody<Dim3>* bodies, const BodyDrive<Dim3>* drives
   return left;
 }
 
-MoveKernels move_kernels() {
-  constexpr int W = CAROM_PIN_WIDTH;
-  return {accelerate_bodies<W>, move_bodies<W>, turn_bodies<W>, fly_bodies<W>};
-}
-
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -34,16 +34,4 @@ struct MoveKernels {
                        float max_speed) = nullptr;
 };
 
-namespace pin_kernels_baseline {
-MoveKernels move_kernels();
-}
-#if defined(__x86_64__)
-namespace pin_kernels_avx2 {
-MoveKernels move_kernels();
-}
-namespace pin_kernels_avx512 {
-MoveKernels move_kernels();
-}
-#endif
-
 }  // namespace carom::rigid::detail

@@ -15,18 +15,6 @@ constexpr float settling_speed = 3;  ///< of its sleep speed, below which a body
 constexpr float settling_resistance =
     0.014f;  ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
 
-StepEndKernels end_kernels_of(int width) {
-#if defined(__x86_64__)
-  if (width == 16) return pin_kernels_avx512::step_end_kernels();
-  if (width == 8) return pin_kernels_avx2::step_end_kernels();
-#else
-  (void)width;
-#endif
-  return pin_kernels_baseline::step_end_kernels();
-}
-StepEndKernel<Dim2> kernel_for(Dim2, int width) { return end_kernels_of(width).plane; }
-StepEndKernel<Dim3> kernel_for(Dim3, int width) { return end_kernels_of(width).space; }
-
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
 Rot2f turn_of(Dim2, const BodyEnds& ends, int lane) { return {ends.turn[0][lane], ends.turn[1][lane]}; }
@@ -79,7 +67,7 @@ class BoxesOfHulls {
     center_ = turn_ * world.bodies.motion[std::size_t(body)].local_center;
     way_ = s.linear_velocity * world.last_dt;
     spin_ = s.angular_velocity * world.last_dt;
-    bounces_ = world.shapes.bounce != Bounce::none;
+    bounce_ = world.shapes.bounce;
   }
   bool know(const ShapeRecord<Dim3>& shape) const {
     return several_ && shape.at_origin && shape.geometry.type == geometry::ShapeType3::hull;
@@ -94,14 +82,13 @@ class BoxesOfHulls {
   }
   /// As the function of that name.
   Vec3d way_ahead(const ShapeRecord<Dim3>& shape) const {
-    Vec3f way = way_ + cross(spin_, turn_ * shape.geometry.hull->bounds.center() - center_);
-    const float most = 0.5f * shape.inner_extent, length_squared = math::length_squared(way);
-    if (!bounces_ && length_squared > most * most) way *= most / math::sqrt(length_squared);
-    return Vec3d(way);
+    const Vec3f way = way_ + cross(spin_, turn_ * shape.geometry.hull->bounds.center() - center_);
+    return Vec3d(within_foresight(way, shape, bounce_));
   }
 
  private:
-  bool several_, bounces_ = false;
+  bool several_;
+  Bounce bounce_ = Bounce::unknown;
   Vec3d position_{};
   Vec3f center_{}, way_{}, spin_{};
   Mat3f turn_{};
@@ -249,7 +236,6 @@ void finalize_bodies(StepContext<D>& context) {
   scratch.swept.resize(count);
   const float gravity = math::length(world.definition.gravity);
   const int width = world.kernels.width;
-  const StepEndKernel<D> bring_to_end = kernel_for(D{}, width);
   context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int) {
     for (int first = begin; first < end; first += width) {
       const int lanes = min(width, end - first);
@@ -266,7 +252,8 @@ void finalize_bodies(StepContext<D>& context) {
         starts[k] = {world.bodies.pose[body].rotation, world.bodies.motion[body].center, {}, 1};
       }
       BodyEnds ends;
-      bring_to_end(context.bodies, world.bodies.pose.data(), world.bodies.motion.data(), slots, lanes, terms, ends);
+      world.kernels.bring_to_end(context.bodies, world.bodies.pose.data(), world.bodies.motion.data(), slots, lanes,
+                                 terms, ends);
       for (int k = 0; k < lanes; ++k) {
         if ((ends.broken >> k & 1) != 0) {
           scratch.loads[std::size_t(slots[k])] = {};

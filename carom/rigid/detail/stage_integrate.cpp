@@ -8,30 +8,11 @@
 namespace carom::rigid::detail {
 namespace {
 
-MoveKernels move_kernels_of(int width) {
-#if defined(__x86_64__)
-  if (width == 16) return pin_kernels_avx512::move_kernels();
-  if (width == 8) return pin_kernels_avx2::move_kernels();
-#else
-  (void)width;
-#endif
-  return pin_kernels_baseline::move_kernels();
-}
-FlightKernel flight_kernel_of(int width) {
-#if defined(__x86_64__)
-  if (width == 16) return pin_kernels_avx512::flight_kernel();
-  if (width == 8) return pin_kernels_avx2::flight_kernel();
-#else
-  (void)width;
-#endif
-  return pin_kernels_baseline::flight_kernel();
-}
-
 /// Gathers bodies of space that constraints push about, and turns as many as there are lanes at once.
 template <int W>
 class PushedBodies {
  public:
-  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(move_kernels_of(W).turn) {}
+  explicit PushedBodies(StepContext<Dim3>& context) : context_(context), turn_(context.world.kernels.move.turn) {}
   PushedBodies(const PushedBodies&) = delete;
   ~PushedBodies() {
     if (count_ > 0) turn();
@@ -67,7 +48,7 @@ template <int W>
 class FreeBodies {
  public:
   FreeBodies(StepContext<Dim3>& context, int substeps)
-      : context_(context), fly_(flight_kernel_of(W)), substeps_(substeps) {
+      : context_(context), fly_(context.world.kernels.turn_free), substeps_(substeps) {
     clear();
   }
   FreeBodies(const FreeBodies&) = delete;
@@ -280,7 +261,7 @@ void for_places(std::uint32_t which, int first, F&& f) {
 }
 template <int W>
 void move_bodies(StepContext<Dim3>& context, int begin, int end) {
-  const MoveKernels kernels = move_kernels_of(W);
+  const MoveKernels& kernels = context.world.kernels.move;
   PushedBodies<W> pushed(context);
   FreeBodies<W> free(context, 1);
   for (int first = begin; first < end; first += W) {
@@ -305,7 +286,7 @@ void move_bodies(StepContext<Dim3>& context, int begin, int end) {
 /// All substeps of the bodies that nothing touches.
 template <int W>
 void fly_bodies(StepContext<Dim3>& context, int begin, int end) {
-  const MoveKernels kernels = move_kernels_of(W);
+  const MoveKernels& kernels = context.world.kernels.move;
   FreeBodies<W> free(context, context.substeps);
   for (int first = begin; first < end; first += W)
     for_places(kernels.fly(context.bodies, context.drives + first, min(W, end - first), context.h, context.substeps,
@@ -327,7 +308,7 @@ void integrate_velocities(StepContext<D>& context, int begin, int end, bool carr
   const float max_speed = context.world.definition.maximum_linear_speed;
   if constexpr (D::dimension == 3) {
     const int width = context.world.kernels.width;
-    const MoveKernels kernels = move_kernels_of(width);
+    const MoveKernels& kernels = context.world.kernels.move;
     for (int first = begin; first < end; first += width)
       for_places(kernels.accelerate(context.bodies, context.drives + first, context.flights + first,
                                     min(width, end - first), context.h, max_speed, carry_on),

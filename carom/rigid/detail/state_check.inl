@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "carom/rigid/detail/stages.h"
 #include "carom/rigid/detail/world_effectors.inl"
 #include "carom/rigid/detail/world_joints.inl"
 #include "carom/rigid/detail/world_shapes.inl"

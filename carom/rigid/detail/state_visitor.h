@@ -56,8 +56,8 @@ template <class Joints, class Visit>
 void visit_joints(Joints& store, Visit& visit) {
   auto& [slots, headers, room, small, large, free_small, free_large, births, internal_count, breakable_count,
          knot_points, knot_tangents, knot_arcs, order, offset, color_begin, records, trees, pins, pin_begin, pin_blocks,
-         pin_kernels, limbs, limb_begin, limb_blocks, limb_kernels] = store;
-  (void)pin_blocks, (void)pin_kernels, (void)limb_blocks, (void)limb_kernels;
+         limbs, limb_begin, limb_blocks] = store;
+  (void)pin_blocks, (void)limb_blocks;
   visit_slots(slots, visit);
   visit.state(headers);
   visit.state(room);

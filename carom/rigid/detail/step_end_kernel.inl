@@ -253,10 +253,4 @@ void end_bodies(SolverBody<Dim3>* bodies, Pose3* poses, BodyMotion<Dim3>* motion
           {i[0][k], i[1][k], i[2][k]}, {i[1][k], i[3][k], i[4][k]}, {i[2][k], i[4][k], i[5][k]}};
 }
 
-StepEndKernels step_end_kernels() {
-  constexpr int W = CAROM_PIN_WIDTH;
-  static_assert(W <= BodyEnds::most);
-  return {end_bodies<W>, end_bodies<W>};
-}
-
 }  // namespace carom::rigid::detail::CAROM_PIN_NAMESPACE

@@ -33,10 +33,6 @@ struct StepEndTerms {
 template <class D>
 using StepEndKernel = void (*)(SolverBody<D>* bodies, typename D::Pose* poses, BodyMotion<D>* motions,
                                const std::int32_t* slots, int count, const StepEndTerms& terms, BodyEnds& ends);
-struct StepEndKernels {
-  StepEndKernel<Dim2> plane = nullptr;
-  StepEndKernel<Dim3> space = nullptr;
-};
 
 /// m/s, rad/s or of a unit quaternion: less than that is the rounding of bodies that turn about one axis. Products of
 /// it are too small for floats to be fast with.
@@ -44,17 +40,5 @@ inline constexpr float motion_trace = 1e-15f;
 inline constexpr float small_turn = 0.2f;  ///< rad: up to it chords serve for arcs
 inline constexpr float quick_share =
     0.25f;  ///< of a body's half thickness in a step: then bounds hold the next one too
-
-namespace pin_kernels_baseline {
-StepEndKernels step_end_kernels();
-}
-#if defined(__x86_64__)
-namespace pin_kernels_avx2 {
-StepEndKernels step_end_kernels();
-}
-namespace pin_kernels_avx512 {
-StepEndKernels step_end_kernels();
-}
-#endif
 
 }  // namespace carom::rigid::detail

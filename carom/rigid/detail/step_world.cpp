@@ -32,30 +32,6 @@ class Stopwatch {
   std::int64_t start_ = core::Profiler::now(), last_ = start_;
 };
 
-template <class D>
-ContactKernels<D> kernels_of(math::InstructionSet set) {
-#if defined(__x86_64__)
-  if (set == math::InstructionSet::avx512) {
-    if constexpr (D::dimension == 2)
-      return contact_kernels_avx512::kernels2();
-    else
-      return contact_kernels_avx512::kernels3();
-  }
-  if (set == math::InstructionSet::avx2) {
-    if constexpr (D::dimension == 2)
-      return contact_kernels_avx2::kernels2();
-    else
-      return contact_kernels_avx2::kernels3();
-  }
-#else
-  (void)set;
-#endif
-  if constexpr (D::dimension == 2)
-    return contact_kernels_baseline::kernels2();
-  else
-    return contact_kernels_baseline::kernels3();
-}
-
 /// Tells handles of different worlds apart. The only thing that worlds share; no result depends on it.
 std::uint16_t next_world_number() {
   static std::atomic<std::uint32_t> last{0};

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "carom/core/hash.h"
-#include "carom/rigid/detail/contact_block.h"
 #include "carom/rigid/detail/contact_store.h"
 #include "carom/rigid/detail/effector_store.h"
 #include "carom/rigid/detail/joint_store.h"
+#include "carom/rigid/detail/kernels.h"
 #include "carom/rigid/detail/pair_set.h"
 #include "carom/rigid/detail/query_trees.h"
 #include "carom/rigid/detail/shape_store.h"
@@ -46,7 +46,7 @@ struct WorldImplementation {
   core::TaskScheduler* scheduler = nullptr;
   core::Arena arena;
   StepScratch<D> scratch;
-  ContactKernels<D> kernels;
+  Kernels<D> kernels;
 
   int hit_event_shapes = 0;  ///< shapes that want hit events
   std::uint64_t step_count = 0, births = 0;

@@ -1,0 +1,52 @@
+// All that is compiled once for each instruction set, as one table: a world chooses it when it is made.
+#pragma once
+
+#include "carom/math/cpu.h"
+#include "carom/rigid/detail/contact_block.h"
+#include "carom/rigid/detail/flight_lanes.h"
+#include "carom/rigid/detail/joint_lanes.h"
+#include "carom/rigid/detail/joint_limb_lanes.h"
+#include "carom/rigid/detail/move_lanes.h"
+#include "carom/rigid/detail/step_end_lanes.h"
+
+namespace carom::rigid::detail {
+
+/// The kernels of joints and bodies (joint_solver_*.cpp).
+template <class D>
+struct LaneKernels {
+  PinKernels<D> pins;
+  LimbKernels<D> limbs;
+  StepEndKernel<D> bring_to_end = nullptr;
+  MoveKernels move;                  ///< in space; the plane's are among ContactKernels
+  FlightKernel turn_free = nullptr;  ///< in space
+};
+
+template <class D>
+struct Kernels : ContactKernels<D>, LaneKernels<D> {};
+
+namespace pin_kernels_baseline {
+LaneKernels<Dim2> kernels(Dim2);
+LaneKernels<Dim3> kernels(Dim3);
+}  // namespace pin_kernels_baseline
+#if defined(__x86_64__)
+namespace pin_kernels_avx2 {
+LaneKernels<Dim2> kernels(Dim2);
+LaneKernels<Dim3> kernels(Dim3);
+}  // namespace pin_kernels_avx2
+namespace pin_kernels_avx512 {
+LaneKernels<Dim2> kernels(Dim2);
+LaneKernels<Dim3> kernels(Dim3);
+}  // namespace pin_kernels_avx512
+#endif
+
+template <class D>
+Kernels<D> kernels_of([[maybe_unused]] math::InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == math::InstructionSet::avx512)
+    return {contact_kernels_avx512::kernels(D{}), pin_kernels_avx512::kernels(D{})};
+  if (set == math::InstructionSet::avx2) return {contact_kernels_avx2::kernels(D{}), pin_kernels_avx2::kernels(D{})};
+#endif
+  return {contact_kernels_baseline::kernels(D{}), pin_kernels_baseline::kernels(D{})};
+}
+
+}  // namespace carom::rigid::detail
