@@ -117,6 +117,17 @@ TEST(ModelsBar, TakingAim) {
   EXPECT_LT(fastest(200, [&] { (void)aim(shot, air, shooter, moving, {.high_arc = false}).value().low.value(); }),
             2 * 20e-6);
   EXPECT_LT(fastest(200, [&] { EXPECT_FALSE(aim(shot, air, shooter, {{2000, 0, 0}, {}, {}}).value()); }), 2 * 20e-6);
+  // Both arcs, as much for each: of a bullet in the wind, and of a mortar bomb.
+  const Conditions windy{.wind = environment::WindColumn(
+                             environment::Wind{.velocity = {6, 0, 3}, .profile = environment::WindProfile::power})};
+  const auto both = [&](const Projectile& projectile, double speed, Vec3d target) {
+    return fastest(200, [&] {
+      const auto aims = aim(projectile, windy, {.muzzle_speed = speed, .muzzle = {0, 2, 0}}, {target, {}, {}}).value();
+      EXPECT_TRUE(aims.low && aims.high);
+    });
+  };
+  EXPECT_LT(both(projectile_from_coefficient(DragFunction::g7, .3), 400, {900, 30, 200}), 2 * 2 * 20e-6);
+  EXPECT_LT(both(projectile_from_size(DragCurve(.14), 13.585, .11956), 250, {3500, 50, 300}), 2 * 2 * 20e-6);
 }
 
 TEST(ModelsBar, CellsAndPieces) {
