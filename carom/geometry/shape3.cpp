@@ -4,12 +4,12 @@
 #include <limits>
 
 #include "carom/geometry/compound.h"
+#include "carom/geometry/detail/corner_lanes.h"
 #include "carom/geometry/detail/text.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/triangle_mesh.h"
 #include "carom/geometry/voxels.h"
-#include "carom/math/simd.h"
 
 namespace carom::geometry {
 
@@ -66,18 +66,11 @@ Bounds3f bounds_of_plane(const Plane& plane, const Transform3f& t) {
 }
 
 Bounds3f bounds_of_hull(const Hull& hull, const Transform3f& t) {
-  using Four = math::WideFloat<4>;
-  // The rows of the rotation in three of four lanes: the sums of a vertex's three products, side by side.
   const Mat3f r = to_matrix(t.q);
-  const Four x{Four::Vector{r.cx.x, r.cx.y, r.cx.z, 0}}, y{Four::Vector{r.cy.x, r.cy.y, r.cy.z, 0}},
-      z{Four::Vector{r.cz.x, r.cz.y, r.cz.z, 0}};
-  Four least = Four::splat(3.4e38f), most = -least;
-  for (const Vec3f& v : hull.vertices) {
-    const Four at = x * Four::splat(v.x) + y * Four::splat(v.y) + z * Four::splat(v.z);
-    least = min(least, at), most = max(most, at);
-  }
-  const Vec3f low{least[0], least[1], least[2]}, high{most[0], most[1], most[2]};
-  return grow(Bounds3f{low + t.p, high + t.p}, hull.radius);
+  const float rows[3][3] = {{r.cx.x, r.cy.x, r.cz.x}, {r.cx.y, r.cy.y, r.cz.y}, {r.cx.z, r.cy.z, r.cz.z}};
+  float low[3], high[3];
+  detail::corner_kernels().extremes(hull.vertex_lanes.data(), int(hull.vertex_lanes.size() / 12), rows, low, high);
+  return grow(Bounds3f{Vec3f{low[0], low[1], low[2]} + t.p, Vec3f{high[0], high[1], high[2]} + t.p}, hull.radius);
 }
 
 Bounds3f bounds_of_compound(const Compound& compound, const Transform3f& t) {

@@ -78,6 +78,7 @@ TEST(Chapter19, BowlingHook) {
   EXPECT_GE(2 * ball.radius / .0254, 8.5);
   EXPECT_LE(2 * ball.radius / .0254, 8.595);
   EXPECT_LE(ball.mass / .45359237, 16);
+  for (const Lane::Stretch& stretch : Lane{}.stretches) EXPECT_LE(stretch.friction, .32);
 }
 
 // Mechanics 5.4: solid sphere r = 21.35 mm, v = (10, -5), no spin, mu .3, e .8: slides (grip would need J_t/m = 2.857),

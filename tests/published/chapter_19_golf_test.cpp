@@ -124,6 +124,11 @@ TEST(Chapter19, CentralImpact) {
 // Twelve clubs from swing to landing: head speed and angle of attack of TrackMan's tour averages in; ball speed,
 // launch, spin, carry, apex and landing angle out, within 1 %, .3 deg, 2 %, 3 %, 3 yd and 3 deg.
 TEST(Chapter19, TourShotsFromSwingToLanding) {
+  const ClubPreset driver = *club_preset("driver"), seven = *club_preset("7-iron");
+  EXPECT_NEAR(driver.delivery.speed, 113 * .44704, 1e-9);
+  EXPECT_NEAR(driver.delivery.attack, -1.3 * degree, 1e-12);
+  EXPECT_NEAR(seven.delivery.speed, 90 * .44704, 1e-9);
+  EXPECT_NEAR(seven.delivery.attack, -4.3 * degree, 1e-12);
   for (const ClubPreset& club : club_presets()) {
     const auto shot = tour_shot(club.name);
     ASSERT_TRUE(shot) << club.name << ": " << shot.error().message;

@@ -1,6 +1,6 @@
 #include "carom/geometry/detail/convex.h"
 
-#include "carom/math/simd.h"
+#include "carom/geometry/detail/corner_lanes.h"
 
 namespace carom::geometry::detail {
 
@@ -109,27 +109,8 @@ static Vec3d rim_point(const Convex& c, double y, Vec3d d) {
   return {d.x * k, y, d.z * k};
 }
 
-int farthest(const float* p, int blocks, Vec3f d) {
-  using Four = math::WideFloat<4>;
-  const Four x = Four::splat(d.x), y = Four::splat(d.y), z = Four::splat(d.z);
-  Four most = Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z;
-  math::WideInt<4> where = math::WideInt<4>::zero();
-  for (std::int32_t i = 1; i < blocks; ++i) {
-    p += 12;
-    const Four along = Four::load(p) * x + Four::load(p + 4) * y + Four::load(p + 8) * z;
-    const math::WideMask<4> more = along > most;
-    most = select(more, along, most);
-    where = select(more, math::WideInt<4>::splat(i), where);
-  }
-  const float value = max(max(most[0], most[1]), max(most[2], most[3]));
-  std::uint32_t lanes = math::bitmask(most >= Four::splat(value));
-  if (lanes == 0) return 4 * where[0];  // not a number
-  int lane = __builtin_ctz(lanes), best = 4 * where[lane] + lane;
-  for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1) {
-    lane = __builtin_ctz(lanes);
-    best = min(best, 4 * where[lane] + lane);
-  }
-  return best;
+int farthest(const float* lanes, int blocks, Vec3f d) {
+  return corner_kernels().farthest(lanes, blocks, d.x, d.y, d.z);
 }
 
 Vec3d support(const Convex& c, Vec3d d) {
