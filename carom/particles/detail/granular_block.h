@@ -69,7 +69,13 @@ struct GrainReach {
   float slack = 0, most = 0;
 };
 
-/// All but `find` go through the blocks first … last − 1 in turn, or back from the last.
+/// A pair that does not touch yet: of both grains grain_place × the number.
+struct GrainWait {
+  std::uint32_t a = 0, b = 0;
+  int pair = 0;
+};
+
+/// All but `find`, `wait` and `move` go through the blocks first … last − 1 in turn, or back from the last.
 template <int N>
 struct GrainKernels {
   using Block = GrainBlock<N>;
@@ -77,6 +83,12 @@ struct GrainKernels {
   /// first[grain]. Returns where they end.
   int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first,
               int* found, int at);
+  /// In how many stages from now on pairs may first touch, to `stages`, which has room for a block of lanes more:
+  /// grain_stages or more is never. `pace` has by grain, as many floats as a place, how far another may close on it
+  /// until the next search.
+  void (*wait)(const GrainWait* waiting, int count, float* place, float* pace, float slack, int* stages);
+  /// Grains first … last − 1 go on by `time` and then gain velocity: of four floats, that begin a row, each its own.
+  void (*move)(float* place, float* motion, int first, int last, const float* time, const float* gained);
   /// What the pairs were holding: `was` has twice the pair's number then and 1 where its grains are swapped, or −1. And
   /// what their masses and radii come to.
   void (*recall)(Block* blocks, int first, int last, const int* was, const float* held, float scale, float* motion,

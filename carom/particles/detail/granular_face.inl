@@ -97,7 +97,6 @@ void GranularState<D>::reserve() {
   for (auto& list : near_by) list.reserve(n + grain_lanes);
   for (auto* list : {&pairs, &old_pairs}) list->resize(contacts);
   for (auto* list : {&stages, &old_stages}) list->resize(contacts);
-  paces.reserve(n);
   held.reserve(contacts * grain_held<N>);
   for (GrainSlab<N>& slab : slabs) {
     const std::size_t share = contacts / slabs.size() + 1, share_of_blocks = share / grain_lanes + 1;
@@ -113,6 +112,7 @@ void GranularState<D>::reserve() {
   wall_of.reserve(n / grain_lanes + 64);
   place = AlignedFloats((n + slabs.size()) * grain_place);
   motion = AlignedFloats((n + slabs.size()) * grain_motion<N>);
+  pace = AlignedFloats(n * grain_place);
   solids.reserve(64);
   bodies.reserve(64);
   found.reserve(64);

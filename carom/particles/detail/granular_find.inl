@@ -82,9 +82,11 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   GrainReach<N> reach{.slack = 0.02f * definition.radius, .most = (cell_radii - 2) * definition.radius};
   for (int k = 0; k < N; ++k) reach.way[k] = dt * closing[k] + 0.55f * dt * dt * math::abs(definition.gravity[k]);
   // As fast at any time until the next search.
-  Vector pace{};
-  for (int k = 0; k < N; ++k) pace[k] = dt * closing[k] + 1.1f * dt * dt * math::abs(definition.gravity[k]);
-  std::fill(paces.begin() + begin, paces.begin() + end, pace);
+  float* const paces = pace.data();
+  for (int k = 0; k < N; ++k) {
+    const float by_axis = dt * closing[k] + 1.1f * dt * dt * math::abs(definition.gravity[k]);
+    for (int i = begin; i < end; ++i) paces[std::size_t(i) * grain_place + std::size_t(k)] = by_axis;
+  }
   // Along an axis they are as far apart, at most, as where they come closest askew to it.
   const float radii = 2 * definition.radius + reach.slack, width = cell_radii * definition.radius;
   float ways = 0, square = 0, far[N];
@@ -146,7 +148,11 @@ void GrainSlab<N>::add_block(std::uint32_t none) {
   filled[block] = 0;
   std::fill_n(&pair_of[block * grain_lanes], grain_lanes, -1);
   std::fill_n(&was[block * grain_lanes], grain_lanes, -1);
-  blocks[block] = {};
+  // Of a lane without a contact the rest is not felt.
+  GrainBlock<N>& made = blocks[block];
+  for (float* list : {made.push, made.gain}) std::fill_n(list, grain_lanes, 0.0f);
+  for (int k = 0; k < GrainBlock<N>::turns; ++k)
+    for (float* list : {made.grip[k], made.roll[k]}) std::fill_n(list, grain_lanes, 0.0f);
   std::fill_n(blocks[block].a, grain_lanes, none);
   std::fill_n(blocks[block].b, grain_lanes, none);
 }
@@ -154,7 +160,7 @@ void GrainSlab<N>::add_block(std::uint32_t none) {
 /// Gives a pair a lane in the first block that has room after the last in which one of the two is: solved block by
 /// block the pairs give what they would one after the other. The slab's grains end at `end`.
 template <class D>
-int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int pair) {
+[[gnu::always_inline]] inline int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int pair) {
   const int b = pairs[pair];
   int *const open = slab.open_block.data(), &last_of_a = last_block[grain],
              &last_of_b = b < end ? last_block[b] : last_across[b];
@@ -174,7 +180,6 @@ int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int pai
   slab.blocks[block].a[lane] = std::uint32_t(grain * grain_place);
   slab.blocks[block].b[lane] = std::uint32_t(b * grain_place);
   slab.pair_of[block * grain_lanes + lane] = pair;
-  stages[pair] = 0;
   return block * grain_lanes + lane;
 }
 
@@ -193,7 +198,7 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
     int next = old_begin;
     for (int k = first_pair[grain], to = first_pair[grain + 1]; k < to; ++k) {
       if (stages[k] > 0) {
-        slab.later[stages[k]].push_back({grain, k});
+        slab.later[stages[k]].push_back({std::uint32_t(grain * grain_place), std::uint32_t(pairs[k] * grain_place), k});
         continue;
       }
       const Vector passing = grains[pairs[k]].v - grains[grain].v;
@@ -220,26 +225,22 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
 /// At the begin of a stage: pairs that may touch within it get a lane, the others wait on.
 template <class D>
 void GranularState<D>::place_later(GrainSlab<N>& slab, int end, int stage) {
-  for (const auto& [grain, pair] : slab.later[stage]) {
-    const int other = pairs[pair];
-    const float *const a = &place[std::size_t(grain) * grain_place], *const b =
-                                                                         &place[std::size_t(other) * grain_place];
-    const Vector& pace = paces[grain];
-    float square = 0, way = 0;
-    for (int k = 0; k < N; ++k) {
-      const float d = math::abs(b[k] - a[k]);
-      square += d * d;
-      way += d * pace[k];
-    }
-    // As find() has it, from here on.
-    const float touch = a[3] + b[3] + 0.02f * definition.radius, open = square - touch * math::sqrt(square);
-    const float wait = grain_stages * open;
-    if (wait >= way) {
-      const int next = wait < grain_stages * way ? stage + int(wait / way) : grain_stages;
-      if (next < grain_stages) slab.later[next].push_back({grain, pair});
+  constexpr std::size_t some = 64;
+  int stages_more[some + grain_lanes];
+  const GrainWait* const waiting = slab.later[stage].data();
+  for (std::size_t k = 0, count = slab.later[stage].size(); k < count; ++k) {
+    if (k % some == 0)
+      kernels->wait(waiting + k, int(math::min(count - k, some)), place.data(), pace.data(), 0.02f * definition.radius,
+                    stages_more);
+    const int more = stages_more[k % some];
+    if (stage + more >= grain_stages) continue;
+    if (more > 0) {
+      slab.later[stage + more].push_back(waiting[k]);
       continue;
     }
+    const int grain = int(waiting[k].a / grain_place), other = int(waiting[k].b / grain_place), pair = waiting[k].pair;
     const int at = place_pair(slab, end, grain, pair), lane = at % grain_lanes;
+    stages[pair] = 0;
     GrainBlock<N>& block = slab.blocks[at / grain_lanes];
     const Grain<D>&ga = grains[grain], &gb = grains[other];
     block.ease[lane] = 1 / (ga.inverse_mass + gb.inverse_mass);
@@ -255,7 +256,6 @@ void GranularState<D>::find_pairs(float dt) {
   old_stages.swap(stages);
   old_first_pair.swap(first_pair);
   first_pair.resize(std::size_t(count) + 1);
-  paces.resize(std::size_t(count));
   last_block.assign(std::size_t(count), -1);
   last_across.assign(std::size_t(count), -1);
   const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
@@ -273,12 +273,14 @@ void GranularState<D>::find_pairs(float dt) {
   first_pair[count] = pair_count;
   for (int k = 0, before = 0; k < int(slabs.size()); ++k) {
     const GrainSlab<N>& slab = slabs[k];
-    for (int i = 0; i < slab.pair_count; ++i) {
-      pairs[before + i] = slab.pairs[i] & ((1 << grain_stage_bit) - 1);
-      stages[before + i] = std::uint8_t(slab.pairs[i] >> grain_stage_bit);
-    }
+    const int* const from = slab.pairs.data();
+    int* const to = pairs.data() + before;
+    std::uint8_t* const to_stage = stages.data() + before;
+    const int found_here = slab.pair_count;
+    for (int i = 0; i < found_here; ++i) to[i] = from[i] & ((1 << grain_stage_bit) - 1);
+    for (int i = 0; i < found_here; ++i) to_stage[i] = std::uint8_t(from[i] >> grain_stage_bit);
     for (int i = slab_begin(k); i < slab_begin(k + 1); ++i) first_pair[i] += before;
-    before += slab.pair_count;
+    before += found_here;
   }
   for_slabs([&](GrainSlab<N>& slab, int index) { place_pairs(slab, slab_begin(index), slab_begin(index + 1)); });
 }

@@ -78,11 +78,12 @@ CAROM_SIMD_INLINE Lanes<1> limited(const Lanes<1>& v, F limit) {
   return {{math::min(math::max(v.k[0], splat(0) - limit), limit)}};
 }
 
-/// Where the grains' records begin, of Size floats each.
+/// Where the grains' records begin, of Size floats each. To be made again where they are written: so many addresses do
+/// not stay in registers, and to put them aside costs more than to read the numbers twice (the compiler must not know).
 template <int Size>
 struct Records {
   float* row[width];
-  CAROM_SIMD_INLINE Records(float* base, const std::uint32_t* at) {
+  CAROM_SIMD_INLINE Records(float* base, const volatile std::uint32_t* at) {
     math::simd_detail::unrolled<width>([&](auto lane) __attribute__((always_inline)) {
       constexpr int i = decltype(lane)::value;
       row[i] = base + std::size_t(at[i]) * (Size / grain_place);
@@ -161,6 +162,8 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
     }
     const Four here = Four::load(place);
     const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
+    F ways[N];
+    for (int k = 0; k < N; ++k) ways[k] = splat(2 * reach.way[k]);
     int from[GrainRuns<N>::most] = {i + 1}, to[GrainRuns<N>::most] = {runs.to[0]}, last = 0;
     for (int run = 1; run < runs.count; ++run) {
       if (math::any((here < Four::load(runs.low[run])) | (here > Four::load(runs.high[run])))) continue;
@@ -171,18 +174,18 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
       for (int j = from[run]; j < to[run]; j += width) {
         // They close by no more than s = Σ |d| way / |d|. Few are left of those that d² < u² + 2 |d| s leaves, with u
         // the sum of radii and slack: it holds wherever |d| < u + s does, and asks for no root.
-        F square = F::zero(), way = F::zero();
+        F square, twice;
         for (int k = 0; k < N; ++k) {
-          const F d = F::load(grains.column[k] + j) - x[k];
-          square = square + d * d;
-          way = way + math::abs(d) * splat(reach.way[k]);
+          const F d = F::load(grains.column[k] + j) - x[k], far = math::abs(d) * ways[k];
+          square = k == 0 ? d * d : square + d * d;
+          twice = k == 0 ? far : twice + far;
         }
-        const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
-        std::uint32_t hits = math::bitmask(square < math::min(touch * touch + (way + way), farthest * farthest));
+        const F touch = own + F::load(grains.column[N] + j);
+        std::uint32_t hits = math::bitmask(square < touch * touch + twice);
         if (to[run] - j < width) hits &= (1u << (to[run] - j)) - 1;
         if (hits == 0) continue;
-        const F open = square - touch * math::sqrt(square);
-        hits &= math::bitmask(open <= way);
+        const F farthest = touch + more, way = splat(0.5f) * twice, open = square - touch * math::sqrt(square);
+        hits &= math::bitmask((open <= way) & (square < farthest * farthest));
         const F stage = math::min(math::max(open, F::zero()) * splat(grain_stages) / math::max(way, splat(1e-30f)),
                                   splat(grain_stages - 1));
         std::int32_t stages[width];
@@ -194,6 +197,64 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
       }
   }
   return at;
+}
+
+template <int N>
+void move(float* place, float* motion, int first, int last, const float* time, const float* gained) {
+  constexpr int rows = N == 2 ? width / 4 : 1;  // at a time: in space rows of motion have eight floats
+  using Rows = math::WideFloat<4 * rows>;
+  float times[4 * rows], gains[4 * rows];
+  for (int i = 0; i < 4 * rows; ++i) {
+    times[i] = time[i % 4];
+    gains[i] = gained[i % 4];
+  }
+  const auto one = [&]<class R>(int i, R) __attribute__((always_inline)) {
+    float *const p = place + std::size_t(i) * grain_place, *const m = motion + std::size_t(i) * grain_motion<N>;
+    const R v = R::load(m);
+    (R::load(p) + R::load(times) * v).store(p);
+    (v + R::load(gains)).store(m);
+  };
+  int i = first;
+  for (; i + rows <= last; i += rows) one(i, Rows{});
+  for (; i < last; ++i) one(i, math::WideFloat<4>{});
+}
+
+/// One of both grains' rows of every lane.
+template <std::uint32_t GrainWait::* which>
+CAROM_SIMD_INLINE void rows_of(const GrainWait* waiting, float* base, F (&columns)[grain_place]) {
+  float* row[width];
+  math::simd_detail::unrolled<width>([&](auto lane) __attribute__((always_inline)) {
+    constexpr int i = decltype(lane)::value;
+    row[i] = base + waiting[i].*which;
+  });
+  math::gather_records<width>(row, columns);
+}
+
+template <int N>
+void wait(const GrainWait* waiting, int count, float* place, float* pace, float slack, int* stages) {
+  for (int i = 0; i < count; i += width) {
+    const GrainWait* pairs = waiting + i;
+    GrainWait last[width];
+    if (count - i < width) {
+      for (int lane = 0; lane < width; ++lane) last[lane] = pairs[lane < count - i ? lane : 0];
+      pairs = last;
+    }
+    F a[grain_place], b[grain_place], most[grain_place];
+    rows_of<&GrainWait::a>(pairs, place, a);
+    rows_of<&GrainWait::b>(pairs, place, b);
+    rows_of<&GrainWait::a>(pairs, pace, most);
+    F square = F::zero(), way = F::zero();
+    for (int k = 0; k < N; ++k) {
+      const F apart = math::abs(b[k] - a[k]);
+      square = square + apart * apart;
+      way = way + apart * most[k];
+    }
+    // As find() has it, from here on.
+    const F touch = a[3] + b[3] + splat(slack), open = square - touch * math::sqrt(square);
+    const F all = splat(grain_stages), later = all * open;
+    const F stage = math::select(later < all * way, later / math::max(way, splat(1e-30f)), all);
+    math::to_int(math::select(later < way, F::zero(), stage)).store(stages + i);
+  }
 }
 
 template <int N>
@@ -246,9 +307,9 @@ void keep(const GrainBlock<N>* blocks, int first, int last, const int* pair, flo
 template <int N>
 CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place, const GrainPass& pass) {
   F a[grain_place], b[grain_place];
-  const Records<grain_place> ra(place, c.a + lane), rb(place, c.b + lane);
-  math::gather_records<width>(ra.row, a);
-  math::gather_records<width>(rb.row, b);
+  using Places = Records<grain_place>;
+  math::gather_records<width>(Places(place, c.a + lane).row, a);
+  math::gather_records<width>(Places(place, c.b + lane).row, b);
   Lanes<N> d;
   for (int i = 0; i < N; ++i) d.k[i] = b[i] - a[i];
   const F distance = math::sqrt(dot(d, d));
@@ -272,8 +333,8 @@ CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place, c
       b[k] = b[k] + (ma * each) * d.k[k];
     }
     gap = gap + out;
-    math::scatter_records<width>(ra.row, a);
-    math::scatter_records<width>(rb.row, b);
+    math::scatter_records<width>(Places(place, c.a + lane).row, a);
+    math::scatter_records<width>(Places(place, c.b + lane).row, b);
   }
   gap.store(c.gap + lane);
 }
@@ -293,12 +354,11 @@ void press(GrainBlock<N>* blocks, int first, int last, float* place, float* moti
         store(grip, c.grip, lane);
       }
       Side<N> a, b;
-      const Records<grain_motion<N>> ra(motion, c.a + lane), rb(motion, c.b + lane);
-      a.read(ra, pass);
-      if constexpr (pair) b.read(rb, pass);
+      a.read({motion, c.a + lane}, pass);
+      if constexpr (pair) b.read({motion, c.b + lane}, pass);
       give<N, pair>(a, b, n, push * n + vector_of(grip, n), grip, load(c.roll, lane));
-      a.write(ra);
-      if constexpr (pair) b.write(rb);
+      a.write({motion, c.a + lane});
+      if constexpr (pair) b.write({motion, c.b + lane});
     }
   }
   static_cast<void>(place);
@@ -308,9 +368,8 @@ void press(GrainBlock<N>* blocks, int first, int last, float* place, float* moti
 template <int N, bool pair>
 CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, const GrainPass& pass) {
   Side<N> a, b;
-  const Records<grain_motion<N>> ra(motion, c.a + lane), rb(motion, c.b + lane);
-  a.read(ra, pass);
-  if constexpr (pair) b.read(rb, pass);
+  a.read({motion, c.a + lane}, pass);
+  if constexpr (pair) b.read({motion, c.b + lane}, pass);
   const auto n = load(c.normal, lane);
   const F easy = pair ? F::load(c.ease + lane) : splat(1) / a.inverse_mass;
   const F before = F::load(c.push + lane), last = F::load(c.gain + lane);
@@ -346,8 +405,8 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
     more_roll = rolled - roll;
   }
   give<N, pair>(a, b, n, gain * n + vector_of(more_grip, n), more_grip, more_roll);
-  a.write(ra);
-  if constexpr (pair) b.write(rb);
+  a.write({motion, c.a + lane});
+  if constexpr (pair) b.write({motion, c.b + lane});
 }
 
 template <int N, bool pair>
@@ -374,9 +433,9 @@ float deepest(const GrainBlock<N>* blocks, int first, int last, float* place) {
   return result;
 }
 
-const GrainKernels<2> kernels2 = {find<2>,        recall<2>,       keep<2>,         press<2, true>,
-                                  sweep<2, true>, press<2, false>, sweep<2, false>, deepest<2>};
-const GrainKernels<3> kernels3 = {find<3>,        recall<3>,       keep<3>,         press<3, true>,
-                                  sweep<3, true>, press<3, false>, sweep<3, false>, deepest<3>};
+const GrainKernels<2> kernels2 = {find<2>,        wait<2>,        move<2>,         recall<2>,       keep<2>,
+                                  press<2, true>, sweep<2, true>, press<2, false>, sweep<2, false>, deepest<2>};
+const GrainKernels<3> kernels3 = {find<3>,        wait<3>,        move<3>,         recall<3>,       keep<3>,
+                                  press<3, true>, sweep<3, true>, press<3, false>, sweep<3, false>, deepest<3>};
 
 }  // namespace carom::particles::detail::CAROM_GRAIN_NAMESPACE

@@ -334,22 +334,18 @@ void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
   });
   const int count = int(grains.size());
   // A row begins with what a place or a velocity is.
-  using Four = math::WideFloat<4>;
-  float row[4] = {};
-  for (int k = 0; k < N; ++k) row[k] = h;
-  const Four time = Four::load(row);
-  for (int k = 0; k < N; ++k) row[k] = h * definition.gravity[k];
-  const Four gained = Four::load(row);
-  float *const places = place.data(), *const motions = motion.data();
-  const auto gain = [=](int i) {
-    float* const m = motions + std::size_t(i) * grain_motion<N>;
-    (Four::load(m) + gained).store(m);
+  const float still[4] = {};
+  float time[4] = {}, gained[4] = {};
+  for (int k = 0; k < N; ++k) {
+    time[k] = h;
+    gained[k] = h * definition.gravity[k];
+  }
+  const auto move = [&](const float* times, const float* gains) {
+    scheduler->parallel_for(count, 2048, [&](int begin, int end, int) {
+      kernels->move(place.data(), motion.data(), begin, end, times, gains);
+    });
   };
-  const auto move = [=](int i) {
-    float* const p = places + std::size_t(i) * grain_place;
-    (Four::load(p) + time * Four::load(motions + std::size_t(i) * grain_motion<N>)).store(p);
-  };
-  for_grains(count, gain);
+  move(still, gained);
   for (int part = 0, swept = 0, stage = 0; part < parts; ++part) {
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
@@ -360,10 +356,7 @@ void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
     press();
     for (const int end = (part + 1) * sweeps / parts; swept < end; ++swept) sweep(h, swept % 2 == 0);
     sum_walls();
-    if (part + 1 == parts)
-      for_grains(count, move);
-    else
-      for_grains(count, [=](int i) { move(i), gain(i); });
+    move(time, part + 1 == parts ? still : gained);
   }
   from_rows();
   held.resize(std::size_t(pair_count) * grain_held<N>);

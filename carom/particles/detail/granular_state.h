@@ -100,14 +100,11 @@ struct GrainSlab {
   // Where they are solved, in the order of the slab's layers.
   std::vector<GrainBlock<N>> blocks;  ///< room for more than block_count, which is not made anew
   int block_count = 0;
-  std::vector<int> pair_of, was;     ///< by block and lane: the pair's number, and its old one (GrainKernels)
-  std::vector<std::uint8_t> filled;  ///< lanes by block
-  std::vector<int> open_block;       ///< the next that has room, by block
-  struct Later {
-    int grain = 0, pair = 0;
-  };
-  std::vector<Later> later[grain_stages];  ///< pairs that do not touch at once
-  float fastest = 0;                       ///< m/s, that two pass each other that may touch at once
+  std::vector<int> pair_of, was;               ///< by block and lane: the pair's number, and its old one (GrainKernels)
+  std::vector<std::uint8_t> filled;            ///< lanes by block
+  std::vector<int> open_block;                 ///< the next that has room, by block
+  std::vector<GrainWait> later[grain_stages];  ///< pairs that do not touch at once
+  float fastest = 0;                           ///< m/s, that two pass each other that may touch at once
 
   void add_block(std::uint32_t none);
 };
@@ -139,11 +136,11 @@ struct GranularState {
   std::vector<float> near_by[N + 1];  ///< places, then radii, in the order of the cells
   // While contacts are solved grains are rows of floats (granular_block.h); behind them one for each slab that is none.
   AlignedFloats place, motion;
+  AlignedFloats pace;  ///< m, rows by grain: how far another may close on it until the next search, by axis
   // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
   /// By pair: in which stage of the time until the next search it may first touch; 0 once it is solved.
   std::vector<std::uint8_t> stages, old_stages;
-  std::vector<Vector> paces;  ///< m, by grain: how far another may close on it until the next search, by axis
   int pair_count = 0;
   std::vector<float> held;
   std::vector<GrainSlab<N>> slabs;
