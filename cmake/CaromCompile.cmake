@@ -9,8 +9,10 @@ target_compile_options(carom_flags INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-misleading-indentation -Wno-restrict -Wno-free-nonheap-object>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-warning-option -Wno-missing-field-initializers -Wno-gnu-anonymous-struct -Wno-nested-anon-types>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>
-  # In unity a source is an included file, where gcc distrusts anonymous namespaces as if it were a header.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CAROM_UNITY}>>:-Wno-subobject-linkage>)
+  # In unity a source is an included file, where gcc distrusts anonymous namespaces as if it were a header. Its units are
+  # large: gcc collects garbage from 1 GiB on instead of from 128 MiB, which saves a seventh of the time and takes 1.3
+  # times the memory.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CAROM_UNITY}>>:-Wno-subobject-linkage --param=ggc-min-heapsize=1048576>)
 # gcc 12 turns neighbouring a·b − c, a·b + c into one fused instruction in its straight-line vectoriser even with
 # -ffp-contract=off. Only where the target has such instructions (a user's -march=native, say).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

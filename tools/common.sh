@@ -18,6 +18,9 @@ quietly() {
   fi
 }
 
+# What this script's children have used so far, s.
+processor_seconds() { awk '{ sub(/.*\) /, ""); printf "%d", ($14 + $15) / '"$(getconf CLK_TCK)"' }' "/proc/$$/stat"; }
+
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"
   elif command -v sudo >/dev/null; then sudo "$@"

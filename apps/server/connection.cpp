@@ -1,12 +1,6 @@
 // Requests for files and pages, plain or under TLS; a request for the WebSocket becomes a Session.
 #include <filesystem>
 #include <optional>
-#include <type_traits>
-
-#if CAROM_WITH_TLS
-#include <boost/asio/ssl/stream_base.hpp>
-#include <boost/beast/ssl.hpp>
-#endif
 
 #include "apps/server/requests.h"
 #include "apps/server/session.h"
@@ -28,49 +22,60 @@ constexpr const char* no_page =
     "<code>apps/playground</code>, and load this page again.</p></body></html>";
 
 /// One HTTP connection; becomes a Session when it asks for the WebSocket.
-template <class Transport>
-class Connection : public std::enable_shared_from_this<Connection<Transport>> {
+class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Server::Implementation& server, Transport&& transport, beast::flat_buffer&& read_before = {})
-      : server_(server), stream_(std::move(transport)), buffer_(std::move(read_before)) {
+  Connection(Server::Implementation& server, tcp::socket&& socket)
+      : server_(server), stream_(beast::tcp_stream(std::move(socket))) {
     buffer_.max_size(64 << 10);
     ++server_.connections;
   }
   ~Connection() { --server_.connections; }
 
   void start() {
-    if constexpr (secure) {
 #if CAROM_WITH_TLS
-      lowest().expires_after(std::chrono::seconds(20));
-      stream_.async_handshake(asio::ssl::stream_base::server, buffer_.data(),
-                              [self = this->shared_from_this()](beast::error_code error, std::size_t used) {
-                                if (error) return;
-                                self->buffer_.consume(used);
-                                self->read();
-                              });
+    if (server_.secure()) return greet();
 #endif
-    } else {
-      read();
-    }
+    read();
   }
 
  private:
+#if CAROM_WITH_TLS
+  /// Looks at the first bytes: a greeting of TLS, or a request by who typed http.
+  void greet() {
+    stream_.next_layer().expires_after(std::chrono::seconds(20));
+    beast::async_detect_ssl(stream_, buffer_, [self = shared_from_this()](beast::error_code error, bool tls) {
+      if (error) return;
+      if (tls)
+        self->shake_hands();
+      else
+        self->read();
+    });
+  }
+  void shake_hands() {
+    stream_.next_layer().expires_after(std::chrono::seconds(20));
+    stream_.async_handshake(*server_.tls, buffer_.data(),
+                            [self = shared_from_this()](beast::error_code error, std::size_t used) {
+                              if (error) return;
+                              self->buffer_.consume(used);
+                              self->read();
+                            });
+  }
+#endif
   void read() {
     parser_.emplace();
     parser_->header_limit(16 << 10);
     parser_->body_limit(64 << 10);
-    lowest().expires_after(std::chrono::seconds(20));
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = this->shared_from_this()](beast::error_code error, std::size_t) {
-                       if (error == http::error::end_of_stream) {
-                         self->end();
-                         return;
-                       }
-                       if (error == http::error::header_limit || error == http::error::body_limit)
-                         return self->answer(http::status::payload_too_large, "request too large\n", false);
-                       if (error) return;
-                       self->handle(self->parser_->release());
-                     });
+    stream_.next_layer().expires_after(std::chrono::seconds(20));
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      if (error == http::error::end_of_stream) {
+        self->end();
+        return;
+      }
+      if (error == http::error::header_limit || error == http::error::body_limit)
+        return self->answer(http::status::payload_too_large, "request too large\n", false);
+      if (error) return;
+      self->handle(self->parser_->release());
+    });
   }
 
   void handle(http::request<http::string_body> request) {
@@ -78,7 +83,7 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
     const std::string_view authority = text(request[http::field::host]);
     head_ = request.method() == http::verb::head;
     // Who comes without TLS where it is spoken is told where to go.
-    if (!secure && server_.secure()) return redirect(authority, text(request.target()));
+    if (!stream_.secure() && server_.secure()) return redirect(authority, text(request.target()));
     keep_alive_ = request.keep_alive();
     if (!host_allowed(authority, server_.beyond_loopback, server_.options.allowed_hosts))
       return answer(http::status::misdirected_request,
@@ -91,7 +96,7 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
       if (server_.clients >= server_.options.max_clients)
         return answer(http::status::service_unavailable, "too many clients; close another page first\n");
       http::request<http::empty_body> upgrade(request.base());
-      const auto session = std::make_shared<Session<Transport>>(server_, std::move(stream_));
+      const auto session = std::make_shared<Session>(server_, std::move(stream_));
       {
         const std::lock_guard lock(server_.mutex);
         std::erase_if(server_.sessions, [](const std::weak_ptr<AnySession>& one) { return one.expired(); });
@@ -123,7 +128,7 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
     const std::string type(content_type(*file));
     const bool hashed = file->parent_path().filename() == "assets";
     if (head_) {
-      const auto empty = std::make_shared<http::response<http::empty_body>>();
+      const auto empty = std::make_shared<http::response<http::string_body>>();
       fields(*empty, type, hashed);
       empty->content_length(size);
       return send(empty);
@@ -150,17 +155,9 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
     answer(http::status::permanent_redirect, "this server speaks https: " + location_ + "\n", false);
   }
 
-  /// Says goodbye, under TLS in its words too.
   void end() {
-    if constexpr (secure) {
-#if CAROM_WITH_TLS
-      lowest().expires_after(std::chrono::seconds(5));
-      stream_.async_shutdown([self = this->shared_from_this()](beast::error_code) {});
-#endif
-    } else {
-      beast::error_code ignored;
-      lowest().socket().shutdown(tcp::socket::shutdown_send, ignored);
-    }
+    stream_.next_layer().expires_after(std::chrono::seconds(5));
+    stream_.async_end([self = shared_from_this()](beast::error_code) {});
   }
 
   template <class Response>
@@ -181,65 +178,30 @@ class Connection : public std::enable_shared_from_this<Connection<Transport>> {
 
   template <class Response>
   void send(const std::shared_ptr<Response>& response) {
-    lowest().expires_after(std::chrono::seconds(30));
-    const auto serializer = std::make_shared<http::response_serializer<typename Response::body_type>>(*response);
-    if (head_) serializer->split(true);
-    const auto done = [self = this->shared_from_this(), response, serializer](beast::error_code error, std::size_t) {
+    stream_.next_layer().expires_after(std::chrono::seconds(30));
+    http::async_write(stream_, *response, [self = shared_from_this(), response](beast::error_code error, std::size_t) {
       if (error || !response->keep_alive()) {
         self->end();
         return;
       }
       self->read();
-    };
-    if (head_)
-      http::async_write_header(stream_, *serializer, done);
-    else
-      http::async_write(stream_, *serializer, done);
+    });
   }
 
-  static constexpr bool secure = !std::is_same_v<Transport, beast::tcp_stream>;
-  beast::tcp_stream& lowest() { return beast::get_lowest_layer(stream_); }
-
   Server::Implementation& server_;
-  Transport stream_;
+  Stream stream_;
   beast::flat_buffer buffer_;
   std::string location_;
   std::optional<http::request_parser<http::string_body>> parser_;
   bool head_ = false, keep_alive_ = true;
 };
 
-#if CAROM_WITH_TLS
-/// Looks at the first bytes: a greeting of TLS, or a request by who typed http.
-void greet(Server::Implementation& server, tcp::socket&& socket) {
-  struct Greeting {
-    beast::tcp_stream stream;
-    beast::flat_buffer buffer;
-  };
-  const auto greeting = std::make_shared<Greeting>(Greeting{beast::tcp_stream(std::move(socket)), {}});
-  greeting->stream.expires_after(std::chrono::seconds(20));
-  beast::async_detect_ssl(greeting->stream, greeting->buffer, [&server, greeting](beast::error_code error, bool tls) {
-    if (error) return;
-    if (tls)
-      std::make_shared<Connection<beast::ssl_stream<beast::tcp_stream>>>(
-          server, beast::ssl_stream<beast::tcp_stream>(std::move(greeting->stream), *server.tls),
-          std::move(greeting->buffer))
-          ->start();
-    else
-      std::make_shared<Connection<beast::tcp_stream>>(server, std::move(greeting->stream), std::move(greeting->buffer))
-          ->start();
-  });
-}
-#endif
-
 }  // namespace
 
 void serve_connection(Server::Implementation& server, tcp::socket&& socket) {
   const auto executor = socket.get_executor();
   asio::dispatch(executor, [&server, socket = std::make_shared<tcp::socket>(std::move(socket))] {
-#if CAROM_WITH_TLS
-    if (server.secure()) return greet(server, std::move(*socket));
-#endif
-    std::make_shared<Connection<beast::tcp_stream>>(server, beast::tcp_stream(std::move(*socket)))->start();
+    std::make_shared<Connection>(server, std::move(*socket))->start();
   });
 }
 

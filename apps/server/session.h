@@ -10,28 +10,23 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#if CAROM_WITH_TLS
-#include <boost/beast/websocket/ssl.hpp>
-#endif
 
 #include "apps/server/server_state.h"
+#include "apps/server/stream.h"
 
 namespace carom::server {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
 /// One page and its simulation, on its own strand.
-template <class Transport>
-class Session : public AnySession, public std::enable_shared_from_this<Session<Transport>> {
+class Session : public AnySession, public std::enable_shared_from_this<Session> {
  public:
-  Session(Server::Implementation& server, Transport&& transport)
+  Session(Server::Implementation& server, Stream&& stream)
       : server_(server),
-        stream_(std::move(transport)),
+        stream_(std::move(stream)),
         timer_(stream_.get_executor()),
         host_(server.options.host_options ? server.options.host_options() : host::HostOptions{}) {
     ++server_.clients;
@@ -51,7 +46,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<T
     stream_.set_option(timeouts);
     stream_.read_message_max(4 << 20);
     stream_.auto_fragment(false);
-    stream_.async_accept(request, [self = this->shared_from_this()](beast::error_code error) {
+    stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
       if (error) return;
       self->last_ = Clock::now();
       self->read();
@@ -60,7 +55,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<T
   }
 
   void close() override {
-    asio::dispatch(stream_.get_executor(), [self = this->shared_from_this()] {
+    asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
       if (std::exchange(self->closing_, true)) return;
       self->timer_.cancel();
       self->stream_.async_close(websocket::close_code::going_away, [self](beast::error_code) {});
@@ -76,7 +71,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<T
   }
 
   void read() {
-    stream_.async_read(buffer_, [self = this->shared_from_this()](beast::error_code error, std::size_t) {
+    stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error) {
         self->closing_ = true;
         self->timer_.cancel();
@@ -104,7 +99,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<T
     if (closing_) return;
     timer_.expires_after(
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(server_.options.frame_interval)));
-    timer_.async_wait([self = this->shared_from_this()](beast::error_code error) {
+    timer_.async_wait([self = shared_from_this()](beast::error_code error) {
       if (error || self->closing_) return;
       const Clock::time_point now = Clock::now();
       self->guarded([&] { self->host_.advance(std::chrono::duration<double>(now - self->last_).count()); });
@@ -122,20 +117,19 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<T
     }
     writing_ = true;
     stream_.text(message_.text);
-    stream_.async_write(asio::buffer(message_.data),
-                        [self = this->shared_from_this()](beast::error_code error, std::size_t) {
-                          self->writing_ = false;
-                          if (error) {
-                            self->closing_ = true;
-                            self->timer_.cancel();
-                            return;
-                          }
-                          self->write();
-                        });
+    stream_.async_write(asio::buffer(message_.data), [self = shared_from_this()](beast::error_code error, std::size_t) {
+      self->writing_ = false;
+      if (error) {
+        self->closing_ = true;
+        self->timer_.cancel();
+        return;
+      }
+      self->write();
+    });
   }
 
   Server::Implementation& server_;
-  websocket::stream<Transport> stream_;
+  websocket::stream<Stream, false> stream_;  // false: messages are not compressed
   asio::steady_timer timer_;
   beast::flat_buffer buffer_{8 << 20};
   host::SimulationHost host_;
