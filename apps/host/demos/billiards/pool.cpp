@@ -34,18 +34,14 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         "shot.\n\n"
         "  sliding: a = −μ_s g û,  dω/dt = 5 μ_s g/(2R)      rolling: a = −μ_r g v̂\n\n"
         "A ball that leaves the cue with the slip u₀ = v₀ − R ω₀ slides for 2u₀/(7μ_s g), loses 2/7 of the slip, and "
-        "rolls "
-        "(Shepard, Amateur Physics for the Amateur Pool Player, 1997): the points, anew from every contact.\n\n"
+        "rolls (Shepard, Amateur Physics for the Amateur Pool Player, 1997): the points, anew from every contact.\n\n"
         "The tip's offset gives spin, ω = (5/2) v b/R, and pushes the ball a little to the other side (squirt). Balls "
         "throw each other by friction that falls with slip; cushions are Stronge's compliant impact. White: the cue "
-        "ball "
-        "up to its first ball, and after; gold: the object ball; the circle is the ghost ball.\n\n"
+        "ball up to its first ball, and after; gold: the object ball; the circle is the ghost ball.\n\n"
         "Pull the golden ball to aim, or use the arrow keys; Space strikes, A lets the solver look for a shot and set "
         "the sliders, R racks anew. The solver knows pots, banks and kicks; on the carom table, which has no pockets, "
-        "the "
-        "aim is yours: the cue ball is to touch both others, and in three-cushion three cushions before the second. "
-        "The "
-        "opening there is a stroke that scores, on a line of .65° to either end of which it misses.";
+        "the aim is yours: the cue ball is to touch both others, and in three-cushion three cushions before the "
+        "second. The opening there is a stroke that scores; its aim may be off by .3°.";
     d.dt = 1.0 / 60;
     d.duration = 12;
     d.camera = {{-3.0, 1.85, 0.62}, {-0.15, -0.05, 0.02}, 0.72};
