@@ -106,6 +106,8 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"blast-field", {{"air", 2}}, "height of the Mach stem at the open gauge"},
         Variant{"blast-field", {{"air", 2}, {"burst", 6}}, "height of the Mach stem at the open gauge"},
         Variant{"golf-swing", {{"links", 3}}, "energy gained"},
+        Variant{
+            "shooting-range", {{"distance", 400}, {"zero", 400}}, "greatest difference of shares and probabilities"},
         Variant{"pool-table",
                 {{"table", 5}, {"direction", 7.35 * math::pi / 180}, {"speed", 5}, {"side", 0.4}, {"height", 0}},
                 "cushions before the second"}),

@@ -51,8 +51,8 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
         "low by what the range card says (grey cross) until clicks of the sight bring it up, low and aside when the "
         "gun leans, and downwind by w (T − T_vacuum). Half of the shots of a Gaussian spread lie within 1.1774 σ. The "
         "last plot asks how likely a steady gun hits a circle about the mark, by the derivatives of the flight where "
-        "each shot has its own speed (σ 4 m/s) and cross wind (σ .5 m/s) beside the spread that is set, and shows what "
-        "400 flights, each computed, do. Behind the paper hangs a steel plate of 5 kg: the bullet pushes it, and it "
+        "each shot has its own speed (σ 4 m/s) and cross wind (σ 1 m/s) beside the spread that is set, and shows what "
+        "1000 flights, each computed, do. Behind the paper hangs a steel plate of 5 kg: the bullet pushes it, and it "
         "does not fly away.";
     d.dt = 1.0 / 120;
     d.duration = 24;
@@ -83,7 +83,7 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
                {"Hits in a circle",
                 {"radius", "mm"},
                 {"share of the shots", "%"},
-                {{"probability"}, {"400 flights", Series::Style::points}}}};
+                {{"probability"}, {"1000 flights", Series::Style::points}}}};
     d.inputs = {{"fire", "Fire", {"Space", "Enter"}, true, 1},
                 {"breath", "Hold your breath", {"ShiftLeft", "ShiftRight"}, false, 1},
                 {"right", "Right", {"ArrowRight", "KeyD"}, false, 1},
@@ -237,7 +237,7 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
 
  private:
   static constexpr double eye_ = 1.5, ring_ = 0.22;  // of half the paper
-  static constexpr int flights_ = 400;
+  static constexpr int flights_ = 1000;
   static constexpr std::uint32_t paper_ = 0xff000001, steel_ = 0xff000002, earth_ = 0xff000003;
 
   /// in at so many yd: the 168-grain .308 (G7 .218, 2 650 ft/s, sight 1.5 in, zero 100 yd) at 1.225 kg/m³, the drag
@@ -287,7 +287,7 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
 
   /// How likely a steady gun hits circles about the mark, and how many of so many flights do.
   void count_hits(Stage3& stage) {
-    const ballistics::ShotVariation varies{.muzzle_speed = 4, .wind = 0.5, .aim = stage.value("spread")};
+    const ballistics::ShotVariation varies{.muzzle_speed = 4, .wind = 1, .aim = stage.value("spread")};
     const auto spread = ballistics::spread_at(gun_, air_, aiming_, distance_, varies);
     if (!spread.ok()) return stage.fail(spread.error());
     smallest_ = ballistics::hit_probability(*spread, ring_ * half_);
