@@ -69,6 +69,10 @@ class StageBase {
   /// Where to look from, known only now that the demo is built.
   void set_camera(const Camera& camera) { declaration_.camera = camera; }
   void set_ground(double level) { declaration_.ground = level; }
+  /// What a series is called, where a parameter decides what it shows: while the demo is built.
+  void name_series(int plot, int series, std::string name) {
+    declaration_.plots[std::size_t(plot)].series[std::size_t(series)].name = std::move(name);
+  }
   int threads() const { return options_.threads; }
   core::Profiler* profiler() const { return options_.profiler; }
 

@@ -1,4 +1,4 @@
-// The pool table under a pointer: the golden ball on the line of aim is pulled, and the cue follows.
+// The pool table under a pointer: the golden ball on the line of aim is pulled, and the cue follows; its other games.
 #include "tests/host/client.h"
 
 namespace carom::host::test {
@@ -22,6 +22,18 @@ TEST(Billiards, TheAimIsPulled) {
   // Counterclockwise seen from above: toward −z.
   const double direction = page.last("values")["values"]["direction"].get<double>();
   EXPECT_NEAR(direction, std::atan2(0.3, 0.4), 0.08);
+}
+
+// Carom has an opening of its own (demos_test.cpp: it scores), and the stroke of the break is back when pool is.
+TEST(Billiards, TheStrokeGoesWithTheGame) {
+  Page page;
+  page.open("pool-table", {{"table", 5}});
+  EXPECT_NEAR(page.last("values")["values"]["side"].get<double>(), 0.4, 1e-12);
+  EXPECT_EQ(page.last("values")["values"]["speed"].get<double>(), 5);
+  EXPECT_EQ(page.count("error"), 0);
+  page.open("pool-table",
+            {{"table", 2}, {"direction", 7.35 * math::pi / 180}, {"speed", 5}, {"side", 0.4}, {"height", 0}});
+  EXPECT_EQ(page.last("values")["values"]["speed"].get<double>(), 6.5);
 }
 
 }  // namespace

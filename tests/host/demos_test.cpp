@@ -64,6 +64,84 @@ INSTANTIATE_TEST_SUITE_P(Demos, DemoExpectations, testing::ValuesIn(demo_ids()),
   return name;
 });
 
+// What a choice on a page brings must be met as well: a curve, a moving gun, a burst in the air, a third link.
+struct Variant {
+  const char* demo;
+  std::vector<std::pair<std::string, double>> values;
+  const char* expected;  ///< one that only this choice has, or nothing
+};
+class DemoVariants : public testing::TestWithParam<Variant> {};
+
+TEST_P(DemoVariants, MeetTheirExpectations) {
+  std::unique_ptr<Demo> owner = make_demo(GetParam().demo);
+  Demo& demo = *owner;
+  std::vector<double> values;
+  std::size_t set = 0;
+  for (const Parameter& p : demo.declaration().parameters) {
+    values.push_back(p.value);
+    for (const auto& [name, value] : GetParam().values)
+      if (name == p.name) values.back() = value, ++set;
+  }
+  ASSERT_EQ(set, GetParam().values.size());
+  auto simulation = demo.open(std::move(owner), values, {});
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  while ((*simulation)->time() + 0.5 * (*simulation)->declaration().dt < (*simulation)->declaration().duration)
+    ASSERT_TRUE((*simulation)->step().ok());
+  std::vector<Expectation> expectations;
+  (*simulation)->expectations(expectations);
+  bool there = false;
+  for (const Expectation& e : expectations) {
+    there = there || e.name == GetParam().expected;
+    EXPECT_TRUE(e.passed()) << e.name << ": found " << e.found << ' ' << e.unit << ", expected " << e.expected << " ± "
+                            << e.tolerance << " (" << e.source << ')';
+  }
+  EXPECT_TRUE(there) << GetParam().expected;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Demos, DemoVariants,
+    testing::Values(
+        Variant{"turret", {{"own", 25}}, "hits among them"},
+        Variant{"turret", {{"own", 40}, {"speed", 160}, {"pace", 60}}, "hits among them"},
+        Variant{"blast-field", {{"air", 1}}, "impulse at the open gauge"},
+        Variant{"blast-field", {{"air", 2}}, "height of the Mach stem at the open gauge"},
+        Variant{"blast-field", {{"air", 2}, {"burst", 6}}, "height of the Mach stem at the open gauge"},
+        Variant{"golf-swing", {{"links", 3}}, "energy gained"},
+        Variant{
+            "shooting-range", {{"distance", 400}, {"zero", 400}}, "greatest difference of shares and probabilities"},
+        Variant{"pool-table",
+                {{"table", 5}, {"direction", 7.35 * math::pi / 180}, {"speed", 5}, {"side", 0.4}, {"height", 0}},
+                "cushions before the second"}),
+    [](const auto& info) {
+      std::string name = std::string(info.param.demo) + '_' + std::to_string(info.index);
+      for (char& c : name)
+        if (c == '-') c = '_';
+      return name;
+    });
+
+// At 300 m/s nine bullets of nine shapes fly nine ways, each as the library's flight says, and under its own name.
+TEST(TrajectoryLab, HasAllDragCurves) {
+  std::vector<double> ranges;
+  for (int k = 0; k < 9; ++k) {
+    std::unique_ptr<Demo> owner = make_demo("trajectory-lab");
+    Demo& demo = *owner;
+    std::vector<double> values;
+    for (const Parameter& p : demo.declaration().parameters)
+      values.push_back(p.name == "speed" || p.name == "terminal" ? 300 : p.name == "curve" ? k : p.value);
+    auto simulation = demo.open(std::move(owner), values, {});
+    ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+    const char* const names[] = {"G1", "G2", "G5", "G6", "G7", "G8", "GI", "GS", "RA4"};
+    for (int plot = 0; plot < 2; ++plot)
+      EXPECT_EQ((*simulation)->declaration().plots[std::size_t(plot)].series[3].name, names[k]);
+    std::vector<Expectation> expectations;
+    (*simulation)->expectations(expectations);
+    ASSERT_EQ(expectations.size(), 5u);
+    for (const Expectation& e : expectations)
+      EXPECT_TRUE(e.passed()) << e.name << ": " << e.found << " of " << e.expected << " ± " << e.tolerance;
+    for (const double other : ranges) EXPECT_GT(std::abs(expectations[4].found - other), 1e-3) << names[k];
+    ranges.push_back(expectations[4].found);
+  }
+}
+
 // The trajectory lab throws each of its ten balls of sports where the model says that it lands, with spin (which the
 // lab keeps) and without it in wind.
 TEST(TrajectoryLab, ThrowsTheBallsOfSports) {

@@ -104,6 +104,86 @@ TEST(Chapter19, UndrivenSwingKeepsItsEnergy) {
   }
 }
 
+// Three links without torques: their energy over 10 s by RK4 with 1 ms, and where no gravity pulls, their angular
+// momentum about the hub, too.
+TEST(Chapter19, UndrivenThreeLinksKeepTheirEnergy) {
+  for (const double gravity : {9.80665, 0.0}) {
+    Swing s = three_link_swing();
+    s.shaft = {};
+    s.gravity = gravity;
+    const double angles[] = {30 * degree, 40 * degree, 60 * degree};
+    for (std::size_t i = 0; i < 3; ++i) {
+      s.links[i].torque = {};
+      s.links[i].angle = angles[i];
+      if (gravity == 0) s.links[i].rate = 0.5 + double(i);
+    }
+    Swing weightless = s;
+    weightless.gravity = 0;
+    // ∂T/∂θ̇ along all rates alike: T is quadratic in them, so that half a difference is exact.
+    const auto momentum = [&](SwingState y) {
+      for (double& rate : y.rate) rate += 1;
+      const double more = swing_energy(weightless, y);
+      for (double& rate : y.rate) rate -= 2;
+      return (more - swing_energy(weightless, y)) / 2;
+    };
+    SwingState state = swing_start(s);
+    const double energy = swing_energy(s, state), turning = momentum(state);
+    const bool held[max_swing_links] = {};
+    double worst = 0, turned = 0, fastest = 0;
+    for (int i = 0; i < 10000; ++i) {
+      ASSERT_EQ(ode::step(
+                    ode::Method::rk4, [&](double t, const SwingState& y) { return swing_motion(s, t, y, held).rate; },
+                    i * 1e-3, state, 1e-3),
+                ode::Outcome::done);
+      worst = math::max(worst, math::abs(swing_energy(s, state) - energy));
+      turned = math::max(turned, math::abs(momentum(state) - turning));
+      fastest = math::max(fastest, math::abs(state.rate[2]));
+    }
+    EXPECT_GT(fastest, 2);
+    EXPECT_LT(worst, 2e-9) << energy;
+    if (gravity == 0) {
+      EXPECT_LT(turned, 1e-11) << turning;
+    } else {
+      EXPECT_GT(turned, 0.1) << "gravity turns it";
+    }
+  }
+}
+
+// A joint that is held straight makes one link of two: shoulders and arm as one are the arms of the double pendulum.
+TEST(Chapter19, ThreeLinksWithOneHeldAreTwo) {
+  Swing three = three_link_swing();
+  three.shaft = {};
+  SwingLink &trunk = three.links[0], &arm = three.links[1];
+  trunk.torque = Curve::constant(100);
+  arm.torque = {};
+  arm.angle = trunk.angle = -135 * degree;
+  arm.hold = {.until = Hold::Until::time, .time = 1e3};
+  three.links[2].angle = -225 * degree;
+  three.links[2].torque = {};
+  Swing two = three;
+  two.links.erase(two.links.begin());
+  SwingLink& arms = two.links[0];
+  arms.mass = trunk.mass + arm.mass;
+  arms.length = trunk.length + arm.length;
+  arms.centre = (trunk.mass * trunk.centre + arm.mass * (trunk.length + arm.centre)) / arms.mass;
+  arms.inertia = trunk.inertia + arm.inertia + trunk.mass * math::square(trunk.centre - arms.centre) +
+                 arm.mass * math::square(trunk.length + arm.centre - arms.centre);
+  arms.torque = trunk.torque;
+  arms.hold = {};
+  const auto a = swing(three), b = swing(two);
+  ASSERT_TRUE(a && b);
+  ASSERT_TRUE(a->impact && b->impact);
+  EXPECT_GT(b->speed, 20);
+  EXPECT_NEAR(a->speed, b->speed, 1e-6);
+  EXPECT_NEAR(a->time, b->time, 1e-6);
+  EXPECT_NEAR(a->release[2], b->release[1], 1e-6);
+  Swing loose = three;
+  loose.links[1].hold = {};
+  const auto c = swing(loose);
+  ASSERT_TRUE(c && c->impact);
+  EXPECT_GT(math::abs(c->speed - b->speed), .1) << "let go it is another swing";
+}
+
 // 5.4: v = (1 + e) M V/(M + m); tour drivers give a smash factor of 1.48 to 1.49.
 TEST(Chapter19, CentralImpact) {
   const Ball golf = *ball_preset("golf");

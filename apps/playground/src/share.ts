@@ -51,13 +51,13 @@ export class Share {
 
   constructor(private viewer: Viewer, private source: Source, private say: (text: string, wrong?: boolean) => void, edit: () => void, compare: () => void) {
     const button = (label: string, title: string, act: () => void) => element('button', {type: 'button', textContent: label, title, onclick: act});
-    const chooser = element('input', {type: 'file', hidden: true, accept: '.json,.carom-rec,.obj,.stl,.glb,.gltf', onchange: () => { for (const file of chooser.files ?? []) void this.openFile(file); }});
-    chooser.setAttribute('aria-label', 'A scene, a recording or a mesh');
+    const chooser = element('input', {type: 'file', hidden: true, accept: '.json,.carom-rec,.obj,.stl,.glb,.gltf,.eng', onchange: () => { for (const file of chooser.files ?? []) void this.openFile(file); }});
+    chooser.setAttribute('aria-label', 'A scene, a recording, a mesh or a rocket motor');
     byId('share').replaceChildren(
       button('Copy link', 'A link to this demo with these values, this view and this moment', () => this.copyLink()),
       button('Picture', 'Save what the view shows', () => { void this.picture(); }),
       button('Record', 'Write a recording from now on; again: save it', () => this.source.send({type: 'record', on: !this.recording})),
-      button('Open file', 'A scene (JSON), a recording, or a closed mesh (OBJ, STL, glTF) that falls and breaks; it can also be dropped on the page', () => chooser.click()),
+      button('Open file', 'A scene (JSON), a recording, a closed mesh (OBJ, STL, glTF) that falls and breaks, or a thrust file (.eng) whose motors lift rockets; it can also be dropped on the page', () => chooser.click()),
       this.check, button('Edit scene', 'The scene as a file beside the view; edits act at once (E)', edit),
       button('Compare', 'Two settings side by side, in step (C)', compare), chooser);
     addEventListener('dragover', (event) => { event.preventDefault(); document.body.classList.add('dropping'); });
@@ -110,10 +110,12 @@ export class Share {
   async openFile(file: File): Promise<void> {
     if (file.size > 64 << 20) { this.say(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; expected at most 67 MB.`, true); return; }
     const bytes = new Uint8Array(await file.arrayBuffer());
-    if (/\.(obj|stl|glb|gltf)$/i.test(file.name)) {
+    if (/\.(obj|stl|glb|gltf|eng)$/i.test(file.name)) {
       try {
-        const {sceneOfMesh} = await import('./mesh');
-        this.openText(`${file.name}.json`, await sceneOfMesh(file.name, bytes.buffer));
+        const text = /\.eng$/i.test(file.name)
+          ? (await import('./motor')).sceneOfMotors(file.name, new TextDecoder().decode(bytes))
+          : await (await import('./mesh')).sceneOfMesh(file.name, bytes.buffer);
+        this.openText(`${file.name}.json`, text);
       } catch (error) { this.say(error instanceof Error ? error.message : String(error)); }
       return;
     }

@@ -28,6 +28,21 @@ test('a link restores demo, parameters, moment and view', async () => {
   await page.done();
 });
 
+test('a thrust file becomes rockets, and one with an error is named by its line', async () => {
+  const page = await open('chain');
+  await paused(page);
+  await give(page, join(root, 'presets/motor/black_powder.eng'));
+  await page.waitForFunction(() => document.title.includes('black_powder.eng flies'));
+  for (const name of ['A8', 'B6', 'C6', 'D12']) assert.ok(await page.evaluate((name) => window.caromPage.share.scene.text.includes(`"rocket.${name}.thrust"`), name), name);
+  await picture(page, 'motor file');
+  const bad = join(folder, 'bad.eng');
+  writeFileSync(bad, '; mine\nM1 18 70 3 0.005 0.02 me\n0.1 5\n0.05 4\n0.2 0\n');
+  await give(page, bad);
+  await page.waitForFunction(() => /bad\.eng:4: found the time 0\.05, expected times that rise from 0/.test(document.querySelector('#notice').textContent));
+  assert.match(await page.title(), /black_powder/, 'what was open stays');
+  await page.done();
+});
+
 test('a recording is made, saved, opened again and scrubbed', async () => {
   const page = await open('chain');
   const start = await paused(page);

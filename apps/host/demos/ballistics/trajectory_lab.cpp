@@ -25,15 +25,15 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         "All six leave alike. What differs is the law of the air.\n\n"
         "  vacuum  a = g      linear  a = g − (g/v_t) v      quadratic  a = g − (g/v_t²) |v| v\n\n"
         "v_t is the terminal speed, at which drag carries the weight. The drag coefficient of the fourth ball is that "
-        "of "
-        "the standard projectile G1, which grows threefold at the speed of sound: throw faster than 250 m/s to see "
-        "it part from the third. Spin deflects the fifth by the Magnus force,\n\n"
+        "of a standard projectile (G1 flat base, G2 long cone, G5 short boat tail, G6 pointed flat base, G7 long boat "
+        "tail, G8 secant ogive, GI Ingalls' table, GS sphere, RA4 rimfire bullet), scaled to the others at Mach 0.3. "
+        "That of G1 grows threefold at the speed of sound: throw faster than 250 m/s to see it part from the third. "
+        "Spin deflects the fifth by the Magnus force,\n\n"
         "  F = ½ ρ A C_L v² (ω × v)/|ω × v|,   C_L = 1/(2.32 + 0.4/S),   S = r ω/v\n\n"
         "and the sixth flies in wind. For v = v_t and 45° the ranges are v_t²/g times 1, .490986 (linear) and .589012 "
         "(quadratic).\n\n"
-        "With a ball of a sport the terminal speed is its own, and the last two fly by what was measured of it: "
-        "C_D through the crisis and with spin, C_L by spin, in still air with the spin that is set, and without spin "
-        "in "
+        "With a ball of a sport the terminal speed is its own, and the last two fly by what was measured of it: C_D "
+        "through the crisis and with spin, C_L by spin, in still air with the spin that is set, and without spin in "
         "wind.";
     d.duration = 9;
     d.loop = true;
@@ -51,6 +51,8 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
          "0 by its terminal speed, 1 golf, 2 baseball, 3 soccer, 4 tennis, 5 table tennis, 6 basketball, 7 cricket, "
          "8 bowling, 9 arrow, 10 shuttlecock",
          0, 10, 1, 0, false},
+        {"curve", "Drag curve", "", "", "0 G1, 1 G2, 2 G5, 3 G6, 4 G7, 5 G8, 6 GI, 7 GS, 8 RA4", 0,
+         double(ballistics::drag_function_names.size() - 1), 1, 0, false},
     };
     Plot side{"Side view", {"distance", "m"}, {"height", "m"}, {}}, speed{"Speed", {"time", "s"}, {"speed", "m/s"}, {}};
     for (int k = 0; k < laws; ++k) {  // in the colors of the trails
@@ -76,10 +78,14 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
       terminal_ = sports::terminal_speed(ball_, {}, g_);
     }
     // As much drag as the others where C_D is that of slow balls.
-    g1_ = ballistics::projectile_from_terminal_speed(terminal_, 1.225, g_);
-    const ballistics::DragCurve curve(ballistics::DragFunction::g1);
-    g1_.area_per_mass *= g1_.drag(0.3) / curve(0.3);
-    g1_.drag = curve;
+    standard_ = ballistics::projectile_from_terminal_speed(terminal_, 1.225, g_);
+    const int function = clamp(stage.count("curve"), 0, int(ballistics::drag_function_names.size()) - 1);
+    const ballistics::DragCurve curve{ballistics::DragFunction(function)};
+    standard_.area_per_mass *= standard_.drag(0.3) / curve(0.3);
+    standard_.drag = curve;
+    curve_name_ = ballistics::drag_function_names[std::size_t(function)];
+    for (char& c : curve_name_) c = char(c >= 'a' ? c - 'a' + 'A' : c);
+    for (int plot = 0; plot < 2; ++plot) stage.name_series(plot, 3, curve_name_);
     double farthest = 1, highest = 1;
     for (int k = 0; k < laws; ++k) {
       fly(k);
@@ -88,7 +94,8 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         highest = max(highest, node.x.y);
       }
       const float radius = float(max(0.006 * speed_ * speed_ / g_, 0.5));
-      balls_[k] = add_marker(stage, names[k], geometry::Sphere{min(radius, 6.0f)}, {}, colors[k]);
+      balls_[k] =
+          add_marker(stage, k == 3 ? curve_name_ : names[k], geometry::Sphere{min(radius, 6.0f)}, {}, colors[k]);
     }
     const double wide = max(0.55 * farthest, 0.9 * highest);
     stage.set_camera({{0.5 * farthest, 0.55 * highest, 1.75 * wide}, {0.5 * farthest, 0.42 * highest, 0}});
@@ -108,8 +115,8 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         stage.sample(1, k, t, length(path[now].v));
       }
     }
-    stage.say(format("ranges: vacuum %.0f, linear %.0f, quadratic %.0f, G1 %.0f, spin %.0f, wind %.0f m", range(0),
-                     range(1), range(2), range(3), range(4), range(5)));
+    stage.say(format("ranges: vacuum %.0f, linear %.0f, quadratic %.0f, ", range(0), range(1), range(2)) + curve_name_ +
+              format(" %.0f, spin %.0f, wind %.0f m", range(3), range(4), range(5)));
   }
 
   void expectations(Stage3&, std::vector<Expectation>& out) override {
@@ -120,6 +127,10 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
     out.push_back({"range with quadratic drag", "v²/g", "integrated to 18 digits", range(2) / unit, .589011800, 1e-5});
     out.push_back(
         {"time with quadratic drag", "v/g", "integrated to 18 digits", flown_[2] * g_ / terminal_, 1.204724756, 1e-5});
+    const auto flight = ballistics::fly(standard_, still(), {{}, speed_ * direction_}, {.ground = 0});
+    const double far = flight.ok() ? flight->end().position.x : 0;
+    out.push_back({"range by the drag curve " + curve_name_, "m", "ballistics::fly, in steps of its own", range(3), far,
+                   1e-6 * far});
   }
 
  private:
@@ -131,6 +142,7 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
     Vec3d x, v;
   };
 
+  static ballistics::Conditions still() { return {.air = environment::AirColumn::uniform(1.225)}; }
   Vec3d acceleration(int law, Vec3d x, Vec3d v) const {
     Vec3d a{0, -g_, 0};
     const double k = g_ / (terminal_ * terminal_);
@@ -139,10 +151,7 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
       return a + sports::air_load(ball_, {}, {.velocity = w, .spin = {0, 0, law == 4 ? spin_ : 0}}).force / ball_.mass;
     if (law == 1) a -= (g_ / terminal_) * v;
     if (law == 2 || law >= 4) a -= (k * length(w)) * w;
-    if (law == 3) {
-      const ballistics::Conditions still{.air = environment::AirColumn::uniform(1.225)};
-      a = ballistics::acceleration(g1_, still, {x, v});
-    }
+    if (law == 3) a = ballistics::acceleration(standard_, still(), {x, v});
     if (law == 4 && spin_ != 0) {
       // Backspin turns about +z; the force is along ω × v.
       const double s = radius_ * abs(spin_) / length(v), lift = 1 / (2.32 + 0.4 / s);
@@ -196,7 +205,8 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
   double flown_[laws] = {};
   double speed_ = 60, terminal_ = 60, spin_ = 0;
   Vec3d wind_{}, direction_{};
-  ballistics::Projectile g1_{};
+  ballistics::Projectile standard_{};
+  std::string curve_name_;
   sports::Ball ball_{};
   bool of_sport_ = false;
 };

@@ -23,11 +23,11 @@ class Turret final : public Repeatable<Turret, Demo3> {
         "be. The gun can give it where\n\n"
         "  |u(T) − v_gun| = v_muzzle\n\n"
         "The earliest such T is the low arc (blue), the latest the high one (teal). Where the speed to spare stays "
-        "below "
-        "zero there is no solution, and the gun holds its fire. The target here flies a figure that the solver "
+        "below zero there is no solution, and the gun holds its fire. The target here flies a figure that the solver "
         "knows only as a function of time; constant lead would miss. Shells are bodies of the world that an effector "
-        "lets "
-        "fly by the same drag curve. Double the range, or let the muzzle speed fall, to see the arcs meet and vanish.";
+        "lets fly by the same drag curve. The gun may ride to and fro on a rail across the range: it gives its own "
+        "velocity to every shell, and the solver takes it into account. Double the range, or let the muzzle speed "
+        "fall, to see the arcs meet and vanish.";
     d.duration = 24;
     d.camera = {{-60, 230, 640}, {250, 150, -40}};
     d.ground = 0;
@@ -39,6 +39,7 @@ class Turret final : public Repeatable<Turret, Demo3> {
         {"pace", "Speed of the target", "m/s", "m/s", "at most", 0, 60, 1, 30, false},
         {"high", "High arc", "", "", "1: fire the high one", 0, 1, 1, 0, true},
         {"rate", "Time between shots", "s", "s", "", 0.5, 5, 0.1, 1.5, true},
+        {"own", "Speed of the gun", "m/s", "m/s", "at most, to and fro on 120 m of rail", 0, 40, 1, 0, false},
     };
     d.plots = {{"Elevation", {"time", "s"}, {"elevation", "deg"}, {{"low arc"}, {"high arc"}}},
                {"Miss of each shell", {"time", "s"}, {"distance", "m"}, {{"nearest", Series::Style::points}}}};
@@ -51,7 +52,8 @@ class Turret final : public Repeatable<Turret, Demo3> {
     wind_ = {0, 0, stage.value("wind")};
     air_ = {.air = environment::AirColumn::uniform(1.225), .wind = environment::WindColumn(wind_)};
     shell_ = ballistics::projectile_from_terminal_speed(stage.value("terminal"));
-    add_marker(stage, "base", geometry::Cylinder{3, 9}, {0, 3, 0}, dark);
+    own_ = stage.value("own");
+    base_ = add_marker(stage, "base", geometry::Cylinder{3, 9}, {0, 3, 0}, dark);
     barrel_ = add_marker(stage, "barrel", geometry::Cylinder{14, 1.8f}, muzzle_, steel);
     range_ = stage.value("range");
     pace_ = stage.value("pace");
@@ -65,7 +67,8 @@ class Turret final : public Repeatable<Turret, Demo3> {
     stage.check(stage.world().set_pose(target_, place(t + stage.declaration().dt), {}));
     if (t + 1e-9 < next_) return;
     next_ = t + stage.value("rate");
-    const ballistics::Shooter gun{.muzzle_speed = stage.value("speed"), .muzzle = muzzle_};
+    const ballistics::Shooter gun{
+        .muzzle_speed = stage.value("speed"), .muzzle = muzzle(t), .velocity = gun_velocity(t)};
     const double pace = stage.value("pace"), range = range_;
     auto aims = ballistics::aim(shell_, air_, gun, [=, this](double s) { return path(t + s, range, pace); },
                                 {.longest_time = 60});
@@ -77,15 +80,20 @@ class Turret final : public Repeatable<Turret, Demo3> {
       return;
     }
     for (const auto& shot : {aims_.low, aims_.high}) {
-      auto flight = ballistics::fly(shell_, air_, {muzzle_, gun.muzzle_speed * shot->direction},
+      auto flight = ballistics::fly(shell_, air_, {gun.muzzle, gun.velocity + gun.muzzle_speed * shot->direction},
                                     {.time = shot->time, .tolerance = 1e-7});
       if (flight.ok()) arcs_.push_back(std::move(flight).value());
     }
-    fire(stage, stage.value("high") > 0.5 ? *aims_.high : *aims_.low, t);
+    fire(stage, gun, stage.value("high") > 0.5 ? *aims_.high : *aims_.low, t);
   }
 
   void after_step(Stage3& stage) override {
     const double t = stage.world().time();
+    if (own_ > 0) {
+      const Vec3d at = muzzle(t), end{0, 0.3, rail_};
+      stage.check(stage.world().set_pose(base_, {at.x, 3, at.z}, {}));
+      stage.line(-1.0 * end + Vec3d{0, 0.6, 0}, end, pen(steel));
+    }
     for (std::size_t i = 0; i < arcs_.size(); ++i) {
       draw_flight(stage, arcs_[i], 1e9, pen(i == 0 ? blue : teal, 0x90), 40);
       const Vec3d p = arcs_[i].end().position;
@@ -129,7 +137,7 @@ class Turret final : public Repeatable<Turret, Demo3> {
       stage.sample(0, 0, t, degrees(low.elevation));
       stage.sample(0, 1, t, degrees(high.elevation));
       const Vec3d d = (stage.value("high") > 0.5 ? aims_.high : aims_.low)->direction;
-      stage.check(stage.world().set_pose(barrel_, muzzle_ - 8.0 * d, turn_of_y(d)));
+      stage.check(stage.world().set_pose(barrel_, muzzle(t) - 8.0 * d, turn_of_y(d)));
       stage.say(format("low arc %.1f° in %.1f s, high arc %.1f° in %.1f s; ", degrees(low.elevation), aims_.low->time,
                        degrees(high.elevation), aims_.high->time) +
                 format("%.0f of %.0f hit", double(hits_), double(arrived_)));
@@ -162,23 +170,28 @@ class Turret final : public Repeatable<Turret, Demo3> {
   }
   Vec3d place(double t) const { return path(t, range_, pace_); }
 
-  void fire(Stage3& stage, const ballistics::Shot& shot, double t) {
+  /// The gun on its rail.
+  Vec3d muzzle(double t) const { return muzzle_ + Vec3d{0, 0, rail_ * sin(own_ / rail_ * t)}; }
+  Vec3d gun_velocity(double t) const { return {0, 0, own_ * cos(own_ / rail_ * t)}; }
+
+  void fire(Stage3& stage, const ballistics::Shooter& gun, const ballistics::Shot& shot, double t) {
     if (shells_.size() > 40) return;
     rigid::BodyDef<Dim3> body;
     body.name = "shell";
-    body.position = muzzle_;
-    body.linear_velocity = Vec3f(stage.value("speed") * shot.direction);
+    body.position = gun.muzzle;
+    body.linear_velocity = Vec3f(gun.velocity + gun.muzzle_speed * shot.direction);
     rigid::ShapeDef<Dim3> shape;
     shape.filter.mask = 0;
     const rigid::BodyId id = stage.add(body, geometry::Sphere{2.2f}, shape, orange);
     auto effector = ballistics::flight_effector<Dim3>(id, {shell_, air_, stage.declaration().dt});
     if (!effector.ok()) return stage.fail(effector.error());
     (void)stage.keep(stage.world().add_effector(*effector));
-    shells_.push_back({id, muzzle_, t + shot.time});
+    shells_.push_back({id, gun.muzzle, t + shot.time});
   }
 
   static constexpr Vec3d muzzle_{0, 12, 0};
-  double range_ = 420, pace_ = 30;
+  static constexpr double rail_ = 60;  // m to either side
+  double range_ = 420, pace_ = 30, own_ = 0;
   Vec3d wind_{};
   ballistics::Conditions air_{};
   ballistics::Projectile shell_{};
@@ -186,7 +199,7 @@ class Turret final : public Repeatable<Turret, Demo3> {
   std::vector<Trajectory> arcs_;
   std::vector<Shell> shells_;
   std::vector<Burst> bursts_;
-  rigid::BodyId target_, barrel_;
+  rigid::BodyId target_, base_, barrel_;
   double next_ = 0.5, worst_ = 0;
   int hits_ = 0, arrived_ = 0, refused_ = 0;
 };

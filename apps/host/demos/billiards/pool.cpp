@@ -1,5 +1,8 @@
-// A pool table to play on: aim, speed, english and elevation; what the shot would do is drawn before it is played.
+// A table to play on, of pool, snooker, pyramid or carom: aim, speed, english and elevation; what the shot would do is
+// drawn before it is played.
 #include <algorithm>
+#include <array>
+
 #include "apps/host/demos/billiards/list.h"
 
 #include "apps/host/demos/billiards/table_view.h"
@@ -31,14 +34,14 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         "shot.\n\n"
         "  sliding: a = −μ_s g û,  dω/dt = 5 μ_s g/(2R)      rolling: a = −μ_r g v̂\n\n"
         "A ball that leaves the cue with the slip u₀ = v₀ − R ω₀ slides for 2u₀/(7μ_s g), loses 2/7 of the slip, and "
-        "rolls "
-        "(Shepard, Amateur Physics for the Amateur Pool Player, 1997): the points, anew from every contact.\n\n"
+        "rolls (Shepard, Amateur Physics for the Amateur Pool Player, 1997): the points, anew from every contact.\n\n"
         "The tip's offset gives spin, ω = (5/2) v b/R, and pushes the ball a little to the other side (squirt). Balls "
         "throw each other by friction that falls with slip; cushions are Stronge's compliant impact. White: the cue "
-        "ball "
-        "up to its first ball, and after; gold: the object ball; the circle is the ghost ball.\n\n"
+        "ball up to its first ball, and after; gold: the object ball; the circle is the ghost ball.\n\n"
         "Pull the golden ball to aim, or use the arrow keys; Space strikes, A lets the solver look for a shot and set "
-        "the sliders, R racks anew.";
+        "the sliders, R racks anew. The solver knows pots, banks and kicks; on the carom table, which has no pockets, "
+        "the aim is yours: the cue ball is to touch both others, and in three-cushion three cushions before the "
+        "second. The opening there is a stroke that scores; its aim may be off by .3°.";
     d.dt = 1.0 / 60;
     d.duration = 12;
     d.camera = {{-3.0, 1.85, 0.62}, {-0.15, -0.05, 0.02}, 0.72};
@@ -51,7 +54,8 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         {"height", "Follow and draw", "", "", "tip offset in ball radii, up is follow", -0.6, 0.6, 0, 0.1, true},
         {"elevation", "Elevation of the cue", "rad", "deg", "", 0, radians(75.0), 0, 0, true},
         {"preview", "Preview", "", "", "0: none, 1: to the first ball, 2 and 3: by more cushions", 0, 3, 1, 2, true},
-        {"table", "Table", "", "", "0: 7 ft, 1: 8 ft, 2: 9 ft pool, 3: snooker, 4: Russian pyramid", 0, 4, 1, 2, false},
+        {"table", "Table", "", "", "0: 7 ft, 1: 8 ft, 2: 9 ft pool, 3: snooker, 4: Russian pyramid, 5: carom", 0, 5, 1,
+         2, false},
     };
     d.plots = {{"Energy", {"time", "s"}, {"energy of the balls", "J"}, {{"all"}}},
                {"Speed of the cue ball",
@@ -68,13 +72,16 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
   }
 
   void build(Stage3& stage) override {
-    const int kind = std::clamp(stage.count("table"), 0, 4);
-    const sports::RectangularTable shapes[5] = {sports::seven_foot_pool(), sports::eight_foot_pool(),
-                                                sports::nine_foot_pool(), sports::snooker_table(),
-                                                sports::russian_table()};
+    const int kind = std::clamp(stage.count("table"), 0, 5);
+    const sports::RectangularTable shapes[6] = {sports::seven_foot_pool(), sports::eight_foot_pool(),
+                                                sports::nine_foot_pool(),  sports::snooker_table(),
+                                                sports::russian_table(),   sports::carom_table()};
     shape_ = shapes[kind];
+    carom_ = kind == 5;
+    choose_opening(stage);
     const sports::BilliardPhysics physics = kind == 3   ? sports::snooker_physics()
                                             : kind == 4 ? sports::russian_physics()
+                                            : carom_    ? sports::carom_physics()
                                                         : sports::pool_physics();
     const auto table = BilliardTable::create(shape_);
     if (!table) return stage.fail(table.error());
@@ -82,16 +89,20 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     if (!game) return stage.fail(game.error());
     game_ = std::move(*game);
     const double radius = physics.ball.radius;
-    layout_ = kind == 3 ? sports::snooker_rack(shape_, radius) : sports::eight_ball_rack(shape_, radius, {2e-5, 1, 7});
+    layout_ = kind == 3 ? sports::snooker_rack(shape_, radius)
+              : carom_  ? sports::carom_opening(shape_, radius)
+                        : sports::eight_ball_rack(shape_, radius, {2e-5, 1, 7});
     stage.start({});
     add_table(stage, *table,
               kind == 3   ? TableColors{0x0a5c2c, 0x0d6e36, 0x3f1d0a}
               : kind == 4 ? TableColors{0x0c4a78, 0x10598e, 0x4a2408}
+              : carom_    ? TableColors{0x0f4f94, 0x145da8, 0x4a2408}
                           : TableColors{});
     rack(stage);
     balls_.add(stage, *game_,
                kind == 3   ? BallBodies::snooker()
                : kind == 4 ? BallBodies::russian()
+               : carom_    ? BallBodies::carom()
                            : BallBodies::pool());
     cue_.add(stage);
     rigid::BodyDef<rigid::Dim3> handle;
@@ -145,16 +156,18 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     if (shots_ > 0 && !struck_) rise_ = max(rise_, energy - energy_);
     struck_ = false;
     energy_ = energy;
+    if (carom_ && shots_ == 1) opening_ = score();
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
     const double m = game_->physics().ball.mass, offset = square(stage.value("side")) + square(stage.value("height"));
     out.push_back({"speed of the cue ball", "m/s", "2V/(1 + m/M + 2.5 b²)", started_,
                    2 * stage.value("speed") / (1 + m / 0.567 + 2.5 * offset), 1e-9});
+    if (carom_) return carom_expectations(out);
     const double way = distance(start_[0], start_[1]) - 2 * game_->physics().ball.radius;  // to the foremost ball
     out.push_back({"time that the cue ball keeps to sliding and rolling", "s", "up to its first contact",
                    law_time_ - law_from_, way / started_, 2.0 / 60});
-    out.push_back({"greatest rise of energy in a step", "J", "energy never rises", rise_, 0, 1e-6});
+    out.push_back(rise());
     int moved = 0;
     for (int i = 1; i < game_->balls(); ++i) moved += distance(game_->state(i).position, start_[std::size_t(i)]) > 0.02;
     out.push_back({"balls that the break moved", "", "all fifteen", double(moved), 15, 0});
@@ -162,6 +175,51 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
 
  private:
   static constexpr double backswing_ = 0.55;
+  static constexpr const char* aims_[4] = {"direction", "speed", "side", "height"};
+  using Opening = std::array<double, 4>;
+
+  /// Whoever changes the game with the sliders at its opening stroke gets that of the other.
+  void choose_opening(Stage3& stage) const {
+    const Opening broken{-0.015, 6.5, 0, 0.1}, scored{radians(7.35), 5, 0.4, 0};
+    const Opening &from = carom_ ? broken : scored, &to = carom_ ? scored : broken;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (abs(stage.value(aims_[i]) - from[i]) > 1e-6) return;
+    for (std::size_t i = 0; i < 4; ++i) stage.set_value(aims_[i], to[i]);
+  }
+
+  /// What the cue ball has touched since the stroke.
+  struct Score {
+    int balls = 0, cushions = 0;  ///< others; cushions before the second of them
+  };
+  Score score() const {
+    Score s;
+    int first = 0;
+    for (const sports::BilliardEvent& e : game_->events()) {
+      s.cushions += e.kind == sports::BilliardEvent::Kind::cushion && e.ball == 0;
+      if (e.kind != sports::BilliardEvent::Kind::ball || (e.ball != 0 && e.other != 0)) continue;
+      const int other = e.ball + e.other;
+      if (s.balls == 0) s.balls = 1, first = other;
+      if (other == first) continue;
+      s.balls = 2;
+      break;
+    }
+    return s;
+  }
+
+  Expectation rise() const { return {"greatest rise of energy in a step", "J", "energy never rises", rise_, 0, 1e-6}; }
+  void carom_expectations(std::vector<Expectation>& out) const {
+    // Along its line to where it is two radii from the red, slowed by the sliding that the stroke began.
+    const auto& physics = game_->physics();
+    const Vec3d to = start_[2] - start_[0], line = left_ / max(length(left_), 1e-9);
+    const double along = dot(to, line), beside = dot(to, to) - along * along, slows = physics.cloth.sliding_friction;
+    const double way = along - sqrt(max(0.0, square(2 * physics.ball.radius) - beside)), a = slows * physics.gravity;
+    const double time = (started_ - sqrt(max(0.0, started_ * started_ - 2 * a * way))) / a;
+    out.push_back({"time that the cue ball keeps to sliding", "s", "x = v t − ½ μ_s g t², up to its first contact",
+                   law_time_ - law_from_, time, 2.0 / 60});
+    out.push_back(rise());
+    out.push_back({"balls that the opening touches", "", "both: a point", double(opening_.balls), 2, 0});
+    out.push_back({"cushions before the second", "", "three-cushion", double(opening_.cushions), 3, 0});
+  }
 
   Stroke stroke(Stage3& stage) const {
     Stroke s{stage.value("direction"), stage.value("speed"), stage.value("side"), stage.value("height"),
@@ -237,8 +295,9 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     ++shots_;
     struck_ = true;
     struck_at_ = game_->time();
-    if (shots_ == 1) started_ = length(hit->velocity);
     if (shots_ == 1) {
+      left_ = hit->velocity;
+      started_ = length(left_);
       free_ = true;
       law_from_ = stage.world().time();
     }
@@ -269,6 +328,13 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
 
   void report(Stage3& stage) {
     reported_ = true;
+    if (carom_) {
+      const Score s = score();
+      stage.say(s.balls == 2 ? format("touches both, %.0f cushions before the second: a point", s.cushions) +
+                                   (s.cushions >= 3 ? ", of three-cushion too" : "")
+                             : format("touches %.0f of two", s.balls));
+      return;
+    }
     int down = 0;
     for (int i = 1; i < game_->balls(); ++i) down += !in_play(game_->state(i).phase);
     const bool scratch = !in_play(game_->state(0).phase);
@@ -287,6 +353,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
 
   /// The easiest pot that the solver finds.
   void find_shot(Stage3& stage) {
+    if (carom_) return stage.say("the solver looks for pots, and this table has no pockets");
     struct Candidate {
       int ball, pocket;
       double ease;
@@ -339,9 +406,11 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
   double handle_away_ = 0.4;
   double clock_ = 0, stroke_clock_ = -1, energy_ = 0, rise_ = 0, started_ = 0, struck_at_ = 0;
   double law_at_ = 0, law_time_ = 0, law_from_ = 0;
-  Vec3d law_velocity_{}, law_slip_{};
+  Vec3d law_velocity_{}, law_slip_{}, left_{};
+  Score opening_{};
   int law_steps_ = 0;
   int shots_ = 0;
+  bool carom_ = false;
   bool free_ = false;  // has met nothing since the stroke
   bool struck_ = false, reported_ = true;
 };
