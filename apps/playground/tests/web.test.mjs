@@ -119,6 +119,7 @@ test('a part of the engine that is not there is named', async () => {
   await page.route(/carom-[a-z0-9-]+-[0-9a-f]{8}\.wasm$/, (route) => route.fulfill({status: 404}));
   await page.goto(`${server.url}#pool-table`);
   await page.waitForFunction(() => document.querySelector('#notice').textContent.includes('Reload the page'));
+  for (let i = 0; i < 100 && page.problems.length === 0; ++i) await page.waitForTimeout(50);  // what the page threw comes by another way
   assert.match(page.problems.join(), /carom-.*wasm: the server answers 404/);
 });
 
