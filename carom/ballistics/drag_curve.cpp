@@ -32,8 +32,8 @@ core::Result<DragCurve> DragCurve::from_points(std::span<const DragPoint> points
     const std::string name = core::text("node ", i + 1, " of a drag curve: ");
     if (!math::is_finite(point.mach) || point.mach < 0)
       return core::Error{name + core::refused("Mach number", point.mach, "a finite number >= 0")};
-    if (!math::is_finite(point.coefficient) || point.coefficient < 0)
-      return core::Error{name + core::refused("C_D", point.coefficient, "a finite number >= 0")};
+    if (!(point.coefficient >= 0 && point.coefficient <= 1e6))
+      return core::Error{name + core::refused("C_D", point.coefficient, "a finite number >= 0, at most 1e6")};
     if (i > 0 && !(point.mach > points[i - 1].mach))
       return core::Error{
           name + core::refused("Mach number", point.mach, core::text("more than the ", points[i - 1].mach, " before"))};
@@ -46,7 +46,8 @@ core::Result<DragCurve> DragCurve::from_points(std::span<const DragPoint> points
 
 void DragCurve::prepare(Interpolation interpolation) {
   const double last = points_.back().mach;
-  cells_per_mach_ = last > 0 ? double(cells) / last : 0;
+  // A table that ends next to Mach 0 has one cell: its number of cells to the Mach number would be infinite.
+  cells_per_mach_ = last > 1e-9 ? double(cells) / last : 0;
   std::size_t node = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     while (node + 1 < points_.size() && points_[node].mach * cells_per_mach_ < double(cell)) ++node;
