@@ -62,6 +62,17 @@ TYPED_TEST(Charge, DriftsAcrossBothFields) {
 
 // --- frames that turn -----------------------------------------------------------------------------------------------
 
+/// m, where the body comes down to the ground; `height`: m, above it, to begin with.
+double lands_east(World3& world, BodyId body, double height) {
+  Vec3d before{}, after{0, height, 0};
+  while (after.y > 0) {
+    before = after;
+    world.step(frame).value();
+    after = state_of(world, body).pose.position;
+  }
+  return before.x + (after.x - before.x) * before.y / (before.y - after.y);
+}
+
 // Reference "ballistics and sports" 2.4: dropped from 100 m at the equator a body lands 21.95 mm to the east.
 TEST(TurningFrame3, DroppedBodyDriftsEast) {
   for (const bool by_surroundings : {false, true}) {
@@ -82,15 +93,8 @@ TEST(TurningFrame3, DroppedBodyDriftsEast) {
     BodyDef<Dim3> def;
     def.position = {0, 100, 0};
     const BodyId body = add_mass(world, def, 1, 1);
-    Vec3d before{}, after{0, 100, 0};
-    while (after.y > 0) {
-      before = after;
-      world.step(frame).value();
-      after = state_of(world, body).pose.position;
-    }
-    const double east = before.x + (after.x - before.x) * before.y / (before.y - after.y);
-    EXPECT_NEAR(east * 1000, 21.95, 0.03);
-    EXPECT_NEAR(after.z, 0, 1e-6);
+    EXPECT_NEAR(lands_east(world, body, 100) * 1000, 21.95, 0.03);
+    EXPECT_NEAR(state_of(world, body).pose.position.z, 0, 1e-6);
   }
 }
 
@@ -105,13 +109,7 @@ TEST(TurningFrame3, ThrownUpItLandsWest) {
   BodyDef<Dim3> def;
   def.linear_velocity = {0, 80, 0};
   const BodyId body = add_mass(world, def, 1, 1);
-  Vec3d before{}, after{0, 1, 0};
-  while (after.y > 0) {
-    before = after;
-    world.step(frame).value();
-    after = state_of(world, body).pose.position;
-  }
-  const double east = before.x + (after.x - before.x) * before.y / (before.y - after.y);
+  const double east = lands_east(world, body, 1);
   const double expected = -4.0 / 3 * 7.292115e-5 * std::cos(math::pi / 4) * 80 * 80 * 80 / (9.80665 * 9.80665);
   EXPECT_NEAR(east / expected, 1, 0.005);
 }

@@ -13,15 +13,10 @@ using namespace carom::rigid::test;
 using namespace carom;
 using environment::Environment;
 
-constexpr float frame = 1.0f / 60;
 using Dimensions = testing::Types<Dim2, Dim3>;
 
 inline std::shared_ptr<const Environment> shared(Environment::Definition definition) {
   return std::make_shared<const Environment>(Environment::make(std::move(definition)).value());
-}
-template <class D>
-BodyState<D> state_of(const World<D>& world, BodyId body) {
-  return world.state(body).value();
 }
 inline BodyId ball(World3& world, double radius, float density, Vec3d position = {}, Vec3f velocity = {}) {
   BodyDef<Dim3> def;

@@ -130,10 +130,7 @@ TEST(Surroundings3, HeaveResponseFallsWithWaveLength) {
 // A hull's corners have a depth each: one as long as the wave, bow and stern on crests, floats as deep as the integral
 // over its bottom says, and it agrees with a box, which is cut into pieces, of the same form.
 TEST(Surroundings3, HullsFeelTheSurfaceAlongThem) {
-  const environment::WaveComponent wave = environment::regular_wave(1, std::sqrt(2 * math::pi * 40 / 9.80665));
-  Environment::Definition d;
-  d.water = environment::Sea::make({}, {&wave, 1}).value();
-  const auto around = shared(d);
+  const auto around = sea_of(1, std::sqrt(2 * math::pi * 40 / 9.80665));
   const auto heave = [&](bool as_hull) {
     World3 world({.allow_sleep = false});
     world.add_effector(Surroundings<Dim3>{around}).value();

@@ -10,21 +10,14 @@ CAROM_SIMD_INLINE static Four along(const float* p, Four x, Four y, Four z) {
 }
 
 static int farthest(const float* lanes, int blocks, float dx, float dy, float dz) {
-  // How far first, and then which: to carry along which would take as long again.
-  constexpr int most_blocks = 128;  // a hull of 255 corners has at most 506 faces
-  alignas(16) float far[4 * most_blocks];
+  // How far first, and then which, by the same sums: to carry along which would take longer.
   const Four x = Four::splat(dx), y = Four::splat(dy), z = Four::splat(dz);
   Four most = along(lanes, x, y, z);
-  most.store(far);
-  for (int i = 1; i < blocks; ++i) {
-    const Four here = along(lanes + 12 * i, x, y, z);
-    here.store(far + 4 * i);
-    most = max(most, here);
-  }
+  for (int i = 1; i < blocks; ++i) most = max(most, along(lanes + 12 * i, x, y, z));
   const float a = most[0] < most[1] ? most[1] : most[0], b = most[2] < most[3] ? most[3] : most[2];
   const Four value = Four::splat(a < b ? b : a);
   for (int i = 0; i < blocks; ++i)
-    if (const std::uint32_t met = math::bitmask(Four::load(far + 4 * i) >= value); met != 0)
+    if (const std::uint32_t met = math::bitmask(along(lanes + 12 * i, x, y, z) >= value); met != 0)
       return 4 * i + __builtin_ctz(met);
   return 0;  // not a number
 }
