@@ -13,7 +13,7 @@ class Floor {
   private tones = {base: {value: new THREE.Color()}, weak: {value: new THREE.Color()}, strong: {value: new THREE.Color()}};
   private spacing = {value: 1};
   // What lies on the ground lies before it: the floor is drawn a little further away than it is.
-  private material = new THREE.MeshStandardMaterial({roughness: 0.95, transparent: true, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 24});
+  private material = new THREE.MeshLambertMaterial({transparent: true, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 24});
   readonly mesh = new THREE.Mesh(new THREE.PlaneGeometry(1, 1).rotateX(-Math.PI / 2), this.material);
 
   constructor() {

@@ -318,19 +318,11 @@ class Page implements Listener {
   }
 }
 
-function complain(text: string): void {
-  byId('notice').textContent = text;
+try {
+  // The tests drive the page through this object; nothing in the page reads it.
+  (window as unknown as {caromPage: Page}).caromPage = new Page();
+} catch (error) {
+  byId('notice').textContent = `This browser cannot show the page: ${error instanceof Error ? error.message : String(error)}.`;
   byId('notice').hidden = false;
-}
-
-if (document.createElement('canvas').getContext('webgl2')) {
-  try {
-    // The tests drive the page through this object; nothing in the page reads it.
-    (window as unknown as {caromPage: Page}).caromPage = new Page();
-  } catch (error) {
-    complain(`This browser cannot show the page: ${error instanceof Error ? error.message : String(error)}.`);
-    throw error;
-  }
-} else {
-  complain('This browser cannot show the page: it needs WebGL2, which browsers have had since 2021. Here it is turned off, or the graphics driver lacks it.');
+  throw error;
 }

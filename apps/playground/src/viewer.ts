@@ -32,7 +32,7 @@ export class Viewer {
   private home: Camera = {position: [8, 6, 12], target: [0, 1, 0]};
   private framed = {width: 0, height: 0};
   private stale = true;  // something to draw has changed
-  private fresh = false;  // opened, and its bodies have not come yet
+  private fresh = true;  // nothing opened, or its bodies stand nowhere yet
   private touched = false;  // the user has turned the view; nothing else may
   private quality = 2;
   private slowness = 16;
@@ -40,7 +40,9 @@ export class Viewer {
   private nextChange = 2000;
 
   constructor(private canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+    const context = canvas.getContext('webgl2', {antialias: true});
+    if (!context) throw new Error('it needs WebGL2, which browsers have had since 2021. Here it is turned off, or the graphics driver lacks it');
+    this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -53,6 +55,7 @@ export class Viewer {
     this.sun.shadow.radius = 3;
     this.hand.renderOrder = 10;
     this.hand.visible = false;
+    this.lines.visible = false;
     this.lines.frustumCulled = this.hand.frustumCulled = false;
     this.scene.add(this.bodies.root, this.sun, this.sun.target, this.surroundings, this.ground.group, this.lines, this.hand, this.mark, this.bodies.trails.group, this.cloud.object, this.surfaces.group);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -157,8 +160,11 @@ export class Viewer {
     this.stale = true;
     this.clear();
     for (const body of bodies) this.addBody(body);
-    if (this.fresh && !this.touched) this.resetView();
-    this.fresh = false;
+    if (!this.fresh) return;
+    if (!this.touched) this.resetView();
+    // The shaders are on their way to the driver while the first poses are on theirs.
+    this.ground.update(this.camera);
+    this.renderer.compile(this.scene, this.camera);
   }
 
   addBody(body: Body): void {
@@ -182,6 +188,7 @@ export class Viewer {
 
   apply(frame: Frame): void {
     this.stale = true;
+    this.fresh = false;
     // Positions come relative to the frame's origin; what is drawn is relative to the view's own.
     const shift = new THREE.Vector3(frame.origin[0] - this.origin.x, frame.origin[1] - this.origin.y, frame.origin[2] - this.origin.z);
     this.bodies.apply(frame, shift);
@@ -357,6 +364,8 @@ export class Viewer {
   }
 
   render(now: number): void {
+    // A picture of an empty world would only have shaders compiled before there is anything to see.
+    if (this.fresh) return;
     this.adapt(now);
     // A picture that would be the one before is not drawn: that spares a phone's battery.
     if (!this.controls.update() && !this.stale) return;

@@ -9,17 +9,47 @@ let server;
 before(async () => { server = await serve(); });
 after(() => server?.close());
 
+/**
+ * Milliseconds for a fixed piece of work of the kind that a page's load is: an empty page asks for WebGL, has a shader
+ * compiled and draws with it. On a quiet machine of the kind of the tables in docs/benchmarks.md: REFERENCE.
+ */
+const REFERENCE = 300;
+async function reference() {
+  const page = await visit('about:blank', {pause: 0}, false);
+  const taken = await page.evaluate(() => {
+    const began = performance.now(), gl = document.createElement('canvas').getContext('webgl2'), program = gl.createProgram();
+    const steps = Array.from({length: 60}, (_, i) => `p = fract(p * ${(1 + 0.01 * i).toFixed(2)} + sin(p.yzx + float(${i}))); if (p.x > 0.${i + 10}) p = normalize(p + cross(p, p.zxy));`).join('\n');
+    for (const [type, text] of [[gl.VERTEX_SHADER, '#version 300 es\nvoid main() { gl_Position = vec4(0.0, 0.0, 0.0, 1.0); gl_PointSize = 1.0; }'],
+      [gl.FRAGMENT_SHADER, `#version 300 es\nprecision highp float;\nout vec4 color;\nvoid main() {\nvec3 p = gl_FragCoord.xyz;\n${steps}\ncolor = vec4(p, 1.0);\n}`]]) {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+    }
+    gl.linkProgram(program);
+    gl.useProgram(program);
+    gl.drawArrays(gl.POINTS, 0, 1);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    return performance.now() - began;
+  });
+  await page.context().close();
+  return taken;
+}
+
 test('the first picture comes within 2 s of the page\'s load', async () => {
-  let best = Infinity;
-  for (let i = 0; i < 8 && best > 2000; ++i) {
+  // Neighbours can make a machine twice as slow for minutes: then the bar is that much higher.
+  let best = Infinity, fixed = Infinity, bar = 2000;
+  for (let i = 0; i < 3 || i < 8 && best > bar; ++i) {  // the first try has a cold browser
+    fixed = Math.min(fixed, await reference());
+    bar = 2000 * Math.max(1, fixed / REFERENCE);
     const page = await visit(`${server.url}#wrecking-ball`, {pause: 0});
     await page.waitForFunction(() => window.caromPage.firstPicture > 0);
     best = Math.min(best, await page.evaluate(() => window.caromPage.firstPicture));
     await page.done();
     await page.context().close();  // a page left open goes on drawing and slows the next try
   }
-  assert.ok(best > 0 && best <= 2000, `${best} ms`);
-  console.log(`first picture after ${best.toFixed(0)} ms`);
+  assert.ok(best > 0 && best <= bar, `${best} ms, where ${bar.toFixed(0)} may be`);
+  console.log(`first picture after ${best.toFixed(0)} ms; the reference work took ${fixed.toFixed(0)}`);
 });
 
 /** So many balls that fly without weight in a box, each far enough from the next that few meet. */
