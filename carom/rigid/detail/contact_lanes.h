@@ -77,7 +77,7 @@ inline V turned_back_change(const Rotation& turn, const V& n) {
 template <class D, class F>
 inline void for_marked(const WorldImplementation<D>& world, int color, std::uint8_t wanted, F&& f) {
   const std::vector<std::int32_t>& manifolds = world.graph.colors[color].manifolds;
-  const std::uint8_t* marks = world.scratch.blocks[color].marks;  // eight at a time: padded with zeros
+  const std::uint8_t* marks = world.scratch.blocks[color].marks;  // eight at a time: zeros follow them
   for (std::size_t first = 0; first < manifolds.size(); first += 8) {
     std::uint64_t any;
     __builtin_memcpy(&any, marks + first, 8);

@@ -105,7 +105,8 @@ bool prepare_blocks(StepContext<D>& context) {
     blocks.blocks = context.arena.template allocate<ContactBlock<D, W>>(std::size_t(blocks.count)).data();
     if (c.extra > 0)
       blocks.extra = context.arena.template allocate<ContactExtra<D, W>>(std::size_t(blocks.count)).data();
-    blocks.marks = context.arena.template allocate_zeroed<std::uint8_t>((c.manifolds.size() + 7) / 8 * 8).data();
+    blocks.marks =
+        context.arena.template allocate_zeroed<std::uint8_t>(c.manifolds.size() + 16).data();  // read by words
   }
   const ContactSources<D> sources = sources_of(context);
   const bool any_special = !world.shapes.extras.empty(), any_hits = world.hit_event_shapes > 0;
@@ -172,27 +173,39 @@ template <class D, int W>
 void mark_settling(StepContext<D>& context) {
   constexpr std::size_t many = 16;  ///< one in so many bodies
   WorldImplementation<D>& world = context.world;
-  std::uint8_t* pushed = nullptr;  // by slot of the body
+  std::uint8_t* is_pushed = nullptr;  // by slot of the body
+  std::span<std::int32_t> pushed;     // bodies
   std::size_t count = 0;
   for (int color = 0; color <= overflow_color; ++color)
     for_marked(world, color, mark_pushed, [&](std::int32_t manifold) {
-      if (pushed == nullptr)
-        pushed = context.arena.template allocate_zeroed<std::uint8_t>(world.bodies.record.size()).data();
+      if (is_pushed == nullptr) {
+        is_pushed = context.arena.template allocate_zeroed<std::uint8_t>(world.bodies.record.size()).data();
+        pushed = context.arena.template allocate<std::int32_t>(world.bodies.record.size());
+      }
       for (const std::int32_t body : world.contacts.at(world.contacts.manifold(manifold).contact).body)
-        if (world.bodies.is_dynamic(body) && pushed[body] == 0) pushed[body] = 1, ++count;
+        if (world.bodies.is_dynamic(body) && is_pushed[body] == 0) is_pushed[body] = 1, pushed[count++] = body;
     });
   if (count == 0) return;
-  const bool all = many * count > world.bodies.awake.size();
-  for_blocks<D, W>(context, Overflow::at_once,
-                   [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
-                       ContactExtra<D, W>*, std::uint8_t* marks) {
-                     for (int lane = 0; lane < lanes; ++lane) {
-                       const std::int32_t a = block.write_a[lane], b = block.write_b[lane];
-                       if (!all && (a == none || pushed[a] == 0) && (b == none || pushed[b] == 0)) continue;
-                       block.settles[lane] = 1;
-                       marks[lane] |= mark_settles;
-                     }
-                   });
+  if (many * count > world.bodies.awake.size()) {
+    for_blocks<D, W>(context, Overflow::at_once,
+                     [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
+                         ContactExtra<D, W>*, std::uint8_t* marks) {
+                       for (int lane = 0; lane < lanes; ++lane) block.settles[lane] = 1, marks[lane] |= mark_settles;
+                     });
+    return;
+  }
+  for (const std::int32_t body : pushed.first(count))
+    for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+      const ContactRecord<D>& c = world.contacts.at(key >> 1);
+      key = c.next[key & 1];
+      for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+        const ManifoldRecord<D>& manifold = world.contacts.manifold(m);
+        if (manifold.place.color < 0) continue;  // not in the graph
+        const Lane<D, W> place = lane_of<D, W>(world, manifold);
+        place.block.settles[place.lane] = 1;
+        world.scratch.blocks[manifold.place.color].marks[manifold.place.position] |= mark_settles;
+      }
+    }
 }
 
 /// Finds the contacts of bodies that take impulses again: those of joints and trees, what strikes, and who sleeps
