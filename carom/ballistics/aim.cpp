@@ -49,7 +49,7 @@ core::Result<Aims> aim(const Projectile& projectile, const Conditions& condition
   };
   const detail::AimSolver solver(projectile, conditions, shooter, place, options);
   Aims aims;
-  if (!solver.two_arcs(aims)) solver.scan(aims);
+  if (!solver.two_arcs(target, aims)) solver.scan(aims);
   return aims;
 }
 

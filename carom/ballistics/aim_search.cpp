@@ -77,8 +77,13 @@ AimSolver::Guess AimSolver::straight(double time) const {
   return {shooter_.velocity + (shooter_.muzzle_speed / math::length(way)) * way, time};
 }
 
-bool AimSolver::two_arcs(Aims& aims) const {
-  // In vacuum the lack is cheap: more than one peak there means a target whose motion makes further arcs.
+// In vacuum u(T) = d/T + w + G T/2, d the way to the target, w its velocity past the shooter and G gravity with its
+// acceleration; |u|² has its extremes where ½ G² T⁴ + (w·G) T³ − 2 (d·w) T − 2 d² = 0. By the signs of these there is
+// one T > 0, unless w·G and d·w are both negative: three then, perhaps.
+bool AimSolver::one_peak(const Target& target) const {
+  const Vec3d way = target.position - shooter_.muzzle, past = target.velocity - shooter_.velocity,
+              pull = target.acceleration + Vec3d{0, conditions_.gravity, 0};
+  if (math::dot(past, pull) >= 0 || math::dot(way, past) >= 0) return true;
   constexpr int samples = 48;
   double previous = -1e300;
   int peaks = 0;
@@ -89,7 +94,12 @@ bool AimSolver::two_arcs(Aims& aims) const {
     rises = lack >= previous;
     previous = lack;
   }
-  if (peaks + (rises ? 1 : 0) > 1) return false;
+  return peaks + (rises ? 1 : 0) <= 1;
+}
+
+bool AimSolver::two_arcs(const Target& target, Aims& aims) const {
+  // More than one peak even in vacuum means a target whose motion makes further arcs.
+  if (!one_peak(target)) return false;
   const Guess flat = flat_guess();
   Nearest near;
   // On such a flight it would fall by more than the shots that go farthest do (.3 to .55 of the way).

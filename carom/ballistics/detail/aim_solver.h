@@ -39,7 +39,7 @@ class AimSolver {
   void scan(Aims& aims) const;
   /// The usual case, in which the speed to spare has one peak over T, with an arc on either side of it. False: it is
   /// not the usual case, and the scan must tell.
-  bool two_arcs(Aims& aims) const;
+  bool two_arcs(const Target& target, Aims& aims) const;
 
  private:
   /// The initial velocity that hits at T in vacuum.
@@ -47,6 +47,8 @@ class AimSolver {
     const Vec3d way = target_(time) - shooter_.muzzle;
     return way / time + Vec3d{0, 0.5 * conditions_.gravity * time, 0};
   }
+  /// Has the speed to spare one peak over T in vacuum?
+  bool one_peak(const Target& target) const;
   double vacuum_lack(double time) const {
     return shooter_.muzzle_speed - math::length(vacuum(time) - shooter_.velocity);
   }
