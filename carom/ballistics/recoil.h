@@ -36,24 +36,47 @@ constexpr double pendulum_speed(double bullet_mass, double bullet_speed, double 
   return bullet_mass * bullet_speed / (bullet_mass + pendulum_mass);
 }
 
-/// A gun as a rigid body on springs: back into the shoulder, up and aside about it. Each is a damped oscillator that a
-/// shot sets off: I_θ θ̈ + 2 ζ ω I_θ θ̇ + ω² I_θ θ = 0.
+/// A gun as a rigid body on springs at the shoulder: M q̈ + D q̇ + K q = 0 with six ways to move, x forward, y up and z
+/// to the right and the turns about them, which a shot sets off with the impulse at the bore. Each way has a spring and
+/// a damper of its own, given as the frequency f and the share ζ of critical damping that it has by itself (k = m (2π
+/// f)², or I (2π f)² of a turn). With the centre of mass at the shoulder nothing couples them: back, rise and swing are
+/// three damped oscillators, and nothing lifts, slides or rolls. A centre of mass elsewhere couples what it levers:
+/// above or below, the way back with the rise; beside, the way back with the swing; ahead, the rise with the lift and
+/// the swing with the slide; above and beside, the roll with lift and slide and with the other turns.
 struct GunMount {
   double mass = 4;                    ///< kg, gun and what of the arms moves with it
   double inertia = 0.8;               ///< kg·m² about the shoulder, for rise and for swing
   double bore_above_shoulder = 0.03;  ///< m, the lever that lifts the muzzle
-  double bore_beside_shoulder = 0.0;  ///< m, to the right: swings the muzzle to the left
+  double bore_beside_shoulder = 0.0;  ///< m, to the right: swings the muzzle to the right
   double push_frequency = 3;          ///< Hz, of the way back
   double push_damping = 0.8;          ///< ζ
   double rise_frequency = 1.6;        ///< Hz
   double rise_damping = 0.6;          ///< ζ
+  double swing_frequency = 1.6;       ///< Hz
+  double swing_damping = 0.6;         ///< ζ
+  math::Vec3d centre_of_mass{};       ///< m from the shoulder: forward, up, to the right
+  double roll_inertia = 0.02;         ///< kg·m² about the line through the shoulder along the bore
+  double lift_frequency = 3;          ///< Hz, up and down
+  double lift_damping = 0.8;          ///< ζ
+  double slide_frequency = 3;         ///< Hz, from side to side
+  double slide_damping = 0.8;         ///< ζ
+  double roll_frequency = 3;          ///< Hz
+  double roll_damping = 0.6;          ///< ζ
 };
+/// Errors: a frequency, damping, mass or inertia out of range; inertias about the shoulder that are less than those of
+/// the mass in its centre, which no body has.
+CAROM_API core::Status check(const GunMount& mount);
+
 struct RecoilMotion {
   double back = 0;   ///< m
   double rise = 0;   ///< rad, up
   double swing = 0;  ///< rad, to the right
+  double lift = 0;   ///< m, up
+  double slide = 0;  ///< m, to the right
+  double roll = 0;   ///< rad, clockwise to the shooter
 };
-/// The motion `time` s after shots at `shot_times` (s), each with the impulse (N·s); exact, by superposition.
+/// The motion `time` s after shots at `shot_times` (s), each with the impulse (N·s); exact, by superposition. The mount
+/// is one that `check` lets pass.
 CAROM_API RecoilMotion recoil_at(const GunMount& mount, double impulse, std::span<const double> shot_times,
                                  double time);
 

@@ -65,8 +65,19 @@ core::Status check(const Weapon& w) {
       {"mount.push_damping", w.mount.push_damping, 0, 100, "0 to 100"},
       {"mount.rise_frequency", w.mount.rise_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
       {"mount.rise_damping", w.mount.rise_damping, 0, 100, "0 to 100"},
+      {"mount.swing_frequency", w.mount.swing_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"mount.swing_damping", w.mount.swing_damping, 0, 100, "0 to 100"},
+      {"mount.roll_inertia", w.mount.roll_inertia, 1e-6, 1e9, "10^-6 to 10^9 kg·m²"},
+      {"mount.lift_frequency", w.mount.lift_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"mount.lift_damping", w.mount.lift_damping, 0, 100, "0 to 100"},
+      {"mount.slide_frequency", w.mount.slide_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"mount.slide_damping", w.mount.slide_damping, 0, 100, "0 to 100"},
+      {"mount.roll_frequency", w.mount.roll_frequency, 1e-3, 1e3, "10^-3 to 1000 Hz"},
+      {"mount.roll_damping", w.mount.roll_damping, 0, 100, "0 to 100"},
   };
-  return within("a gun", bounds);
+  if (auto s = within("a gun", bounds); !s) return s;
+  if (auto s = check(w.mount); !s) return core::Error{core::text("a gun: mount.", s.error().message)};
+  return {};
 }
 
 Gun gun_of(const Weapon& w) {

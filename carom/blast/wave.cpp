@@ -41,13 +41,59 @@ double evaluate(std::span<const Fit> fits, double z) {
   return math::exp(sum);
 }
 
-}  // namespace detail
+/// One fit of the table above: its name, from where it holds, its pieces, its unit in SI, whether it grows with
+/// W^{1/3}.
+struct Fitted {
+  const char* name;
+  double least;
+  std::span<const Fit> fits;
+  double unit;
+  bool scales;
+};
+const Fitted& fitted(WaveQuantity quantity) {
+  static constexpr Fitted all[] = {
+      {"side-on pressure", .2, side_on_pressure, 1e3, false},
+      {"reflected pressure", .06, reflected_pressure, 1e3, false},
+      {"arrival", .06, arrival, 1e-3, true},
+      {"duration", .2, duration, 1e-3, true},
+      {"side-on impulse", .2, impulse, 1, true},
+      {"reflected impulse", .06, reflected_impulse, 1, true},
+      {"front speed", .06, front_speed, 1e3, false},
+  };
+  return all[int(quantity)];
+}
 
-core::Result<Wave> blast_wave(double charge, double distance, Burst burst) {
+core::Status check(double charge, double distance) {
   if (!(charge > 0) || !math::is_finite(charge))
     return core::Error{core::refused("charge", charge, "a finite mass of TNT > 0 kg")};
   if (!(distance > 0) || !math::is_finite(distance))
     return core::Error{core::refused("distance", distance, "a finite number of metres > 0")};
+  return {};
+}
+
+}  // namespace detail
+
+const char* to_string(WaveQuantity quantity) { return detail::fitted(quantity).name; }
+
+ScaledRange fitted_range(WaveQuantity quantity) {
+  const detail::Fitted& f = detail::fitted(quantity);
+  return {f.least, f.fits.back().until};
+}
+
+core::Result<double> wave_quantity(WaveQuantity quantity, double charge, double distance) {
+  if (const core::Status good = detail::check(charge, distance); !good) return good.error();
+  const detail::Fitted& f = detail::fitted(quantity);
+  const ScaledRange range = fitted_range(quantity);
+  const double scale = math::cbrt(charge), z = distance / scale;
+  if (z < range.least || z > range.greatest)
+    return core::Error{core::text(distance, " m from ", charge, " kg: ",
+                                  core::refused(core::text("scaled distance for the ", f.name), z,
+                                                core::text(range.least, " to ", range.greatest, " m/kg^(1/3)")))};
+  return (f.scales ? f.unit * scale : f.unit) * detail::evaluate(f.fits, z);
+}
+
+core::Result<Wave> blast_wave(double charge, double distance, Burst burst) {
+  if (const core::Status good = detail::check(charge, distance); !good) return good.error();
   const double mass = burst == Burst::ground ? charge : charge / 1.8;
   const double scale = math::cbrt(mass), z = distance / scale;
   if (z < least_scaled_distance || z > greatest_scaled_distance)

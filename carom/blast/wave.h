@@ -36,6 +36,26 @@ inline constexpr double least_scaled_distance = 0.2, greatest_scaled_distance = 
 /// 0.2 … 40 m/kg^{1/3}. M. M. Swisdak Jr., Simplified Kingery Airblast Calculations, 1994 (ADA526744).
 CAROM_API core::Result<Wave> blast_wave(double charge, double distance, Burst burst = Burst::ground);
 
+/// The quantities that Swisdak fits one by one, each over its own range.
+enum class WaveQuantity {
+  pressure,            ///< Pa, P_s: 0.2 … 198.5 m/kg^{1/3}
+  reflected_pressure,  ///< Pa, P_r: 0.06 … 40
+  arrival,             ///< s, t_a: 0.06 … 40
+  duration,            ///< s, t_d: 0.2 … 40
+  impulse,             ///< Pa·s, i_s: 0.2 … 158.7
+  reflected_impulse,   ///< Pa·s, i_r: 0.06 … 40
+  front_speed,         ///< m/s, U: 0.06 … 40
+};
+CAROM_API const char* to_string(WaveQuantity quantity);
+struct ScaledRange {
+  double least = 0, greatest = 0;  ///< m/kg^{1/3}
+};
+CAROM_API ScaledRange fitted_range(WaveQuantity quantity);
+/// One quantity of a hemisphere's wave on the ground, where `blast_wave`, which needs them all, has no answer: what
+/// hits a wall beside the charge, and what breaks windows far away. Errors: a charge or distance ≤ 0, a scaled distance
+/// outside the quantity's range.
+CAROM_API core::Result<double> wave_quantity(WaveQuantity quantity, double charge, double distance);
+
 /// Peak side-on pressure (Pa) of a free-air burst by another fit: G. F. Kinney & K. J. Graham, Explosive Shocks in Air,
 /// 1985. Another geometry than `Burst::ground`; `ambient` in Pa.
 CAROM_API double kinney_graham_pressure(double charge, double distance, double ambient = 101325);

@@ -131,6 +131,9 @@ struct PairRule {
   float restitution = 0;          ///< 0 … 1
   float rolling_resistance = 0;   ///< ≥ 0
   float spinning_resistance = 0;  ///< ≥ 0
+  /// Coulomb's μ of what sticks: holds a contact up to this, until it slides; then `friction` does, until it stops.
+  /// 0: as `friction`; otherwise at least that.
+  float static_friction = 0;
 };
 struct MaterialPair {
   std::uint32_t material_a = 0, material_b = 0;  ///< user_ids

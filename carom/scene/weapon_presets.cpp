@@ -124,7 +124,19 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
                                          {"mount_push_frequency", "Hz"},
                                          {"mount_push_damping", ""},
                                          {"mount_rise_frequency", "Hz"},
-                                         {"mount_rise_damping", ""}};
+                                         {"mount_rise_damping", ""},
+                                         {"mount_roll_inertia", "kg*m^2"},
+                                         {"mount_swing_frequency", "Hz"},
+                                         {"mount_swing_damping", ""},
+                                         {"mount_centre_ahead", "m"},
+                                         {"mount_centre_above", "m"},
+                                         {"mount_centre_beside", "m"},
+                                         {"mount_lift_frequency", "Hz"},
+                                         {"mount_lift_damping", ""},
+                                         {"mount_slide_frequency", "Hz"},
+                                         {"mount_slide_damping", ""},
+                                         {"mount_roll_frequency", "Hz"},
+                                         {"mount_roll_damping", ""}};
   static constexpr std::string_view texts[] = {"ammunition", "sight"};
   const auto values = detail::read_preset(text, file, names, texts);
   if (!values) return values.error();
@@ -159,6 +171,20 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
   take(*values, "mount_push_damping", w.mount.push_damping);
   take(*values, "mount_rise_frequency", w.mount.rise_frequency);
   take(*values, "mount_rise_damping", w.mount.rise_damping);
+  w.mount.swing_frequency = w.mount.rise_frequency;
+  w.mount.swing_damping = w.mount.rise_damping;
+  take(*values, "mount_roll_inertia", w.mount.roll_inertia);
+  take(*values, "mount_swing_frequency", w.mount.swing_frequency);
+  take(*values, "mount_swing_damping", w.mount.swing_damping);
+  take(*values, "mount_centre_ahead", w.mount.centre_of_mass.x);
+  take(*values, "mount_centre_above", w.mount.centre_of_mass.y);
+  take(*values, "mount_centre_beside", w.mount.centre_of_mass.z);
+  take(*values, "mount_lift_frequency", w.mount.lift_frequency);
+  take(*values, "mount_lift_damping", w.mount.lift_damping);
+  take(*values, "mount_slide_frequency", w.mount.slide_frequency);
+  take(*values, "mount_slide_damping", w.mount.slide_damping);
+  take(*values, "mount_roll_frequency", w.mount.roll_frequency);
+  take(*values, "mount_roll_damping", w.mount.roll_damping);
   if (auto s = ballistics::check(w); !s) return detail::in_file(file, s.error());
   return w;
 }

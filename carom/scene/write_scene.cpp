@@ -101,6 +101,7 @@ class SceneWriter {
       Fields p;
       p.put("materials", "[" + std::to_string(pair.material_a) + ", " + std::to_string(pair.material_b) + "]");
       p.put("friction", pair.rule.friction).put("restitution", pair.rule.restitution);
+      p.unless("static_friction", pair.rule.static_friction, 0.0f);
       p.unless("rolling_resistance", pair.rule.rolling_resistance, 0.0f);
       p.unless("spinning_resistance", pair.rule.spinning_resistance, 0.0f);
       list += (list.empty() ? "" : ", ") + p.object();

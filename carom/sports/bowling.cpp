@@ -24,6 +24,29 @@ core::Status check(const Lane& lane) {
   return {};
 }
 
+core::Status usbc_allows(const BowlingBall& ball, const Lane& lane) {
+  if (const core::Status good = detail::check_fields(ball, "a bowling ball"); !good) return good;
+  if (const core::Status good = check(lane); !good) return good;
+  constexpr double inch = 0.0254, pound = 0.45359237, rounding = 1 + 1e-9;
+  double grip = 0;
+  for (const Lane::Stretch& s : lane.stretches) grip = math::max(grip, ball.cover * s.friction);
+  const struct {
+    const char* what;
+    double found, least, most;
+    const char* unit;
+  } rules[] = {{"diameter", 2 * ball.radius / inch, 8.5, 8.595, " in"},
+               {"weight", ball.mass / pound, 0, 16, " lb"},
+               {"radius of gyration", ball.gyration / inch, 2.46, 2.80, " in"},
+               {"differential", ball.differential / inch, 0, .06, " in"},
+               {"friction on the lane", grip, 0, .32, ""}};
+  for (const auto& rule : rules)
+    if (rule.found > rule.most * rounding || rule.found * rounding < rule.least)
+      return core::Error{
+          core::text("not by USBC's rules: ", core::refused(core::text("the ", rule.what, " of the ball"), rule.found,
+                                                            core::text(rule.least, " to ", rule.most, rule.unit)))};
+  return {};
+}
+
 namespace {
 
 core::Status check(const BowlingBall& ball, const Lane& lane, const Delivery& d) {

@@ -12,7 +12,10 @@ struct BowlingBall {
   double mass = 6.8;         ///< kg
   double radius = 0.1085;    ///< m
   double gyration = 0.0635;  ///< m, radius of gyration; USBC: 2.46 to 2.80 in
-  double cover = 1;          ///< times the lane's friction: hard plastic grips less than what lanes are measured with
+  /// m, greatest less least radius of gyration over the ball's axes; USBC: at most .06 in. It is there for the rules:
+  /// `bowl` takes one radius for all axes, the axis does not wander over the ball (track flare).
+  double differential = 0;
+  double cover = 1;  ///< times the lane's friction: hard plastic grips less than what lanes are measured with
 };
 /// Stretches of the lane with their friction, one after another; beyond the last its friction goes on.
 struct Lane {
@@ -27,6 +30,11 @@ struct Lane {
 };
 /// Errors name what cannot be: sizes, stretches that do not follow one another.
 CAROM_API core::Status check(const Lane& lane);
+/// Whether the rules of the United States Bowling Congress allow this ball on this lane: diameter 8.5 to 8.595 in, at
+/// most 16 lb, radius of gyration 2.46 to 2.80 in, differential at most .06 in, friction between them (lane times
+/// cover) at most .32. The error names what they refuse. `bowl` does not ask: duckpins and candlepins have rules of
+/// their own.
+CAROM_API core::Status usbc_allows(const BowlingBall& ball, const Lane& lane);
 /// How it is let go: direction and turning of the axis. With axis rotation 0 it rolls end over end, with 90° the spin
 /// is about the way itself and carries to the left (a right-hander's hook: positive).
 struct Delivery {

@@ -140,21 +140,22 @@ std::span<const GamePreset<CricketDelivery>> cricket_presets() {
 
 std::span<const GamePreset<BowlingBall>> bowling_ball_presets() {
   constexpr std::string_view usbc =
-      "USBC specifications: 8.5 to 8.595 in, at most 16 lb, radius of gyration 2.46 to 2.80 in; cover: designer value";
+      "USBC specifications: 8.5 to 8.595 in, at most 16 lb, radius of gyration 2.46 to 2.80 in, differential at "
+      "most .06 in; cover and differential: designer values";
   constexpr double radius = 0.5 * 8.55 * inch;
   static const std::vector<GamePreset<BowlingBall>> list = {
       {"reactive",
        "A strike ball: porous cover, low radius of gyration.",
        usbc,
-       {.mass = 15 * pound, .radius = radius, .gyration = 2.48 * inch, .cover = 1}},
+       {.mass = 15 * pound, .radius = radius, .gyration = 2.48 * inch, .differential = .050 * inch, .cover = 1}},
       {"urethane",
        "Earlier and smoother.",
        usbc,
-       {.mass = 15 * pound, .radius = radius, .gyration = 2.58 * inch, .cover = 0.85}},
+       {.mass = 15 * pound, .radius = radius, .gyration = 2.58 * inch, .differential = .035 * inch, .cover = 0.85}},
       {"plastic",
        "A spare ball of polyester, or one of the house: it goes straight.",
        usbc,
-       {.mass = 14 * pound, .radius = radius, .gyration = 2.70 * inch, .cover = 0.55}},
+       {.mass = 14 * pound, .radius = radius, .gyration = 2.70 * inch, .differential = .010 * inch, .cover = 0.55}},
       {"duckpin",
        "No holes, 5 in.",
        "rules of the game: 4.75 to 5 in, at most 3 lb 12 oz; a uniform ball",

@@ -1,6 +1,9 @@
 // Laws of recoil, sway, dispersion and penetration. Published numbers are in tests/published.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "carom/ballistics/dispersion.h"
 #include "carom/ballistics/penetration.h"
 #include "carom/ballistics/recoil.h"
@@ -33,6 +36,170 @@ TEST(Recoil, MountIsADampedOscillator) {
   }
 }
 
+// Rise and swing have a frequency and a damping each: x(t) = (J b/I ω_d) e^{−ζωt} sin ω_d t, whose top is at
+// tan ω_d t = √(1 − ζ²)/ζ.
+TEST(Recoil, RiseAndSwingEachHaveTheirOwn) {
+  const GunMount mount{.bore_above_shoulder = .04,
+                       .bore_beside_shoulder = .01,
+                       .rise_frequency = 2,
+                       .rise_damping = .3,
+                       .swing_frequency = 5,
+                       .swing_damping = .7};
+  const double impulse = 9, shot[] = {0.0};
+  const auto top = [&](double lever, double frequency, double zeta) {
+    const double w = 2 * math::pi * frequency, s = math::sqrt(1 - zeta * zeta);
+    const double t = math::atan2(s, zeta) / (w * s);
+    return std::pair{t, impulse * lever / (mount.inertia * w) * math::exp(-zeta * w * t)};
+  };
+  const auto [rise_time, rise] = top(.04, 2, .3);
+  const auto [swing_time, swing] = top(.01, 5, .7);
+  EXPECT_NEAR(recoil_at(mount, impulse, shot, rise_time).rise, rise, 1e-12);
+  EXPECT_NEAR(recoil_at(mount, impulse, shot, swing_time).swing, swing, 1e-12);
+  EXPECT_LT(recoil_at(mount, impulse, shot, rise_time + .01).rise, rise);
+  EXPECT_LT(recoil_at(mount, impulse, shot, rise_time - .01).rise, rise);
+  EXPECT_LT(recoil_at(mount, impulse, shot, swing_time + .01).swing, swing);
+  const RecoilMotion at = recoil_at(mount, impulse, shot, .1);
+  EXPECT_EQ(at.lift, 0);
+  EXPECT_EQ(at.slide, 0);
+  EXPECT_EQ(at.roll, 0);
+}
+
+// A centre of mass a hair off the shoulder moves as none does: the exponential of the coupled system against the closed
+// form of three oscillators, damped little, critically and more, over bursts, and long after.
+TEST(Recoil, CoupledBySoLittleIsUncoupled) {
+  for (const double damping : {0.0, .4, 1.0, 2.5}) {
+    GunMount mount{.bore_beside_shoulder = .01, .push_damping = damping, .rise_damping = damping};
+    GunMount hair = mount;
+    hair.centre_of_mass = {1e-12, 1e-12, 1e-12};
+    const double shots[] = {0, .09, .2, .7};
+    for (const double t : {.001, .05, .31, 1.7, 9.0}) {
+      const RecoilMotion a = recoil_at(mount, 10, shots, t), b = recoil_at(hair, 10, shots, t);
+      EXPECT_NEAR(a.back, b.back, 1e-10) << damping << ' ' << t;
+      EXPECT_NEAR(a.rise, b.rise, 1e-10) << damping << ' ' << t;
+      EXPECT_NEAR(a.swing, b.swing, 1e-10) << damping << ' ' << t;
+    }
+  }
+}
+
+// A centre of mass above the shoulder couples the way back with the rise. Without damping the two modes are known:
+// det(K − ω² M) = 0 with M = (m, −m y; −m y, I), and q(t) = Σ φ (φᵀp) sin(ωt)/(ω φᵀMφ).
+TEST(Recoil, PushAndRiseCoupledHaveTwoModes) {
+  const double y = .12, m = 5, inertia = .4, b = .05, impulse = 8;
+  const GunMount mount{.mass = m,
+                       .inertia = inertia,
+                       .bore_above_shoulder = b,
+                       .push_frequency = 3,
+                       .push_damping = 0,
+                       .rise_frequency = 2,
+                       .rise_damping = 0,
+                       .centre_of_mass = {0, y, 0},
+                       .roll_inertia = .1};
+  ASSERT_TRUE(check(mount));
+  const double k1 = m * math::square(6 * math::pi), k2 = inertia * math::square(4 * math::pi), c = -m * y;
+  // (k1 − w m)(k2 − w I) − w² c² = 0 in w = ω².
+  const double qa = m * inertia - c * c, qb = -(k1 * inertia + k2 * m), qc = k1 * k2;
+  const double shot[] = {0.0};
+  for (const double t : {.01, .1, .33, 1.0, 4.0}) {
+    double x = 0, turn = 0;
+    for (const double sign : {-1.0, 1.0}) {
+      const double w = (-qb + sign * math::sqrt(qb * qb - 4 * qa * qc)) / (2 * qa), omega = math::sqrt(w);
+      const double v = (k1 - w * m) / (w * c);  // φ = (1, v)
+      const double scale = (-impulse + v * impulse * b) / (m + 2 * c * v + inertia * v * v);
+      x += scale * math::sin(omega * t) / omega;
+      turn += v * scale * math::sin(omega * t) / omega;
+    }
+    const RecoilMotion at = recoil_at(mount, impulse, shot, t);
+    EXPECT_NEAR(at.back, -x, 1e-10) << t;
+    EXPECT_NEAR(at.rise, turn, 1e-9) << t;
+    EXPECT_NEAR(at.swing, 0, 1e-15) << "nothing couples it";
+    EXPECT_NEAR(at.slide, 0, 1e-15);
+  }
+  // A bore through the centre of mass lifts nothing at first: the shoulder under it does, later.
+  GunMount through = mount;
+  through.bore_above_shoulder = y;
+  const double dt = 1e-7;
+  EXPECT_NEAR(recoil_at(through, impulse, shot, dt).rise / dt, 0, 1e-4);
+  EXPECT_NEAR(recoil_at(through, impulse, shot, dt).back / dt, impulse / m, 1e-4);
+  EXPECT_GT(recoil_at(through, impulse, shot, .05).rise, 1e-3);
+}
+
+// All six ways at once: without damping the energy of the shot stays, ½ pᵀM⁻¹p = ½ q̇ᵀMq̇ + ½ qᵀKq, and with it the
+// equations of motion hold by differences of the positions, M q̈ + D q̇ + K q = 0.
+TEST(Recoil, SixWaysKeepTheEnergyAndTheEquations) {
+  GunMount g{.mass = 5,
+             .inertia = .5,
+             .bore_above_shoulder = .06,
+             .bore_beside_shoulder = .02,
+             .swing_frequency = 2.5,
+             .centre_of_mass = {.2, .03, -.02},
+             .roll_inertia = .03,
+             .lift_frequency = 4,
+             .slide_frequency = 5,
+             .roll_frequency = 6};
+  ASSERT_TRUE(check(g));
+  using Six = std::array<double, 6>;
+  const double shot[] = {0.0}, impulse = 7, h = 1e-4;
+  const auto at = [&](double t) {
+    const RecoilMotion q = recoil_at(g, impulse, shot, t);
+    return Six{-q.back, q.lift, q.slide, q.roll, -q.swing, q.rise};
+  };
+  const math::Vec3d c = g.centre_of_mass;
+  // The momentum of rates and its moment about the shoulder, from the motion of the centre: p = m (u̇ + θ̇ × c),
+  // L = c × p + I_C θ̇, where I_C are the inertias less those of the mass in its centre.
+  const auto momentum = [&](const Six& rate) {
+    const math::Vec3d u{rate[0], rate[1], rate[2]}, turn{rate[3], rate[4], rate[5]};
+    const math::Vec3d p = g.mass * (u + math::cross(turn, c)), own = math::cross(c, p);
+    return Six{p.x,
+               p.y,
+               p.z,
+               own.x + (g.roll_inertia - g.mass * (c.y * c.y + c.z * c.z)) * turn.x,
+               own.y + (g.inertia - g.mass * (c.x * c.x + c.z * c.z)) * turn.y,
+               own.z + (g.inertia - g.mass * (c.x * c.x + c.y * c.y)) * turn.z};
+  };
+  const double f[] = {g.push_frequency, g.lift_frequency,  g.slide_frequency,
+                      g.roll_frequency, g.swing_frequency, g.rise_frequency};
+  const double own[] = {g.mass, g.mass, g.mass, g.roll_inertia, g.inertia, g.inertia};
+  for (const bool damped : {false, true}) {
+    const double zeta[] = {.8, .5, .4, .6, .7, .3};
+    double* const dampings[] = {&g.push_damping, &g.lift_damping,  &g.slide_damping,
+                                &g.roll_damping, &g.swing_damping, &g.rise_damping};
+    for (int i = 0; i < 6; ++i) *dampings[i] = damped ? zeta[i] : 0;
+    double first = 0;
+    for (const double t : {.02, .11, .4, 1.3}) {
+      const Six before = at(t - h), now = at(t), after = at(t + h);
+      Six rate, second;
+      for (int i = 0; i < 6; ++i) {
+        rate[i] = (after[i] - before[i]) / (2 * h);
+        second[i] = (after[i] - 2 * now[i] + before[i]) / (h * h);
+      }
+      const Six force = momentum(second), moves = momentum(rate);
+      double energy = 0;
+      for (int i = 0; i < 6; ++i) {
+        const double w = 2 * math::pi * f[i], k = own[i] * w * w, d = 2 * (damped ? zeta[i] : 0) * w * own[i];
+        EXPECT_NEAR(force[i] + d * rate[i] + k * now[i], 0, 2e-4 * impulse) << i << " at " << t;
+        energy += .5 * rate[i] * moves[i] + .5 * k * now[i] * now[i];
+      }
+      if (!damped) {
+        if (first == 0) first = energy;
+        EXPECT_NEAR(energy / first, 1, 1e-5) << t;
+      } else {
+        EXPECT_LT(energy, first == 0 ? 1e9 : first);
+        first = energy;
+      }
+    }
+  }
+}
+
+TEST(Recoil, MountsThatNoBodyHasAreRefused) {
+  EXPECT_TRUE(check(GunMount{}));
+  const auto heavy = check(GunMount{.centre_of_mass = {.5, 0, 0}});  // 4 kg at half a metre have 1 kg·m²
+  ASSERT_FALSE(heavy);
+  EXPECT_EQ(heavy.error().message.find("inertia is 0.8, expected more than 1 "), 0u) << heavy.error().message;
+  EXPECT_NE(check(GunMount{.centre_of_mass = {0, .1, 0}}).error().message.find("roll_inertia"), std::string::npos);
+  EXPECT_FALSE(check(GunMount{.slide_damping = -1}));
+  EXPECT_FALSE(check(GunMount{.centre_of_mass = {std::nan(""), 0, 0}}));
+}
+
 TEST(Recoil, PatternClimbsAndRepeats) {
   GunMount mount;
   mount.bore_beside_shoulder = .005;
@@ -41,12 +208,13 @@ TEST(Recoil, PatternClimbsAndRepeats) {
   ASSERT_EQ(pattern->size(), 20u);
   EXPECT_EQ((*pattern)[0], math::Vec2d{});
   EXPECT_GT((*pattern)[5].y, (*pattern)[1].y);
-  EXPECT_LT((*pattern)[5].x, 0) << "a bore to the right of the shoulder swings to the left";
+  EXPECT_GT((*pattern)[5].x, 0) << "a bore to the right of the shoulder swings the muzzle to the right, as one above "
+                                   "lifts it";
   EXPECT_EQ(*recoil_pattern(mount, 6, {.shots = 20}), *pattern);
   EXPECT_NE(*recoil_pattern(mount, 6, {.shots = 20, .seed = 2}), *pattern);
   const auto bad = recoil_pattern({.mass = 0}, 6, {});
   ASSERT_FALSE(bad);
-  EXPECT_EQ(bad.error().message, "recoil: mass is 0, expected a finite number > 0");
+  EXPECT_EQ(bad.error().message, "recoil: mass is 0, expected a number above 0, to 10^9");
 }
 
 // Root mean squares and peaks of the spectrum are as set (not realism: amplitudes are designer's numbers).

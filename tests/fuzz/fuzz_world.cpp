@@ -310,7 +310,8 @@ struct Player : fuzz::Maker<D> {
             return world.set_density(shape(), in.number(1000)).ok();
         }
       case 23: {
-        const PairRule rule{in.number(), in.number(), in.number(), in.number()};
+        PairRule rule{in.number(), in.number(), in.number(), in.number()};
+        if (in.flag()) rule.static_friction = in.number();
         return world.set_pair_rule(in.byte() % 4, in.byte() % 4, in.flag() ? &rule : nullptr).ok();
       }
       case 24:

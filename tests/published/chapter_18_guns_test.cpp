@@ -108,16 +108,33 @@ TEST(Chapter18, FieldSolversCoriolis) {
   EXPECT_NEAR(flight->at(2000 * yard)->height / inch, -4569.5, 1.5e-3 * 4569.5);
 }
 
-// The swing of a field solver (Kestrel) over the compass at 2000 yd, 69 gr, as published: 1.46 MOA aside at the pole
-// and 1.03 at 45°, which the sine of the latitude makes of it; up and down it is ± 1.88 MOA east and west, none north.
+// A field solver's (Kestrel 5700) readings at 2000 yd, as published: 69 gr, G1 .365, 2600 ft/s, sight 3.2 in, zero
+// 100 yd, dry standard air; aside 1.46 MOA at the pole and 1.03 at 45° whatever the azimuth, up and down ± 1.88 MOA
+// east and west on a hold of 222.52 (last printed digit, and .5 % of our time of flight against its own).
 TEST(Chapter18, FieldSolversCoriolisByLatitude) {
-  const double pole = field_coriolis_drift(90 * degree, 2000 * yard, 1),
-               middle = field_coriolis_drift(45 * degree, 2000 * yard, 1);
-  EXPECT_NEAR(middle / pole, 1.03 / 1.46, .005);
-  const double east = 1 - field_coriolis_drop_factor(45 * degree, 90 * degree, 800),
-               west = 1 - field_coriolis_drop_factor(45 * degree, 270 * degree, 800);
-  EXPECT_NEAR(east, -west, 1e-12);
-  EXPECT_GT(east, 0) << "higher to the east";
+  const Gun gun{.projectile = projectile_from_coefficient(DragFunction::g1, .365),
+                .muzzle_speed = 2600 * foot,
+                .sight_height = 3.2 * inch};
+  const Conditions air{.air = environment::AirColumn::uniform(1.225)};
+  const double zero = *zero_elevation(gun, air, 100 * yard), range = 2000 * yard;
+  const auto flight = SightedFlight::fire(gun, air, {.elevation = zero}, 2100 * yard);
+  ASSERT_TRUE(flight);
+  const double time = flight->at(range)->time, height = flight->at(range)->height;
+  EXPECT_NEAR(math::atan(-height / range) / minute_of_angle, 222.52, .005 * 222.52);
+  const struct {
+    double latitude, azimuth, aside, up;
+  } readings[] = {{45, 0, 1.03, 0},   {0, 0, 0, 0},           {90, 0, 1.46, 0},     {45, 90, 1.03, 1.88},
+                  {45, 180, 1.03, 0}, {45, 270, 1.03, -1.88}, {30, 0, .73, 0},      {60, 0, 1.27, 0},
+                  {-45, 0, -1.03, 0}, {-45, 90, -1.03, 1.88}, {-45, 180, -1.03, 0}, {-45, 270, -1.03, -1.88}};
+  const double bore = range * math::tan(zero) - gun.sight_height;  // the line of departure, from which it falls
+  for (const auto& r : readings) {
+    const double latitude = r.latitude * degree, azimuth = r.azimuth * degree;
+    const double aside = field_coriolis_drift(latitude, range, time) / range / minute_of_angle;
+    EXPECT_NEAR(aside, r.aside, .005 + .005 * math::abs(r.aside)) << r.latitude;
+    const double fallen = (height - bore) * field_coriolis_drop_factor(latitude, azimuth, gun.muzzle_speed);
+    const double up = (math::atan((bore + fallen) / range) - math::atan(height / range)) / minute_of_angle;
+    EXPECT_NEAR(up, r.up, .005 + .02 * math::abs(r.up)) << r.latitude << ' ' << r.azimuth;
+  }
 }
 
 TEST(Chapter18, AMinuteOfAngle) { EXPECT_NEAR(100 * math::tan(minute_of_angle), .0290888, 1e-7); }

@@ -90,10 +90,10 @@ TEST(Chapter18Wave, SwisdaksFits) {
   };
   const std::vector<Range> pressure = {{.2, 2.9, {7.2106, -2.1069, -.3229, .1117, .0685}},
                                        {2.9, 23.8, {7.5938, -3.0523, .40977, .0261, -.01267}},
-                                       {23.8, 40, {6.0536, -1.4066}}},
-                           reflected = {{.2, 2, {9.006, -2.6893, -.6295, .1011, .29255, .13505, .019736}},
+                                       {23.8, 198.5, {6.0536, -1.4066}}},
+                           reflected = {{.06, 2, {9.006, -2.6893, -.6295, .1011, .29255, .13505, .019736}},
                                         {2, 40, {8.8396, -1.733, -2.64, 2.293, -.8232, .14247, -.0099}}},
-                           arrival = {{.2, 1.5, {-.7604, 1.8058, .1257, -.0437, -.0310, -.00669}},
+                           arrival = {{.06, 1.5, {-.7604, 1.8058, .1257, -.0437, -.0310, -.00669}},
                                       {1.5, 40, {-.7137, 1.5732, .5561, -.4213, .1054, -.00929}}},
                            duration = {{.2, 1.02, {.5426, 3.2299, -1.5931, -5.9667, -4.0815, -.9149}},
                                        {1.02, 2.8, {.5440, 2.7082, -9.7354, 14.3425, -9.7791, 2.8535}},
@@ -101,9 +101,9 @@ TEST(Chapter18Wave, SwisdaksFits) {
                            impulse = {{.2, .96, {5.522, 1.117, .6, -.292, -.087}},
                                       {.96, 2.38, {5.465, -.308, -1.464, 1.362, -.432}},
                                       {2.38, 33.7, {5.2749, -.4677, -.2499, .0588, -.00554}},
-                                      {33.7, 40, {5.9825, -1.062}}},
-                           reflected_impulse = {{.2, 40, {6.7853, -1.3466, .101, -.01123}}},
-                           speed = {{.2, 1.5, {.1794, -.956, -.0866, .109, .0699, .01218}},
+                                      {33.7, 158.7, {5.9825, -1.062}}},
+                           reflected_impulse = {{.06, 40, {6.7853, -1.3466, .101, -.01123}}},
+                           speed = {{.06, 1.5, {.1794, -.956, -.0866, .109, .0699, .01218}},
                                     {1.5, 40, {.2597, -1.326, .3767, .0396, -.0351, .00432}}};
   const auto fit = [](const std::vector<Range>& ranges, double z) {
     for (const Range& range : ranges)
@@ -127,6 +127,39 @@ TEST(Chapter18Wave, SwisdaksFits) {
     EXPECT_NEAR(w.reflected_impulse / fit(reflected_impulse, z), 1, 1e-12) << z;
     EXPECT_NEAR(w.front_speed / 1e3 / fit(speed, z), 1, 1e-12) << z;
   }
+  // Each over its own range, from .06 of what acts on walls to 198.5 of the peak, and not a step beyond.
+  const struct {
+    WaveQuantity quantity;
+    const std::vector<Range>& fit;
+    double unit;
+  } all[] = {{WaveQuantity::pressure, pressure, 1e3}, {WaveQuantity::reflected_pressure, reflected, 1e3},
+             {WaveQuantity::arrival, arrival, 1e-3},  {WaveQuantity::duration, duration, 1e-3},
+             {WaveQuantity::impulse, impulse, 1},     {WaveQuantity::reflected_impulse, reflected_impulse, 1},
+             {WaveQuantity::front_speed, speed, 1e3}};
+  for (const auto& one : all) {
+    const double least = one.fit.front().from, most = one.fit.back().to;
+    EXPECT_EQ(fitted_range(one.quantity).least, least);
+    EXPECT_EQ(fitted_range(one.quantity).greatest, most);
+    for (double z = least * 1.0001; z < most; z *= 1.0137) {
+      const auto found = wave_quantity(one.quantity, 1, z);
+      ASSERT_TRUE(found) << found.error().message;
+      EXPECT_NEAR(*found / one.unit / fit(one.fit, z), 1, 1e-12) << to_string(one.quantity) << " at " << z;
+    }
+    for (const double z : {.999 * least, 1.001 * most}) {
+      const auto refused = wave_quantity(one.quantity, 1, z);
+      ASSERT_FALSE(refused) << to_string(one.quantity) << " at " << z;
+      EXPECT_NE(refused.error().message.find(to_string(one.quantity)), std::string::npos) << refused.error().message;
+    }
+  }
+  // Where all have an answer it is the wave's, and times and impulses of 27 kg are thrice those of 1 kg.
+  const Wave wave = blast_wave(27, 12).value();
+  EXPECT_EQ(wave_quantity(WaveQuantity::arrival, 27, 12).value(), wave.arrival);
+  EXPECT_EQ(wave_quantity(WaveQuantity::pressure, 27, 12).value(), wave.pressure);
+  EXPECT_NEAR(
+      wave_quantity(WaveQuantity::impulse, 27, 300).value() / wave_quantity(WaveQuantity::impulse, 1, 100).value(), 3,
+      1e-12);
+  EXPECT_FALSE(wave_quantity(WaveQuantity::pressure, 0, 1));
+  EXPECT_FALSE(wave_quantity(WaveQuantity::pressure, 1, -1));
 }
 
 // The ideal gas's reflection is about a quarter too low at Z = .2, and near enough from Z = 1 on.

@@ -6,6 +6,7 @@
 #include "carom/sports/baseball.h"
 #include "carom/sports/bounce.h"
 #include "carom/sports/bowling.h"
+#include "carom/sports/game_presets.h"
 #include "carom/sports/presets.h"
 
 namespace chapter_19_ball_games_test {
@@ -71,14 +72,46 @@ TEST(Chapter19, BowlingHook) {
   EXPECT_NEAR(path->entry_angle() / degree, 5.3441, 5e-5);
   // What goes far enough to the side is a gutter ball.
   EXPECT_TRUE(bowl({}, {}, {.angle = .1})->gutter);
-  // USBC: radius of gyration 2.46 to 2.80 in, diameter 8.5 to 8.595 in, mass up to 16 lb, friction up to .32.
-  const BowlingBall ball;
-  EXPECT_GE(ball.gyration / .0254, 2.46);
-  EXPECT_LE(ball.gyration / .0254, 2.80);
-  EXPECT_GE(2 * ball.radius / .0254, 8.5);
-  EXPECT_LE(2 * ball.radius / .0254, 8.595);
-  EXPECT_LE(ball.mass / .45359237, 16);
-  for (const Lane::Stretch& stretch : Lane{}.stretches) EXPECT_LE(stretch.friction, .32);
+}
+
+// USBC: diameter 8.5 to 8.595 in, up to 16 lb, radius of gyration 2.46 to 2.80 in, differential up to .06 in, friction
+// up to .32. What is a thousandth beyond is refused, and the refusal names it; what is on the limit is not.
+TEST(Chapter19, UsbcsRules) {
+  constexpr double inch = .0254, pound = .45359237;
+  EXPECT_TRUE(usbc_allows({}, {}));
+  for (const char* name : {"reactive", "urethane", "plastic"})
+    for (const auto& lane : lane_presets()) {
+      const core::Status allowed = usbc_allows(*bowling_ball_preset(name), lane.value);
+      EXPECT_TRUE(allowed) << name << ' ' << lane.name << ": " << allowed.error().message;
+    }
+  EXPECT_FALSE(usbc_allows(*bowling_ball_preset("duckpin"), {}));
+  const auto dry = [](double friction) { return Lane{.stretches = {{18.288, friction}}}; };
+  const struct {
+    BowlingBall ball;
+    Lane lane;
+    const char* refused;  // "" where it is allowed
+  } cases[] = {
+      {{.radius = 8.5 / 2 * inch}, {}, ""},
+      {{.radius = 8.595 / 2 * inch}, {}, ""},
+      {{.radius = 8.499 / 2 * inch}, {}, "diameter"},
+      {{.radius = 8.596 / 2 * inch}, {}, "diameter"},
+      {{.mass = 16 * pound}, {}, ""},
+      {{.mass = 16.01 * pound}, {}, "weight"},
+      {{.gyration = 2.46 * inch}, {}, ""},
+      {{.gyration = 2.80 * inch}, {}, ""},
+      {{.gyration = 2.459 * inch}, {}, "radius of gyration"},
+      {{.gyration = 2.801 * inch}, {}, "radius of gyration"},
+      {{.differential = .06 * inch}, {}, ""},
+      {{.differential = .0601 * inch}, {}, "differential"},
+      {{}, dry(.32), ""},
+      {{}, dry(.3201), "friction"},
+      {{.cover = 1.1}, dry(.30), "friction"},
+  };
+  for (const auto& c : cases) {
+    const core::Status allowed = usbc_allows(c.ball, c.lane);
+    EXPECT_EQ(bool(allowed), !*c.refused) << c.refused;
+    if (!allowed) EXPECT_NE(allowed.error().message.find(c.refused), std::string::npos) << allowed.error().message;
+  }
 }
 
 // Mechanics 5.4: solid sphere r = 21.35 mm, v = (10, -5), no spin, mu .3, e .8: slides (grip would need J_t/m = 2.857),

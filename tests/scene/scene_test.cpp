@@ -424,13 +424,19 @@ TEST(Scene, PairsOfTheTableOfFriction) {
     return parse_scene(R"({"dimension": 2, "world": {"material_pairs": [{"materials": [1, 2], )" + pair + "}]}}", "t",
                        test::read_source);
   };
-  for (const auto& [pair, friction] :
-       {std::pair{R"("pair": "rubber on asphalt, wet")", 0.5f}, std::pair{R"("pair": "ice on steel")", 0.03f},
-        std::pair{R"("pair": "ice on steel", "friction": 0.2)", 0.2f}}) {
+  const struct {
+    const char* pair;
+    float friction, at_rest;  // at_rest 0: as friction
+  } cases[] = {{R"("pair": "rubber on asphalt, wet")", 0.5f, 0.6f},
+               {R"("pair": "ice on steel")", 0.03f, 0.1f},
+               {R"("pair": "ice on steel", "friction": 0.2)", 0.2f, 0},
+               {R"("friction": 0.2, "static_friction": 0.3)", 0.2f, 0.3f}};
+  for (const auto& [pair, friction, at_rest] : cases) {
     std::vector<rigid::MaterialPair> pairs;
     start(scene(pair).value()).world2->pair_rules(pairs);
     ASSERT_EQ(pairs.size(), 1u);
     EXPECT_EQ(pairs[0].rule.friction, friction) << pair;
+    EXPECT_EQ(pairs[0].rule.static_friction, at_rest) << pair;
   }
   const auto wrong = scene(R"("pair": "rubber on asfalt, wet")");
   ASSERT_FALSE(wrong.ok());

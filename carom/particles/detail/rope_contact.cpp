@@ -86,17 +86,27 @@ void RopeSolver::place_contacts(Rope& rope) {
     const RopeBody& body = set.bodies_[std::size_t(contact.body)];
     const float radius = float(rope.material.radius);
     const Vec3d drift = rope.velocity[i] - body.velocity_at(rope.position[i]);
-    Vec3f normal;
-    float here = 0, ahead = 0;
-    if (!nearest_plane(near.shape, Vec3f(shape_point(near, rope.position[i])), radius, 1e3f, normal, here) ||
-        !nearest_plane(near.shape, Vec3f(shape_point(near, rope.position[i] + h * drift)), radius, 1e3f, normal,
-                       ahead)) {
+    const Vec3d from = shape_point(near, rope.position[i]), to = shape_point(near, rope.position[i] + h * drift);
+    Vec3f normal, side;
+    float here = 0, there = 0;
+    if (!nearest_plane(near.shape, Vec3f(from), radius, 1e3f, side, here) ||
+        !nearest_plane(near.shape, Vec3f(to), radius, 1e3f, normal, there)) {
       contact.state = RopeHold::none;
       continue;
     }
+    double ahead = double(there);
+    if (dot(side, normal) < 0 && here > -radius && passes([&](double f) {
+          Vec3f unused;
+          float out = 1;
+          (void)nearest_plane(near.shape, Vec3f(lerp(from, to, f)), radius, 1e3f, unused, out);
+          return double(out);
+        })) {  // what is thin: it stays on the side where it is
+      normal = side;
+      ahead = double(here) + dot(to - from, Vec3d(side));
+    }
     contact.separation = double(here);
     node.normal = rotate(body.rotation, rotate(near.turn, Vec3d(normal)));
-    place_hold(contact, node, rope.position[i], rope.velocity[i], double(ahead), rope.material.radius);
+    place_hold(contact, node, rope.position[i], rope.velocity[i], ahead, rope.material.radius);
   }
 }
 

@@ -16,30 +16,6 @@ constexpr double edge_stiffness = 1e6;  // over the mass of a segment's ends
 constexpr double edge_depth = 0.25, edge_kept = 0.1;
 constexpr double edge_length = 0.2;
 
-/// Where a segment is nearest to a shape: along it the distance to a convex shape has one least value.
-template <class Distance>
-double nearest_share(const Distance& distance) {
-  constexpr double golden = 0.6180339887498949;
-  double low = 0, high = 1, a = 1 - golden, b = golden;
-  double at_a = distance(a), at_b = distance(b);
-  for (int k = 0; k < 16; ++k) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = distance(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = distance(b);
-    }
-  }
-  return 0.5 * (low + high);
-}
-
 }  // namespace
 
 void RopeSolver::find_edges(Rope& rope, const RopeShape& near, int number, double friction,
@@ -94,10 +70,21 @@ void RopeSolver::place_edges(Rope& rope) {
       return double(out);
     };
     const double ends = math::min(separation(then[0]), separation(then[1]));
-    if (!good || ends - 0.5 * distance(then[0], then[1]) > 0) continue;
+    const double beyond = ends - 0.5 * distance(then[0], then[1]);
+    if (!good || beyond > math::max(distance(now[0], then[0]), distance(now[1], then[1]))) continue;
     edge.share = nearest_share([&](double s) { return separation(lerp(then[0], then[1], s)); });
-    contact.separation = separation(lerp(now[0], now[1], edge.share));
-    const double ahead = separation(lerp(then[0], then[1], edge.share));
+    const Vec3d from = lerp(now[0], now[1], edge.share), to = lerp(then[0], then[1], edge.share);
+    contact.separation = separation(from);
+    const Vec3f side = normal;
+    double ahead = separation(to);
+    // Through what is thin it would go within the substep: it stays on the side where it is.
+    const bool through = dot(side, normal) < 0 && contact.separation > -double(radius) &&
+                         passes([&](double f) { return separation(lerp(from, to, f)); });
+    if (through) {
+      normal = side;
+      ahead = contact.separation + dot(to - from, Vec3d(side));
+    }
+    if (beyond > 0 && !through) continue;
     const double depth = (before == RopeHold::none ? edge_depth : edge_kept) *
                          math::max(rope.material.radius, edge_length * distance(then[0], then[1]));
     if (!good || edge.share < 0.01 || edge.share > 0.99 || ends - ahead < depth) continue;

@@ -291,6 +291,34 @@ void set_manifold_material(WorldImplementation<D>& world, std::int32_t manifold,
   if (m.place.color >= 0 && needs_extra(m)) ++world.graph.colors[m.place.color].extra;
 }
 
+/// m/s: what slides slower than this is at rest, as far as friction goes. What held an anchor in the last step may be
+/// shaken faster than what is new, or slid.
+constexpr float creep_speed = 0.01f, shaken_speed = 0.1f;
+
+template <class D>
+bool sticks(const WorldImplementation<D>& world, const ManifoldRecord<D>& m) {
+  using V = typename D::Vector;
+  const ContactRecord<D>& c = world.contacts.at(m.contact);
+  const typename D::Pose pose = shape_pose(world, world.shapes.at(c.shape[0]));
+  V middle{};
+  for (int i = 0; i < m.manifold.count; ++i) middle += m.manifold.points[i].point * (1.0f / float(m.manifold.count));
+  const typename D::Position place = world_point(pose, middle);
+  const auto velocity = [&](std::int32_t body) {
+    const SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+    return s.linear_velocity + cross(s.angular_velocity, V(place - world.bodies.motion[std::size_t(body)].center));
+  };
+  const V n = rotate(pose.rotation, m.manifold.normal);
+  V slip = velocity(c.body[1]) - velocity(c.body[0]) - surface_slip(world, c, m.manifold.material);
+  if constexpr (D::dimension == 2) slip -= V{-n.y, n.x} * m.tangent_speed;
+  slip -= n * dot(n, slip);
+  return math::length_squared(slip) < square(m.anchor != Anchor::none ? shaken_speed : creep_speed);
+}
+
+template <class D>
+float friction_of(const WorldImplementation<D>& world, const ManifoldRecord<D>& m, const PairRule& rule) {
+  return rule.static_friction > rule.friction && sticks(world, m) ? rule.static_friction : rule.friction;
+}
+
 template <class D>
 void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   ManifoldRecord<D>& m = world.contacts.manifold(manifold);
@@ -300,14 +328,15 @@ void mix_materials(WorldImplementation<D>& world, std::int32_t manifold) {
   const Material &ma = material_at(world, c.shape[0], m.manifold.material),
                  &mb = material_at(world, c.shape[1], m.manifold.material);
   const PairRule* const rule = find_pair_rule(world, ma.user_id, mb.user_id);
+  m.tangent_speed = ma.tangent_speed + mb.tangent_speed;
   if (rule != nullptr)
-    set_manifold_material(world, manifold, rule->friction, rule->restitution, rule->rolling_resistance * radius);
+    set_manifold_material(world, manifold, friction_of(world, m, *rule), rule->restitution,
+                          rule->rolling_resistance * radius);
   else
     set_manifold_material(world, manifold, math::sqrt(ma.friction * mb.friction), max(ma.restitution, mb.restitution),
                           max(ma.rolling_resistance, mb.rolling_resistance) * radius);
   m.spinning_lever =
       (rule != nullptr ? rule->spinning_resistance : max(ma.spinning_resistance, mb.spinning_resistance)) * radius;
-  m.tangent_speed = ma.tangent_speed + mb.tangent_speed;
 }
 
 template <class D>

@@ -92,6 +92,9 @@ inline typename D::Vector surface_slip(const WorldImplementation<D>& world, cons
     }
   return slip;
 }
+/// The coefficient of friction of a pair whose rule has one of rest too: that of rest while the contact sticks.
+template <class D>
+float friction_of(const WorldImplementation<D>& world, const ManifoldRecord<D>& m, const PairRule& rule);
 /// Flags that follow from the shapes and may change while a contact lives.
 template <class D>
 void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact);

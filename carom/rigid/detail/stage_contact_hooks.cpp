@@ -87,6 +87,22 @@ void ask_modifier(WorldImplementation<D>& world, const ContactRecord<D>& c, std:
 }  // namespace
 
 template <class D>
+void choose_friction(WorldImplementation<D>& world) {
+  bool any = false;
+  for (const PairRuleEntry& e : world.pair_rules) any = any || e.rule.static_friction > e.rule.friction;
+  if (!any) return;
+  for (const std::int32_t contact : world.contacts.awake) {
+    const ContactRecord<D>& c = world.contacts.at(contact);
+    for (std::int32_t i = c.first_manifold; i != none; i = world.contacts.manifold(i).next) {
+      ManifoldRecord<D>& m = world.contacts.manifold(i);
+      const PairRule* rule = find_pair_rule(world, material_at(world, c.shape[0], m.manifold.material).user_id,
+                                            material_at(world, c.shape[1], m.manifold.material).user_id);
+      if (rule != nullptr && rule->static_friction > rule->friction) m.friction = friction_of(world, m, *rule);
+    }
+  }
+}
+
+template <class D>
 void modify_contacts(WorldImplementation<D>& world) {
   if (world.shapes.extras.empty()) return;
   for (const std::int32_t contact : world.contacts.awake) {
@@ -124,6 +140,7 @@ bool passes_one_way(const WorldImplementation<D>& world, std::int32_t other, con
 }
 
 #define CAROM_INSTANTIATE(D)                                 \
+  template void choose_friction<D>(WorldImplementation<D>&); \
   template void modify_contacts<D>(WorldImplementation<D>&); \
   template bool passes_one_way<D>(const WorldImplementation<D>&, std::int32_t, const D::Vector&);
 CAROM_INSTANTIATE(Dim2)

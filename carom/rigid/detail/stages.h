@@ -14,6 +14,9 @@ void update_contacts(WorldImplementation<D>& world);
 /// One-way surfaces and the caller's contact modifier, in the order of the contacts, on the calling thread.
 template <class D>
 void modify_contacts(WorldImplementation<D>& world);
+/// Pairs whose rule has a friction of rest: that one where they stuck in the last step.
+template <class D>
+void choose_friction(WorldImplementation<D>& world);
 /// May the moving shape pass the one-way surface `other` on its way by `travel` (world)?
 template <class D>
 bool passes_one_way(const WorldImplementation<D>& world, std::int32_t other, const typename D::Vector& travel);

@@ -119,6 +119,7 @@ class StateCheck {
                "its materials are not behind those of the one before");
       Complaint c("rule");
       check_material(c, "rule", {r.friction, r.restitution, r.rolling_resistance, r.spinning_resistance});
+      check_range(c, "static_friction", r.static_friction, 0, 1e6);
       if (!c.none_yet()) f_.say("pair rule", std::ptrdiff_t(i), c.error().message);
     }
   }

@@ -236,6 +236,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   find_pairs(world);
   profile.broad_phase = watch.lap("broad phase");
   update_contacts(world);
+  choose_friction(world);
   modify_contacts(world);
   profile.narrow_phase = watch.lap("narrow phase");
 

@@ -21,10 +21,12 @@ namespace carom::rigid::detail {
 struct PairRuleEntry {
   std::uint64_t key = 0;
   PairRule rule{};
+  std::uint32_t unused = 0;  ///< snapshots copy entries: no byte is without a value
   static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
     return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
   }
 };
+static_assert(sizeof(PairRuleEntry) == sizeof(std::uint64_t) + sizeof(PairRule) + sizeof(std::uint32_t));
 
 template <class D>
 struct WorldImplementation {

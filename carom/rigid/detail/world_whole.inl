@@ -190,6 +190,9 @@ Status World<D>::set_pair_rule(std::uint32_t material_a, std::uint32_t material_
     check_range(complaint, "restitution", rule->restitution, 0, 1);
     check_range(complaint, "rolling_resistance", rule->rolling_resistance, 0, 1e6);
     check_range(complaint, "spinning_resistance", rule->spinning_resistance, 0, 1e6);
+    check_range(complaint, "static_friction", rule->static_friction, 0, 1e6);
+    if (rule->static_friction > 0 && complaint.none_yet())
+      check_range(complaint, "static_friction", rule->static_friction, rule->friction, 1e6);
     if (!complaint.none_yet()) return complaint.error();
   }
   const std::uint64_t key = PairRuleEntry::key_of(material_a, material_b);

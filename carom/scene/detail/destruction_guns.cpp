@@ -60,6 +60,18 @@ void read_mount(Reader& r, const Object& o, ballistics::GunMount& m) {
   m.push_damping = r.number(o, "mount_push_damping", m.push_damping);
   m.rise_frequency = r.number(o, "mount_rise_frequency", m.rise_frequency);
   m.rise_damping = r.number(o, "mount_rise_damping", m.rise_damping);
+  m.swing_frequency = r.number(o, "mount_swing_frequency", m.rise_frequency);
+  m.swing_damping = r.number(o, "mount_swing_damping", m.rise_damping);
+  m.roll_inertia = r.number(o, "mount_roll_inertia", m.roll_inertia);
+  m.centre_of_mass.x = r.number(o, "mount_centre_ahead", m.centre_of_mass.x);
+  m.centre_of_mass.y = r.number(o, "mount_centre_above", m.centre_of_mass.y);
+  m.centre_of_mass.z = r.number(o, "mount_centre_beside", m.centre_of_mass.z);
+  m.lift_frequency = r.number(o, "mount_lift_frequency", m.lift_frequency);
+  m.lift_damping = r.number(o, "mount_lift_damping", m.lift_damping);
+  m.slide_frequency = r.number(o, "mount_slide_frequency", m.slide_frequency);
+  m.slide_damping = r.number(o, "mount_slide_damping", m.slide_damping);
+  m.roll_frequency = r.number(o, "mount_roll_frequency", m.roll_frequency);
+  m.roll_damping = r.number(o, "mount_roll_damping", m.roll_damping);
 }
 
 ballistics::Weapon read_weapon(Reader& r, const Object& o) {

@@ -104,8 +104,9 @@ const ObjectKind expectation_kind{"expectation", "A number that the run must rea
 
 constexpr Field material_pair_fields[] = {
     {"materials", T::number_list, M::plain, "the user_ids of the two materials", nullptr, {}, true},
-    {"pair", T::text, M::plain, "kinetic friction of a pair of the table of friction, as rubber on asphalt, wet"},
-    {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0"},
+    {"pair", T::text, M::plain, "both frictions of a pair of the table of friction, as rubber on asphalt, wet"},
+    {"friction", T::quantity, M::plain, "Coulomb's coefficient, at least 0: of what slides"},
+    {"static_friction", T::quantity, M::plain, "of what sticks, at least friction; as friction unless given"},
     {"restitution", T::quantity, M::plain, "0 to 1"},
     {"rolling_resistance", T::quantity, M::plain, "lever arm over radius, at least 0"},
     {"spinning_resistance", T::quantity, M::plain, "likewise, of what spins about the normal (3D)"},

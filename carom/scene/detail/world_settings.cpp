@@ -34,21 +34,21 @@ bool read_world(Reader& reader, const Object& scene, const InstantiateOptions& o
 
 namespace {
 
-/// The kinetic friction of a pair that the table of friction has, or an error that names a near one.
-float friction_of_pair(Reader& reader, const Object& o) {
+/// A pair that the table of friction has, or an error that names a near one.
+forces::PairFriction known_pair(Reader& reader, const Object& o) {
   const std::string pair = reader.text(o, "pair");
   std::vector<std::string> names;
   for (const forces::PairFriction& known : forces::friction_table()) {
     for (const bool turned : {false, true}) {
       const std::string_view a = turned ? known.second : known.first, b = turned ? known.first : known.second;
       names.push_back(core::text(a, " on ", b));
-      if (names.back() == pair) return float(known.kinetic_coefficient);
+      if (names.back() == pair) return known;
     }
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
   reader.expected(*o.find("pair"), o.path_of("pair"), "a pair of the table of friction, as \"rubber on ice\"",
                   core::did_you_mean(pair, known));
-  return 0;
+  return {};
 }
 
 }  // namespace
@@ -74,8 +74,15 @@ bool read_material_pairs(Reader& reader, const Object& scene, World<D>& world) {
       id[k] = std::uint32_t(x);
     }
     PairRule rule;
-    if (o.has("pair")) rule.friction = friction_of_pair(reader, o);
+    if (o.has("pair")) {
+      const forces::PairFriction known = known_pair(reader, o);
+      rule.friction = float(known.kinetic_coefficient);
+      // A friction of one's own stands for both, unless that of rest is given too.
+      if (!o.has("friction") && known.static_coefficient > known.kinetic_coefficient)
+        rule.static_friction = float(known.static_coefficient);
+    }
     rule.friction = float(reader.number(o, "friction", rule.friction));
+    rule.static_friction = float(reader.number(o, "static_friction", rule.static_friction));
     rule.restitution = float(reader.number(o, "restitution", rule.restitution));
     rule.rolling_resistance = float(reader.number(o, "rolling_resistance", rule.rolling_resistance));
     rule.spinning_resistance = float(reader.number(o, "spinning_resistance", rule.spinning_resistance));

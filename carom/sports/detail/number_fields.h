@@ -114,6 +114,7 @@ void visit_fields(B& b, Visitor&& field) {
   field("mass", "kg", b.mass, 1e-3, 1e3);
   field("radius", "m", b.radius, 1e-3, 10.0);
   field("gyration", "m", b.gyration, 1e-4, 10.0);
+  field("differential", "m", b.differential, 0.0, 1.0);
   field("cover", "", b.cover, 0.0, 10.0);
 }
 

@@ -122,7 +122,9 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
               .bore_above_shoulder = 0.03,
               .bore_beside_shoulder = 0.004,
               .rise_frequency = 1.8,
-              .rise_damping = 0.8};
+              .rise_damping = 0.8,
+              .swing_frequency = 1.8,
+              .swing_damping = 0.8};
     sway_ = ballistics::SwayMotion(
         ballistics::sway_of(ballistics::Stance(stage.count("stance")), stage.value("skill"), stage.value("fatigue")),
         7);
