@@ -10,7 +10,7 @@ if [ "${1-}" = --one ]; then
   "$target" -runs=0 -report_slow_units=100 -rss_limit_mb=4096 "$corpus" >"$build/$name.log" 2>&1 || { tail -n 40 "$build/$name.log" >&2; echo "$name: the corpus fails" >&2; exit 1; }
   scratch=$(mktemp -d)
   trap 'rm -rf "$scratch"' EXIT
-  "$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$build/findings/$name-" "$scratch" "$corpus" >"$build/$name.log" 2>&1 \
+  "$target" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -artifact_prefix="$build/findings/$name-" "$scratch" "$corpus" >"$build/$name.log" 2>&1 \
     || { tail -n 40 "$build/$name.log" >&2; echo "$name: a finding in $build/findings" >&2; exit 1; }
   echo "$name: corpus of $(ls "$corpus" | wc -l) files and $(sed -n 's/^Done \([0-9]*\) runs.*/\1/p' "$build/$name.log") runs in $seconds s without a finding"
   exit
