@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "carom/geometry/detail/hull_builder.h"
 #include "carom/geometry/detail/text.h"
 #include "carom/geometry/mass_properties.h"
 
@@ -15,16 +16,16 @@ struct Grid {
   double cell = 1;
   int count[3] = {1, 1, 1};
 
-  Vec3f corner(int i, int j, int k) const { return Vec3f(origin + Vec3d{double(i), double(j), double(k)} * cell); }
+  Vec3f corner(detail::GridPoint p) const { return Vec3f(origin + cell * detail::to_vector(p)); }
 };
 struct Cell {
   std::int16_t at[3];
 };
 struct Part {
-  std::vector<Cell> cells;
-  std::shared_ptr<const Hull> hull;
-  double air = 0;  ///< m³ of the hull that are in no cell
+  std::vector<Cell> cells;      // row by row along x, level by level along z
+  std::int64_t air_sixths = 0;  ///< of its hull, what is in no cell: in sixths of a cell
 };
+using detail::GridPoint;
 
 /// The cells whose centres are inside, column by column along x: inside is what an odd number of surfaces lies before.
 /// False where a column passes an odd number in all, which a closed mesh never shows.
@@ -72,28 +73,73 @@ bool fill(const Grid& grid, std::span<const Vec3f> vertices, std::span<const std
   return true;
 }
 
-/// The hull of the cells' corners: of every row along x only the two ends can be on it.
-core::Result<std::shared_ptr<const Hull>> hull_of(const Grid& grid, std::span<const Cell> cells, int max_vertices) {
-  std::vector<Vec3f> points;
-  for (std::size_t i = 0; i < cells.size();) {  // cells lie row by row
+/// Adds the corners of the convex outline of points (x, y) at a height z (Andrew's monotone chain, 1979).
+void add_outline(std::vector<GridPoint>& points, std::int64_t z, std::vector<GridPoint>& out) {
+  std::sort(points.begin(), points.end(), [](GridPoint a, GridPoint b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  const auto turns_left = [](GridPoint a, GridPoint b, GridPoint c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
+  };
+  const std::size_t begin = out.size();
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = out.size();
+    for (const GridPoint& p : points) {
+      while (out.size() >= first + 2 && !turns_left(out[out.size() - 2], out.back(), p)) out.pop_back();
+      out.push_back(p);
+    }
+    out.pop_back();  // where the other side begins
+    std::reverse(points.begin(), points.end());
+  }
+  for (std::size_t i = begin; i < out.size(); ++i) out[i].z = z;
+}
+
+/// The corners of cells on which their hull hangs, in cells: of every level along z those of its convex outline, for
+/// which of every row along x the two ends do.
+std::vector<GridPoint> hull_corners(std::span<const Cell> cells) {
+  std::vector<GridPoint> corners, below, here;
+  std::int64_t level = cells.front().at[2];
+  const auto close_level = [&] {
+    std::vector<GridPoint> outline = below;
+    outline.insert(outline.end(), here.begin(), here.end());
+    if (!outline.empty()) add_outline(outline, level, corners);
+    below = std::move(here);
+    here.clear();
+    ++level;
+  };
+  for (std::size_t i = 0; i < cells.size();) {
     std::size_t last = i;
     const auto same_row = [&](const Cell& c) { return c.at[1] == cells[i].at[1] && c.at[2] == cells[i].at[2]; };
     while (last + 1 < cells.size() && same_row(cells[last + 1])) ++last;
-    for (int dz = 0; dz < 2; ++dz)
-      for (int dy = 0; dy < 2; ++dy) {
-        points.push_back(grid.corner(cells[i].at[0], cells[i].at[1] + dy, cells[i].at[2] + dz));
-        points.push_back(grid.corner(cells[last].at[0] + 1, cells[i].at[1] + dy, cells[i].at[2] + dz));
-      }
+    while (level < cells[i].at[2]) close_level();
+    for (int side = 0; side < 2; ++side) {
+      here.push_back({cells[i].at[0], cells[i].at[1] + side, 0});
+      here.push_back({cells[last].at[0] + 1, cells[i].at[1] + side, 0});
+    }
     i = last + 1;
   }
+  close_level();
+  close_level();
+  return corners;
+}
+
+core::Result<std::shared_ptr<const Hull>> hull_of(const Grid& grid, std::span<const Cell> cells, int max_vertices) {
+  std::vector<Vec3f> points;
+  for (const GridPoint& corner : hull_corners(cells)) points.push_back(grid.corner(corner));
   HullOptions options;
   options.max_vertices = max_vertices;
   options.simplify = true;
   return make_hull(points, options);
 }
 
-double air_of(const Grid& grid, const Hull& hull, std::size_t cells) {
-  return max(0.0, double(hull.volume) - double(cells) * grid.cell * grid.cell * grid.cell);
+/// Of the hull of so many of their corners as make_hull leaves too: exact.
+std::int64_t air_sixths_of(std::span<const Cell> cells, int max_vertices) {
+  const std::vector<GridPoint> corners = hull_corners(cells);
+  std::int64_t sixths = 0;
+  for (const detail::HullTriangle& t :
+       detail::triangulate_hull(corners, 0, std::size_t(max_vertices), true).triangles) {
+    const GridPoint a = corners[t.corner[0]];
+    sixths -= detail::orient(detail::normal_of(a, corners[t.corner[1]], corners[t.corner[2]]), a, corners[0]);
+  }
+  return max(sixths - 6 * std::int64_t(cells.size()), std::int64_t(0));
 }
 
 /// Planes worth a try: where the section of the part changes most, and the middle.
@@ -114,52 +160,46 @@ std::vector<int> planes_across(const Part& part, int axis) {
   return planes;
 }
 
-/// Splits the part at a plane of the grid; false where a side has no hull.
-bool split(const Grid& grid, const Part& part, int axis, int plane, int max_vertices, Part& a, Part& b) {
+/// Splits the part at a plane of the grid; false where nothing is on one side.
+bool split(const Part& part, int axis, int plane, int max_vertices, Part& a, Part& b) {
   a = {}, b = {};
   for (const Cell& c : part.cells) (c.at[axis] < plane ? a : b).cells.push_back(c);
-  for (Part* side : {&a, &b}) {
-    if (side->cells.empty()) return false;
-    auto hull = hull_of(grid, side->cells, max_vertices);
-    if (!hull.ok()) return false;
-    side->hull = *hull;
-    side->air = air_of(grid, *side->hull, side->cells.size());
-  }
+  if (a.cells.empty() || b.cells.empty()) return false;
+  for (Part* side : {&a, &b}) side->air_sixths = air_sixths_of(side->cells, max_vertices);
   return true;
 }
 
 /// The air that a cut through the middle, across the best axis, would leave: a ring loses its hole with the second cut
 /// only, and slices would look better than quarters to whoever looks no farther than one.
-double air_after_halving(const Grid& grid, const Part& part, int max_vertices) {
-  double least = part.air;
-  if (part.air == 0) return least;
+std::int64_t air_after_halving(const Part& part, int max_vertices) {
+  std::int64_t least = part.air_sixths;
+  if (least == 0) return least;
   for (int axis = 0; axis < 3; ++axis) {
     int low = part.cells[0].at[axis], high = low;
     for (const Cell& c : part.cells) low = min(low, int(c.at[axis])), high = max(high, int(c.at[axis]));
     Part a, b;
-    if (high > low && split(grid, part, axis, (low + high + 1) / 2, max_vertices, a, b))
-      least = min(least, a.air + b.air);
+    if (high > low && split(part, axis, (low + high + 1) / 2, max_vertices, a, b))
+      least = min(least, a.air_sixths + b.air_sixths);
   }
   return least;
 }
 
 /// The two parts with the least air together, as far as another cut shows; false if the part is one cell.
-bool cut(const Grid& grid, const Part& part, int max_vertices, Part& first, Part& second) {
+bool cut(const Part& part, int max_vertices, Part& first, Part& second) {
   double least = 0;
   bool any = false;
   for (int axis = 0; axis < 3; ++axis)
     for (const int plane : planes_across(part, axis)) {
       Part a, b;
-      if (!split(grid, part, axis, plane, max_vertices, a, b)) continue;
+      if (!split(part, axis, plane, max_vertices, a, b)) continue;
       // Of cuts that leave the same, the one that leaves less at once, and the one nearer to halves.
       const double uneven = math::abs(double(a.cells.size()) - double(b.cells.size()));
-      const double unevenness = 0.01 * uneven * grid.cell * grid.cell * grid.cell, at_once = 0.1 * (a.air + b.air);
-      const auto score_of = [&](double air_then) { return air_then + at_once + unevenness; };
+      const double besides = 0.1 * double(a.air_sixths + b.air_sixths) + 0.06 * uneven;
       // Most are worse before their halves are cut in turn, which takes the time.
-      if (any && score_of(0) >= least) continue;
-      const double air_of_first = air_after_halving(grid, a, max_vertices);
-      if (any && score_of(air_of_first) >= least) continue;
-      const double score = score_of(air_of_first + air_after_halving(grid, b, max_vertices));
+      if (any && besides >= least) continue;
+      const std::int64_t air_of_first = air_after_halving(a, max_vertices);
+      if (any && double(air_of_first) + besides >= least) continue;
+      const double score = double(air_of_first + air_after_halving(b, max_vertices)) + besides;
       if (any && score >= least) continue;
       any = true, least = score;
       first = std::move(a), second = std::move(b);
@@ -220,27 +260,28 @@ core::Result<std::vector<std::shared_ptr<const Hull>>> decompose_convex(std::spa
   if (whole.cells.empty())
     return detail::error("decompose_convex: no cell of %g m is inside the mesh: it is too thin for a resolution of %d",
                          grid.cell, options.resolution);
-  const double volume = double(whole.cells.size()) * grid.cell * grid.cell * grid.cell;
-  auto hull = hull_of(grid, whole.cells, options.max_vertices);
-  if (!hull.ok()) return hull.error();
-  whole.hull = *hull;
-  whole.air = air_of(grid, *whole.hull, whole.cells.size());
+  const double enough = 6 * double(options.concavity) * double(whole.cells.size());  // air, in sixths of a cell
+  whole.air_sixths = air_sixths_of(whole.cells, options.max_vertices);
   std::vector<Part> parts;
   parts.push_back(std::move(whole));
   while (int(parts.size()) < options.max_parts) {
     std::size_t worst = 0;
     for (std::size_t i = 1; i < parts.size(); ++i)
-      if (parts[i].air > parts[worst].air) worst = i;
-    if (parts[worst].air <= double(options.concavity) * volume) break;
+      if (parts[i].air_sixths > parts[worst].air_sixths) worst = i;
+    if (double(parts[worst].air_sixths) <= enough) break;
     Part first, second;
-    if (!cut(grid, parts[worst], options.max_vertices, first, second)) break;
+    if (!cut(parts[worst], options.max_vertices, first, second)) break;
     parts[worst] = std::move(first);
     parts.push_back(std::move(second));
   }
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return a.cells.size() > b.cells.size(); });
   std::vector<std::shared_ptr<const Hull>> hulls;
-  for (Part& p : parts) hulls.push_back(std::move(p.hull));
+  for (const Part& p : parts) {
+    auto hull = hull_of(grid, p.cells, options.max_vertices);
+    if (!hull.ok()) return hull.error();
+    hulls.push_back(std::move(*hull));
+  }
   return hulls;
 }
 
