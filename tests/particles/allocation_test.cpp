@@ -127,10 +127,10 @@ TEST(ParticleAllocation, NoneInAWarmStepOfRopes) {
 }
 
 TEST(ParticleAllocation, NoneInAWarmStepOfClothAndSoftBodies) {
-  const ClothSheet sheet = make_cloth_sheet({0, 1.3, 0}, {1, 0, 0}, {0, 0, 1}, 17, 17);
+  const ClothSheet sheet = make_cloth_sheet({0, 1.3, 0}, {1, 0, 0}, {0, 0, 1}, 11, 11);
   auto cloth = Cloth::make({.points = sheet.points, .triangles = sheet.triangles}).value();
   EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(240, [&](rigid::World3& w) { return cloth.step(w, 1.0 / 60); }), 0);
-  const SoftMesh mesh = make_soft_box({.3, .02, .3}, {.4, .4, .4}, 4, 4, 4);
+  const SoftMesh mesh = make_soft_box({.3, .02, .3}, {.4, .4, .4}, 3, 3, 3);
   auto soft = SoftBody::make({.points = mesh.points, .tetrahedra = mesh.tetrahedra}).value();
   EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(240, [&](rigid::World3& w) { return soft.step(w, 1.0 / 60); }), 0);
   const SoftMesh beside = make_soft_box({.4, .5, .35}, {.3, .3, .3}, 3, 3, 3);
