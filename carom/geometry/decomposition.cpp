@@ -1,6 +1,7 @@
 #include "carom/geometry/decomposition.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "carom/geometry/detail/hull_builder.h"
 #include "carom/geometry/detail/text.h"
@@ -73,51 +74,56 @@ bool fill(const Grid& grid, std::span<const Vec3f> vertices, std::span<const std
   return true;
 }
 
-/// Adds the corners of the convex outline of points (x, y) at a height z (Andrew's monotone chain, 1979).
-void add_outline(std::vector<GridPoint>& points, std::int64_t z, std::vector<GridPoint>& out) {
-  std::sort(points.begin(), points.end(), [](GridPoint a, GridPoint b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  const auto turns_left = [](GridPoint a, GridPoint b, GridPoint c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
-  };
-  const std::size_t begin = out.size();
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t first = out.size();
-    for (const GridPoint& p : points) {
-      while (out.size() >= first + 2 && !turns_left(out[out.size() - 2], out.back(), p)) out.pop_back();
+/// How far corners of cells reach along x on a level, by y: from `low` to `high`; nowhere where low > high.
+struct Level {
+  std::vector<std::int16_t> low, high;
+  explicit Level(std::size_t rows) : low(rows, INT16_MAX), high(rows, INT16_MIN) {}
+  void cover(std::size_t row, const Cell& first, const Cell& last) {
+    low[row] = min(low[row], first.at[0]);
+    high[row] = max(high[row], std::int16_t(last.at[0] + 1));
+  }
+};
+
+/// The corners of the convex outline of a level, its left side and its right one (Andrew's monotone chain, 1979).
+void add_outline(const Level& level, std::int64_t first_y, std::int64_t z, std::vector<GridPoint>& out) {
+  for (const int side : {-1, 1}) {
+    const std::size_t begin = out.size();
+    const auto bulges = [&](GridPoint a, GridPoint b, GridPoint c) {
+      return side * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) > 0;
+    };
+    for (std::size_t row = 0; row < level.low.size(); ++row) {
+      if (level.low[row] > level.high[row]) continue;
+      const GridPoint p{side < 0 ? level.low[row] : level.high[row], first_y + std::int64_t(row), z};
+      while (out.size() >= begin + 2 && !bulges(out[out.size() - 2], out.back(), p)) out.pop_back();
       out.push_back(p);
     }
-    out.pop_back();  // where the other side begins
-    std::reverse(points.begin(), points.end());
   }
-  for (std::size_t i = begin; i < out.size(); ++i) out[i].z = z;
 }
 
 /// The corners of cells on which their hull hangs, in cells: of every level along z those of its convex outline, for
 /// which of every row along x the two ends do.
 std::vector<GridPoint> hull_corners(std::span<const Cell> cells) {
-  std::vector<GridPoint> corners, below, here;
-  std::int64_t level = cells.front().at[2];
-  const auto close_level = [&] {
-    std::vector<GridPoint> outline = below;
-    outline.insert(outline.end(), here.begin(), here.end());
-    if (!outline.empty()) add_outline(outline, level, corners);
-    below = std::move(here);
-    here.clear();
-    ++level;
-  };
+  int first_y = cells.front().at[1], last_y = first_y;
+  for (const Cell& c : cells) first_y = min(first_y, int(c.at[1])), last_y = max(last_y, int(c.at[1]));
+  const Level nothing(std::size_t(last_y - first_y + 2));
+  Level here = nothing, above = nothing;  // the lower and the upper corners of a layer of cells
+  std::vector<GridPoint> corners;
+  int z = cells.front().at[2];
   for (std::size_t i = 0; i < cells.size();) {
     std::size_t last = i;
     const auto same_row = [&](const Cell& c) { return c.at[1] == cells[i].at[1] && c.at[2] == cells[i].at[2]; };
     while (last + 1 < cells.size() && same_row(cells[last + 1])) ++last;
-    while (level < cells[i].at[2]) close_level();
-    for (int side = 0; side < 2; ++side) {
-      here.push_back({cells[i].at[0], cells[i].at[1] + side, 0});
-      here.push_back({cells[last].at[0] + 1, cells[i].at[1] + side, 0});
+    for (; z < cells[i].at[2]; ++z) {
+      add_outline(here, first_y, z, corners);
+      here = std::exchange(above, nothing);
     }
+    for (const std::size_t side : {0, 1})
+      for (Level* level : {&here, &above})
+        level->cover(std::size_t(cells[i].at[1] - first_y) + side, cells[i], cells[last]);
     i = last + 1;
   }
-  close_level();
-  close_level();
+  add_outline(here, first_y, z, corners);
+  add_outline(above, first_y, z + 1, corners);
   return corners;
 }
 
