@@ -39,7 +39,7 @@ struct alignas(64) ContactBlock<Dim2, W> {
   float tangent_mass[W], tangent_target[W], tangent_impulse[W], tangent_total[W];
   float settles[W];       ///< 1: takes part in the passes that settle what is pushed out
   float struck[W];        ///< its points are solved together in this step: block_struck, block_pushed
-  std::int32_t again[W];  ///< bits 0, 1: A, B takes impulses again in every substep; written only where some do
+  std::int32_t again[W];  ///< bits 0, 1: A, B takes impulses again in every substep
 };
 
 template <int W>

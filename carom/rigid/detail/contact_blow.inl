@@ -9,26 +9,42 @@ namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 /// `least_push` though it does not close is pushed.
 inline constexpr float hard_blow = 1, least_change = 0.05f, least_push = 0.02f;
 
-/// What a pass over the normals of a manifold did, over its points: Σ λ before it, Σ Δλ, and the power that it took
-/// off, −Σ v Δλ.
-template <int W>
+/// What a pass over the normals of a manifold of N points did: Σ λ before it, Σ Δλ, and in the order in which it took
+/// the points, how fast they parted (m/s) and their Δλ.
+template <int W, int N>
 struct PassBlow {
-  WideFloat<W> before, change, power;
+  WideFloat<W> before = WideFloat<W>::splat(0), change = WideFloat<W>::splat(0), parting[N], delta[N];
+  CAROM_SIMD_INLINE void add(int place, WideFloat<W> old, WideFloat<W> more, WideFloat<W> speed) {
+    before += old;
+    change += more;
+    parting[place] = speed;
+    delta[place] = more;
+  }
+  /// The power that it took off, −Σ v Δλ.
+  CAROM_SIMD_INLINE WideFloat<W> power() const {
+    WideFloat<W> sum = WideFloat<W>::splat(0);
+    for (int k = 0; k < N; ++k) sum -= parting[k] * delta[k];
+    return sum;
+  }
 };
 
 /// The lanes of `among` on which a hard blow or a push fell, in this pass or earlier in the step: the next warm start
 /// gives it again. It is one only where next to nothing pressed before, and more than one point has to share it:
 /// in a pile, where much presses already, contacts disagree more than the points of one.
-template <int W, class Block>
-CAROM_SIMD_INLINE WideMask<W> find_struck(Block& c, const PassBlow<W>& blow, WideMask<W> among) {
+template <int W, int N, class Block>
+CAROM_SIMD_INLINE WideMask<W> find_struck(Block& c, const PassBlow<W, N>& blow, WideMask<W> among) {
   using F = WideFloat<W>;
-  const F zero = F::splat(0), mobility = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
-  const F change = blow.change * mobility, power = blow.power * mobility;
+  const F zero = F::splat(0), earlier = F::load(c.struck);
   const auto fresh = (blow.before <= F::splat(1e-3f) * blow.change) & (F::load(c.point[1].normal_mass) > zero);
+  // Most blocks have none, and are done here.
+  const auto may_be = among & ((fresh & (blow.change > zero)) | (earlier > zero));
+  if (!any(may_be)) [[likely]]
+    return may_be;
+  const F mobility = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
+  const F change = blow.change * mobility, power = blow.power() * mobility;
   const auto hard = fresh & (power > F::splat(hard_blow) * max(change, F::splat(least_change)));
   // One point that is pushed turns others inward: that closes too, though far slower than it pushes.
   const auto pushed = fresh & (change > F::splat(least_push)) & (power <= F::splat(0.3f) * change * change);
-  const F earlier = F::load(c.struck);
   const auto struck = among & (hard | pushed | (earlier > zero));
   if (any(struck))
     select(struck, max(earlier, select(pushed, F::splat(block_pushed), F::splat(block_struck))), earlier)

@@ -164,6 +164,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   F::zero().store(c.tangent_total);
   F::zero().store(c.settles);
   F::zero().store(c.struck);
+  I::zero().store(c.again);
   GatheredLanes result;
   const I anchored = I::load(anchor);
   result.anchored = bitmask(anchored != I::splat(int(Anchor::none)));

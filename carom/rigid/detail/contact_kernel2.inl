@@ -84,10 +84,10 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
 }
 
 template <int W, bool UseBias>
-CAROM_SIMD_INLINE PassBlow<W> solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
-                                             Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
-                                             WideFloat<W> push_speed, WideFloat<W> counted, WideFloat<W> share,
-                                             int order) {
+CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c,
+                                                Velocity2<W>& a, Velocity2<W>& b, const WideVec2<W>& n,
+                                                WideFloat<W> inverse_h, WideFloat<W> push_speed, WideFloat<W> counted,
+                                                WideFloat<W> share, int order) {
   using F = WideFloat<W>;
   order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
@@ -100,7 +100,7 @@ CAROM_SIMD_INLINE PassBlow<W> solve_normals2(const SolverBody<Dim2>* bodies, Con
   gather<W>(bodies, c.read_b, 4, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
   const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-  PassBlow<W> blow = {zero, zero, zero};
+  PassBlow<W, 2> blow;
   for (int k = 0; k < 2; ++k) {
     const int i = k ^ order;
     auto& point = c.point[i];
@@ -128,9 +128,7 @@ CAROM_SIMD_INLINE PassBlow<W> solve_normals2(const SolverBody<Dim2>* bodies, Con
     const WideVec2<W> p = {delta * n.x, delta * n.y};
     push_back(a, ma, ia, p, delta * turn_a);
     push(b, mb, ib, p, delta * turn_b);
-    blow.before += old;
-    blow.change += delta;
-    blow.power -= vn * delta;
+    blow.add(k, old, delta, vn);
   }
   return blow;
 }
@@ -141,9 +139,9 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
     Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    const PassBlow<W> normals = solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h),
-                                                        F::splat(push_speed), F::splat(1), F::splat(1), order);
-    const auto struck = find_struck<W>(c, normals, WideMask<W>::all());
+    const PassBlow<W, 2> normals = solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h),
+                                                           F::splat(push_speed), F::splat(1), F::splat(1), order);
+    const auto struck = find_struck(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
       const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
       a = shared.a, b = shared.b;
@@ -206,9 +204,9 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
         push(b, mb, ib, p, delta * turn_b);
       }
       if (struck) break;
-      const PassBlow<W> normals =
+      const PassBlow<W, 2> normals =
           solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
-      const auto hard = find_struck<W>(c, normals, takes_part);
+      const auto hard = find_struck(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
         const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
         a = shared.a, b = shared.b;

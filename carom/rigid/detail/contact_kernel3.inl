@@ -86,11 +86,11 @@ CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], con
 }
 
 template <int W, bool UseBias>
-CAROM_SIMD_INLINE PassBlow<W> solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
-                                             Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
-                                             const WideSymmetric<W>& ib, WideFloat<W> inverse_h,
-                                             WideFloat<W> push_speed, WideFloat<W> counted, WideFloat<W> share,
-                                             int order) {
+CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c,
+                                                Velocity3<W>& a, Velocity3<W>& b, const WideVec3<W>& n,
+                                                const WideSymmetric<W>& ia, const WideSymmetric<W>& ib,
+                                                WideFloat<W> inverse_h, WideFloat<W> push_speed, WideFloat<W> counted,
+                                                WideFloat<W> share, int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -100,7 +100,7 @@ CAROM_SIMD_INLINE PassBlow<W> solve_normals3(const SolverBody<Dim3>* bodies, Con
   gather<W>(bodies, c.read_b, 8, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
   const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
-  PassBlow<W> blow = {zero, zero, zero};
+  PassBlow<W, 4> blow;
   for (int k = 0; k < 4; ++k) {
     const int i = k ^ order;
     auto& point = c.point[i];
@@ -126,9 +126,7 @@ CAROM_SIMD_INLINE PassBlow<W> solve_normals3(const SolverBody<Dim3>* bodies, Con
     const WideVec3<W> p = multiply(n, delta);
     push_back(a, ma, ia, p, multiply(turn_a, delta));
     push(b, mb, ib, p, multiply(turn_b, delta));
-    blow.before += old;
-    blow.change += delta;
-    blow.power -= vn * delta;
+    blow.add(k, old, delta, vn);
   }
   return blow;
 }
@@ -139,11 +137,11 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    const PassBlow<W> normals =
+    const PassBlow<W, 4> normals =
         solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
                                 load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed),
                                 F::splat(1), F::splat(1), order);
-    const auto struck = find_struck<W>(c, normals, WideMask<W>::all());
+    const auto struck = find_struck(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
       const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
       a = shared.a, b = shared.b;
@@ -236,9 +234,9 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, rubs, ia, ib);
       solve_friction3<W>(c, a, b, load, rubs, n, ia, ib);
       if (struck) break;
-      const PassBlow<W> normals = solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0),
-                                                           F::splat(counted), share, 0);
-      const auto hard = find_struck<W>(c, normals, takes_part);
+      const PassBlow<W, 4> normals = solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h),
+                                                              F::splat(0), F::splat(counted), share, 0);
+      const auto hard = find_struck(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
         const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
         a = shared.a, b = shared.b;

@@ -100,6 +100,7 @@ std::uint8_t gather_lane(const StepContext<D>& context, std::int32_t index, Cont
   block.friction[lane] = m.friction;
   block.settles[lane] = 0;
   block.struck[lane] = 0;
+  block.again[lane] = 0;
   block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
   block.twist_impulse[lane] = m.impulses.twist;
   return deepest * soft.bias_rate < -context.push_speed ? mark_pushed : 0;

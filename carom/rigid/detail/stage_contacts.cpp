@@ -167,11 +167,27 @@ bool prepare_blocks(StepContext<D>& context) {
   return any_strikes;
 }
 
+constexpr std::size_t many_bodies = 16;  ///< one in so many of those awake: then all blocks are looked at
+
+/// Calls f(block, lane, mark, side of the body) for the places of a body's contacts in the blocks.
+template <class D, int W, class F>
+void for_lanes_of(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+      const GraphPlace place = world.contacts.manifold(m).place;
+      if (place.color < 0) continue;  // not in the graph
+      const Lane<D, W> lane = lane_of<D, W>(world, world.contacts.manifold(m));
+      f(lane.block, lane.lane, world.scratch.blocks[place.color].marks[place.position], key & 1);
+    }
+    key = c.next[key & 1];
+  }
+}
+
 /// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves;
 /// all, where these are many, because then the blow that pressed them into each other goes through all.
 template <class D, int W>
 void mark_settling(StepContext<D>& context) {
-  constexpr std::size_t many = 16;  ///< one in so many bodies
   WorldImplementation<D>& world = context.world;
   std::uint8_t* is_pushed = nullptr;  // by slot of the body
   std::span<std::int32_t> pushed;     // bodies
@@ -186,7 +202,7 @@ void mark_settling(StepContext<D>& context) {
         if (world.bodies.is_dynamic(body) && is_pushed[body] == 0) is_pushed[body] = 1, pushed[count++] = body;
     });
   if (count == 0) return;
-  if (many * count > world.bodies.awake.size()) {
+  if (many_bodies * count > world.bodies.awake.size()) {
     for_blocks<D, W>(context, Overflow::at_once,
                      [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
                          ContactExtra<D, W>*, std::uint8_t* marks) {
@@ -195,17 +211,10 @@ void mark_settling(StepContext<D>& context) {
     return;
   }
   for (const std::int32_t body : pushed.first(count))
-    for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
-      const ContactRecord<D>& c = world.contacts.at(key >> 1);
-      key = c.next[key & 1];
-      for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
-        const ManifoldRecord<D>& manifold = world.contacts.manifold(m);
-        if (manifold.place.color < 0) continue;  // not in the graph
-        const Lane<D, W> place = lane_of<D, W>(world, manifold);
-        place.block.settles[place.lane] = 1;
-        world.scratch.blocks[manifold.place.color].marks[manifold.place.position] |= mark_settles;
-      }
-    }
+    for_lanes_of<D, W>(world, body, [](ContactBlock<D, W>& block, int lane, std::uint8_t& mark, int) {
+      block.settles[lane] = 1;
+      mark |= mark_settles;
+    });
 }
 
 /// Finds the contacts of bodies that take impulses again: those of joints and trees, what strikes, and who sleeps
@@ -225,22 +234,33 @@ void find_again(StepContext<D>& context, bool any_strikes) {
   for (const TreeRange& tree : world.joints.trees.trees)
     for (std::int32_t i = tree.first_body; i < tree.body_end; ++i) take(world.joints.trees.bodies[std::size_t(i)].body);
   if (!any_strikes && !any_joint && !any_asleep) return;
-  for_blocks<D, W>(context, Overflow::at_once,
-                   [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
-                       ContactExtra<D, W>*, std::uint8_t* marks) {
-                     for (int lane = 0; lane < lanes; ++lane) {
-                       float nearest = block.point[0].separation[lane];
-                       for (const auto& point : block.point) nearest = min(nearest, point.separation[lane]);
-                       const bool may_sleep = any_asleep && nearest >= 0;
-                       const auto again = [&](std::int32_t body) {
-                         if (body == none) return 0;
-                         return may_sleep && !world.bodies.is_awake(body) ? 1
-                                                                          : int(world.scratch.again[std::size_t(body)]);
-                       };
-                       block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
-                       if (block.again[lane] != 0) marks[lane] |= mark_again;
-                     }
-                   });
+  std::size_t count = 0;
+  for (const std::int32_t body : world.bodies.awake) count += world.scratch.again[std::size_t(body)];
+  if (!any_asleep && many_bodies * count <= world.bodies.awake.size()) {
+    for (const std::int32_t body : world.bodies.awake)
+      if (world.scratch.again[std::size_t(body)] != 0)
+        for_lanes_of<D, W>(world, body, [](ContactBlock<D, W>& block, int lane, std::uint8_t& mark, int side) {
+          block.again[lane] |= 1 << side;
+          mark |= mark_again;
+        });
+  } else {
+    for_blocks<D, W>(
+        context, Overflow::at_once,
+        [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block, ContactExtra<D, W>*,
+            std::uint8_t* marks) {
+          for (int lane = 0; lane < lanes; ++lane) {
+            float nearest = block.point[0].separation[lane];
+            for (const auto& point : block.point) nearest = min(nearest, point.separation[lane]);
+            const bool may_sleep = any_asleep && nearest >= 0;
+            const auto again = [&](std::int32_t body) {
+              if (body == none) return 0;
+              return may_sleep && !world.bodies.is_awake(body) ? 1 : int(world.scratch.again[std::size_t(body)]);
+            };
+            block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
+            if (block.again[lane] != 0) marks[lane] |= mark_again;
+          }
+        });
+  }
   for (int color = 0; color <= overflow_color; ++color)
     for_marked(world, color, mark_again, [&](std::int32_t) { world.scratch.blocks[color].again = true; });
 }
