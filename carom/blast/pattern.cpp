@@ -148,8 +148,16 @@ ConvexCell::Cut cut_cell(const detail::SiteGrid& grid, std::span<const Vec3d> si
   return ConvexCell::Cut::part;
 }
 
+/// m, along each axis: volumes and squares of distances stay finite.
+bool within_reach(Vec3d p) {
+  constexpr double most = 1e30;
+  return math::abs(p.x) <= most && math::abs(p.y) <= most && math::abs(p.z) <= most;
+}
 core::Status check(const ConvexCell& container) {
   if (container.empty()) return core::Error{"fracture: the container is empty, expected a convex solid"};
+  const geometry::Bounds3d box = bounds_of(container);
+  if (!within_reach(box.low) || !within_reach(box.high))
+    return core::Error{"fracture: the container has a corner more than 1e30 m away"};
   return {};
 }
 
@@ -230,7 +238,8 @@ core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<con
   if (auto s = check(container); !s) return s.error();
   if (sites.empty()) return core::Error{"voronoi_pattern: no sites, expected at least one"};
   for (std::size_t i = 0; i < sites.size(); ++i)
-    if (!is_finite(sites[i])) return core::Error{core::text("voronoi_pattern: site ", i, " is not finite")};
+    if (!within_reach(sites[i]))
+      return core::Error{core::text("voronoi_pattern: site ", i, " is not finite, or more than 1e30 m away")};
   const detail::SiteGrid grid(sites, bounds_of(container));
   Pattern pattern;
   pattern.cells.resize(sites.size());

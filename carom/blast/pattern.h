@@ -44,7 +44,7 @@ CAROM_API core::Result<std::vector<math::Vec3d>> radial_sites(const ConvexCell& 
 /// The cells of the sites within the container; tag of a face: the site beyond it. Neighbours are searched outward in a
 /// grid until all that are farther than twice the farthest corner (the security radius: Lévy & Bonneel, "Variational
 /// anisotropic surface meshing with Voronoi parallel linear enumeration", 2013). Errors: no site, a site that is not
-/// finite, two in one place, an empty container.
+/// finite or more than 1e30 m away, two in one place, a container that is empty or as far.
 /// `scheduler`: cells on several threads, with the same bits.
 CAROM_API core::Result<Pattern> voronoi_pattern(const ConvexCell& container, std::span<const math::Vec3d> sites,
                                                 core::TaskScheduler* scheduler = nullptr);

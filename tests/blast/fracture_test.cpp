@@ -386,6 +386,9 @@ TEST(FractureMesh, BadMeshesAreRefused) {
   EXPECT_FALSE(brick_pattern(unit_box(), {0, 1, 1}, {}));
   const std::vector<Vec3d> twins{{.5, .5, .5}, {.5, .5, .5}};
   EXPECT_EQ(voronoi_pattern(unit_box(), twins).error().message, "voronoi_pattern: sites 0 and 1 are in one place");
+  const Vec3d far_away[] = {{0.2, 0.2, 0.2}, {1e120, 0, 0}};
+  EXPECT_EQ(voronoi_pattern(unit_box(), far_away).error().message,
+            "voronoi_pattern: site 1 is not finite, or more than 1e30 m away");
 }
 
 }  // namespace blast_test
