@@ -10,6 +10,11 @@
 
 namespace carom::rigid::detail {
 
+/// m: what goes less far in half a step hardly moves; what goes farther, in parts of its extent, is struck more likely
+/// than it rolls, or other features will meet then.
+inline constexpr float least_middle_way = 1e-3f;  ///< of `inner`, or half of still_way
+inline constexpr float most_middle_way = 0.03f;   ///< of `extent`
+
 /// ContactBlock::struck: a hard blow fell on it; it was pushed out of an overlap.
 inline constexpr float block_struck = 1, block_pushed = 2;
 
@@ -118,6 +123,8 @@ struct ContactSources {
   float push_speed = 0;             ///< m/s
   float rest_speed_squared = 0;     ///< (m/s)², of what is at rest,
   float restless_load = 0;          ///< and what others count for (load.h)
+  float still_way = 0;              ///< m
+  float half_step = 0;              ///< s
 };
 /// Bits by lane.
 struct GatheredLanes {
@@ -125,6 +132,7 @@ struct GatheredLanes {
       0;  ///< a shape stands elsewhere than its body: ContactRaw::shape_a and shape_b are not right yet
   std::uint32_t pushed = 0;              ///< so deep that it is pushed out with the push speed
   std::uint32_t anchored = 0, open = 0;  ///< mark_anchored, mark_open
+  std::uint32_t turns = 0;               ///< is to be solved as it is in the middle of the step (contact_middle.h)
 };
 
 /// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.

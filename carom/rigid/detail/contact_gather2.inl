@@ -100,6 +100,27 @@ CAROM_SIMD_INLINE std::uint32_t gather_points2(const ContactSources<Dim2>& from,
   return bitmask(deepest * F::load(c.bias_rate) < F::splat(-from.push_speed));
 }
 
+/// Which of those that roll carry a load and have bodies that move past each other by as much as it takes
+/// (turns_in_step).
+template <int W>
+CAROM_SIMD_INLINE std::uint32_t turning2(const ContactSources<Dim2>& from, const LaneRecords2 (&lanes)[W],
+                                         const ContactBlock<Dim2, W>& c) {
+  using F = WideFloat<W>;
+  F extent[4], va[4], vb[4];  // extent, inner
+  gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim2>, extent))>(lanes, extent);
+  gather<W>(from.bodies, c.read_a, 0, va);
+  gather<W>(from.bodies, c.read_b, 0, vb);
+  const WideVec2<W> offset = load2<W>(c.center_offset);  // from B's centre to A's
+  const WideVec2<W> seen = {vb[0] - va[0] - va[2] * offset.y, vb[1] - va[1] + va[2] * offset.x};
+  const F turned = (vb[2] - va[2]) * extent[0], half = F::splat(from.half_step);
+  const F moved = half * half * (dot(seen, seen) + turned * turned);
+  const F least = max(F::splat(least_middle_way) * extent[1], F::splat(0.5f * from.still_way));
+  const F most = F::splat(most_middle_way) * extent[0];
+  const F zero = F::zero();
+  const auto rests = (F::load(c.point[0].impulse) > zero) & (F::load(c.point[1].normal_mass) == zero);
+  return bitmask(rests & (moved > least * least) & (moved < most * most));
+}
+
 template <int W>
 GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list, int lanes, void* block, void* out) {
   using F = WideFloat<W>;
@@ -108,7 +129,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   ContactRaw<Dim2, W>& raw = *static_cast<ContactRaw<Dim2, W>*>(out);
   LaneRecords2 lane[W];
   std::int32_t flags[W], anchor[W];
-  std::uint32_t waits = 0;
+  std::uint32_t waits = 0, rolls = 0;
   float share_a[W], share_b[W];
   alignas(16) float offset[W][4];
   for (int i = 0; i < W; ++i) {
@@ -129,6 +150,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
     flags[i] = k.flags;
     anchor[i] = std::int32_t(m.anchor);
     waits |= std::uint32_t(m.waits) << i;
+    rolls |= std::uint32_t(k.rolls) << i;
     const bool both = (k.flags & contact_dynamic) != 0;
     c.read_a[i] = a;
     c.read_b[i] = b;
@@ -171,6 +193,9 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   result.open = waits | bitmask(anchored == I::splat(int(Anchor::settles)));
   result.pushed = gather_points2<W>(from, lane, c, raw, anchor, has(contact_round));
   result.placed = bitmask(!has(contact_at_origin));
+  // Without gravity nothing rocks, and arms of the step's start are those of most blows.
+  rolls &= (1u << lanes) - 1;
+  if (rolls != 0 && from.still_way > 0) result.turns = rolls & turning2<W>(from, lane, c) & ~bitmask(has(contact_many));
   return result;
 }
 

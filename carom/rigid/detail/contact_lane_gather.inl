@@ -31,6 +31,8 @@ ContactSources<D> sources_of(const StepContext<D>& context) {
   s.push_speed = context.push_speed;
   s.rest_speed_squared = context.rest_speed * context.rest_speed;
   s.restless_load = restless_load;
+  s.still_way = still_way(world, context.dt);
+  s.half_step = 0.5f * context.dt;
   return s;
 }
 
@@ -142,7 +144,7 @@ void put_middle(const StepContext<D>& context, std::int32_t index, ContactBlock<
   ManifoldRecord<D>& m = context.world.contacts.manifold(index);
   const ContactRecord<D>& c = context.world.contacts.at(m.contact);
   MiddleOfStep<D> middle;
-  if (!may_turn(c, m) || !middle_of_step(context.world, c, m.manifold, context.dt, middle)) return;
+  if (!middle_of_step(context.world, c, m.manifold, context.dt, middle)) return;
   put(block.normal, lane, middle.normal);
   for (int i = 0; i < m.manifold.count; ++i) put(block.point[i].r_a, lane, middle.point[i]);
   put(block.center_offset, lane, get(block.center_offset, lane) - middle.across);
@@ -166,13 +168,14 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   for (int lane = 0; lane < lanes; ++lane) {
     const std::int32_t index = list[std::size_t(lane)];
     const ContactRecord<D>& c = sources.contacts[sources.manifolds[index].contact];
-    turns |= std::uint32_t(c.rolls) << lane;
+    if constexpr (D::dimension == 3)
+      turns |= std::uint32_t(turns_in_step(context.world, c, sources.manifolds[index], context.dt)) << lane;
     if (may_foresee(c)) meets |= std::uint32_t(put_where_it_meets(context, index, across[lane])) << lane;
   }
-  turns &= ~meets;
   if constexpr (D::dimension == 2) {
     const WorldImplementation<D>& world = context.world;
     const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
+    turns = found.turns;
     for (int lane = 0; lane < lanes; ++lane) {
       marks[lane] = std::uint8_t(((found.pushed >> lane & 1u) != 0 ? mark_pushed : 0) |
                                  ((found.anchored >> lane & 1u) != 0 ? mark_anchored : 0) |
@@ -195,7 +198,7 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
     const int lane = std::countr_zero(meets);
     put(block.center_offset, lane, get(block.center_offset, lane) - across[lane]);
   }
-  for (; turns != 0; turns &= turns - 1) {
+  for (turns &= ~meets; turns != 0; turns &= turns - 1) {
     const int lane = std::countr_zero(turns);
     put_middle(context, list[std::size_t(lane)], block, raw, lane);
   }

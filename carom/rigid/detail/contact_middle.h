@@ -5,6 +5,7 @@
 #pragma once
 
 #include "carom/geometry/manifold.h"
+#include "carom/rigid/detail/contact_block.h"
 #include "carom/rigid/detail/contacts.h"
 
 namespace carom::rigid::detail {
@@ -17,70 +18,147 @@ struct MiddleOfStep {
   typename D::Vector across{};  ///< m, world axes: how B's centre goes past A's
 };
 
-inline float size_of(float turn) { return math::abs(turn); }
-inline float size_of(const Vec3f& turn) { return math::length(turn); }
 inline Rot2f small_rotation(float turn) { return normalize(Rot2f(1, turn)); }
 inline Quatf small_rotation(const Vec3f& turn) {
   return normalize(Quatf{1, 0.5f * turn.x, 0.5f * turn.y, 0.5f * turn.z});
 }
 
-/// May its normal turn, and does it carry a load?
-template <class D>
-bool may_turn(const ContactRecord<D>& c, const ManifoldRecord<D>& m) {
-  if (!c.rolls || (c.flags & contact_many) != 0) return false;
-  for (int i = 0; i < m.manifold.count; ++i)
-    if (m.impulses.normal[i] > 0) return true;
-  return false;
+/// What a turn of the world makes of a vector in a frame, there.
+inline Vec2f turned_in(const Rot2f&, const Rot2f& turn, const Vec2f& v) { return rotate(turn, v); }
+inline Vec3f turned_in(const Quatf& frame, const Quatf& turn, const Vec3f& v) {
+  return inverse_rotate(frame, rotate(turn, rotate(frame, v)));
 }
 
-/// By the velocities that the bodies have now. False where they hardly move past each other, or so far that a blow is
-/// more likely than rolling, or other features will meet then.
+/// Does it carry a load, and do the bodies move past each other by as much as it takes? By the velocities that they
+/// have now. In the plane lanes tell (turning2).
+inline bool turns_in_step(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
+                          const ManifoldRecord<Dim3>& m, float dt) {
+  const float still = still_way(world, dt);
+  if (!(still > 0)) return false;  // without gravity nothing rocks, and arms of the start are those of most blows
+  if (!c.rolls || (c.flags & contact_many) != 0) return false;
+  bool loaded = false;
+  for (int i = 0; i < m.manifold.count; ++i) loaded = loaded || m.impulses.normal[i] > 0;
+  if (!loaded) return false;
+  const float half = 0.5f * dt, least = max(least_middle_way * c.inner, 0.5f * still);
+  const SolverBody<Dim3>& sa = world.bodies.solver[std::size_t(c.body[0])];
+  const SolverBody<Dim3>& sb = world.bodies.solver[std::size_t(c.body[1])];
+  const Vec3f between(world.bodies.motion[std::size_t(c.body[1])].center -
+                      world.bodies.motion[std::size_t(c.body[0])].center);
+  const Vec3f seen = sb.linear_velocity - sa.linear_velocity - cross(sa.angular_velocity, between);
+  const float turned = math::length(sb.angular_velocity - sa.angular_velocity) * c.extent;
+  const float moved = half * half * (math::length_squared(seen) + turned * turned), most = most_middle_way * c.extent;
+  return moved > least * least && moved < most * most;
+}
+
+/// Where the shapes of a contact will be, by the velocities that their bodies have now. False for a manifold of an
+/// earlier step, which is kept because little has changed.
+template <class D>
+struct PosesOfMiddle {
+  typename D::Rotation turn_a, turn_b;  ///< of the bodies
+  typename D::Vector way_a, way_b;      ///< m, of their centres
+  typename D::Vector arm_a, arm_b;      ///< m, from those to the shapes, now
+  typename D::Rotation frame_a;         ///< of A's shape, now
+  typename D::Transform b_in_a;         ///< then
+
+  bool find(const WorldImplementation<D>& world, const ContactRecord<D>& c, float dt) {
+    using V = typename D::Vector;
+    const float half = 0.5f * dt;
+    const SolverBody<D>& sa = world.bodies.solver[std::size_t(c.body[0])];
+    const SolverBody<D>& sb = world.bodies.solver[std::size_t(c.body[1])];
+    const typename D::Pose a = shape_pose(world, world.shapes.at(c.shape[0]));
+    const typename D::Pose b = shape_pose(world, world.shapes.at(c.shape[1]));
+    if (!(relative(a, b) == c.base)) return false;
+    way_a = half * sa.linear_velocity, way_b = half * sb.linear_velocity;
+    turn_a = small_rotation(half * sa.angular_velocity), turn_b = small_rotation(half * sb.angular_velocity);
+    arm_a = V(a.position - world.bodies.motion[std::size_t(c.body[0])].center);
+    arm_b = V(b.position - world.bodies.motion[std::size_t(c.body[1])].center);
+    frame_a = a.rotation;
+    const V between = rotate(a.rotation, c.base.p) + (way_b - way_a) + (rotate(turn_b, arm_b) - arm_b) -
+                      (rotate(turn_a, arm_a) - arm_a);
+    const auto then_a = turn_a * a.rotation;
+    b_in_a = {inverse_rotate(then_a, between), conjugate(then_a) * (turn_b * b.rotation)};
+    return true;
+  }
+};
+
+/// The features that meet in a point of a contact: of either shape a point, about which it is round, or an edge.
+struct RoundFeatures {
+  Vec2f a, b;                ///< m, in the frame of either
+  float radius_a, radius_b;  ///< m, about those
+  bool edge_a, edge_b;       ///< normal to the contact's normal
+};
+inline float rounding_of(const geometry::Shape2& s) {
+  if (s.type == geometry::ShapeType2::circle) return s.circle.radius;
+  return s.type == geometry::ShapeType2::capsule ? s.capsule.radius : s.polygon.radius;
+}
+/// Has it an edge that faces there? A unit vector in its frame.
+inline bool has_edge(const geometry::Shape2& s, const Vec2f& outward) {
+  constexpr float rounding = 1e-5f;
+  if (s.type == geometry::ShapeType2::circle) return false;
+  if (s.type == geometry::ShapeType2::capsule) return s.capsule.half_length > 0 && math::abs(outward.y) < rounding;
+  for (int i = 0; i < s.polygon.count; ++i)
+    if (dot(s.polygon.normals[i], outward) > 0 && math::abs(cross(s.polygon.normals[i], outward)) < rounding)
+      return true;
+  return false;
+}
+inline RoundFeatures features_of(const geometry::Shape2& a, const geometry::Shape2& b, const Transform2f& b_in_a,
+                                 const geometry::Manifold2& m) {
+  const geometry::ManifoldPoint2& p = m.points[0];
+  RoundFeatures f;
+  f.radius_a = rounding_of(a), f.radius_b = rounding_of(b);
+  f.a = p.point - m.normal * (0.5f * p.separation + f.radius_a);
+  f.b = inverse_transform_point(b_in_a, p.point + m.normal * (0.5f * p.separation + f.radius_b));
+  f.edge_a = has_edge(a, m.normal);
+  f.edge_b = !f.edge_a && has_edge(b, inverse_rotate(b_in_a.q, -m.normal));
+  return f;
+}
+
+/// The normal and the points of a manifold once B stands so, in A's frame; false where other features meet then.
+/// In the plane in closed form: the normal is that of the edge, wherever it turns, or from point to point; no search
+/// for features that have hardly moved. What lies on two points has no rim to roll on.
+inline bool meet_then(const WorldImplementation<Dim2>& world, const ContactRecord<Dim2>& c,
+                      const geometry::Manifold2& m, const PosesOfMiddle<Dim2>& then, geometry::Manifold2& found) {
+  const geometry::Shape2 &a = world.shapes.at(c.shape[0]).geometry, &b = world.shapes.at(c.shape[1]).geometry;
+  const RoundFeatures f = features_of(a, b, c.base, m);
+  const Vec2f on_b = transform_point(then.b_in_a, f.b), between = on_b - f.a;
+  found = m;
+  if (f.edge_b) {
+    found.normal = rotate(then.b_in_a.q, inverse_rotate(c.base.q, m.normal));
+  } else if (!f.edge_a) {
+    const float distance = math::length(between);
+    if (!(distance > 1e-6f)) return false;
+    found.normal = between * (1 / distance);
+  }
+  const float half_gap = 0.5f * (dot(between, found.normal) - f.radius_a - f.radius_b);
+  found.points[0].point =
+      f.edge_a ? on_b - found.normal * (f.radius_b + half_gap) : f.a + found.normal * (f.radius_a + half_gap);
+  return true;
+}
+inline bool meet_then(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
+                      const geometry::Manifold3& m, const PosesOfMiddle<Dim3>& then, geometry::Manifold3& found) {
+  geometry::PairCache cache = c.cache;
+  const float seen = math::length(then.b_in_a.p - c.base.p);
+  geometry::collide(world.shapes.at(c.shape[0]).geometry, world.shapes.at(c.shape[1]).geometry, then.b_in_a,
+                    2 * c.margin() + seen, cache, found);
+  bool same = found.count == m.count;
+  for (int i = 0; same && i < m.count; ++i) same = found.points[i].feature == m.points[i].feature;
+  return same;
+}
+
+/// Of a contact that turns.
 template <class D>
 bool middle_of_step(const WorldImplementation<D>& world, const ContactRecord<D>& c, const typename D::Manifold& m,
                     float dt, MiddleOfStep<D>& out) {
   using V = typename D::Vector;
-  const float still = still_way(world, dt);
-  if (!(still > 0)) return false;  // without gravity nothing rocks, and arms of the start are those of most blows
-  const float half = 0.5f * dt, least = max(1e-3f * c.inner, 0.5f * still);
-  const SolverBody<D>& sa = world.bodies.solver[std::size_t(c.body[0])];
-  const SolverBody<D>& sb = world.bodies.solver[std::size_t(c.body[1])];
-  const V way_a = half * sa.linear_velocity, way_b = half * sb.linear_velocity;
-  const auto turn_a = half * sa.angular_velocity, turn_b = half * sb.angular_velocity;
-  const V between =
-      V(world.bodies.motion[std::size_t(c.body[1])].center - world.bodies.motion[std::size_t(c.body[0])].center);
-  const V seen = way_b - way_a - cross(turn_a, between);
-  const float turned = size_of(turn_b - turn_a) * c.extent;
-  const float moved = math::length_squared(seen) + turned * turned, most = 0.03f * c.extent;
-  if (!(moved > least * least && moved < most * most)) return false;
-
-  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  const typename D::Pose now_a = shape_pose(world, a);
-  const V arm_a = V(now_a.position - world.bodies.motion[std::size_t(c.body[0])].center);
-  const auto rotation = small_rotation(turn_a);
-  typename D::Pose then_a = now_a, then_b = shape_pose(world, b);
-  const V arm_b = V(then_b.position - world.bodies.motion[std::size_t(c.body[1])].center);
-  const auto rotation_b = small_rotation(turn_b);
-  // A manifold of an earlier step is kept because little has changed.
-  if (!(relative(now_a, then_b) == c.base)) return false;
-  using P = typename D::Position;
-  then_a.position = now_a.position + P(way_a + (rotate(rotation, arm_a) - arm_a));
-  then_a.rotation = rotation * now_a.rotation;
-  then_b.position = then_b.position + P(way_b + (rotate(rotation_b, arm_b) - arm_b));
-  then_b.rotation = rotation_b * then_b.rotation;
-  geometry::PairCache cache = c.cache;
+  PosesOfMiddle<D> then;
   typename D::Manifold found;
-  geometry::collide(a.geometry, b.geometry, relative(then_a, then_b), 2 * c.margin() + math::length(seen), cache,
-                    found);
-  if (found.count != m.count || !(dot(found.normal, m.normal) > 0.9f)) return false;
-  for (int i = 0; i < m.count; ++i)
-    if (found.points[i].feature != m.points[i].feature) return false;
-  const auto to_now = [&](const V& v) {
-    return inverse_rotate(now_a.rotation, rotate(rotation, rotate(now_a.rotation, v)));
-  };
+  if (!then.find(world, c, dt) || !meet_then(world, c, m, then, found)) return false;
+  if (!(dot(found.normal, m.normal) > 0.9f)) return false;
+  const auto to_now = [&](const V& v) { return turned_in(then.frame_a, then.turn_a, v); };
   out.normal = to_now(found.normal);
-  const V carried = inverse_rotate(now_a.rotation, rotate(rotation, arm_a) - arm_a);
+  const V carried = inverse_rotate(then.frame_a, rotate(then.turn_a, then.arm_a) - then.arm_a);
   for (int i = 0; i < m.count; ++i) out.point[i] = to_now(found.points[i].point) + carried;
-  out.across = way_b - way_a;
+  out.across = then.way_b - then.way_a;
   return true;
 }
 
