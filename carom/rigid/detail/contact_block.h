@@ -161,8 +161,8 @@ struct ContactKernels {
   /// The impulses of a block to the records and to the loads of its bodies. Bits by lane: friction is at its limit.
   std::uint32_t (*store)(const ContactSources<D>& to, const std::int32_t* list, int lanes, const void* block) = nullptr;
   /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back. friction_leak: part of
-  /// its impulse that is forgotten in a substep where faces are squeezed.
-  void (*prepare)(void* block, void* raw, float anchor_rate, float friction_leak) = nullptr;
+  /// its impulse that is forgotten in a substep where faces are squeezed. Bits by lane: its friction sticks anew.
+  std::uint32_t (*prepare)(void* block, void* raw, float anchor_rate, float friction_leak) = nullptr;
   /// again: to the bodies of ContactBlock::again only.
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end, bool again) = nullptr;
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).

@@ -117,12 +117,13 @@ CAROM_SIMD_INLINE void prepare_masses2(ContactBlock<Dim2, W>& c, const ContactRa
 }
 
 template <int W>
-void prepare2(void* block, void* raw, float anchor_rate, float friction_leak) {
+std::uint32_t prepare2(void* block, void* raw, float anchor_rate, float friction_leak) {
   ContactBlock<Dim2, W>& c = *static_cast<ContactBlock<Dim2, W>*>(block);
   ContactRaw<Dim2, W>& from = *static_cast<ContactRaw<Dim2, W>*>(raw);
   prepare_points2(c, from);
   prepare_friction2(c, from, WideFloat<W>::splat(anchor_rate));
   prepare_masses2(c, from, WideFloat<W>::splat(friction_leak));
+  return bitmask(WideFloat<W>::load(from.anchor_state) > WideFloat<W>::zero());
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

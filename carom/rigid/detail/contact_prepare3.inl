@@ -168,12 +168,13 @@ CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c, const ContactRa
 }
 
 template <int W>
-void prepare3(void* block, void* raw, float anchor_rate, float friction_leak) {
+std::uint32_t prepare3(void* block, void* raw, float anchor_rate, float friction_leak) {
   ContactBlock<Dim3, W>& c = *static_cast<ContactBlock<Dim3, W>*>(block);
   ContactRaw<Dim3, W>& from = *static_cast<ContactRaw<Dim3, W>*>(raw);
   prepare_points3(c, from);
   prepare_friction3(c, from, WideFloat<W>::splat(anchor_rate));
   prepare_masses3(c, from, WideFloat<W>::splat(friction_leak));
+  return bitmask(WideFloat<W>::load(from.anchor_state) > WideFloat<W>::zero());
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

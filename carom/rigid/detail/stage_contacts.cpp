@@ -114,56 +114,54 @@ bool prepare_blocks(StepContext<D>& context) {
   const bool by_kernel = world.kernels.approach != nullptr && !any_special && world.bodies.time_scale.empty();
   const bool may_wait = D::dimension == 2 && !any_special;
   std::atomic<bool> any_strikes = false;
-  for_blocks<D, W>(
-      context, Overflow::at_once,
-      [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
-          ContactExtra<D, W>* extra, std::uint8_t* marks) {
-        ContactRaw<D, W> raw;
-        const bool approaches = extra != nullptr || any_hits;
-        const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
-        for (int lane = 0; lane < lanes; ++lane)
-          prefetch_manifold(sources, world.shapes.record.data(), manifolds, first + std::size_t(lane), approaches);
-        gather_block(context, sources, list, block, raw, extra, marks);
-        for (int lane = 0; lane < lanes; ++lane)
-          if ((marks[lane] & mark_pushed) != 0 && parts_in_flight(context, block.read_a[lane], block.read_b[lane]))
-            marks[lane] &= std::uint8_t(~mark_pushed);
-        world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt, friction_leak / float(context.substeps));
-        for (std::uint32_t strikes = world.kernels.strikes(context.bodies, &block); strikes != 0;
-             strikes &= strikes - 1) {
-          const int lane = std::countr_zero(strikes);
-          take_again(world, block.write_a[lane]);
-          take_again(world, block.write_b[lane]);
-          any_strikes.store(true, std::memory_order_relaxed);
-        }
-        for (int lane = 0; lane < lanes; ++lane)
-          if (raw.anchor_state[lane] > 0) {
-            const bool set = set_anchor(context, list[std::size_t(lane)], block, lane, may_wait);
-            marks[lane] |= set ? mark_anchored | mark_open : mark_anew;
-          }
-        if (by_kernel) {
-          if (any_hits) {
-            const float least = world.definition.restitution_threshold;
-            std::uint32_t hits = world.kernels.closing(sources, lanes, &block, least);
-            for (; hits != 0; hits &= hits - 1) {
-              const int lane = std::countr_zero(hits);
-              marks[lane] |= find_approach<D, W>(context, list[std::size_t(lane)], block, nullptr, lane);
-              prepare_special<D, W>(context, list[std::size_t(lane)], block, nullptr, lane);
-            }
-          }
-          if (extra == nullptr) return;
-          std::uint32_t bounces = world.kernels.approach(sources, list.data(), lanes, &block, extra);
-          for (; bounces != 0; bounces &= bounces - 1)
-            if (const int lane = std::countr_zero(bounces); lane < lanes) marks[lane] |= mark_bounces;
-          return;
-        }
-        for (int lane = 0; lane < lanes; ++lane) {
-          const std::int32_t m = list[std::size_t(lane)];
-          if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
-          if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
-          if (any_special || any_hits) prepare_special(context, m, block, extra, lane);
-          if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
-        }
-      });
+  for_blocks<D, W>(context, Overflow::at_once,
+                   [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
+                       ContactExtra<D, W>* extra, std::uint8_t* marks) {
+                     ContactRaw<D, W> raw;
+                     const bool approaches = extra != nullptr || any_hits;
+                     const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
+                     for (int lane = 0; lane < lanes; ++lane)
+                       prefetch_manifold(sources, world.shapes.record.data(), manifolds, first + std::size_t(lane),
+                                         approaches);
+                     gather_block(context, sources, list, block, raw, extra, marks);
+                     std::uint32_t anew = world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt,
+                                                                friction_leak / float(context.substeps));
+                     for (std::uint32_t strikes = world.kernels.strikes(context.bodies, &block); strikes != 0;
+                          strikes &= strikes - 1) {
+                       const int lane = std::countr_zero(strikes);
+                       take_again(world, block.write_a[lane]);
+                       take_again(world, block.write_b[lane]);
+                       any_strikes.store(true, std::memory_order_relaxed);
+                     }
+                     for (anew &= lane_bits(lanes); anew != 0; anew &= anew - 1) {
+                       const int lane = std::countr_zero(anew);
+                       const bool set = set_anchor(context, list[std::size_t(lane)], block, lane, may_wait);
+                       marks[lane] |= set ? mark_anchored | mark_open : mark_anew;
+                     }
+                     if (by_kernel) {
+                       if (any_hits) {
+                         const float least = world.definition.restitution_threshold;
+                         std::uint32_t hits = world.kernels.closing(sources, lanes, &block, least);
+                         for (; hits != 0; hits &= hits - 1) {
+                           const int lane = std::countr_zero(hits);
+                           marks[lane] |= find_approach<D, W>(context, list[std::size_t(lane)], block, nullptr, lane);
+                           prepare_special<D, W>(context, list[std::size_t(lane)], block, nullptr, lane);
+                         }
+                       }
+                       if (extra == nullptr) return;
+                       std::uint32_t bounces = world.kernels.approach(sources, list.data(), lanes, &block, extra);
+                       for (; bounces != 0; bounces &= bounces - 1)
+                         if (const int lane = std::countr_zero(bounces); lane < lanes) marks[lane] |= mark_bounces;
+                       return;
+                     }
+                     for (int lane = 0; lane < lanes; ++lane) {
+                       const std::int32_t m = list[std::size_t(lane)];
+                       if (approaches) marks[lane] |= find_approach(context, m, block, extra, lane);
+                       if (extra != nullptr) prepare_rolling(context, m, *extra, lane);
+                       if (any_special || any_hits) prepare_special(context, m, block, extra, lane);
+                       if (extra != nullptr) marks[lane] |= bounce_mark(*extra, lane);
+                     }
+                   });
   return any_strikes;
 }
 
