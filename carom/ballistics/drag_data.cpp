@@ -1,21 +1,13 @@
 #include "carom/ballistics/drag_data.h"
 
-#include "carom/core/string.h"
+#include "carom/ballistics/detail/number_checks.h"
 
 namespace carom::ballistics {
-namespace {
-
-core::Status check(std::string_view name, double value, bool zero_too) {
-  if (math::is_finite(value) && (value > 0 || (zero_too && value == 0))) return {};
-  return core::Error{core::refused(name, value, zero_too ? "a finite number >= 0" : "a finite number > 0")};
-}
-
-}  // namespace
 
 core::Result<Projectile> projectile_from(const DragData& data, double mass, double diameter) {
   if ((data.function ? 1 : 0) + (data.coefficient ? 1 : 0) + (data.table.empty() ? 0 : 1) != 1)
     return core::Error{"expected one of drag_function, drag_coefficient and drag_table"};
-  if (auto s = check("form_factor", data.form_factor, false); !s) return s.error();
+  if (auto s = detail::check_numbers({{"form_factor", data.form_factor}}); !s) return s.error();
   if (data.ballistic_coefficient && !data.bands.empty())
     return core::Error{"expected either ballistic_coefficient or ballistic_coefficients"};
   if (data.coefficient && (data.ballistic_coefficient || !data.bands.empty()))
@@ -23,7 +15,7 @@ core::Result<Projectile> projectile_from(const DragData& data, double mass, doub
 
   DragCurve curve;
   if (data.coefficient) {
-    if (auto s = check("drag_coefficient", *data.coefficient, true); !s) return s.error();
+    if (auto s = detail::check_numbers({{"drag_coefficient", *data.coefficient, true}}); !s) return s.error();
     curve = DragCurve(*data.coefficient);
   } else if (data.function) {
     curve = DragCurve(*data.function);
@@ -39,14 +31,13 @@ core::Result<Projectile> projectile_from(const DragData& data, double mass, doub
   }
   if (data.ballistic_coefficient || !data.bands.empty()) {
     const double coefficient = data.ballistic_coefficient.value_or(1);
-    if (auto s = check("ballistic_coefficient", coefficient, false); !s) return s.error();
+    if (auto s = detail::check_numbers({{"ballistic_coefficient", coefficient}}); !s) return s.error();
     Projectile projectile = projectile_from_coefficient(DragFunction::g1, coefficient);
     projectile.drag = std::move(curve);
     projectile.area_per_mass *= data.form_factor;
     return projectile;
   }
-  if (auto s = check("mass", mass, false); !s) return s.error();
-  if (auto s = check("diameter", diameter, false); !s) return s.error();
+  if (auto s = detail::check_numbers({{"mass", mass}, {"diameter", diameter}}); !s) return s.error();
   return projectile_from_size(std::move(curve), mass, diameter, data.form_factor);
 }
 

@@ -1,7 +1,6 @@
 #include "carom/ballistics/penetration.h"
 
-#include "carom/core/string.h"
-#include "carom/math/vec.h"
+#include "carom/ballistics/detail/number_checks.h"
 
 namespace carom::ballistics {
 
@@ -32,18 +31,13 @@ double lambert_jonas_residual(double speed, double limit_speed, double a, double
 core::Status check_layers(std::span<const Layer> layers) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const Layer& layer = layers[i];
-    const struct {
-      const char* name;
-      double value;
-      bool zero;
-    } fields[] = {{"thickness", layer.thickness, false},   {"strength", layer.medium.strength, false},
-                  {"inertia", layer.medium.inertia, true}, {"limit_speed", layer.limit_speed, true},
-                  {"density", layer.density, true},        {"ricochet_angle", layer.ricochet_angle, true}};
-    for (const auto& field : fields)
-      if (!math::is_finite(field.value) || field.value < 0 || (field.value == 0 && !field.zero))
-        return core::Error{core::text(
-            "layer ", i + 1, ": ",
-            core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
+    const core::Status numbers = detail::check_numbers({{"thickness", layer.thickness},
+                                                        {"strength", layer.medium.strength},
+                                                        {"inertia", layer.medium.inertia, true},
+                                                        {"limit_speed", layer.limit_speed, true},
+                                                        {"density", layer.density, true},
+                                                        {"ricochet_angle", layer.ricochet_angle, true}});
+    if (!numbers) return core::Error{core::text("layer ", i + 1, ": ", numbers.error().message)};
     if (!(layer.ricochet_restitution >= 0 && layer.ricochet_restitution <= 1))
       return core::Error{core::text("layer ", i + 1, ": ",
                                     core::refused("ricochet_restitution", layer.ricochet_restitution, "0 to 1"))};
@@ -74,13 +68,10 @@ LayerPassage pass_layer(const Penetrator& bullet, const Layer& layer, double ang
 
 core::Result<std::vector<LayerPassage>> penetrate(const Penetrator& bullet, std::span<const Layer> layers,
                                                   double angle) {
-  const auto bad = [](double x, bool zero) { return !math::is_finite(x) || x < 0 || (x == 0 && !zero); };
-  if (bad(bullet.mass, false))
-    return core::Error{core::refused("mass of the bullet", bullet.mass, "a finite number > 0")};
-  if (bad(bullet.area, false))
-    return core::Error{core::refused("area of the bullet", bullet.area, "a finite number > 0")};
-  if (bad(bullet.speed, true))
-    return core::Error{core::refused("speed of the bullet", bullet.speed, "a finite number >= 0")};
+  const core::Status numbers = detail::check_numbers({{"mass of the bullet", bullet.mass},
+                                                      {"area of the bullet", bullet.area},
+                                                      {"speed of the bullet", bullet.speed, true}});
+  if (!numbers) return numbers.error();
   if (!(angle > 0) || angle > math::pi / 2 + 1e-9)
     return core::Error{core::refused("angle to the surface", angle, "more than 0 and at most pi/2 rad")};
   if (const core::Status checked = check_layers(layers); !checked.ok()) return checked.error();

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "carom/core/string.h"
+#include "carom/ballistics/detail/number_checks.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
 
@@ -161,29 +161,23 @@ RecoilMotion coupled_recoil(const GunMount& mount, double impulse, std::span<con
 }  // namespace detail
 
 core::Status check(const GunMount& g) {
-  const struct {
-    const char* name;
-    double value;
-    bool zero;
-  } fields[] = {{"mass", g.mass, false},
-                {"inertia", g.inertia, false},
-                {"roll_inertia", g.roll_inertia, false},
-                {"push_frequency", g.push_frequency, true},
-                {"push_damping", g.push_damping, true},
-                {"rise_frequency", g.rise_frequency, true},
-                {"rise_damping", g.rise_damping, true},
-                {"swing_frequency", g.swing_frequency, true},
-                {"swing_damping", g.swing_damping, true},
-                {"lift_frequency", g.lift_frequency, true},
-                {"lift_damping", g.lift_damping, true},
-                {"slide_frequency", g.slide_frequency, true},
-                {"slide_damping", g.slide_damping, true},
-                {"roll_frequency", g.roll_frequency, true},
-                {"roll_damping", g.roll_damping, true}};
-  for (const auto& field : fields)
-    if (!(field.value >= 0 && field.value <= 1e9) || (field.value == 0 && !field.zero))
-      return core::Error{
-          core::refused(field.name, field.value, field.zero ? "a number from 0 to 10^9" : "a number above 0, to 10^9")};
+  const core::Status numbers = detail::check_numbers({{"mass", g.mass},
+                                                      {"inertia", g.inertia},
+                                                      {"roll_inertia", g.roll_inertia},
+                                                      {"push_frequency", g.push_frequency, true},
+                                                      {"push_damping", g.push_damping, true},
+                                                      {"rise_frequency", g.rise_frequency, true},
+                                                      {"rise_damping", g.rise_damping, true},
+                                                      {"swing_frequency", g.swing_frequency, true},
+                                                      {"swing_damping", g.swing_damping, true},
+                                                      {"lift_frequency", g.lift_frequency, true},
+                                                      {"lift_damping", g.lift_damping, true},
+                                                      {"slide_frequency", g.slide_frequency, true},
+                                                      {"slide_damping", g.slide_damping, true},
+                                                      {"roll_frequency", g.roll_frequency, true},
+                                                      {"roll_damping", g.roll_damping, true}},
+                                                     1e9);
+  if (!numbers) return numbers;
   const math::Vec3d c = g.centre_of_mass;
   if (!math::is_finite(c.x + c.y + c.z) || math::length(c) > 1e3)
     return core::Error{core::text("centre_of_mass is ", c.x, ", ", c.y, ", ", c.z, ", expected at most 1000 m")};
@@ -218,18 +212,9 @@ RecoilMotion recoil_at(const GunMount& mount, double impulse, std::span<const do
 core::Result<std::vector<math::Vec2d>> recoil_pattern(const GunMount& mount, double impulse,
                                                       const RecoilPattern& pattern) {
   if (const core::Status good = check(mount); !good) return core::Error{core::text("recoil: ", good.error().message)};
-  const struct {
-    const char* name;
-    double value;
-    bool zero;
-  } fields[] = {{"impulse", impulse, true},
-                {"rounds_per_minute", pattern.rounds_per_minute, false},
-                {"wander", pattern.wander, true}};
-  for (const auto& field : fields)
-    if (!math::is_finite(field.value) || field.value < 0 || (field.value == 0 && !field.zero))
-      return core::Error{core::text(
-          "recoil: ",
-          core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
+  const core::Status numbers = detail::check_numbers(
+      {{"impulse", impulse, true}, {"rounds_per_minute", pattern.rounds_per_minute}, {"wander", pattern.wander, true}});
+  if (!numbers) return core::Error{core::text("recoil: ", numbers.error().message)};
   if (pattern.shots < 0 || pattern.shots > 100000)
     return core::Error{core::text("recoil: ", core::refused("shots", pattern.shots, "0 to 100000"))};
   math::Random random(pattern.seed);

@@ -1,7 +1,7 @@
 #include "carom/ballistics/rocket.h"
 
+#include "carom/ballistics/detail/number_checks.h"
 #include "carom/ballistics/detail/rocket_run.h"
-#include "carom/core/string.h"
 #include "carom/ode/dormand_prince.h"
 
 namespace carom::ballistics {
@@ -36,18 +36,11 @@ core::Result<void> check(const Rocket& rocket, const Launch& launch) {
   const auto positive = [](double x) { return x > 0 && math::is_finite(x); };
   for (std::size_t i = 0; i < rocket.stages.size(); ++i) {
     const Stage& stage = rocket.stages[i];
-    const struct {
-      const char* name;
-      double value;
-      bool zero;
-    } fields[] = {{"dry_mass", stage.dry_mass, true},
-                  {"mass of the motor", stage.motor.mass, true},
-                  {"ignition_delay", stage.ignition_delay, true},
-                  {"separation_delay", stage.separation_delay, true}};
-    for (const auto& field : fields)
-      if (!math::is_finite(field.value) || field.value < 0)
-        return core::Error{
-            core::text("rocket: stage ", i + 1, ": ", core::refused(field.name, field.value, "a finite number >= 0"))};
+    const core::Status numbers = check_numbers({{"dry_mass", stage.dry_mass, true},
+                                                {"mass of the motor", stage.motor.mass, true},
+                                                {"ignition_delay", stage.ignition_delay, true},
+                                                {"separation_delay", stage.separation_delay, true}});
+    if (!numbers) return core::Error{core::text("rocket: stage ", i + 1, ": ", numbers.error().message)};
     if (!(stage.dry_mass + stage.motor.mass - stage.motor.propellant_mass > 0))
       return core::Error{
           core::text("rocket: stage ", i + 1, " has no mass when it has burnt out, expected more than its propellant")};

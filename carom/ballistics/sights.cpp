@@ -1,7 +1,8 @@
 #include "carom/ballistics/sights.h"
 
 #include "carom/ballistics/detail/flight_air.h"
-#include "carom/core/string.h"
+#include "carom/ballistics/detail/number_checks.h"
+#include "carom/math/calculus.h"
 
 namespace carom::ballistics {
 
@@ -10,19 +11,11 @@ using math::Vec3d;
 namespace detail {
 
 core::Result<void> check(const Gun& gun) {
-  const struct {
-    const char* name;
-    double value;
-    bool zero;
-  } fields[] = {{"muzzle_speed", gun.muzzle_speed, false},
-                {"sight_height", gun.sight_height, true},
-                {"mass", gun.mass, true},
-                {"area_per_mass", gun.projectile.area_per_mass, true}};
-  for (const auto& field : fields)
-    if (!math::is_finite(field.value) || field.value < 0 || (field.value == 0 && !field.zero))
-      return core::Error{core::text(
-          "gun: ",
-          core::refused(field.name, field.value, field.zero ? "a finite number >= 0" : "a finite number > 0"))};
+  const core::Status numbers = check_numbers({{"muzzle_speed", gun.muzzle_speed},
+                                              {"sight_height", gun.sight_height, true},
+                                              {"mass", gun.mass, true},
+                                              {"area_per_mass", gun.projectile.area_per_mass, true}});
+  if (!numbers) return core::Error{core::text("gun: ", numbers.error().message)};
   if (!math::is_finite(gun.sight_offset))
     return core::Error{core::text("gun: ", core::refused("sight_offset", gun.sight_offset, "a finite number"))};
   if (gun.shape && (!(gun.shape->mass > 0) || !(gun.shape->diameter > 0) || !(gun.shape->length > 0) || gun.twist == 0))
@@ -251,29 +244,18 @@ core::Result<GreatestRange> greatest_range(const Gun& gun, const Conditions& con
     const Trajectory::Point end = flight->end();
     return GreatestRange{elevation, math::hypot(end.position.x, end.position.z), end.time};
   };
-  // The golden section: over level ground the range has one peak.
-  constexpr double golden = 0.6180339887498949;
-  double low = 0.02, high = 1.55;
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  auto at_a = shoot(a), at_b = shoot(b);
-  for (int i = 0; i < 40; ++i) {
-    if (!at_a) return at_a.error();
-    if (!at_b) return at_b.error();
-    if (at_a->range > at_b->range) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = shoot(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = shoot(b);
-    }
-  }
-  return shoot(0.5 * (low + high));
+  // Over level ground the range has one peak.
+  core::Status flies;
+  const double elevation = math::least_place(
+      [&](double at) {
+        const auto shot = shoot(at);
+        if (shot) return -shot->range;
+        flies = shot.error();
+        return 0.0;
+      },
+      0.02, 1.55, 40);
+  if (!flies) return flies.error();
+  return shoot(elevation);
 }
 
 core::Result<PointBlank> best_point_blank(const Gun& gun, const Conditions& conditions, double radius) {

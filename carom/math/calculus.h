@@ -1,4 +1,4 @@
-// Numerical differentiation and integration of functions and of evenly or unevenly spaced samples.
+// Numerical differentiation, integration and least values of functions, and of evenly or unevenly spaced samples.
 #pragma once
 
 #include <limits>
@@ -47,6 +47,31 @@ constexpr double simpson(F&& f, double a, double b, int n) {
   double ends = start + f(b), odd = 0, even = 0;
   for (int i = 1; i < n; ++i) ((i & 1) != 0 ? odd : even) += f(a + i * h);
   return h / 3 * (ends + 4 * odd + 2 * even);
+}
+
+/// Where f is least between `low` and `high`, if it falls and then rises there: by the golden section, to .618 of the
+/// interval with each of `steps` calls.
+template <class F>
+constexpr double least_place(F&& f, double low, double high, int steps) {
+  constexpr double golden = 0.6180339887498949;
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double at_a = f(a), at_b = f(b);
+  for (int i = 0; i < steps; ++i) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - golden * (high - low);
+      at_a = f(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + golden * (high - low);
+      at_b = f(b);
+    }
+  }
+  return 0.5 * (low + high);
 }
 
 /// The derivative at each of n evenly spaced samples, second order throughout (one-sided at the ends). `slope` must

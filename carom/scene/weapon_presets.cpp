@@ -1,8 +1,11 @@
 #include "carom/scene/weapon_presets.h"
 
+#include <vector>
+
 #include "carom/ballistics/drag_data.h"
 #include "carom/core/string.h"
 #include "carom/scene/detail/preset_values.h"
+#include "carom/scene/detail/weapon_numbers.h"
 
 namespace carom::scene {
 namespace {
@@ -111,32 +114,12 @@ core::Result<ballistics::Sight> parse_sight(std::string_view text, std::string_v
 
 core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_view file,
                                            const PresetResolver& resolver) {
-  static constexpr NumberName names[] = {{"mass", "kg"},
-                                         {"muzzle_speed", "m/s"},
-                                         {"twist", "m"},
-                                         {"zero", "m"},
-                                         {"dispersion", "rad"},
-                                         {"rounds_per_minute", ""},
-                                         {"mount_mass", "kg"},
-                                         {"mount_inertia", "kg*m^2"},
-                                         {"mount_bore_above_shoulder", "m"},
-                                         {"mount_bore_beside_shoulder", "m"},
-                                         {"mount_push_frequency", "Hz"},
-                                         {"mount_push_damping", ""},
-                                         {"mount_rise_frequency", "Hz"},
-                                         {"mount_rise_damping", ""},
-                                         {"mount_roll_inertia", "kg*m^2"},
-                                         {"mount_swing_frequency", "Hz"},
-                                         {"mount_swing_damping", ""},
-                                         {"mount_centre_ahead", "m"},
-                                         {"mount_centre_above", "m"},
-                                         {"mount_centre_beside", "m"},
-                                         {"mount_lift_frequency", "Hz"},
-                                         {"mount_lift_damping", ""},
-                                         {"mount_slide_frequency", "Hz"},
-                                         {"mount_slide_damping", ""},
-                                         {"mount_roll_frequency", "Hz"},
-                                         {"mount_roll_damping", ""}};
+  static const std::vector<NumberName> names = [] {
+    std::vector<NumberName> list;
+    ballistics::Weapon any;
+    detail::visit_numbers(any, [&](const char* name, const char* unit, double&) { list.push_back({name, unit}); });
+    return list;
+  }();
   static constexpr std::string_view texts[] = {"ammunition", "sight"};
   const auto values = detail::read_preset(text, file, names, texts);
   if (!values) return values.error();
@@ -157,34 +140,7 @@ core::Result<ballistics::Weapon> parse_gun(std::string_view text, std::string_vi
     if (!read) return error("sight", read.error().message);
     w.sight = *read;
   }
-  take(*values, "mass", w.mass);
-  take(*values, "muzzle_speed", w.muzzle_speed);
-  take(*values, "twist", w.twist);
-  take(*values, "zero", w.zero);
-  take(*values, "dispersion", w.dispersion);
-  take(*values, "rounds_per_minute", w.rounds_per_minute);
-  take(*values, "mount_mass", w.mount.mass);
-  take(*values, "mount_inertia", w.mount.inertia);
-  take(*values, "mount_bore_above_shoulder", w.mount.bore_above_shoulder);
-  take(*values, "mount_bore_beside_shoulder", w.mount.bore_beside_shoulder);
-  take(*values, "mount_push_frequency", w.mount.push_frequency);
-  take(*values, "mount_push_damping", w.mount.push_damping);
-  take(*values, "mount_rise_frequency", w.mount.rise_frequency);
-  take(*values, "mount_rise_damping", w.mount.rise_damping);
-  w.mount.swing_frequency = w.mount.rise_frequency;
-  w.mount.swing_damping = w.mount.rise_damping;
-  take(*values, "mount_roll_inertia", w.mount.roll_inertia);
-  take(*values, "mount_swing_frequency", w.mount.swing_frequency);
-  take(*values, "mount_swing_damping", w.mount.swing_damping);
-  take(*values, "mount_centre_ahead", w.mount.centre_of_mass.x);
-  take(*values, "mount_centre_above", w.mount.centre_of_mass.y);
-  take(*values, "mount_centre_beside", w.mount.centre_of_mass.z);
-  take(*values, "mount_lift_frequency", w.mount.lift_frequency);
-  take(*values, "mount_lift_damping", w.mount.lift_damping);
-  take(*values, "mount_slide_frequency", w.mount.slide_frequency);
-  take(*values, "mount_slide_damping", w.mount.slide_damping);
-  take(*values, "mount_roll_frequency", w.mount.roll_frequency);
-  take(*values, "mount_roll_damping", w.mount.roll_damping);
+  detail::visit_numbers(w, [&](const char* name, const char*, double& value) { take(*values, name, value); });
   if (auto s = ballistics::check(w); !s) return detail::in_file(file, s.error());
   return w;
 }

@@ -214,7 +214,7 @@ TEST(Recoil, PatternClimbsAndRepeats) {
   EXPECT_NE(*recoil_pattern(mount, 6, {.shots = 20, .seed = 2}), *pattern);
   const auto bad = recoil_pattern({.mass = 0}, 6, {});
   ASSERT_FALSE(bad);
-  EXPECT_EQ(bad.error().message, "recoil: mass is 0, expected a number above 0, to 10^9");
+  EXPECT_EQ(bad.error().message, "recoil: mass is 0, expected a finite number > 0, at most 1e+09");
 }
 
 // Root mean squares and peaks of the spectrum are as set (not realism: amplitudes are designer's numbers).

@@ -77,6 +77,13 @@ TEST(Chapter01Calculus, SimpsonIsExactForCubics) {
   }
 }
 
+// The golden section closes in on the lowest point of a parabola and of what has a corner.
+TEST(Chapter01Calculus, TheLeastPlaceOfWhatFallsAndRises) {
+  EXPECT_NEAR(least_place([](double x) { return (x - 0.3) * (x - 0.3); }, -2, 5, 40), 0.3, 1e-7);
+  EXPECT_NEAR(least_place([](double x) { return x < 1 ? 1 - x : 5 * (x - 1); }, 0, 10, 40), 1, 1e-7);
+  EXPECT_NEAR(least_place([](double x) { return x; }, 2, 3, 30), 2, 1e-6);  // at the border
+}
+
 // 1.5: v = ds/dt and back: samples of a parabola differentiate exactly, and the trapezoid of a line is exact.
 TEST(Chapter01Calculus, SpeedFromDistanceAndBack) {
   std::vector<double> s, v(21), t;

@@ -1,6 +1,7 @@
 // The passes of a step of ropes, in the order in which they run.
 #pragma once
 
+#include "carom/math/calculus.h"
 #include "carom/particles/detail/rope_data.h"
 
 namespace carom::particles::detail {
@@ -8,25 +9,7 @@ namespace carom::particles::detail {
 /// Where a segment is nearest to a shape: along it the distance to a convex shape has one least value.
 template <class Distance>
 double nearest_share(const Distance& distance) {
-  constexpr double golden = 0.6180339887498949;
-  double low = 0, high = 1, a = 1 - golden, b = golden;
-  double at_a = distance(a), at_b = distance(b);
-  for (int k = 0; k < 16; ++k) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = distance(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = distance(b);
-    }
-  }
-  return 0.5 * (low + high);
+  return math::least_place(distance, 0, 1, 16);
 }
 /// Whether a way from 0 to 1 goes through a shape, by the distance from it.
 template <class Distance>

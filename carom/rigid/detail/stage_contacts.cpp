@@ -232,9 +232,12 @@ void find_again(StepContext<D>& context, bool any_strikes) {
   for (const TreeRange& tree : world.joints.trees.trees)
     for (std::int32_t i = tree.first_body; i < tree.body_end; ++i) take(world.joints.trees.bodies[std::size_t(i)].body);
   if (!any_strikes && !any_joint && !any_asleep) return;
-  std::size_t count = 0;
-  for (const std::int32_t body : world.bodies.awake) count += world.scratch.again[std::size_t(body)];
-  if (!any_asleep && many_bodies * count <= world.bodies.awake.size()) {
+  const auto few = [&] {
+    std::size_t count = 0;
+    for (const std::int32_t body : world.bodies.awake) count += world.scratch.again[std::size_t(body)];
+    return many_bodies * count <= world.bodies.awake.size();
+  };
+  if (!any_asleep && few()) {
     for (const std::int32_t body : world.bodies.awake)
       if (world.scratch.again[std::size_t(body)] != 0)
         for_lanes_of<D, W>(world, body, [](ContactBlock<D, W>& block, int lane, std::uint8_t& mark, int side) {

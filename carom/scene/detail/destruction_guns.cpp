@@ -2,6 +2,7 @@
 #include "carom/scene/detail/destruction.h"
 #include "carom/scene/detail/destruction_fields.h"
 #include "carom/scene/detail/matter.h"
+#include "carom/scene/detail/weapon_numbers.h"
 
 namespace carom::scene::detail {
 namespace {
@@ -51,29 +52,6 @@ ballistics::Ammunition read_ammunition(Reader& r, const Object& o) {
   return a;
 }
 
-void read_mount(Reader& r, const Object& o, ballistics::GunMount& m) {
-  m.mass = r.number(o, "mount_mass", m.mass);
-  m.inertia = r.number(o, "mount_inertia", m.inertia);
-  m.bore_above_shoulder = r.number(o, "mount_bore_above_shoulder", m.bore_above_shoulder);
-  m.bore_beside_shoulder = r.number(o, "mount_bore_beside_shoulder", m.bore_beside_shoulder);
-  m.push_frequency = r.number(o, "mount_push_frequency", m.push_frequency);
-  m.push_damping = r.number(o, "mount_push_damping", m.push_damping);
-  m.rise_frequency = r.number(o, "mount_rise_frequency", m.rise_frequency);
-  m.rise_damping = r.number(o, "mount_rise_damping", m.rise_damping);
-  m.swing_frequency = r.number(o, "mount_swing_frequency", m.rise_frequency);
-  m.swing_damping = r.number(o, "mount_swing_damping", m.rise_damping);
-  m.roll_inertia = r.number(o, "mount_roll_inertia", m.roll_inertia);
-  m.centre_of_mass.x = r.number(o, "mount_centre_ahead", m.centre_of_mass.x);
-  m.centre_of_mass.y = r.number(o, "mount_centre_above", m.centre_of_mass.y);
-  m.centre_of_mass.z = r.number(o, "mount_centre_beside", m.centre_of_mass.z);
-  m.lift_frequency = r.number(o, "mount_lift_frequency", m.lift_frequency);
-  m.lift_damping = r.number(o, "mount_lift_damping", m.lift_damping);
-  m.slide_frequency = r.number(o, "mount_slide_frequency", m.slide_frequency);
-  m.slide_damping = r.number(o, "mount_slide_damping", m.slide_damping);
-  m.roll_frequency = r.number(o, "mount_roll_frequency", m.roll_frequency);
-  m.roll_damping = r.number(o, "mount_roll_damping", m.roll_damping);
-}
-
 ballistics::Weapon read_weapon(Reader& r, const Object& o) {
   ballistics::Weapon w;
   Object ammunition, sight;
@@ -90,13 +68,7 @@ ballistics::Weapon read_weapon(Reader& r, const Object& o) {
     w.sight.spacing = r.number(sight, "spacing", w.sight.spacing);
     w.sight.magnification = r.number(sight, "magnification", w.sight.magnification);
   }
-  w.mass = r.number(o, "mass", w.mass);
-  w.muzzle_speed = r.number(o, "muzzle_speed", w.muzzle_speed);
-  w.twist = r.number(o, "twist", w.twist);
-  w.zero = r.number(o, "zero", w.zero);
-  w.dispersion = r.number(o, "dispersion", w.dispersion);
-  w.rounds_per_minute = r.number(o, "rounds_per_minute", w.rounds_per_minute);
-  read_mount(r, o, w.mount);
+  visit_numbers(w, [&](const char* name, const char*, double& value) { value = r.number(o, name, value); });
   return w;
 }
 
