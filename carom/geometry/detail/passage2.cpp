@@ -96,18 +96,22 @@ struct Search {
     if (lowest(core, end, n, offset) < max(-shallow, sagitta - most)) return false;
     return sagitta <= 0.25 * inner || lowest(core, start, n, offset) >= sagitta - most;
   }
-  /// Does the lowest corner of a touch a line of b from the start, seen at a glance?
-  bool touches(const Rounded2& line, Vec2d n, double offset) const {
+  /// Does the lowest corner of a touch a line of b from the start, seen at a glance, or stand behind it, while the
+  /// middle, which is in front, is over the line too?
+  bool touches(const Rounded2& line, Vec2d n, double offset, Vec2d middle) const {
     Vec2d corner;
     double least = 1e300;
     for (int i = 0; i < core.count; ++i) {
       const Vec2d p = transform_point(start, Vec2d(core.v[i]));
       if (const double height = dot(n, p); height < least) least = height, corner = p;
     }
-    if (least < offset || least - offset - double(core.radius) > 0.5 * target) return false;
-    const Vec2d along(line.v[1] - line.v[0]);
-    const double from = dot(along, corner - Vec2d(line.v[0]));
-    return from >= 0 && from <= dot(along, along);
+    if (least - offset - double(core.radius) > 0.5 * target) return false;
+    const Vec2d first(line.v[0]), along(line.v[1] - line.v[0]);
+    const auto over = [&](Vec2d p) {
+      const double from = dot(along, p - first);
+      return from >= 0 && from <= dot(along, along);
+    };
+    return over(corner) && (least >= offset || over(middle));
   }
   /// Does the guarded part of a, of which no point is nearer to its surface than this, stay above a line of b?
   bool guard_clears(Vec2d n, double offset) const {
@@ -160,10 +164,11 @@ struct Search {
     const Rounded2 line = rounded_of(segment);
     if (line.count == 2) {
       const Vec2d n(line.n[0]), p(line.v[0]);
-      if (dot(n, transform_point(start, Vec2d(center_of(core))) - p) < 0) return;  // from behind
+      const Vec2d middle = transform_point(start, Vec2d(center_of(core)));
+      if (dot(n, middle - p) < 0) return;  // from behind
       const double offset = dot(n, p);
       if (clears(n, offset)) return;
-      if (touches(line, n, offset) && (!passage.guarded || guard_clears(n, offset))) return;
+      if (touches(line, n, offset, middle) && (!passage.guarded || guard_clears(n, offset))) return;
     }
     meet(line);
   }
