@@ -177,7 +177,7 @@ core::Status check(const GunMount& g) {
                                                       {"roll_frequency", g.roll_frequency, true},
                                                       {"roll_damping", g.roll_damping, true}},
                                                      1e9);
-  if (!numbers) return numbers;
+  if (!numbers) return numbers.error();
   const math::Vec3d c = g.centre_of_mass;
   if (!math::is_finite(c.x + c.y + c.z) || math::length(c) > 1e3)
     return core::Error{core::text("centre_of_mass is ", c.x, ", ", c.y, ", ", c.z, ", expected at most 1000 m")};
