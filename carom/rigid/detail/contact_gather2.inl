@@ -100,13 +100,13 @@ CAROM_SIMD_INLINE std::uint32_t gather_points2(const ContactSources<Dim2>& from,
   return bitmask(deepest * F::load(c.bias_rate) < F::splat(-from.push_speed));
 }
 
-/// Which of those that roll carry a load and have bodies that move past each other by as much as it takes
-/// (turns_in_step).
+/// Which of those that roll touch in one point, carry a load and have bodies that move past each other by as much as it
+/// takes (turns_in_step). What lies on two points has no rim to roll on.
 template <int W>
 CAROM_SIMD_INLINE std::uint32_t turning2(const ContactSources<Dim2>& from, const LaneRecords2 (&lanes)[W],
                                          const ContactBlock<Dim2, W>& c) {
   using F = WideFloat<W>;
-  F extent[4], va[4], vb[4];  // extent, inner
+  F extent[4], va[4], vb[4];  // of the first: extent, inner
   gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim2>, extent))>(lanes, extent);
   gather<W>(from.bodies, c.read_a, 0, va);
   gather<W>(from.bodies, c.read_b, 0, vb);

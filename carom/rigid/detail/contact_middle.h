@@ -113,17 +113,16 @@ inline RoundFeatures features_of(const geometry::Shape2& a, const geometry::Shap
   return f;
 }
 
-/// The normal and the points of a manifold once B stands so, in A's frame; false where other features meet then.
-/// In the plane in closed form: the normal is that of the edge, wherever it turns, or from point to point; no search
-/// for features that have hardly moved. What lies on two points has no rim to roll on.
-inline bool meet_then(const WorldImplementation<Dim2>& world, const ContactRecord<Dim2>& c,
-                      const geometry::Manifold2& m, const PosesOfMiddle<Dim2>& then, geometry::Manifold2& found) {
-  const geometry::Shape2 &a = world.shapes.at(c.shape[0]).geometry, &b = world.shapes.at(c.shape[1]).geometry;
+/// The normal and the point of a manifold of one point once B stands at `then`, in A's frame. False where it has no
+/// normal there. In closed form: the normal is that of the edge, wherever it turns, or from point to point; features
+/// that have hardly moved are not searched for again.
+inline bool meet_then(const geometry::Shape2& a, const geometry::Shape2& b, const ContactRecord<Dim2>& c,
+                      const geometry::Manifold2& m, const Transform2f& then, geometry::Manifold2& found) {
   const RoundFeatures f = features_of(a, b, c.base, m);
-  const Vec2f on_b = transform_point(then.b_in_a, f.b), between = on_b - f.a;
+  const Vec2f on_b = transform_point(then, f.b), between = on_b - f.a;
   found = m;
   if (f.edge_b) {
-    found.normal = rotate(then.b_in_a.q, inverse_rotate(c.base.q, m.normal));
+    found.normal = rotate(then.q, inverse_rotate(c.base.q, m.normal));
   } else if (!f.edge_a) {
     const float distance = math::length(between);
     if (!(distance > 1e-6f)) return false;
@@ -134,12 +133,12 @@ inline bool meet_then(const WorldImplementation<Dim2>& world, const ContactRecor
       f.edge_a ? on_b - found.normal * (f.radius_b + half_gap) : f.a + found.normal * (f.radius_a + half_gap);
   return true;
 }
-inline bool meet_then(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
-                      const geometry::Manifold3& m, const PosesOfMiddle<Dim3>& then, geometry::Manifold3& found) {
+/// The same in space, of any manifold, by a search. False where other features meet then.
+inline bool meet_then(const geometry::Shape3& a, const geometry::Shape3& b, const ContactRecord<Dim3>& c,
+                      const geometry::Manifold3& m, const Transform3f& then, geometry::Manifold3& found) {
   geometry::PairCache cache = c.cache;
-  const float seen = math::length(then.b_in_a.p - c.base.p);
-  geometry::collide(world.shapes.at(c.shape[0]).geometry, world.shapes.at(c.shape[1]).geometry, then.b_in_a,
-                    2 * c.margin() + seen, cache, found);
+  const float reach = 2 * c.margin() + math::length(then.p - c.base.p);
+  geometry::collide(a, b, then, reach, cache, found);
   bool same = found.count == m.count;
   for (int i = 0; same && i < m.count; ++i) same = found.points[i].feature == m.points[i].feature;
   return same;
@@ -152,7 +151,9 @@ bool middle_of_step(const WorldImplementation<D>& world, const ContactRecord<D>&
   using V = typename D::Vector;
   PosesOfMiddle<D> then;
   typename D::Manifold found;
-  if (!then.find(world, c, dt) || !meet_then(world, c, m, then, found)) return false;
+  if (!then.find(world, c, dt)) return false;
+  const typename D::Shape &a = world.shapes.at(c.shape[0]).geometry, &b = world.shapes.at(c.shape[1]).geometry;
+  if (!meet_then(a, b, c, m, then.b_in_a, found)) return false;
   if (!(dot(found.normal, m.normal) > 0.9f)) return false;
   const auto to_now = [&](const V& v) { return turned_in(then.frame_a, then.turn_a, v); };
   out.normal = to_now(found.normal);
