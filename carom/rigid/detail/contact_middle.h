@@ -33,12 +33,12 @@ inline Vec3f turned_in(const Quatf& frame, const Quatf& turn, const Vec3f& v) {
 /// have now. In the plane lanes tell (turning2).
 inline bool turns_in_step(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
                           const ManifoldRecord<Dim3>& m, float dt) {
-  const float still = still_way(world, dt);
-  if (!(still > 0)) return false;  // without gravity nothing rocks, and arms of the start are those of most blows
   if (!c.rolls || (c.flags & contact_many) != 0) return false;
   bool loaded = false;
   for (int i = 0; i < m.manifold.count; ++i) loaded = loaded || m.impulses.normal[i] > 0;
   if (!loaded) return false;
+  const float still = still_way(world, dt);
+  if (!(still > 0)) return false;  // without gravity nothing rocks, and arms of the start are those of most blows
   const float half = 0.5f * dt, least = max(least_middle_way * c.inner, 0.5f * still);
   const SolverBody<Dim3>& sa = world.bodies.solver[std::size_t(c.body[0])];
   const SolverBody<Dim3>& sb = world.bodies.solver[std::size_t(c.body[1])];
