@@ -31,7 +31,7 @@ void rope_step(benchmark::State& state) {
 }
 
 /// A flag in the wind (0), or a cloth that has fallen over a ball and hangs down from it (1); the same without folds
-/// (2, 3).
+/// (2, 3), and with folds whose edges meet too (4, 5).
 void cloth_step(benchmark::State& state) {
   const int side = int(state.range(0));
   rigid::World3 world;
@@ -45,7 +45,8 @@ void cloth_step(benchmark::State& state) {
   auto cloth = Cloth::make({.fabric = {.thickness = .01},
                             .points = sheet.points,
                             .triangles = sheet.triangles,
-                            .self_collide = state.range(1) < 2})
+                            .self_collide = state.range(1) / 2 != 1,
+                            .self_collide_edges = state.range(1) / 2 == 2})
                    .value();
   if (flag) {
     for (int r = 0; r < side; ++r) cloth.pin(r * side).value();
@@ -91,6 +92,8 @@ BENCHMARK(cloth_step)
     ->Args({64, 1})
     ->Args({64, 2})
     ->Args({64, 3})
+    ->Args({64, 4})
+    ->Args({64, 5})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(soft_body_step)->Arg(8)->Unit(benchmark::kMillisecond);
 

@@ -103,6 +103,7 @@ core::Result<Cloth> Cloth::make(const ClothDef& def) {
   s.friction = def.fabric.friction;
   s.collide = def.collide;
   s.self_collide = def.self_collide;
+  s.self_collide_edges = def.self_collide && def.self_collide_edges;
   s.filter = def.filter;
   s.scheduler = def.scheduler;
   s.solver.set_lanes(def.lanes);

@@ -43,7 +43,9 @@ struct ClothDef {
   math::Vec3d warp{1, 0, 0};                   ///< along the warp; laid into each triangle
   math::Vec3d velocity{};                      ///< m/s
   bool collide = true;                         ///< with shapes of the world
-  bool self_collide = true;
+  bool self_collide = true;                    ///< folds: vertices and triangles
+  /// Edges and edges of folds too, where threads cross between their vertices.
+  bool self_collide_edges = false;
   rigid::Filter filter{};
   core::TaskScheduler* scheduler = nullptr;  ///< the caller's; outlives the cloth. Any gives the same bits.
   int lanes = 0;                             ///< 0: as many as the machine has; 4, 8, 16. The same bits too.

@@ -274,10 +274,107 @@ TEST(Cloth, FoldsDoNotPassThroughEachOther) {
   EXPECT_EQ(through, 0);
 }
 
+// Two strips of one cell's width that cross: no vertex of one is ever above a triangle of the other, and only their
+// edges meet. The upper one falls on the lower, whose ends are held, and lies there; between them no momentum is lost.
+TEST(Cloth, StripsThatCrossMeetEdgeToEdge) {
+  for (const double speed : {0.0, 1.0}) {
+    World3 world;
+    ClothSheet sheet = make_cloth_sheet({-0.5, 0, -0.05}, {1, 0, 0}, {0, 0, 0.1}, 2, 2);
+    const ClothSheet upper = make_cloth_sheet({-0.05, 0.05, -0.5}, {0.1, 0, 0}, {0, 0, 1}, 2, 2);
+    sheet.points.insert(sheet.points.end(), upper.points.begin(), upper.points.end());
+    for (const std::uint32_t c : upper.triangles) sheet.triangles.push_back(c + 4);
+    Cloth cloth = Cloth::make({.fabric = {.thickness = 0.01},
+                               .points = sheet.points,
+                               .triangles = sheet.triangles,
+                               .self_collide_edges = true})
+                      .value();
+    for (int c = 0; c < 4; ++c) cloth.pin(c).value();
+    for (int c = 4; c < 8; ++c) cloth.set_velocity(c, {0, -speed, 0}).value();
+    double lowest = 1;
+    for (int i = 0; i < 120; ++i) {
+      cloth.step(world, dt).value();
+      double middle = 0;
+      for (std::size_t c = 4; c < 8; ++c) middle += 0.25 * cloth.positions()[c].y;
+      lowest = min(lowest, middle);
+    }
+    EXPECT_GT(lowest, 0) << speed << " m/s: it lies on the other";
+    EXPECT_LT(lowest, 0.02) << speed << " m/s: it fell that far";
+  }
+}
+
+TEST(Cloth, EdgesThatMeetExchangeMomentum) {
+  World3 world({.gravity = {0, 0, 0}});
+  ClothSheet sheet = make_cloth_sheet({-0.5, 0, -0.05}, {1, 0, 0}, {0, 0, 0.1}, 2, 2);
+  const ClothSheet upper = make_cloth_sheet({-0.05, 0.05, -0.5}, {0.1, 0, 0}, {0, 0, 1}, 2, 2);
+  sheet.points.insert(sheet.points.end(), upper.points.begin(), upper.points.end());
+  for (const std::uint32_t c : upper.triangles) sheet.triangles.push_back(c + 4);
+  Cloth cloth = Cloth::make({.fabric = {.thickness = 0.01, .normal_coefficient = 0, .tangential_coefficient = 0},
+                             .points = sheet.points,
+                             .triangles = sheet.triangles,
+                             .self_collide_edges = true})
+                    .value();
+  for (int c = 4; c < 8; ++c) cloth.set_velocity(c, {0.2, -1, 0.1}).value();
+  const Vec3d before = cloth.momentum();
+  for (int i = 0; i < 30; ++i) cloth.step(world, dt).value();
+  EXPECT_LT(cloth.velocities()[0].y, -0.1f) << "the lower strip was struck";
+  EXPECT_LT(length(cloth.momentum() - before), 1e-5 * length(before));
+}
+
+/// Edges that go through triangles of the same cloth.
+int crossings(const Cloth& cloth) {
+  const auto corner = cloth.triangles();
+  const auto at = [&](std::uint32_t i) { return cloth.positions()[i]; };
+  int count = 0;
+  for (std::size_t t = 0; t + 2 < corner.size(); t += 3) {
+    const Vec3d a = at(corner[t]), u = at(corner[t + 1]) - a, v = at(corner[t + 2]) - a, n = cross(u, v);
+    for (std::size_t k = 0; k < corner.size(); ++k) {
+      const std::uint32_t p = corner[k], q = corner[k % 3 == 2 ? k - 2 : k + 1];
+      if (p > q) continue;  // each edge within the sheet once
+      bool shares = false;
+      for (std::size_t c = t; c < t + 3; ++c) shares = shares || corner[c] == p || corner[c] == q;
+      const double hp = dot(at(p) - a, n), hq = dot(at(q) - a, n);
+      if (shares || (hp > 0) == (hq > 0)) continue;
+      const Vec3d x = at(p) + (hp / (hp - hq)) * (at(q) - at(p)) - a;
+      const double beta = dot(x, cross(v, n)), gamma = dot(x, cross(n, u));
+      count += beta >= 0 && gamma >= 0 && beta + gamma <= dot(n, n);
+    }
+  }
+  return count;
+}
+
+// A curtain falls onto its lower edge and lies there in a heap of folds, more than ten layers of them. Vertices that
+// meet triangles alone let edges slip past each other; what has crossed finds out again. Without that the heap ends
+// with 4 774 crossings, and with 2 608 where edges meet too.
+TEST(Cloth, AHeapOfFoldsHardlyCrosses) {
+  for (const bool edges : {false, true}) {
+    World3 world;
+    rigid::BodyDef<Dim3> ground;
+    ground.type = rigid::BodyType::fixed;
+    world.add_shape(world.create_body(ground).value(), geometry::Plane{}).value();
+    const ClothSheet sheet = make_cloth_sheet({0, 0.05, 0}, {1, 0, 0.1}, {0.1, 1, 0.05}, 24, 24);
+    Cloth cloth = Cloth::make({.fabric = {.bending_stiffness = 1e-5, .thickness = 0.005},
+                               .points = sheet.points,
+                               .triangles = sheet.triangles,
+                               .self_collide_edges = edges})
+                      .value();
+    const double area = cloth.area();
+    int most = 0;
+    for (int i = 0; i < 180; ++i) {
+      cloth.step(world, dt).value();
+      if (i % 10 == 0) most = std::max(most, crossings(cloth));
+    }
+    RecordProperty(edges ? "with_edges" : "without", std::to_string(most) + " " + std::to_string(crossings(cloth)));
+    EXPECT_LT(most, edges ? 500 : 1000);
+    EXPECT_LT(crossings(cloth), edges ? 300 : 600);
+    EXPECT_NEAR(cloth.area(), area, 0.06 * area);
+  }
+}
+
 TEST(Cloth, SilkHeldAtItsMiddleStreamsInAGaleAndKeepsItsSize) {
   // A scarf that is held at one point above a ball: the wind presses eighty times its weight, and its folds, of cells
   // of 5 cm, cross near the pin. Where folds that cross are pushed apart, whatever the side, the cloth is drawn through
-  // itself to a lump of thousands of joules.
+  // itself to a lump of thousands of joules. Where they are let go they stay crossed (1 300 to 2 400 times); led out
+  // the shortest way they are crossed a tenth as often, and what the wind presses through stretches meanwhile.
   for (const double speed : {0.0, 9.0}) {
     World3 world;
     rigid::BodyDef<Dim3> def;
@@ -315,9 +412,10 @@ TEST(Cloth, SilkHeldAtItsMiddleStreamsInAGaleAndKeepsItsSize) {
         }
       EXPECT_GT(farthest, 0.8) << speed << " m/s, " << second << " s";
       EXPECT_LT(farthest, 0.88) << speed << " m/s, " << second << " s";
-      EXPECT_LT(stretched, threads / 100) << speed << " m/s, " << second << " s";
-      EXPECT_NEAR(cloth.area(), 1.44, 0.03) << speed << " m/s, " << second << " s";
-      EXPECT_LT(cloth.elastic_energy(), 8) << speed << " m/s, " << second << " s";
+      EXPECT_LT(stretched, speed > 0 ? threads / 25 : 1) << speed << " m/s, " << second << " s";
+      EXPECT_NEAR(cloth.area(), 1.44, speed > 0 ? 0.06 : 0.003) << speed << " m/s, " << second << " s";
+      EXPECT_LT(cloth.elastic_energy(), speed > 0 ? 30 : 1) << speed << " m/s, " << second << " s";
+      EXPECT_LT(crossings(cloth), speed > 0 ? 700 : 60) << speed << " m/s, " << second << " s";
     }
     Vec3d middle{};
     for (const Vec3d& p : cloth.positions()) middle += (1.0 / cloth.vertex_count()) * p;

@@ -40,21 +40,6 @@ std::vector<int> order_by_place(const std::vector<Vec3d>& points) {
   return order;
 }
 
-/// A triangle's plane, and what goes through it.
-struct FoldFace {
-  Vec3f origin, u, v, normal;
-
-  FoldFace(Vec3f a, Vec3f b, Vec3f c) : origin(a), u(b - a), v(c - a), normal(cross(u, v)) {}
-  float height(Vec3f p) const { return dot(p - origin, normal); }  ///< times twice the area
-  /// Whether p q goes through the triangle. `hp`, `hq`: heights of p and q.
-  bool pierced(Vec3f p, float hp, Vec3f q, float hq) const {
-    if ((hp > 0) == (hq > 0)) return false;
-    const Vec3f x = p + (hp / (hp - hq)) * (q - p) - origin;
-    const float beta = dot(x, cross(v, normal)), gamma = dot(x, cross(normal, u));
-    return beta >= 0 && gamma >= 0 && beta + gamma <= dot(normal, normal);
-  }
-};
-
 }  // namespace
 
 void ClothState::tile_folds() {
@@ -70,55 +55,33 @@ void ClothState::tile_folds() {
   std::vector<Vec3d> middle;
   for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
     middle.push_back((position[corners[k]] + position[corners[k + 1]] + position[corners[k + 2]]) / 3.0);
+  // Each tile grows from the first triangle that none has yet, by what hangs on it: tiles are in one piece.
   const std::vector<int> order = order_by_place(middle);
-  fold_triangles.assign((order.size() + fold_lanes - 1) / fold_lanes, FoldTriangles{});
-  for (std::size_t k = 0; k < fold_triangles.size() * fold_lanes; ++k) {
-    FoldTriangles& tile = fold_triangles[k / fold_lanes];
-    const std::size_t lane = k % fold_lanes;
-    tile.triangle[lane] = k < order.size() ? order[k] : -1;
-    for (std::size_t c = 0; c < 3 && k < order.size(); ++c)
-      tile.corner[c][lane] = int(corners[3 * std::size_t(order[k]) + c]);
-  }
-}
-
-bool ClothState::tangle(std::uint32_t vertex, std::uint32_t triangle) {
-  const std::uint32_t* t = &corners[3 * std::size_t(triangle)];
-  const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
-  const auto mark = [&](std::uint32_t p, std::uint32_t q, const std::uint32_t* through) {
-    for (const std::uint32_t i : {p, q, through[0], through[1], through[2]}) tangled[i] = 1;
-  };
-  const Vec3f at = place(vertex), corner[3] = {place(t[0]), place(t[1]), place(t[2])};
-  const FoldFace face(corner[0], corner[1], corner[2]);
-  const float height = face.height(at);
-  // Nearly always all that the vertex hangs on stands on the same side of the triangle: then nothing crosses.
-  bool beside_it = true;
-  for (int k = triangle_first[vertex]; beside_it && k < triangle_first[vertex + 1]; ++k) {
-    const std::uint32_t own = std::uint32_t(triangle_list[std::size_t(k)]), first = own / 3 * 3;
-    for (const std::uint32_t end : {corners[first + (own + 1 - first) % 3], corners[first + (own + 2 - first) % 3]})
-      beside_it = beside_it && end != t[0] && end != t[1] && end != t[2] && face.height(place(end)) * height > 0;
-  }
-  if (beside_it) return false;
-  bool any = false;
-  for (int k = triangle_first[vertex]; k < triangle_first[vertex + 1]; ++k) {
-    const std::uint32_t own = std::uint32_t(triangle_list[std::size_t(k)]), first = own / 3 * 3;
-    const std::uint32_t ends[2] = {corners[first + (own + 1 - first) % 3], corners[first + (own + 2 - first) % 3]};
-    for (const std::uint32_t end : ends) {
-      if (end == t[0] || end == t[1] || end == t[2]) continue;
-      if (!face.pierced(at, height, place(end), face.height(place(end)))) continue;
-      mark(vertex, end, t);
-      any = true;
+  std::vector<int> rank(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) rank[std::size_t(order[k])] = int(k);
+  std::vector<std::uint8_t> laid(order.size(), 0);
+  std::vector<int> hanging;  // on the tile: places in the order
+  fold_triangles.clear();
+  for (std::size_t first = 0; first < order.size(); ++first) {
+    if (laid[first] != 0) continue;
+    FoldTriangles tile{};
+    hanging.assign(1, int(first));
+    for (int lane = 0; lane < fold_lanes; ++lane) {
+      const auto next = std::min_element(hanging.begin(), hanging.end());
+      const int triangle = next == hanging.end() ? -1 : order[std::size_t(*next)];
+      tile.triangle[lane] = triangle;
+      for (std::size_t c = 0; c < 3 && triangle >= 0; ++c) {
+        const std::uint32_t vertex = corners[3 * std::size_t(triangle) + c];
+        tile.corner[c][lane] = int(vertex);
+        laid[std::size_t(rank[std::size_t(triangle)])] = 1;
+        for (int k = triangle_first[vertex]; k < triangle_first[vertex + 1]; ++k)
+          hanging.push_back(rank[std::size_t(triangle_list[std::size_t(k)] / 3)]);
+      }
+      std::erase_if(hanging, [&](int k) { return laid[std::size_t(k)] != 0; });
     }
-    const FoldFace beside(at, place(ends[0]), place(ends[1]));
-    const float heights[3] = {beside.height(corner[0]), beside.height(corner[1]), beside.height(corner[2])};
-    for (int e = 0; e < 3; ++e) {
-      const int f = (e + 1) % 3;
-      if (t[e] == ends[0] || t[e] == ends[1] || t[f] == ends[0] || t[f] == ends[1]) continue;
-      if (!beside.pierced(corner[e], heights[e], corner[f], heights[f])) continue;
-      mark(t[e], t[f], &corners[first]);
-      any = true;
-    }
+    fold_triangles.push_back(tile);
   }
-  return any;
+  if (self_collide_edges) tile_fold_edges();
 }
 
 void ClothState::find_fold_pairs(float h, float apart) {
@@ -149,6 +112,7 @@ void ClothState::find_fold_pairs(float h, float apart) {
   kernels.lay_folds(fold_triangles.data(), int(fold_triangles.size()),
                     reinterpret_cast<const float*>(fold_records.data()), {apart, 2 * h, 0.5f * size, 8 * size});
   pairs.clear();
+  crossings.clear();
   tangled.assign(position.size(), 0);
   fold_hits.resize(fold_lanes * fold_lanes * fold_lanes);
   const auto lightness = [&](int i) { return pin_of[std::size_t(i)] >= 0 ? 0.0f : 1 / mass[std::size_t(i)]; };
@@ -183,7 +147,7 @@ void ClothState::find_fold_pairs(float h, float apart) {
       }
     }
   // Of folds that cross nothing tells which side each belongs on: those that push each other apart where they are now
-  // draw the cloth through itself and stretch it without end. They are let go, and slip out by themselves or stay.
+  // draw the cloth through itself and stretch it without end. What leads them out is how they cross (push_out).
   std::erase_if(pairs, [&](const ClothPair& pair) {
     const std::uint32_t* c = &corners[3 * std::size_t(pair.triangle)];
     return (tangled[pair.vertex] & tangled[c[0]] & tangled[c[1]] & tangled[c[2]]) != 0;
@@ -191,10 +155,13 @@ void ClothState::find_fold_pairs(float h, float apart) {
 }
 
 void ClothState::keep_apart(float h) {
-  find_fold_pairs(h, math::min(float(fabric.thickness), 0.6f * smallest_edge));
+  const float apart = math::min(float(fabric.thickness), 0.6f * smallest_edge);
+  find_fold_pairs(h, apart);
+  if (self_collide_edges) find_edge_pairs(h, apart);
+  find_ways_out();
   const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
   const float friction = float(fabric.friction);
-  for (int sweep = 0; sweep < 3; ++sweep)
+  for (int sweep = 0; sweep < 3; ++sweep) {
     for (const ClothPair& pair : pairs) {
       const std::uint32_t v = pair.vertex, *c = &corners[3 * std::size_t(pair.triangle)];
       const Vec3f relative =
@@ -209,6 +176,9 @@ void ClothState::keep_apart(float h) {
       velocity[v] += lightness(v) * impulse;
       for (int k = 0; k < 3; ++k) velocity[c[k]] -= (pair.share[k] * lightness(c[k])) * impulse;
     }
+    if (self_collide_edges) push_edges();
+    push_out(h, apart);
+  }
 }
 
 }  // namespace carom::particles::detail

@@ -28,9 +28,39 @@ struct ClothPair {
   float mass = 0;    ///< kg, of the two against each other
 };
 
+/// An edge that goes through a triangle, and which way it comes out of it.
+struct ClothCrossing {
+  std::uint32_t end[2] = {}, triangle = 0;
+  float along = 0;  ///< of the edge, 0 to 1
+  Vec3f share{};    ///< of the triangle's corners
+  Vec3f out{};      ///< unit: the edge against the triangle
+  float mass = 0;   ///< kg, of the two against each other
+};
+/// Two edges of folds that cross.
+struct ClothEdgePair {
+  std::uint32_t vertex[4] = {};
+  float share[4] = {};  ///< of the velocities: that of the first edge less that of the second
+  Vec3f normal{};       ///< from the second edge to the first
+  float wanted = 0;     ///< m/s, at least, apart
+  float mass = 0;       ///< kg, of the two against each other
+};
+/// The edges of a tile of triangles that no tile before it has.
+struct FoldEdges {
+  std::uint32_t end[3 * fold_lanes][2] = {};
+  int count = 0;
+};
+/// The normals of a tile's triangles lie within this cosine of an axis; below 0: not known.
+struct FoldCone {
+  Vec3f axis{};
+  float cosine = -1;
+};
+struct FoldRun {
+  float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
+};
+
 struct ClothState final : SoftThing {
   Fabric fabric{};
-  bool self_collide = true, torn = false;
+  bool self_collide = true, self_collide_edges = false, torn = false;
   double air_density = 1.225;
   environment::Wind wind{};
   environment::WindPatch beyond{};
@@ -51,11 +81,17 @@ struct ClothState final : SoftThing {
   std::vector<int> triangle_first, triangle_list;  ///< by vertex: 3·triangle + corner
   std::vector<FoldVertices> fold_vertices;
   std::vector<FoldTriangles> fold_triangles;
+  std::vector<FoldEdges> fold_edges;          ///< by tile of triangles
+  std::vector<std::vector<int>> fold_beside;  ///< later tiles that share a vertex with it
 
   // Of a step.
   AlignedFloats records, rows;       ///< by vertex: cloth_record and cloth_row floats
   std::vector<ClothStrain> strains;  ///< by triangle, those that fill the last tile, and one that is none
   std::vector<ClothPair> pairs;
+  std::vector<ClothCrossing> crossings;
+  std::vector<ClothEdgePair> edge_pairs;
+  std::vector<FoldCone> fold_cones;
+  std::vector<FoldRun> fold_runs;
   std::vector<SoftVector> fold_records;  ///< by vertex: place from the first, velocity
   std::vector<FoldHit> fold_hits;
   std::vector<std::uint8_t> tangled;  ///< by vertex: where folds cross
@@ -75,10 +111,21 @@ struct ClothState final : SoftThing {
   void hold(float h);
   void keep_apart(float h);  ///< folds
   void tile_folds();
+  void tile_fold_edges();
   void find_fold_pairs(float h, float apart);
+  void find_edge_pairs(float h, float apart);
+  /// Edges of one tile against those of another, whose triangles' bounds are given.
+  void meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, const FoldEdges& theirs, bool same, float h,
+                  float apart);
+  void push_edges();
   /// Whether an edge of the vertex goes through the triangle, or one of the triangle through one of the vertex's; marks
   /// the vertices of both as tangled.
   bool tangle(std::uint32_t vertex, std::uint32_t triangle);
+  void find_ways_out();  ///< of the crossings that were found, each once
+  bool drawn_out(std::uint32_t triangle) const;
+  /// False: it only touches, or the cloth is drawn out there.
+  bool find_way_out(ClothCrossing& crossing) const;
+  void push_out(float h, float apart);
   void tear();
 
   std::span<const std::uint32_t> faces() const override { return corners; }

@@ -97,6 +97,7 @@ constexpr Field cloth_fields[] = {
     {"substeps", T::integer, M::plain, "1 to 64"},
     {"collide", T::flag, M::plain, "with shapes of the world"},
     {"self_collide", T::flag},
+    {"self_collide_edges", T::flag},
     {"filter", T::object, M::plain, "", &filter_kind},
     {"color", T::color, M::plain, "as #rrggbb"},
 };

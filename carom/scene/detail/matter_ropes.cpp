@@ -185,6 +185,7 @@ void read_cloth(Place& place, const Object& o) {
   def.velocity = r.vector(o, "velocity");
   def.collide = r.flag(o, "collide", true);
   def.self_collide = r.flag(o, "self_collide", true);
+  def.self_collide_edges = r.flag(o, "self_collide_edges", false);
   def.filter = read_matter_filter(r, o);
   std::string name;
   std::uint32_t color = 0xd1495b;
