@@ -54,6 +54,7 @@ struct FoldCone {
   Vec3f axis{};
   float cosine = -1;
 };
+/// The bounds of some tiles that follow each other.
 struct FoldRun {
   float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
 };
