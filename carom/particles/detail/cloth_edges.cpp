@@ -113,7 +113,7 @@ void ClothState::meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, 
   const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
   const auto speed = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i) + 1].vector(); };
   const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
-  const float most = 0.6f * mean_edge;
+  const float look = math::min(2 * apart, 0.6f * mean_edge), widest = apart + look;  // m, ahead at most; and in all
   for (int i = 0; i < ours.count; ++i) {
     const std::uint32_t p = ours.end[i][0], q = ours.end[i][1];
     const Vec3f a = place(p), b = place(q), low = min(a, b), high = max(a, b);
@@ -126,7 +126,6 @@ void ClothState::meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, 
       const std::uint32_t r = theirs.end[k][0], s = theirs.end[k][1];
       const Vec3f c = place(r), d = place(s);
       far = false;
-      const float widest = apart + math::min(2 * apart, most);
       for (int axis = 0; axis < 3; ++axis)
         far |= math::max(c[axis], d[axis]) < low[axis] - widest || high[axis] + widest < math::min(c[axis], d[axis]);
       if (far || p == r || p == s || q == r || q == s) continue;
@@ -139,10 +138,10 @@ void ClothState::meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, 
       if (share < 0 || share > 1 || other < 0 || other > 1) continue;
       const Vec3f way = w + share * u - other * v;
       const float gap = length(way);
-      const Vec3f normal = gap > 1e-3f * apart ? (1 / gap) * way : Vec3f{};
+      if (!(gap > 1e-3f * apart)) continue;
+      const Vec3f normal = (1 / gap) * way;
       const Vec3f velocity = (1 - share) * speed(p) + share * speed(q) - (1 - other) * speed(r) - other * speed(s);
-      if (gap > apart + math::min(2 * h * length(velocity) + apart, math::min(2 * apart, most)) || normal == Vec3f{})
-        continue;
+      if (gap > apart + math::min(2 * h * length(velocity) + apart, look)) continue;
       if ((tangled[p] | tangled[q] | tangled[r] | tangled[s]) != 0) continue;
       const float weight = math::square(1 - share) * lightness(p) + math::square(share) * lightness(q) +
                            math::square(1 - other) * lightness(r) + math::square(other) * lightness(s);
