@@ -374,7 +374,7 @@ TEST(Cloth, SilkHeldAtItsMiddleStreamsInAGaleAndKeepsItsSize) {
   // A scarf that is held at one point above a ball: the wind presses eighty times its weight, and its folds, of cells
   // of 5 cm, cross near the pin. Where folds that cross are pushed apart, whatever the side, the cloth is drawn through
   // itself to a lump of thousands of joules. Where they are let go they stay crossed (1 300 to 2 400 times); led out
-  // the shortest way they are crossed a tenth as often, and what the wind presses through stretches meanwhile.
+  // the shortest way they are crossed a quarter as often, and what the wind presses through stretches meanwhile.
   for (const double speed : {0.0, 9.0}) {
     World3 world;
     rigid::BodyDef<Dim3> def;

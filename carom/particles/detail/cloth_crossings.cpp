@@ -37,12 +37,11 @@ bool before(const ClothCrossing& a, const ClothCrossing& b) {
 
 bool ClothState::tangle(std::uint32_t vertex, std::uint32_t triangle) {
   const std::uint32_t* t = &corners[3 * std::size_t(triangle)];
-  const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
   const auto mark = [&](std::uint32_t p, std::uint32_t q, const std::uint32_t* through) {
     for (const std::uint32_t i : {p, q, through[0], through[1], through[2]}) tangled[i] = 1;
     crossings.push_back({{math::min(p, q), math::max(p, q)}, std::uint32_t(through - corners.data()) / 3});
   };
-  const Vec3f at = place(vertex), corner[3] = {place(t[0]), place(t[1]), place(t[2])};
+  const Vec3f at = fold_place(vertex), corner[3] = {fold_place(t[0]), fold_place(t[1]), fold_place(t[2])};
   const FoldFace face(corner[0], corner[1], corner[2]);
   const float height = face.height(at);
   // Nearly always all that the vertex hangs on stands on the same side of the triangle: then nothing crosses.
@@ -50,7 +49,7 @@ bool ClothState::tangle(std::uint32_t vertex, std::uint32_t triangle) {
   for (int k = triangle_first[vertex]; beside_it && k < triangle_first[vertex + 1]; ++k) {
     const std::uint32_t own = std::uint32_t(triangle_list[std::size_t(k)]), first = own / 3 * 3;
     for (const std::uint32_t end : {corners[first + (own + 1 - first) % 3], corners[first + (own + 2 - first) % 3]})
-      beside_it = beside_it && end != t[0] && end != t[1] && end != t[2] && face.height(place(end)) * height > 0;
+      beside_it = beside_it && end != t[0] && end != t[1] && end != t[2] && face.height(fold_place(end)) * height > 0;
   }
   if (beside_it) return false;
   bool any = false;
@@ -59,11 +58,11 @@ bool ClothState::tangle(std::uint32_t vertex, std::uint32_t triangle) {
     const std::uint32_t ends[2] = {corners[first + (own + 1 - first) % 3], corners[first + (own + 2 - first) % 3]};
     for (const std::uint32_t end : ends) {
       if (end == t[0] || end == t[1] || end == t[2]) continue;
-      if (!face.pierced(at, height, place(end), face.height(place(end)))) continue;
+      if (!face.pierced(at, height, fold_place(end), face.height(fold_place(end)))) continue;
       mark(vertex, end, t);
       any = true;
     }
-    const FoldFace beside(at, place(ends[0]), place(ends[1]));
+    const FoldFace beside(at, fold_place(ends[0]), fold_place(ends[1]));
     const float heights[3] = {beside.height(corner[0]), beside.height(corner[1]), beside.height(corner[2])};
     for (int e = 0; e < 3; ++e) {
       const int f = (e + 1) % 3;
@@ -88,15 +87,13 @@ void ClothState::find_ways_out() {
 }
 
 bool ClothState::find_way_out(ClothCrossing& x) const {
-  const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
-  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
   const std::uint32_t *t = &corners[3 * std::size_t(x.triangle)], p = x.end[0], q = x.end[1];
-  const FoldFace face(place(t[0]), place(t[1]), place(t[2]));
-  const Vec3f edge = place(q) - place(p), normal = face.normal;
-  const float from = face.height(place(p)), to = face.height(place(q)), steep = dot(edge, normal);
+  const FoldFace face(fold_place(t[0]), fold_place(t[1]), fold_place(t[2]));
+  const Vec3f edge = fold_place(q) - fold_place(p), normal = face.normal;
+  const float from = face.height(fold_place(p)), to = face.height(fold_place(q)), steep = dot(edge, normal);
   x.along = from / (from - to);
   if (!(x.along > graze && x.along < 1 - graze) || drawn_out(x.triangle)) return false;
-  const Vec3f at = place(p) + x.along * edge - face.origin;
+  const Vec3f at = fold_place(p) + x.along * edge - face.origin;
   const float inverse = 1 / dot(normal, normal), beta = inverse * dot(at, cross(face.v, normal)),
               gamma = inverse * dot(at, cross(normal, face.u));
   x.share = {1 - beta - gamma, beta, gamma};
@@ -107,7 +104,7 @@ bool ClothState::find_way_out(ClothCrossing& x) const {
     if (one != q && two != q) continue;
     if (drawn_out(own / 3)) return false;
     // Of each face of the edge: the line goes into it from here.
-    const Vec3f beside = cross(edge, place(one == q ? two : one) - place(p)), line = cross(normal, beside);
+    const Vec3f beside = cross(edge, fold_place(one == q ? two : one) - fold_place(p)), line = cross(normal, beside);
     const float size = dot(line, cross(beside, edge)) > 0 ? length(line) : -length(line);
     if (size == 0) continue;
     const Vec3f into = (1 / size) * line;
@@ -125,7 +122,7 @@ bool ClothState::drawn_out(std::uint32_t triangle) const {
   const ClothTriangle& shape = triangles[triangle];
   Vec3f warp{}, weft{};
   for (int k = 0; k < 3; ++k) {
-    const Vec3f at = fold_records[2 * std::size_t(corners[3 * std::size_t(triangle) + std::size_t(k)])].vector();
+    const Vec3f at = fold_place(corners[3 * std::size_t(triangle) + std::size_t(k)]);
     warp += shape.u[k] * at;
     weft += shape.v[k] * at;
   }
@@ -133,7 +130,6 @@ bool ClothState::drawn_out(std::uint32_t triangle) const {
 }
 
 void ClothState::push_out(float h, float apart) {
-  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
   const float wanted = math::min(apart / h, fastest_out);
   for (const ClothCrossing& x : crossings) {
     const std::uint32_t *t = &corners[3 * std::size_t(x.triangle)], p = x.end[0], q = x.end[1];

@@ -110,13 +110,11 @@ void ClothState::find_edge_pairs(float h, float apart) {
 
 void ClothState::meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, const FoldEdges& theirs, bool same,
                             float h, float apart) {
-  const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
   const auto speed = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i) + 1].vector(); };
-  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
   const float look = math::min(2 * apart, 0.6f * mean_edge), widest = apart + look;  // m, ahead at most; and in all
   for (int i = 0; i < ours.count; ++i) {
     const std::uint32_t p = ours.end[i][0], q = ours.end[i][1];
-    const Vec3f a = place(p), b = place(q), low = min(a, b), high = max(a, b);
+    const Vec3f a = fold_place(p), b = fold_place(q), low = min(a, b), high = max(a, b);
     bool far = false;
     for (int axis = 0; axis < 3; ++axis) far |= high[axis] < bounds.low[axis] || bounds.high[axis] < low[axis];
     if (far) continue;
@@ -124,7 +122,7 @@ void ClothState::meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, 
     const float uu = dot(u, u);
     for (int k = same ? i + 1 : 0; k < theirs.count; ++k) {
       const std::uint32_t r = theirs.end[k][0], s = theirs.end[k][1];
-      const Vec3f c = place(r), d = place(s);
+      const Vec3f c = fold_place(r), d = fold_place(s);
       far = false;
       for (int axis = 0; axis < 3; ++axis)
         far |= math::max(c[axis], d[axis]) < low[axis] - widest || high[axis] + widest < math::min(c[axis], d[axis]);
@@ -157,18 +155,11 @@ void ClothState::meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, 
 }
 
 void ClothState::push_edges() {
-  const float friction = float(fabric.friction);
-  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
   for (const ClothEdgePair& pair : edge_pairs) {
     Vec3f relative{};
     for (int k = 0; k < 4; ++k) relative += pair.share[k] * velocity[pair.vertex[k]];
-    const float opening = dot(pair.normal, relative);
-    if (opening >= pair.wanted) continue;
-    const float push = (pair.wanted - opening) * pair.mass;
-    Vec3f impulse = push * pair.normal;
-    const Vec3f slide = relative - opening * pair.normal;
-    const float speed = length(slide);
-    if (speed > 1e-9f) impulse -= (math::min(friction * push, speed * pair.mass) / speed) * slide;
+    const Vec3f impulse = fold_impulse(relative, pair.normal, pair.wanted, pair.mass);
+    if (impulse == Vec3f{}) continue;
     for (int k = 0; k < 4; ++k) velocity[pair.vertex[k]] += (pair.share[k] * lightness(pair.vertex[k])) * impulse;
   }
 }

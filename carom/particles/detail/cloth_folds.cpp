@@ -115,7 +115,6 @@ void ClothState::find_fold_pairs(float h, float apart) {
   crossings.clear();
   tangled.assign(position.size(), 0);
   fold_hits.resize(fold_lanes * fold_lanes * fold_lanes);
-  const auto lightness = [&](int i) { return pin_of[std::size_t(i)] >= 0 ? 0.0f : 1 / mass[std::size_t(i)]; };
   const float step = 1 / h;
   for (const FoldTriangles& tile : fold_triangles)
     for (const FoldVertices& group : fold_vertices) {
@@ -128,9 +127,8 @@ void ClothState::find_fold_pairs(float h, float apart) {
         const FoldHit hit = fold_hits[std::size_t(k)];
         if (tangle(std::uint32_t(hit.vertex), std::uint32_t(hit.triangle))) continue;
         const std::uint32_t* c = &corners[3 * std::size_t(hit.triangle)];
-        const auto place = [&](std::uint32_t i) { return fold_records[2 * std::size_t(i)].vector(); };
-        const Vec3f a = place(c[0]), u = place(c[1]) - a, v = place(c[2]) - a, n = cross(u, v);
-        const Vec3f way = place(std::uint32_t(hit.vertex)) - a;
+        const Vec3f a = fold_place(c[0]), u = fold_place(c[1]) - a, v = fold_place(c[2]) - a, n = cross(u, v);
+        const Vec3f way = fold_place(std::uint32_t(hit.vertex)) - a;
         const float inverse = 1 / dot(n, n), beta = inverse * dot(way, cross(v, n)),
                     gamma = inverse * dot(way, cross(n, u));
         const Vec3f normal = math::sqrt(inverse) * n;
@@ -138,9 +136,9 @@ void ClothState::find_fold_pairs(float h, float apart) {
         ClothPair pair{
             std::uint32_t(hit.vertex), std::uint32_t(hit.triangle), {1 - beta - gamma, beta, gamma}, side * normal};
         pair.wanted = gap >= 0 ? -gap * step : math::min(-0.2f * gap * step, 0.5f);
-        const float weight = lightness(hit.vertex) + math::square(pair.share.x) * lightness(int(c[0])) +
-                             math::square(pair.share.y) * lightness(int(c[1])) +
-                             math::square(pair.share.z) * lightness(int(c[2]));
+        const float weight = lightness(pair.vertex) + math::square(pair.share.x) * lightness(c[0]) +
+                             math::square(pair.share.y) * lightness(c[1]) +
+                             math::square(pair.share.z) * lightness(c[2]);
         if (!(weight > 0)) continue;
         pair.mass = 1 / weight;
         pairs.push_back(pair);
@@ -154,25 +152,28 @@ void ClothState::find_fold_pairs(float h, float apart) {
   });
 }
 
+Vec3f ClothState::fold_impulse(const Vec3f& relative, const Vec3f& normal, float wanted, float heavy) const {
+  const float opening = dot(normal, relative);
+  if (opening >= wanted) return {};
+  const float push = (wanted - opening) * heavy;
+  const Vec3f slide = relative - opening * normal;
+  const float speed = length(slide), most = float(fabric.friction) * push;
+  const Vec3f impulse = push * normal;
+  return speed > 1e-9f ? impulse - (math::min(most, speed * heavy) / speed) * slide : impulse;
+}
+
 void ClothState::keep_apart(float h) {
   const float apart = math::min(float(fabric.thickness), 0.6f * smallest_edge);
   find_fold_pairs(h, apart);
   if (self_collide_edges) find_edge_pairs(h, apart);
   find_ways_out();
-  const auto lightness = [&](std::uint32_t i) { return pin_of[i] >= 0 ? 0.0f : 1 / mass[i]; };
-  const float friction = float(fabric.friction);
   for (int sweep = 0; sweep < 3; ++sweep) {
     for (const ClothPair& pair : pairs) {
       const std::uint32_t v = pair.vertex, *c = &corners[3 * std::size_t(pair.triangle)];
       const Vec3f relative =
           velocity[v] - pair.share.x * velocity[c[0]] - pair.share.y * velocity[c[1]] - pair.share.z * velocity[c[2]];
-      const float opening = dot(pair.normal, relative);
-      if (opening >= pair.wanted) continue;
-      const float push = (pair.wanted - opening) * pair.mass;
-      Vec3f impulse = push * pair.normal;
-      const Vec3f slide = relative - opening * pair.normal;
-      const float speed = length(slide);
-      if (speed > 1e-9f) impulse -= (math::min(friction * push, speed * pair.mass) / speed) * slide;
+      const Vec3f impulse = fold_impulse(relative, pair.normal, pair.wanted, pair.mass);
+      if (impulse == Vec3f{}) continue;
       velocity[v] += lightness(v) * impulse;
       for (int k = 0; k < 3; ++k) velocity[c[k]] -= (pair.share[k] * lightness(c[k])) * impulse;
     }

@@ -111,6 +111,13 @@ struct ClothState final : SoftThing {
   void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
   void hold(float h);
   void keep_apart(float h);  ///< folds
+  float lightness(std::uint32_t i) const {
+    return pin_of[i] >= 0 ? 0.0f : 1 / mass[i];
+  }  ///< 1/kg; none of what is held
+  Vec3f fold_place(std::uint32_t i) const { return fold_records[2 * std::size_t(i)].vector(); }  ///< m, from the first
+  /// N·s on what moves with `relative` (m/s) against the other, of two of `heavy` (kg) that part by `wanted` along the
+  /// normal: with friction. Zero: they do.
+  Vec3f fold_impulse(const Vec3f& relative, const Vec3f& normal, float wanted, float heavy) const;
   void tile_folds();
   void tile_fold_edges();
   void find_fold_pairs(float h, float apart);
