@@ -6,6 +6,7 @@
 
 #include "carom/rigid/detail/box_lanes.h"
 #include "carom/rigid/detail/contact_watch.h"
+#include "carom/rigid/detail/pair_motions.h"
 #include "carom/rigid/detail/step_context.h"
 
 namespace carom::rigid::detail {
@@ -145,6 +146,8 @@ struct ContactKernels {
   /// Which of `count` watches in a row, at most the width, tell that nothing is new. Bits by lane.
   std::uint32_t (*nothing_new)(const ContactWatch<D>* watches, int count, const typename D::Pose* poses,
                                const BodySweep<D>* sweeps, float dt) = nullptr;
+  /// How `count` pairs have moved, at most as many as the width. Null in space.
+  KnownApart (*pair_motions)(PairMotions& pairs, int count, const MovingBodies& bodies, float dt) = nullptr;
   /// Fills `block` and `raw` from the records of the manifolds in `list`; lanes without one are like the first, but
   /// move nobody. Null where stage_contacts.cpp does this (3D).
   GatheredLanes (*gather)(const ContactSources<D>& from, const std::int32_t* list, int lanes, void* block,

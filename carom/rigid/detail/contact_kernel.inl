@@ -153,6 +153,7 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 #include "carom/rigid/detail/contact_prepare3.inl"
 #include "carom/rigid/detail/contact_watch2.inl"
 #include "carom/rigid/detail/contact_watch3.inl"
+#include "carom/rigid/detail/pair_motions2.inl"
 // The passes use what the preparation left.
 #include "carom/rigid/detail/contact_blow.inl"
 #include "carom/rigid/detail/contact_kernel2.inl"
@@ -184,6 +185,7 @@ ContactKernels<Dim2> kernels(Dim2) {
   k.width = W;
   k.new_meetings = new_meetings<Dim2, W>;
   k.nothing_new = nothing_new2<W>;
+  k.pair_motions = pair_motions2<W>;
   k.gather = gather2<W>;
   k.prepare = prepare2<W>;
   k.approach = approach2<W>;

@@ -61,6 +61,8 @@ struct Moved {
   float turn = 0;
   float extent;  ///< m per radian of what it turns from here
 
+  Moved(const typename D::Vector& moved_way, float moved_turn, float more)
+      : way(moved_way), turn(moved_turn), extent(more) {}
   /// Not yet.
   Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b) : extent(way_of_more(b, {}, 0, c.extent)) {}
   Moved(const ContactRecord<D>& c, const ShapeRecord<D>& b, const typename D::Transform& now) {
@@ -178,6 +180,11 @@ geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, c
 template <class D>
 float longest_slide(const ContactRecord<D>& c) {
   return (D::dimension == 2 ? 1.0f : 0.5f) * c.inner;
+}
+/// m: how far apart along their axis two are that have moved so, at least.
+template <class D>
+float gap_along(const ContactRecord<D>& c, const Moved<D>& moved) {
+  return c.gap + dot(c.axis, moved.way) - moved.turn;
 }
 /// How much nearer B may still come to A until the pair is of interest; what it may do in this step not
 /// counted. Apart from each other along an axis, they may slide past each other, but are looked at now and then, so

@@ -76,7 +76,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
   c.axis = {};
   if (m.count == 0) {
     // Pairs are to be looked at before they leave each other's bounds for good.
-    c.gap = max(reach, min(m.points[0].separation, reach + 0.25f * c.inner));
+    c.gap = max(reach, min(m.points[0].separation, reach + c.inner));
     c.axis = m.normal;
     return part(world, c, a, b);
   }
@@ -329,6 +329,57 @@ void update_contact(WorldImplementation<D>& world, std::int32_t awake_index, Lan
     change = find_manifolds(world, look, list);
   }
   world.scratch.contact_changes[std::size_t(awake_index)] = change;
+}
+
+/// Recomputes contacts of the plane, at most as many as there are lanes: how they have moved is found side by side.
+inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::int32_t> due, PairMotions& pairs,
+                         LaneQueues<Dim2>& queues, std::vector<FoundManifold<Dim2>>& list) {
+  constexpr Vec2f own_origin{};
+  std::int32_t awake_index[PairMotions::capacity];
+  int count = 0;
+  for (const std::int32_t i : due) {
+    const ContactRecord<Dim2>& c = world.contacts.at(world.contacts.awake[std::size_t(i)]);
+    if ((c.flags & (contact_sensor | contact_many)) != 0) {
+      update_contact(world, i, queues, list);
+      continue;
+    }
+    awake_index[count] = i;
+    pairs.contact[count] = &c;
+    for (int side = 0; side < 2; ++side) pairs.local[side][count] = &world.shapes.at(c.shape[side]).local;
+    const geometry::Shape2& b = world.shapes.at(c.shape[1]).geometry;
+    pairs.middle[count] = b.type == geometry::ShapeType2::polygon ? &b.polygon.centroid : &own_origin;
+    pairs.turns[count] = b.type == geometry::ShapeType2::circle ? 0 : 1;
+    ++count;
+  }
+  if (count == 0) return;
+  const KnownApart apart = world.kernels.pair_motions(
+      pairs, count,
+      {world.bodies.pose.data(), world.scratch.sweeps.data(), world.bodies.solver.data(), world.bodies.motion.data()},
+      world.last_dt);
+  for (int lane = 0; lane < count; ++lane) {
+    const std::size_t i = std::size_t(awake_index[lane]);
+    ContactRecord<Dim2>& c = world.contacts.at(world.contacts.awake[i]);
+    world.scratch.watches[i].body[0] = none;  // as needs_manifolds
+    Transform2f now;
+    __builtin_memcpy(&now, pairs.b_in_a[lane], sizeof now);
+    const Moved<Dim2> moved({pairs.way[0][lane], pairs.way[1][lane]}, pairs.turn[lane],
+                            pairs.turns[lane] != 0 ? c.extent : 0);
+    std::uint8_t& change = world.scratch.contact_changes[i];
+    if ((apart.stays >> lane & 1u) != 0) {
+      watch_apart(world, c, now, moved);
+      continue;
+    }
+    if ((apart.slides >> lane & 1u) != 0 && slide_on(world, c, moved, now)) continue;
+    if (c.first_manifold != none && may_stay(c) && recycle(world, c, moved, now, change)) continue;
+    c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
+    c.base = now;
+    Looking<Dim2> look;
+    look.awake_index = awake_index[lane];
+    look.reach = 2 * c.margin() + pairs.ahead[lane];
+    if (pairs.swept)
+      look.sweep = {{{pairs.sweep_way[0][lane], pairs.sweep_way[1][lane]}, pairs.sweep_turn[lane]}, true};
+    if (!queues.take(world, look, list)) change = find_manifolds(world, look, list);
+  }
 }
 
 }  // namespace

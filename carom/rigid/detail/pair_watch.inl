@@ -92,38 +92,24 @@ void watch_recycled(WorldImplementation<D>& world, const ContactRecord<D>& c, co
   if (!(w.most_way > 0 && w.cap < 0)) w.body[0] = none;
 }
 
-/// Do two that slid past each other, apart along an axis, have their bounds still meet and that axis still between
-/// them? Then they go on from here, without being asked how far they are.
+/// Two that slid past each other, with an axis still between them: where their bounds still meet they go on from here,
+/// `gap` apart along it, without being asked how far they are.
 template <class D>
-bool slides_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>& moved,
-               const typename D::Transform& now, ShapeSweep<D>& sweep) {
-  if (c.axis == typename D::Vector{} || moved.most() < longest_slide(c)) return false;
-  const float gap = c.gap + dot(c.axis, moved.way) - moved.turn;
-  if (!(look_ahead(world, c, sweep, c.axis) < gap - c.margin())) return false;
+bool slide_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>& moved,
+              const typename D::Transform& now) {
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
   if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf))) return false;
-  c.gap = coarse(gap);
+  c.gap = coarse(gap_along(c, moved));
   c.base = now;
   watch_apart(world, c, now, Moved<D>(c, b));
   return true;
 }
-
-/// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow.
+/// Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
+/// separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and far
+/// below the size of features, so that nothing sticks to a stale edge.
 template <class D>
-bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
-           ShapeSweep<D>& sweep, std::uint8_t& change) {
-  if ((c.flags & contact_known) == 0 || (c.first_manifold != none && (c.flags & contact_round) != 0)) return false;
-  const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
-  if (c.first_manifold == none) {
-    if (slides_on(world, c, moved, now, sweep)) return true;
-    const float near = c.axis == typename D::Vector{} ? ahead : look_ahead(world, c, sweep, c.axis);
-    if (!(near < slack_of(c, moved))) return false;
-    watch_apart(world, c, now, moved);
-    return true;
-  }
-  // Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
-  // separations follow. What moves along the normal changes nothing else; the bound is on sliding and turning, and
-  // far below the size of features, so that nothing sticks to a stale edge.
+bool recycle(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>& moved,
+             const typename D::Transform& now, std::uint8_t& change) {
   const typename D::Manifold& m = world.contacts.manifold(c.first_manifold).manifold;
   const typename D::Vector normal = m.normal;
   const float separation = c.gap + dot(normal, moved.way), far = moved.across(normal);
@@ -132,6 +118,28 @@ bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D:
   c.flags |= contact_recycled;
   change = touch_change(c, separation, pressed_any(world.contacts, c));
   watch_recycled(world, c, now, most - far, separation, normal, moved.extent);
+  return true;
+}
+
+/// May what is known of it be still true?
+template <class D>
+bool may_stay(const ContactRecord<D>& c) {
+  return (c.flags & contact_known) != 0 && (c.first_manifold == none || (c.flags & contact_round) == 0);
+}
+/// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow. In the
+/// plane lanes tell of most that are apart (pair_motions2.inl).
+template <class D>
+bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
+           ShapeSweep<D>& sweep, std::uint8_t& change) {
+  if (!may_stay(c)) return false;
+  const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
+  if (c.first_manifold != none) return recycle(world, c, moved, now, change);
+  const bool has_axis = !(c.axis == typename D::Vector{});
+  const float near = has_axis ? look_ahead(world, c, sweep, c.axis) : ahead;
+  if (has_axis && moved.most() >= longest_slide(c))
+    return near < gap_along(c, moved) - c.margin() && slide_on(world, c, moved, now);
+  if (!(near < slack_of(c, moved))) return false;
+  watch_apart(world, c, now, moved);
   return true;
 }
 

@@ -141,6 +141,7 @@ void update_contacts(WorldImplementation<D>& world) {
   world.scheduler->parallel_for(int(count), worker_grain<D>, [&](int begin, int end, int worker) {
     std::int32_t due[contact_grain];
     LaneQueues<D> queues(world.kernels.width);
+    [[maybe_unused]] PairMotions motions{};
     std::vector<FoundManifold<D>>& list = scratch.found_manifolds[std::size_t(worker)];
     const int width = world.kernels.width;
     // Found once: to the compiler, whatever is written might move them.
@@ -190,11 +191,20 @@ void update_contacts(WorldImplementation<D>& world) {
         for (const std::int32_t s : soon.shape)
           __builtin_prefetch(&world.shapes.trees[shapes[s].tree].bounds(shapes[s].leaf));
       };
-      for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
-      for (int k = 0; k < number; ++k) {
-        if (k + 6 < number) look_at_soon(k + 6);
-        if (D::dimension == 2 && k + 2 < number) bounds_soon(k + 2);
-        update_contact(world, due[k], queues, list);
+      if constexpr (D::dimension == 2) {
+        for (int k = 0; k < min(width, number); ++k) look_at_soon(k);
+        for (int first = 0; first < number; first += width) {
+          const int stop = min(first + width, number);
+          for (int k = stop; k < min(stop + width, number); ++k) look_at_soon(k);
+          for (int k = first; k < stop; ++k) bounds_soon(k);
+          update_lanes(world, {due + first, due + stop}, motions, queues, list);
+        }
+      } else {
+        for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
+        for (int k = 0; k < number; ++k) {
+          if (k + 6 < number) look_at_soon(k + 6);
+          update_contact(world, due[k], queues, list);
+        }
       }
     }
     if constexpr (D::dimension == 2) queues.run_all(world, list);
