@@ -216,8 +216,9 @@ void search(const SimplexVertex& first, double cutoff, Support&& support, Enough
   out.normal = out.overlap ? Vec3d{} : r.closest * (1 / out.distance);
 }
 
-/// Of a box and a segment or a point. Half the slope of the squared distance along the segment grows from place to place
-/// and is straight between those where it passes the plane of a face: its zero is found exactly. False where they touch.
+/// Of a box and a segment or a point. Half the slope of the squared distance along the segment grows from place to
+/// place and is straight between those where it passes the plane of a face: its zero is found exactly. False where they
+/// touch.
 bool box_segment_distance(const Placed& box, const Placed& line, CoreDistance& out) {
   const Vec3d h(box.core->half), c = (line.position - box.position) * box.rotation;
   const Vec3d half = line.core->kind == CoreKind::point
