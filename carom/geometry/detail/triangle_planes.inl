@@ -45,14 +45,14 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
   const float r = q.radius, cutoff = r + q.margin, graze = 0.02f * r < 0.005f ? 0.02f * r : 0.005f;
   const float size2 = 4 * (q.end.x * q.end.x + q.end.y * q.end.y + q.end.z * q.end.z);
   const Wide3 low = splat(q.low), high = splat(q.high), center = splat(q.center), end = splat(q.end);
-  const Wide3 first = center - end, whole = end + end;
   const F zero = F::zero(), one = F::splat(1), radius = F::splat(r), behind = F::splat(q.behind);
+  const Wide3 first = Wide3{zero, zero, zero} - end, whole = end + end;
   const F inverse = F::splat(size2 > 0 ? 1 / size2 : 0.0f), length2 = F::splat(size2);
   int number = 0;
   for (int k = 0; k < count * (TriangleBlock::lanes / width); ++k) {
     const TriangleBlock& block = blocks[k / (TriangleBlock::lanes / width)];
     const int lane = k % (TriangleBlock::lanes / width) * width;
-    const Wide3 corner[3] = {load(block.corner[0], lane), load(block.corner[1], lane), load(block.corner[2], lane)};
+    Wide3 corner[3] = {load(block.corner[0], lane), load(block.corner[1], lane), load(block.corner[2], lane)};
     const auto meets = [&](F a, F b, F c, F least, F most) {
       return (min(a, min(b, c)) <= most) & (max(a, max(b, c)) >= least);
     };
@@ -60,8 +60,9 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
                 meets(corner[0].y, corner[1].y, corner[2].y, low.y, high.y) &
                 meets(corner[0].z, corner[1].z, corner[2].z, low.z, high.z);
     if (none(live)) continue;
+    for (Wide3& c : corner) c = c - center;
     const Wide3 normal = load(block.normal, lane);
-    const F above = dot(normal, center - corner[0]), lean = dot(normal, end), nearest = above - abs(lean);
+    const F above = zero - dot(normal, corner[0]), lean = dot(normal, end), nearest = above - abs(lean);
     live = live & (above >= behind) & (nearest <= F::splat(cutoff));
     if (none(live)) continue;
     const Int edges = Int::load(block.edges + lane);
