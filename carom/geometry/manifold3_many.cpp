@@ -70,6 +70,21 @@ void merge_into(Patch& patch, const ContactPoints& from, float same) {
   }
 }
 
+/// The shape's own corners come before points cut by triangles' edges: in ties they are kept, with their names.
+void own_corners_first(ContactPoints& points) {
+  const auto is_own = [&](int i) { return points.point[i].feature <= 0xff; };
+  int own = 0;
+  while (own < points.count && is_own(own)) ++own;
+  bool in_order = true;
+  for (int i = own; i < points.count; ++i) in_order = in_order && !is_own(i);
+  if (in_order) return;
+  ContactPoints sorted;
+  for (const bool first : {true, false})
+    for (int i = 0; i < points.count; ++i)
+      if (is_own(i) == first) sorted.point[sorted.count++] = points.point[i];
+  for (int i = 0; i < points.count; ++i) points.point[i] = sorted.point[i];
+}
+
 /// A shape whose middle is in filled cells goes out by the nearest free face; the way up counts half.
 bool buried(const VoxelGrid& grid, const detail::Convex& b, const Transform3f& x, Manifold3& m) {
   const Vec3f p = transform_point(x, detail::inner_point(b));
@@ -214,13 +229,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
   if (count == 0) return -1;
   Deepest found{out};
   for (int i = 0; i < count; ++i) {
-    // The shape's own corners come before points cut by triangles' edges: in ties they are kept, with their names.
-    ContactPoints& points = patches[i].points;
-    ContactPoints sorted;
-    for (const bool own : {true, false})
-      for (int k = 0; k < points.count; ++k)
-        if ((points.point[k].feature <= 0xff) == own) sorted.point[sorted.count++] = points.point[k];
-    points = sorted;
+    own_corners_first(patches[i].points);
     Manifold3 m;
     detail::write_points(patches[i].points, patches[i].normal, m);
     m.child = patches[i].child;

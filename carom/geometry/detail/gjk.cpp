@@ -216,9 +216,52 @@ void search(const SimplexVertex& first, double cutoff, Support&& support, Enough
   out.normal = out.overlap ? Vec3d{} : r.closest * (1 / out.distance);
 }
 
-/// Of a triangle and a segment or a point. False for other pairs, and where they touch.
+/// Of a box and a segment or a point. Half the slope of the squared distance along the segment grows from place to
+/// place and is straight between those where it passes the plane of a face: its zero is found exactly. False where they
+/// touch.
+bool box_segment_distance(const Placed& box, const Placed& line, CoreDistance& out) {
+  const Vec3d h(box.core->half), c = (line.position - box.position) * box.rotation;
+  const Vec3d half = line.core->kind == CoreKind::point
+                         ? Vec3d{}
+                         : (line.rotation * Vec3d{0, double(line.core->half.y), 0}) * box.rotation;
+  const auto beyond = [&](double t) {
+    const Vec3d p = c + half * t;
+    return p - min(max(p, -h), h);
+  };
+  double low = -1, high = 1, slope_low = dot(beyond(low), half), slope_high = dot(beyond(high), half);
+  double t = slope_low >= 0 ? low : high;
+  if (slope_low < 0 && slope_high > 0) {
+    for (int k = 0; k < 3; ++k) {
+      if (half[k] == 0) continue;
+      for (const double side : {-h[k], h[k]}) {
+        const double at = (side - c[k]) / half[k];
+        if (!(at > low && at < high)) continue;
+        const double slope = dot(beyond(at), half);
+        if (slope < 0)
+          low = at, slope_low = slope;
+        else
+          high = at, slope_high = slope;
+      }
+    }
+    t = low - slope_low * (high - low) / (slope_high - slope_low);
+  }
+  const Vec3d p = c + half * t, on_box = min(max(p, -h), h), apart = p - on_box;
+  const double distance = math::length(apart);
+  if (!(distance > 1e-9 * (1 + math::length(h)))) return false;
+  out.overlap = false;
+  out.count = 0;
+  out.distance = distance;
+  out.normal = box.rotation * (apart * (1 / distance));
+  out.point_a = box.rotation * on_box + box.position;
+  out.point_b = box.rotation * p + box.position;
+  return true;
+}
+
+/// Of a triangle or a box and a segment or a point. False for other pairs, and where they touch.
 bool closed_distance(const Placed& a, const Placed& b, double cutoff, CoreDistance& out) {
-  if (a.core->kind != CoreKind::triangle || b.core->kind > CoreKind::segment) return false;
+  if (b.core->kind > CoreKind::segment) return false;
+  if (a.core->kind == CoreKind::box) return box_segment_distance(a, b, out);
+  if (a.core->kind != CoreKind::triangle) return false;
   Vec3d p[3];
   for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
   const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};

@@ -365,14 +365,18 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
       normal = t.normal;
       return clip_line(t, b, center, end, margin, flat_edges != 0 ? 0.0175f * b.radius : 0.0f, out);
     }
-    Feature face, incident;
-    face_feature(t, 0, t.normal, face);
-    feature(b, -inverse_rotate(x.q, t.normal), incident);
-    place(incident, x);
     // Between two faces that meet in a flat edge a ball's centre may be over neither: sin 1° of its radius.
+    const float widen = flat_edges != 0 ? 0.0175f * (b.kind == CoreKind::ellipsoid ? inner_size(b) : b.radius) : 0.0f;
     const int before = out.count;
-    clip_to_face(face, 0, incident, b.radius, margin, 0, out,
-                 flat_edges != 0 ? 0.0175f * (b.kind == CoreKind::ellipsoid ? inner_size(b) : b.radius) : 0.0f);
+    if (corners.known()) {
+      corners.clip_face(t.corner, t.normal, b.radius, margin, widen, out);
+    } else {
+      Feature face, incident;
+      face_feature(t, 0, t.normal, face);
+      feature(b, -inverse_rotate(x.q, t.normal), incident);
+      place(incident, x);
+      clip_to_face(face, 0, incident, b.radius, margin, 0, out, widen);
+    }
     normal = t.normal;
     return out.count > before;
   };

@@ -1,5 +1,7 @@
 #include "carom/geometry/detail/placed_corners.h"
 
+#include <utility>
+
 namespace carom::geometry::detail {
 
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): what the shape has not is not read
@@ -139,6 +141,92 @@ bool PlacedCorners::nearest_edge(Vec3f start, Vec3f way, Edge& nearest) const {
   const float* lane = edges_ + 24 * where[best] + best;
   nearest = {{lane[0], lane[4], lane[8]}, {lane[12], lane[16], lane[20]}, least[best]};
   return true;
+}
+
+/// Which corners the face has that looks most along `toward`, in the order of face_feature.
+int PlacedCorners::face_corners(Vec3f toward, std::uint8_t (&corners)[Feature::capacity]) const {
+  const Vec3f d{dot(turn_.cx, toward), dot(turn_.cy, toward), dot(turn_.cz, toward)};
+  if (hull_ == nullptr) {
+    const Vec3f a = abs(d);
+    const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
+    const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
+    if (d[axis] < 0)
+      corners[0] = std::uint8_t(u), corners[1] = 0, corners[2] = std::uint8_t(v), corners[3] = std::uint8_t(u | v);
+    else
+      for (int k = 0; k < 4; ++k) corners[k] = std::uint8_t(1 << axis | (k == 0 || k == 3 ? u : 0) | (k < 2 ? v : 0));
+    return 4;
+  }
+  const HullFace& face = hull_->faces[std::size_t(detail::farthest(hull_->normal_lanes, d))];
+  const int n = face.edge_count, step = (n + 19) / 20;
+  std::uint16_t e = face.first_edge;
+  int count = 0;
+  for (int i = 0; i < n; ++i, e = hull_->edges[e].next)
+    if (i % step == 0) corners[count++] = std::uint8_t(hull_->edges[e].origin);
+  return count;
+}
+
+void PlacedCorners::clip_face(const Vec3f (&triangle)[3], Vec3f normal, float radius, float margin, float widen,
+                              ContactPoints& out) const {
+  // How far a corner is beyond each side and above the plane, all at once: where an edge is cut, they are what they are
+  // there too.
+  struct alignas(16) Corner {
+    float beyond[4], at[4];
+    std::uint32_t id;
+  };
+  float rows[3][4], levels[4], tolerance[3];
+  for (int e = 0; e < 4; ++e) {
+    const Vec3f from = triangle[e % 3] - origin_;
+    const Vec3f out_of = e == 3 ? normal : cross(triangle[e == 2 ? 0 : e + 1] - triangle[e], normal);
+    for (int k = 0; k < 3; ++k) rows[k][e] = out_of[k];
+    levels[e] = dot(out_of, from);
+    if (e == 3) break;
+    const float square = dot(out_of, out_of);
+    tolerance[e] = widen > 0 ? max(1e-5f * square, widen * math::sqrt(square)) : 1e-5f * square;
+  }
+  const Four x = Four::load(rows[0]), y = Four::load(rows[1]), z = Four::load(rows[2]), level = Four::load(levels);
+  RawArray<Corner, 28> room[2];
+  Corner *in = room[0].items, *next = room[1].items;
+  std::uint8_t names[Feature::capacity];
+  int count = face_corners(-normal, names);
+  for (int i = 0; i < count; ++i) {
+    const Vec3f p = corner(names[i]);
+    (x * Four::splat(p.x) + y * Four::splat(p.y) + z * Four::splat(p.z) - level).store(in[i].beyond);
+    in[i].at[0] = p.x, in[i].at[1] = p.y, in[i].at[2] = p.z, in[i].at[3] = 0;
+    in[i].id = names[i];
+  }
+  for (int e = 0; e < 3 && count > 0; ++e) {
+    float off[28];
+    bool all = true;
+    for (int i = 0; i < count; ++i) {
+      off[i] = in[i].beyond[e];
+      if (off[i] <= tolerance[e]) off[i] = min(off[i], 0.0f);
+      all = all && off[i] <= 0;
+    }
+    if (all) continue;
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      const int j = i + 1 < count ? i + 1 : 0;
+      const Corner &p = in[i], &q = in[j];
+      if (off[i] <= 0) next[kept++] = p;
+      if ((off[i] <= 0) == (off[j] <= 0)) continue;
+      const Four t = Four::splat(off[i] / (off[i] - off[j]));
+      const Four p_beyond = Four::load(p.beyond), p_at = Four::load(p.at);
+      Corner& cut = next[kept++];
+      (p_beyond + (Four::load(q.beyond) - p_beyond) * t).store(cut.beyond);
+      (p_at + (Four::load(q.at) - p_at) * t).store(cut.at);
+      // The two corners in a fixed order: the name is that of the edge, whichever end is inside.
+      const std::uint32_t low = min(p.id, q.id), high = max(p.id, q.id);
+      cut.id = std::uint32_t(e + 1) << 8 | ((low * 31 + high * 7) & 0xffff) << 14 | (low & 0xff);
+    }
+    std::swap(in, next);
+    count = kept;
+  }
+  for (int i = 0; i < count; ++i) {
+    const float height = in[i].beyond[3], s = height - radius;
+    if (s > margin) continue;
+    const Vec3f p = Vec3f{in[i].at[0], in[i].at[1], in[i].at[2]} + origin_;
+    out.add(p - normal * (0.5f * (radius + height)), s, in[i].id);
+  }
 }
 
 void PlacedCorners::go(const ShapeWay& approach) {

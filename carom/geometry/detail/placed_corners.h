@@ -39,6 +39,9 @@ class PlacedCorners {
   bool nearest_edge(Vec3f start, Vec3f way, Edge& nearest) const;
   /// Does a segment (seen from the origin) go through the shape?
   bool meets_segment(Vec3f start, Vec3f way) const;
+  /// As clip_to_face of a triangle, for the face of this shape that looks against its normal. `radius` is swept off.
+  void clip_face(const Vec3f (&triangle)[3], Vec3f normal, float radius, float margin, float widen,
+                 ContactPoints& out) const;
   /// Lets the corners go on.
   void go(const ShapeWay& approach);
   /// From the origin, of now and then.
@@ -57,6 +60,7 @@ class PlacedCorners {
     return min(min(low[0], low[1]), min(low[2], low[3]));
   }
 
+  int face_corners(Vec3f toward, std::uint8_t (&corners)[Feature::capacity]) const;
   void place_planes() const;
   void place_edges() const;
 

@@ -50,7 +50,6 @@ TriangleBlocks::TriangleBlocks(int lanes)
 
 void TriangleBlocks::gather(const Shape3& surface, const Bounds3f& box) {
   clear();
-  origin_ = box.center();
   solid_ = surface.type == ShapeType3::height_field;
   visit_triangles(surface, box, true, [&](const SurfaceTriangle& t) {
     const int lane = count_++ % TriangleBlock::lanes;
@@ -62,7 +61,7 @@ void TriangleBlocks::gather(const Shape3& surface, const Bounds3f& box) {
     }
     TriangleBlock& b = blocks_.back();
     for (int c = 0; c < 3; ++c) {
-      const Vec3f corner = t.corner[c] - origin_;
+      const Vec3f corner = t.corner[c];
       b.corner[c][0][lane] = corner.x, b.corner[c][1][lane] = corner.y, b.corner[c][2][lane] = corner.z;
     }
     b.edges[lane] = t.edges;
@@ -74,9 +73,9 @@ void TriangleBlocks::gather(const Shape3& surface, const Bounds3f& box) {
 int TriangleBlocks::planes(const NearbyLine& line, std::span<SurfacePlane> out) const {
   constexpr std::size_t at_once = 8;
   MetPlane met[at_once * TriangleBlock::lanes];
-  const TriangleQuestion question{line.box.low - origin_,
-                                  line.box.high - origin_,
-                                  line.center - origin_,
+  const TriangleQuestion question{line.box.low,
+                                  line.box.high,
+                                  line.center,
                                   line.end,
                                   line.radius,
                                   line.margin,
@@ -87,8 +86,9 @@ int TriangleBlocks::planes(const NearbyLine& line, std::span<SurfacePlane> out) 
   for (std::size_t k = 0; k < blocks_.size(); k += at_once) {
     const int count = find_planes_(&blocks_[k], int(min(at_once, blocks_.size() - k)), question, met);
     for (const MetPlane& p : std::span(met, std::size_t(count)))
-      found.offer(
-          {{p.normal[0], p.normal[1], p.normal[2]}, p.separation, Vec3f{p.point[0], p.point[1], p.point[2]} + origin_});
+      found.offer({{p.normal[0], p.normal[1], p.normal[2]},
+                   p.separation,
+                   Vec3f{p.point[0], p.point[1], p.point[2]} + line.center});
   }
   found.sort();
   return found.count;

@@ -25,7 +25,9 @@ class TriangleBlocks {
   /// `lanes` as in math::instruction_set_of_width; 0: the widest of this machine. Results are the same in bits.
   explicit TriangleBlocks(int lanes = 0);
   void clear() { blocks_.clear(), count_ = 0; }
-  /// Adds the triangles of a mesh or height field that meet `box`; corners are kept as seen from its middle.
+  int count() const { return count_; }
+  /// Holds the triangles of a mesh or height field that meet `box`, in an order that does not depend on it: what is
+  /// asked within a box that was gathered has the same answer whatever else was.
   void gather(const Shape3& surface, const Bounds3f& box);
   /// Fills `out` with the planes of triangles that the line may meet, nearest first, and returns how many. The rule is
   /// that of contacts (`collide_triangle`): a triangle pushes along its own normal or over an edge that stands out.
@@ -33,7 +35,6 @@ class TriangleBlocks {
 
  private:
   std::vector<TriangleBlock> blocks_;
-  Vec3f origin_{};
   int count_ = 0;
   bool solid_ = false;
   FindTrianglePlanes find_planes_;

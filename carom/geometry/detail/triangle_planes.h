@@ -24,7 +24,7 @@ struct TriangleBlock {
   std::int32_t edges[lanes];  ///< EdgeFlags
 };
 
-/// What is asked of them, seen from where their corners are.
+/// What is asked of them, in the frame of their corners.
 struct TriangleQuestion {
   Vec3f low, high;     ///< m: a triangle that does not meet this box does not count
   Vec3f center, end;   ///< m, of the capsule's line: its middle, and one end from there
@@ -35,7 +35,7 @@ struct TriangleQuestion {
   float behind;        ///< m, ≤ 0: what lies farther behind a triangle is not pushed by it
 };
 
-/// A SurfacePlane, the point seen from there too.
+/// A SurfacePlane, the point seen from the middle of the capsule.
 struct MetPlane {
   float normal[3], separation, point[3];
 };

@@ -41,30 +41,23 @@ void set_normals(TriangleBlock* blocks, int count) {
     }
 }
 
-int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& q, MetPlane* out) {
+/// Of a block whose triangles may meet the line; lanes without one have negative edges.
+int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPlane* out) {
   const float r = q.radius, cutoff = r + q.margin, graze = 0.02f * r < 0.005f ? 0.02f * r : 0.005f;
   const float size2 = 4 * (q.end.x * q.end.x + q.end.y * q.end.y + q.end.z * q.end.z);
-  const Wide3 low = splat(q.low), high = splat(q.high), center = splat(q.center), end = splat(q.end);
-  const Wide3 first = center - end, whole = end + end;
-  const F zero = F::zero(), one = F::splat(1), radius = F::splat(r), behind = F::splat(q.behind);
+  const Wide3 center = splat(q.center), end = splat(q.end);
+  const F zero = F::zero(), one = F::splat(1), radius = F::splat(r);
+  const Wide3 first = Wide3{zero, zero, zero} - end, whole = end + end;
   const F inverse = F::splat(size2 > 0 ? 1 / size2 : 0.0f), length2 = F::splat(size2);
   int number = 0;
-  for (int k = 0; k < count * (TriangleBlock::lanes / width); ++k) {
-    const TriangleBlock& block = blocks[k / (TriangleBlock::lanes / width)];
-    const int lane = k % (TriangleBlock::lanes / width) * width;
-    const Wide3 corner[3] = {load(block.corner[0], lane), load(block.corner[1], lane), load(block.corner[2], lane)};
-    const auto meets = [&](F a, F b, F c, F least, F most) {
-      return (min(a, min(b, c)) <= most) & (max(a, max(b, c)) >= least);
-    };
-    Mask live = meets(corner[0].x, corner[1].x, corner[2].x, low.x, high.x) &
-                meets(corner[0].y, corner[1].y, corner[2].y, low.y, high.y) &
-                meets(corner[0].z, corner[1].z, corner[2].z, low.z, high.z);
-    if (none(live)) continue;
-    const Wide3 normal = load(block.normal, lane);
-    const F above = dot(normal, center - corner[0]), lean = dot(normal, end), nearest = above - abs(lean);
-    live = live & (above >= behind) & (nearest <= F::splat(cutoff));
-    if (none(live)) continue;
+  for (int lane = 0; lane < TriangleBlock::lanes; lane += width) {
     const Int edges = Int::load(block.edges + lane);
+    Mask live = edges > Int::splat(-1);
+    if (none(live)) continue;
+    const Wide3 corner[3] = {load(block.corner[0], lane) - center, load(block.corner[1], lane) - center,
+                             load(block.corner[2], lane) - center};
+    const Wide3 normal = load(block.normal, lane);
+    const F above = zero - dot(normal, corner[0]), lean = dot(normal, end), nearest = above - abs(lean);
     const auto has = [&](int bits) { return (edges & Int::splat(bits)) != Int::zero(); };
     const Mask flat[3] = {has(edge0_flat), has(edge1_flat), has(edge2_flat)};
     const F widen = select(flat[0] | flat[1] | flat[2], F::splat(0.0175f * r), zero);
@@ -153,6 +146,45 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
       out[number++] = {{pushed.x[i], pushed.y[i], pushed.z[i]}, separation[i], {point.x[i], point.y[i], point.z[i]}};
     }
   }
+  return number;
+}
+
+int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& q, MetPlane* out) {
+  const Wide3 low = splat(q.low), high = splat(q.high), center = splat(q.center), end = splat(q.end);
+  const F behind = F::splat(q.behind), cutoff = F::splat(q.radius + q.margin);
+  // Few of them come near: these move together, so that their lanes are filled.
+  TriangleBlock near{};
+  int held = 0, number = 0;
+  const auto look_at_near = [&] {
+    for (int lane = held; lane < TriangleBlock::lanes; ++lane) near.edges[lane] = -1;
+    number += planes_of_block(near, q, out + number);
+    held = 0;
+  };
+  for (int k = 0; k < count * (TriangleBlock::lanes / width); ++k) {
+    const TriangleBlock& block = blocks[k / (TriangleBlock::lanes / width)];
+    const int lane = k % (TriangleBlock::lanes / width) * width;
+    const Wide3 corner[3] = {load(block.corner[0], lane), load(block.corner[1], lane), load(block.corner[2], lane)};
+    const auto meets = [&](F a, F b, F c, F least, F most) {
+      return (min(a, min(b, c)) <= most) & (max(a, max(b, c)) >= least);
+    };
+    Mask live = meets(corner[0].x, corner[1].x, corner[2].x, low.x, high.x) &
+                meets(corner[0].y, corner[1].y, corner[2].y, low.y, high.y) &
+                meets(corner[0].z, corner[1].z, corner[2].z, low.z, high.z);
+    if (none(live)) continue;
+    const Wide3 normal = load(block.normal, lane);
+    const F above = F::zero() - dot(normal, corner[0] - center), nearest = above - abs(dot(normal, end));
+    live = live & (above >= behind) & (nearest <= cutoff);
+    for (std::uint32_t lanes = bitmask(live); lanes != 0; lanes &= lanes - 1) {
+      const int from = lane + __builtin_ctz(lanes);
+      for (int i = 0; i < 3; ++i) {
+        for (int c = 0; c < 3; ++c) near.corner[c][i][held] = block.corner[c][i][from];
+        near.normal[i][held] = block.normal[i][from];
+      }
+      near.edges[held] = block.edges[from];
+      if (++held == TriangleBlock::lanes) look_at_near();
+    }
+  }
+  if (held > 0) look_at_near();
   return number;
 }
 

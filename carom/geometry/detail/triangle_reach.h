@@ -8,6 +8,10 @@ namespace carom::geometry::detail {
 
 /// Bounds in the shape's own frame.
 inline Bounds3f own_bounds(const Shape3& shape) {
+  if (shape.type == ShapeType3::box) {
+    const Vec3f half = shape.box.half_extents + shape.box.radius * Vec3f{1, 1, 1};
+    return {-half, half};
+  }
   return shape.type == ShapeType3::hull ? grow(shape.hull->bounds, shape.hull->radius) : bounds(shape, {});
 }
 
@@ -34,17 +38,18 @@ struct TriangleReach {
         approach(goes),
         radius(core.radius),
         solid(below) {
-    const Mat3f turn = to_matrix(x.q);
-    axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
-    const Vec3f at = inner_point(core), extents = 1.0001f * own.extents();
-    for (int k = 0; k < 3; ++k) half[k] = extents[k] * axis[k];
     line = core.kind == CoreKind::point || core.kind == CoreKind::segment;
-    if (line) end = core.half.y * axis[1];
     if (corners.known()) {
       middle -= origin;
       around = 1.0001f * (core.radius + margin) + 1e-6f * (length(origin) + length(max(abs(own.low), abs(own.high))));
-      return;
+      if (corners.has_faces()) return;  // the rest is not asked for
     }
+    const Mat3f turn = to_matrix(x.q);
+    axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
+    if (corners.known()) return;
+    const Vec3f at = inner_point(core), extents = 1.0001f * own.extents();
+    for (int k = 0; k < 3; ++k) half[k] = extents[k] * axis[k];
+    if (line) end = core.half.y * axis[1];
     around = 1.0001f * (line ? core.radius + margin : length(max(abs(own.low - at), abs(own.high - at))));
   }
   /// How far (m, times the length of the normal) all of the line stands above a plane, or all of the box.

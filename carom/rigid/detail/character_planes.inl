@@ -86,13 +86,12 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
     const BodyId owner = store.bodies.slots.handle_at(shape.body);
     all.near.push_back({id, owner, shape.geometry, pose, world.state(owner).value(), approach, seen});
   }
-  if (all.triangles.size() < all.near.size()) all.triangles.resize(all.near.size());
-  for (detail::GatheredTriangles& t : all.triangles) t.known = false;
+  all.keep_triangles();
   for (std::size_t i = all.near.size(); special && i-- > 0;) {
     const auto* extra = store.shapes.extra(std::int32_t(store.shapes.slots.slot(all.near[i].id)));
     if (extra == nullptr || extra->one_way == Vector{} || !lets_through(i, extra->one_way)) continue;
     all.near.erase(all.near.begin() + std::ptrdiff_t(i));
-    for (detail::GatheredTriangles& t : all.triangles) t.known = false;
+    all.forget_triangles();
   }
 }
 

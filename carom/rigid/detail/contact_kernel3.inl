@@ -269,6 +269,9 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
     const ContactExtra<Dim3, W>& e = static_cast<const ContactExtra<Dim3, W>*>(extra)[k];
     const F zero = F::splat(0);
+    F fastest = F::load(e.bounce_speed[0]);
+    for (int i = 1; i < 4; ++i) fastest = max(fastest, F::load(e.bounce_speed[i]));
+    if (!any(fastest > zero)) continue;
     Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
@@ -285,8 +288,13 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     for (int i = 0; i < 4; ++i) struck += F::load(c.point[i].total);
     const F reach = F::splat(2e-3f);
     // The points of a face push each other back: repeat until they agree.
+    auto changes = zero < zero;
     for (int pass = 0; pass < 32; ++pass) {
       const int i = pass % 4;
+      if (i == 0) {
+        if (pass > 0 && !any(changes)) break;
+        changes = zero < zero;
+      }
       auto& point = c.point[i];
       const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
       const WideVec3<W> ra = load3<W>(point.r_a);
@@ -296,6 +304,7 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
       const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
       const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
       const F delta = keep((full > zero) & ((total > zero) | ((struck > zero) & (s < reach))), lambda - old);
+      changes = changes | !(delta == zero);
       (old + delta).store(point.impulse);
       (total + delta).store(point.total);
       const WideVec3<W> p = multiply(n, delta);

@@ -11,7 +11,7 @@ inline constexpr int max_manifolds = 8;  ///< of one pair
 
 template <class D>
 struct Found {
-  typename D::Manifold manifold[max_manifolds];
+  geometry::detail::RawArray<typename D::Manifold, max_manifolds> manifold;
   std::uint32_t child[max_manifolds];
   int count = 0;
   float apart = 0;  ///< m: where nothing is found, the shapes are known to be that far from each other
@@ -66,10 +66,11 @@ inline void collide_all(const geometry::Shape3& a, const geometry::Shape3& b, co
                         const geometry::detail::ShapeWay& approach, geometry::PairCache& cache, Found<Dim3>& found) {
   const bool some = is_surface(a) && is_convex(b);
   found.near = some ? approach.margin : 0;
+  found.manifold[0] = {};
   if (some)
-    found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, cache, found.manifold);
+    found.count = geometry::detail::collide_approaching(a, b, b_in_a, margin, approach, cache, found.manifold.items);
   else
-    found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold);
+    found.count = geometry::collide_many(a, b, b_in_a, margin, found.manifold.items);
   if (found.count == 0)
     found.apart = math::max(found.manifold[0].points[0].separation, some ? approach.margin : margin);
   for (int i = 0; i < found.count; ++i) found.child[i] = found.manifold[i].child;

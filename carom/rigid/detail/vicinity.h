@@ -21,11 +21,12 @@ struct Neighbour {
   typename D::Position clear_at{};             ///< here
 };
 
-/// The triangles that were gathered of one neighbour.
+/// The triangles that were gathered of one neighbour; those of a mesh, which never changes, stay from move to move.
 struct GatheredTriangles {
   geometry::detail::TriangleBlocks blocks;
   geometry::Bounds3f box{};  ///< in the surface's frame, of all that was gathered
-  bool known = false;
+  std::shared_ptr<const void> mesh;
+  bool known = false, of_this_move = false, kept = false;
 };
 
 template <class D>
@@ -35,6 +36,27 @@ struct Vicinity {
   std::vector<Neighbour<D>> near;
   std::vector<GatheredTriangles> triangles;  ///< of the neighbour of the same number; more are room for later
   std::vector<ShapeId> found;
+
+  /// After `near` was found: who was there before keeps its triangles.
+  void keep_triangles() {
+    if (triangles.size() < near.size()) triangles.resize(near.size());
+    for (GatheredTriangles& t : triangles) t.of_this_move = t.kept = false;
+    if constexpr (D::dimension == 3)
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        if (near[i].geometry.type != geometry::ShapeType3::mesh) continue;
+        for (GatheredTriangles& old : triangles) {
+          if (old.kept || old.mesh != near[i].geometry.data) continue;
+          std::swap(triangles[i], old);
+          triangles[i].kept = true;
+          break;
+        }
+      }
+    for (GatheredTriangles& t : triangles)
+      if (!t.kept) t.known = false, t.mesh = nullptr;
+  }
+  void forget_triangles() {
+    for (GatheredTriangles& t : triangles) t.known = false;
+  }
 };
 
 /// The deepest point of every manifold, as for_planes tells it.
@@ -70,9 +92,13 @@ float for_planes(Vicinity<Dim3>& all, std::size_t i, const geometry::Shape3& cap
   if (!g.known || !contains(g.box, box)) {
     const Vec3f middle = local_point(n.pose, all.base + Vec3d(all.whole.center())), half = all.whole.extents();
     const Mat3f turn = to_matrix(conjugate(n.pose.rotation));
-    const Vec3f local = abs(turn.cx) * half.x + abs(turn.cy) * half.y + abs(turn.cz) * half.z;
-    g.box = merge(g.known ? merge(g.box, box) : box, {middle - local, middle + local});
-    g.known = true;
+    Vec3f local = abs(turn.cx) * half.x + abs(turn.cy) * half.y + abs(turn.cz) * half.z;
+    // Where triangles are few, those around too: for the moves to come.
+    constexpr int few = 96;
+    if (!solid && g.blocks.count() <= few) local += c.radius * Vec3f{1, 1, 1};
+    g.box = merge(g.of_this_move ? merge(g.box, box) : box, {middle - local, middle + local});
+    g.known = g.of_this_move = true;
+    g.mesh = solid ? nullptr : n.geometry.data;
     g.blocks.gather(n.geometry, g.box);
   }
   geometry::detail::SurfacePlane planes[16];
