@@ -58,8 +58,8 @@ export async function serveFolder(folder, headers = {}) {
 const contexts = [];
 let browser;
 async function launched() {
-  // WebGL is drawn by SwiftShader, the rest of the page without it: it would be drawn as if by a GPU, which takes half as
-  // much processor time again as all else.
+  // WebGL is drawn by SwiftShader, the rest of the page without it: to put that together as on a GPU takes as much
+  // processor time again as a third of all else.
   browser ??= await chromium.launch({executablePath: browserPath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader', '--disable-gpu-compositing', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync']});
   return browser;
@@ -71,8 +71,8 @@ after(async () => { await browser?.close(); });
 
 /**
  * In the page, before it: it draws when a test asks for a picture, and otherwise no sooner than `pause` ms after the
- * last one. Without a GPU a picture costs more than all else together, and most tests ask for numbers. What is drawn is
- * drawn as finely as ever.
+ * last one. Without a GPU a picture costs more than all else together, and most tests ask for numbers: one in 1.5 s
+ * instead of in .5 s is a quarter of the processor time of hands.test. What is drawn is drawn as finely as ever.
  */
 function drawSparingly(pause) {
   let made;
@@ -91,7 +91,7 @@ function drawSparingly(pause) {
 }
 
 /** A page at an address; `done` fails the test on any error that the page had. `pause`: between its pictures, ms; 0: as many as it can. */
-export async function visit(address, {viewport = {width: 1000, height: 700}, pause = 500, ...options} = {}, shows = true) {
+export async function visit(address, {viewport = {width: 1000, height: 700}, pause = 1500, ...options} = {}, shows = true) {
   const context = await (await launched()).newContext({viewport, ...options});
   contexts.push(context);
   if (pause > 0) await context.addInitScript(drawSparingly, pause);
