@@ -18,7 +18,7 @@ quietly() {
   fi
 }
 
-# What this script's children have used so far, s.
+# What this script's children have used so far, s; without the processes of a browser, which outlive whoever would count them.
 processor_seconds() { awk '{ sub(/.*\) /, ""); printf "%d", ($14 + $15) / '"$(getconf CLK_TCK)"' }' "/proc/$$/stat"; }
 
 as_root() {
