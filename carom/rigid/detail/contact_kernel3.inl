@@ -288,12 +288,12 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     for (int i = 0; i < 4; ++i) struck += F::load(c.point[i].total);
     const F reach = F::splat(2e-3f);
     // The points of a face push each other back: repeat until they agree.
-    auto changes = zero < zero;
+    auto changes = WideMask<W>::none();
     for (int pass = 0; pass < 32; ++pass) {
       const int i = pass % 4;
       if (i == 0) {
         if (pass > 0 && !any(changes)) break;
-        changes = zero < zero;
+        changes = WideMask<W>::none();
       }
       auto& point = c.point[i];
       const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);

@@ -14,12 +14,6 @@ struct alignas(16) BodySweep {
 };
 inline constexpr float most_turning = 100.0f;  ///< m/s of a surface that are looked ahead
 
-/// How far the surfaces of two bodies may come nearer in this step.
-template <class D>
-inline float way_between(const BodySweep<D>& a, const BodySweep<D>& b, float dt) {
-  return math::length(b.way - a.way) + min(a.turning + b.turning, most_turning * dt);
-}
-
 /// How far a turn moves a point one metre from the axis, at most.
 inline float chord(const Rot2f& a, const Rot2f& b) {
   const Vec2f d{b.c - a.c, b.s - a.s};

@@ -114,14 +114,6 @@ struct ShapeSweep {
     return sweep;
   }
 };
-/// How far the surfaces of the bodies may come nearer in this step; where nothing bounces, half their thickness is
-/// enough.
-template <class D>
-float way_of_bodies(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
-  const std::vector<BodySweep<D>>& sweeps = world.scratch.sweeps;
-  const float least = way_between(sweeps[std::size_t(c.body[0])], sweeps[std::size_t(c.body[1])], world.last_dt);
-  return (c.flags & contact_bouncy) != 0 ? least : min(least, 0.5f * c.inner);
-}
 /// Calls way(sweep) for the sweep of the bodies and, where they turn, for that of the shape: both are bounds.
 template <class D, class Way>
 float least_way(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& shape, Way&& way) {

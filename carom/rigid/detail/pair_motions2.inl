@@ -125,6 +125,7 @@ KnownApart pair_motions2(PairMotions& pairs, int count, const MovingBodies& bodi
   WideVec2<W> closing = {sb[0] - sa[0], sb[1] - sa[1]};
   F turning = min(sa[2] + sb[2], F::splat(most_turning * dt));
   F all = length2<W>(closing) + turning, along = max(turning - dot(normal, closing), zero);
+  // What has a manifold is told by its bodies alone that more may be near: it is asked how near its points are anyway.
   const auto asks = (!met) & (turning > F::splat(0.1f) * inner);
   pairs.swept = any(asks);
   if (pairs.swept) {

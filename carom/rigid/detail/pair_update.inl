@@ -232,10 +232,7 @@ bool needs_manifolds(WorldImplementation<D>& world, Looking<D>& look, std::uint8
     b_in_a = relative(shape_pose(world, a), shape_pose(world, b));
   if (sensor) return change = update_sensor(world, c, a, b, b_in_a), false;
 
-  // What has a manifold in the plane is told that more may be near than the sweep of its shape would say: it is asked
-  // how near its points are anyway.
-  const bool touched = D::dimension == 2 && c.first_manifold != none && (c.flags & contact_many) == 0;
-  const float ahead = touched ? way_of_bodies(world, c) : look_ahead(world, c, look.sweep);
+  const float ahead = look_ahead(world, c, look.sweep);
   if (stays(world, c, b_in_a, ahead, look.sweep, change)) return false;
   if (known && goes_past(world, c, a, b)) return change = pass_by(world, c, a, b), false;
   c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
@@ -316,22 +313,18 @@ class LaneQueues<Dim2> {
   Queue queues_[geometry::detail::lane_kinds];
 };
 
-/// Recomputes one contact, or puts it into a queue.
+/// Recomputes one contact.
 template <class D>
-void update_contact(WorldImplementation<D>& world, std::int32_t awake_index, LaneQueues<D>& queues,
-                    std::vector<FoundManifold<D>>& list) {
+void update_contact(WorldImplementation<D>& world, std::int32_t awake_index, std::vector<FoundManifold<D>>& list) {
   Looking<D> look;
   look.awake_index = awake_index;
   std::uint8_t change = 0;
-  if (needs_manifolds(world, look, change)) {
-    if constexpr (D::dimension == 2)
-      if (queues.take(world, look, list)) return;
-    change = find_manifolds(world, look, list);
-  }
+  if (needs_manifolds(world, look, change)) change = find_manifolds(world, look, list);
   world.scratch.contact_changes[std::size_t(awake_index)] = change;
 }
 
-/// Recomputes contacts of the plane, at most as many as there are lanes: how they have moved is found side by side.
+/// Recomputes contacts of the plane, at most as many as there are lanes: how they have moved is found side by side, but
+/// for sensors and what has many parts.
 inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::int32_t> due, PairMotions& pairs,
                          LaneQueues<Dim2>& queues, std::vector<FoundManifold<Dim2>>& list) {
   constexpr Vec2f own_origin{};
@@ -340,7 +333,7 @@ inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::
   for (const std::int32_t i : due) {
     const ContactRecord<Dim2>& c = world.contacts.at(world.contacts.awake[std::size_t(i)]);
     if ((c.flags & (contact_sensor | contact_many)) != 0) {
-      update_contact(world, i, queues, list);
+      update_contact(world, i, list);
       continue;
     }
     awake_index[count] = i;

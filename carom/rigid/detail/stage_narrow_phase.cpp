@@ -203,7 +203,7 @@ void update_contacts(WorldImplementation<D>& world) {
         for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
         for (int k = 0; k < number; ++k) {
           if (k + 6 < number) look_at_soon(k + 6);
-          update_contact(world, due[k], queues, list);
+          update_contact(world, due[k], list);
         }
       }
     }
