@@ -256,8 +256,13 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     for (int i = 0; i < 2; ++i) struck += F::load(c.point[i].total);
     const F reach = F::splat(2e-3f);
     // The points of a face push each other back: repeat until they agree.
+    auto changes = WideMask<W>::none();
     for (int pass = 0; pass < 16; ++pass) {
       const int i = pass % 2;
+      if (i == 0) {
+        if (pass > 0 && !any(changes)) break;
+        changes = WideMask<W>::none();
+      }
       auto& point = c.point[i];
       const F full = F::load(e.bounce_speed[i]), total = F::load(point.total), old = F::load(point.impulse);
       const WideVec2<W> ra = load2<W>(point.r_a);
@@ -268,6 +273,7 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
       const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
       const F lambda = max(old - F::load(point.normal_mass) * (vn - speed), zero);
       const F delta = keep((full > zero) & ((total > zero) | ((struck > zero) & (s < reach))), lambda - old);
+      changes = changes | !(delta == zero);
       (old + delta).store(point.impulse);
       (total + delta).store(point.total);
       const WideVec2<W> p = {delta * n.x, delta * n.y};
