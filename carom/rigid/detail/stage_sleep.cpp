@@ -52,12 +52,6 @@ void unite_islands(const WorldImplementation<D>& world, std::vector<std::int32_t
   }
 }
 
-/// Awake contacts have all their manifolds in the graph: so no manifold need be fetched to know it.
-template <class D>
-bool in_graph(const ContactRecord<D>& c) {
-  return c.first_manifold != none && c.awake_index != none;
-}
-
 /// Friction of the contact still takes back what slipped while it took up its load.
 template <class D>
 bool still_settles(const WorldImplementation<D>& world, const ContactRecord<D>& c) {
@@ -66,8 +60,7 @@ bool still_settles(const WorldImplementation<D>& world, const ContactRecord<D>& 
   return false;
 }
 
-/// The same for islands in which nothing is restless: only what their bodies touch is looked at. In the end the roots
-/// of islands that may sleep are not restless.
+/// The same for islands in which nothing is restless. In the end the roots of islands that may sleep are not restless.
 template <class D>
 void unite_tired(const WorldImplementation<D>& world, std::vector<std::int32_t>& parent,
                  std::vector<std::uint8_t>& restless) {
@@ -86,29 +79,19 @@ void unite_tired(const WorldImplementation<D>& world, std::vector<std::int32_t>&
     if (record.type == BodyType::kinematic && record.awake_index != none && record.sleep_timer == 0)
       restless[std::size_t(place)] = 1;
   };
-  // Lists of contacts lie anywhere in memory: the next bodies' first links are called for while one list is walked.
-  const auto first_contact = [&](std::size_t i) {
-    return i < parent.size() && restless[i] == 0 ? world.bodies.record[std::size_t(world.bodies.awake[i])].first_contact
-                                                 : none;
-  };
-  for (std::size_t i = 0; i < parent.size(); ++i) {
-    if (const std::int32_t key = first_contact(i + 12); key != none)
-      prefetch_lines(&world.contacts.at(key >> 1), sizeof(ContactRecord<D>));
-    std::int32_t link = first_contact(i + 8);
-    if (link != none) link = world.contacts.at(link >> 1).next[link & 1];
-    if (link != none) prefetch_lines(&world.contacts.at(link >> 1), sizeof(ContactRecord<D>));
-    const std::int32_t body = world.bodies.awake[i];
-    if (restless[i] != 0 || !world.bodies.is_dynamic(body)) continue;
-    for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none && restless[i] == 0;) {
-      const ContactRecord<D>& c = world.contacts.at(key >> 1);
-      const int side = key & 1;
-      key = c.next[side];
-      if ((c.flags & contact_touching) == 0 || !in_graph(c)) continue;
+  const std::vector<std::int32_t>& awake = world.contacts.awake;
+  for (std::size_t i = 0; i < awake.size(); ++i) {
+    if (i + 16 < awake.size()) __builtin_prefetch(&world.contacts.at(awake[i + 16]));
+    const ContactRecord<D>& c = world.contacts.at(awake[i]);
+    if ((c.flags & contact_touching) == 0 || c.first_manifold == none) continue;
+    for (int side = 0; side < 2; ++side) {
+      const std::int32_t body = c.body[side], place = dynamic_place(world, body);
+      if (place == none || restless[std::size_t(place)] != 0) continue;
       if (world.bodies.record[std::size_t(body)].sleep_timer < world.definition.sleep_time + settling_time &&
           still_settles(world, c))
-        restless[i] = 1;
+        restless[std::size_t(place)] = 1;
       else
-        join(std::int32_t(i), c.body[1 - side]);
+        join(place, c.body[1 - side]);
     }
   }
   for (const GraphColor& color : world.graph.colors)
