@@ -49,13 +49,14 @@ void compare(const Shape3& shape, std::uint64_t seed) {
 
 TEST(TriangleDistance, OfEdgesOfABoxIsThatOfTheSearch) { compare(Box{{0.5f, 0.2f, 0.9f}}, 1); }
 
-TEST(TriangleDistance, OfEdgesOfAPrismIsThatOfTheSearch) {
+Shape3 prism(int sides) {
   std::vector<Vec3f> points;
-  for (int k = 0; k < 6; ++k)
+  for (int k = 0; k < sides; ++k)
     for (const float y : {-0.8f, 1.2f})
-      points.push_back({0.4f * float(math::cos(k * pi / 3)), y, 0.4f * float(math::sin(k * pi / 3))});
-  compare(Shape3(make_hull(points).value()), 2);
+      points.push_back({0.4f * float(math::cos(k * 2 * pi / sides)), y, 0.4f * float(math::sin(k * 2 * pi / sides))});
+  return Shape3(make_hull(points).value());
 }
+TEST(TriangleDistance, OfEdgesOfAPrismIsThatOfTheSearch) { compare(prism(6), 2); }
 
 // The same box as a hull has its distance searched for.
 TEST(SegmentDistance, OfABoxIsThatOfTheSearch) {
@@ -127,13 +128,7 @@ void compare_faces(const Shape3& shape, std::uint64_t seed) {
 
 TEST(TriangleFace, OfABoxIsCutAsByClipping) { compare_faces(Box{{0.5f, 0.2f, 0.9f}}, 4); }
 
-TEST(TriangleFace, OfAPrismIsCutAsByClipping) {
-  std::vector<Vec3f> points;
-  for (int k = 0; k < 7; ++k)
-    for (const float y : {-0.8f, 1.2f})
-      points.push_back({0.4f * float(math::cos(k * 2 * pi / 7)), y, 0.4f * float(math::sin(k * 2 * pi / 7))});
-  compare_faces(Shape3(make_hull(points).value()), 5);
-}
+TEST(TriangleFace, OfAPrismIsCutAsByClipping) { compare_faces(prism(7), 5); }
 
 TEST(TriangleDistance, ASegmentGoesThroughAShapeOrNot) {
   math::Random random(3);

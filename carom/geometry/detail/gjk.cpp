@@ -216,14 +216,11 @@ void search(const SimplexVertex& first, double cutoff, Support&& support, Enough
   out.normal = out.overlap ? Vec3d{} : r.closest * (1 / out.distance);
 }
 
-/// Of a box and a segment or a point. Half the slope of the squared distance along the segment grows from place to
-/// place and is straight between those where it passes the plane of a face: its zero is found exactly. False where they
-/// touch.
-bool box_segment_distance(const Placed& box, const Placed& line, CoreDistance& out) {
-  const Vec3d h(box.core->half), c = (line.position - box.position) * box.rotation;
-  const Vec3d half = line.core->kind == CoreKind::point
-                         ? Vec3d{}
-                         : (line.rotation * Vec3d{0, double(line.core->half.y), 0}) * box.rotation;
+/// Of a box and a segment from its middle to `end` and as far back, or a point. Half the slope of the squared distance
+/// along the segment grows from place to place and is straight between those where it passes the plane of a face: its
+/// zero is found exactly. False where they touch.
+bool box_segment_distance(const Placed& box, Vec3d center, Vec3d end, CoreDistance& out) {
+  const Vec3d h(box.core->half), c = (center - box.position) * box.rotation, half = end * box.rotation;
   const auto beyond = [&](double t) {
     const Vec3d p = c + half * t;
     return p - min(max(p, -h), h);
@@ -260,11 +257,11 @@ bool box_segment_distance(const Placed& box, const Placed& line, CoreDistance& o
 /// Of a triangle or a box and a segment or a point. False for other pairs, and where they touch.
 bool closed_distance(const Placed& a, const Placed& b, double cutoff, CoreDistance& out) {
   if (b.core->kind > CoreKind::segment) return false;
-  if (a.core->kind == CoreKind::box) return box_segment_distance(a, b, out);
+  const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
+  if (a.core->kind == CoreKind::box) return box_segment_distance(a, b.position, half, out);
   if (a.core->kind != CoreKind::triangle) return false;
   Vec3d p[3];
   for (int i = 0; i < 3; ++i) p[i] = a.rotation * Vec3d(a.core->corner[i]) + a.position;
-  const Vec3d half = b.rotation * Vec3d{0, double(b.core->half.y), 0};
   return triangle_segment_distance(p, b.position + half, b.position - half, cutoff, out);
 }
 

@@ -11,8 +11,8 @@ struct PairMotions {
   static constexpr int capacity = 16;
   const ContactRecord<Dim2>* contact[capacity];
   const Transform2f* local[2][capacity];  ///< by side: shape → body
-  const Vec2f* middle[capacity];          ///< in B's shape: about it that turns
-  std::int32_t turns[capacity];           ///< 0: that is a circle, whose turns move nothing; else 1
+  float middle[2][capacity];              ///< m, in B's shape: about it that turns
+  float extent[capacity];                 ///< m per radian of such a turn, Moved::extent
 
   // Found:
   alignas(16) float b_in_a[capacity][4];               ///< a Transform2f

@@ -36,8 +36,8 @@ struct PlacedShapes2 {
 template <int W>
 CAROM_SIMD_INLINE void sweeps_of_shapes(const std::int32_t (&a)[W], const std::int32_t (&b)[W],
                                         const MovingBodies& bodies, const PlacedShapes2<W>& placed,
-                                        const WideVec2<W>& middle, WideFloat<W> extent, WideMask<W> turns, float dt,
-                                        WideVec2<W>& way, WideFloat<W>& turning) {
+                                        const WideVec2<W>& middle, WideFloat<W> extent, float dt, WideVec2<W>& way,
+                                        WideFloat<W>& turning) {
   using F = WideFloat<W>;
   float x[W], y[W], arm[2][2][W];
   const WideVec2<W> to_middle = rotate(placed.shape, middle);
@@ -59,7 +59,7 @@ CAROM_SIMD_INLINE void sweeps_of_shapes(const std::int32_t (&a)[W], const std::i
     const WideVec2<W> own = {(v[0] - v[2] * r.y) * h, (v[1] + v[2] * r.x) * h};
     way = side == 0 ? subtract(way, own) : add(way, own);
     const F turn = v[2] * h;
-    turning += keep(turns, abs(turn) * extent) + F::splat(0.5f) * turn * turn * length2<W>(r);
+    turning += abs(turn) * extent + F::splat(0.5f) * turn * turn * length2<W>(r);
   }
 }
 
@@ -73,7 +73,6 @@ KnownApart pair_motions2(PairMotions& pairs, int count, const MovingBodies& bodi
   const float *row[W], *axis_row[W], *sweep_a[W], *sweep_b[W], *between[W];
   const Transform2f *local_a[W], *local_b[W];
   std::int32_t a[W], b[W], flags[W], manifold[W];
-  float middle_x[W], middle_y[W];
   for (int i = 0; i < W; ++i) {
     const int lane = i < count ? i : 0;
     const Record& c = *pairs.contact[lane];
@@ -83,7 +82,6 @@ KnownApart pair_motions2(PairMotions& pairs, int count, const MovingBodies& bodi
     sweep_a[i] = reinterpret_cast<const float*>(bodies.sweeps + a[i]);
     sweep_b[i] = reinterpret_cast<const float*>(bodies.sweeps + b[i]);
     local_a[i] = pairs.local[0][lane], local_b[i] = pairs.local[1][lane];
-    middle_x[i] = pairs.middle[lane]->x, middle_y[i] = pairs.middle[lane]->y;
   }
   const PlacedShapes2<W> placed_a(bodies.poses, a, local_a), placed_b(bodies.poses, b, local_b);
   alignas(16) float apart[W][4];
@@ -101,16 +99,17 @@ KnownApart pair_motions2(PairMotions& pairs, int count, const MovingBodies& bodi
   const F zero = F::zero();
   const I flag = I::load(flags);
   const auto has = [&](int bit) __attribute__((always_inline)) { return (flag & I::splat(bit)) != I::zero(); };
-  const auto turns = I::load(pairs.turns) > I::zero(), met = I::load(manifold) > I::splat(-1);
+  const auto met = I::load(manifold) > I::splat(-1);
   const WideTurn2<W> base = {known[2], known[3]}, back = conjugate(placed_a.shape);
   const WideTurn2<W> now = multiply(back, placed_b.shape);
-  const WideVec2<W> place = rotate(back, WideVec2<W>{d[0], d[1]}), middle = {F::load(middle_x), F::load(middle_y)};
-  const F extent = known[4], inner = known[5], gap = known[6];
+  const WideVec2<W> place = rotate(back, WideVec2<W>{d[0], d[1]}),
+                    middle = {F::load(pairs.middle[0]), F::load(pairs.middle[1])};
+  const F extent = F::load(pairs.extent), inner = known[5], gap = known[6];
 
   const WideVec2<W> way =
       subtract(add(rotate(now, middle), place), add(rotate(base, middle), WideVec2<W>{known[0], known[1]}));
   const F half = F::splat(0.5f) * length2<W>({now.c - base.c, now.s - base.s});
-  const F turn = F::splat(2) * keep(turns, half * extent), most = length2<W>(way) + turn;
+  const F turn = F::splat(2) * (half * extent), most = length2<W>(way) + turn;
   const F rows[4] = {place.x, place.y, now.c, now.s};
   std::int32_t number[W];
   for (int i = 0; i < W; ++i) number[i] = i;
@@ -129,7 +128,7 @@ KnownApart pair_motions2(PairMotions& pairs, int count, const MovingBodies& bodi
   const auto asks = (!met) & (turning > F::splat(0.1f) * inner);
   pairs.swept = any(asks);
   if (pairs.swept) {
-    sweeps_of_shapes<W>(a, b, bodies, placed_b, middle, extent, turns, dt, closing, turning);
+    sweeps_of_shapes<W>(a, b, bodies, placed_b, middle, extent, dt, closing, turning);
     closing.x.store(pairs.sweep_way[0]);
     closing.y.store(pairs.sweep_way[1]);
     turning.store(pairs.sweep_turn);

@@ -327,7 +327,6 @@ void update_contact(WorldImplementation<D>& world, std::int32_t awake_index, std
 /// for sensors and what has many parts.
 inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::int32_t> due, PairMotions& pairs,
                          LaneQueues<Dim2>& queues, std::vector<FoundManifold<Dim2>>& list) {
-  constexpr Vec2f own_origin{};
   std::int32_t awake_index[PairMotions::capacity];
   int count = 0;
   for (const std::int32_t i : due) {
@@ -339,9 +338,10 @@ inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::
     awake_index[count] = i;
     pairs.contact[count] = &c;
     for (int side = 0; side < 2; ++side) pairs.local[side][count] = &world.shapes.at(c.shape[side]).local;
-    const geometry::Shape2& b = world.shapes.at(c.shape[1]).geometry;
-    pairs.middle[count] = b.type == geometry::ShapeType2::polygon ? &b.polygon.centroid : &own_origin;
-    pairs.turns[count] = b.type == geometry::ShapeType2::circle ? 0 : 1;
+    const ShapeRecord<Dim2>& b = world.shapes.at(c.shape[1]);
+    const Vec2f middle = ball_about(b).middle;
+    pairs.middle[0][count] = middle.x, pairs.middle[1][count] = middle.y;
+    pairs.extent[count] = Moved<Dim2>(c, b).extent;
     ++count;
   }
   if (count == 0) return;
@@ -355,8 +355,7 @@ inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::
     world.scratch.watches[i].body[0] = none;  // as needs_manifolds
     Transform2f now;
     __builtin_memcpy(&now, pairs.b_in_a[lane], sizeof now);
-    const Moved<Dim2> moved({pairs.way[0][lane], pairs.way[1][lane]}, pairs.turn[lane],
-                            pairs.turns[lane] != 0 ? c.extent : 0);
+    const Moved<Dim2> moved({pairs.way[0][lane], pairs.way[1][lane]}, pairs.turn[lane], pairs.extent[lane]);
     std::uint8_t& change = world.scratch.contact_changes[i];
     if ((apart.stays >> lane & 1u) != 0) {
       watch_apart(world, c, now, moved);

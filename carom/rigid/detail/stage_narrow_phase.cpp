@@ -194,10 +194,10 @@ void update_contacts(WorldImplementation<D>& world) {
       if constexpr (D::dimension == 2) {
         for (int k = 0; k < min(width, number); ++k) look_at_soon(k);
         for (int first = 0; first < number; first += width) {
-          const int stop = min(first + width, number);
-          for (int k = stop; k < min(stop + width, number); ++k) look_at_soon(k);
-          for (int k = first; k < stop; ++k) bounds_soon(k);
-          update_lanes(world, {due + first, due + stop}, motions, queues, list);
+          const int next = min(first + width, number);
+          for (int k = next; k < min(next + width, number); ++k) look_at_soon(k);
+          for (int k = first; k < next; ++k) bounds_soon(k);
+          update_lanes(world, {due + first, due + next}, motions, queues, list);
         }
       } else {
         for (int k = 0; k < min(6, number); ++k) look_at_soon(k);

@@ -54,8 +54,9 @@ struct Vicinity {
     for (GatheredTriangles& t : triangles)
       if (!t.kept) t.known = false, t.mesh = nullptr;
   }
+  /// After one of `near` went: those behind it have other numbers now.
   void forget_triangles() {
-    for (GatheredTriangles& t : triangles) t.known = false;
+    for (GatheredTriangles& t : triangles) t.known = t.of_this_move = false;
   }
 };
 
