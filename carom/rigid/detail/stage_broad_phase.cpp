@@ -281,24 +281,6 @@ void find_pairs(WorldImplementation<D>& world) {
   scratch.old_bounds.clear();
 }
 
-/// Did a quarter of the shapes that forces move leave their bounds?
-template <class D>
-bool most_outgrew(const WorldImplementation<D>& world) {
-  const std::vector<std::uint8_t>& changes = world.scratch.body_changes;
-  std::size_t outgrown = 0;
-  const std::size_t quarter = std::size_t(world.shapes.trees[tree_dynamic].size()) / 4;
-  for (const std::uint8_t change : changes) outgrown += change != 0 ? 1 : 0;
-  if (outgrown == 0 || outgrown > quarter) return outgrown > quarter;
-  for (std::size_t i = 0; i < world.bodies.awake.size() && outgrown <= quarter; ++i) {
-    if (changes[i] == 0) continue;
-    // The first of each body is counted already.
-    std::int32_t s = world.bodies.record[std::size_t(world.bodies.awake[i])].first_shape;
-    for (s = s == none ? none : world.shapes.at(s).next; s != none; s = world.shapes.at(s).next)
-      outgrown += (world.shapes.at(s).flags & shape_outgrown) != 0 ? 1 : 0;
-  }
-  return outgrown > quarter;
-}
-
 /// The shapes that left their fat bounds, in the order of their bodies, and their places among those that moved.
 template <class D>
 void list_outgrown(WorldImplementation<D>& world) {
@@ -333,10 +315,11 @@ void list_outgrown(WorldImplementation<D>& world) {
 template <class D>
 void update_trees(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
-  // Where most of a tree moves, its boxes are made anew from below in one go.
-  const bool refit = most_outgrew(world);
   scratch.old_bounds.resize(scratch.moved.size(), nowhere<D>());
   list_outgrown(world);
+  // From one in sixteen on, making all boxes of the tree anew from below takes less than sorting these into new places.
+  const std::size_t leaves = std::size_t(world.shapes.trees[tree_dynamic].size());
+  const bool refit = 16 * scratch.outgrown.size() > leaves;
   scratch.new_bounds.reserve(scratch.outgrown.capacity());
   scratch.new_bounds.resize(scratch.outgrown.size());
   world.scheduler->parallel_for(int(scratch.outgrown.size()), bounds_grain, [&](int begin, int end, int) {
@@ -375,11 +358,14 @@ void update_trees(WorldImplementation<D>& world) {
   }
   for (int tree = 0; tree < 3; ++tree)
     if (enlarged[tree]) {
-      if (refit && tree == tree_dynamic)
-        // What flies is soon elsewhere, and its pairs are found without the tree (sweep_dynamic).
-        world.shapes.trees[tree].refit(*world.scheduler, 2 * far > scratch.outgrown.size() ? most_worse : 1.2);
-      else
+      if (refit && tree == tree_dynamic) {
+        // The fewer leave their bounds, the longer a good tree stays one. What flies is soon elsewhere, and its pairs
+        // are found without the tree (sweep_dynamic).
+        const double worse = 1 + 0.8 * min(double(scratch.outgrown.size()) / double(leaves), 0.25);
+        world.shapes.trees[tree].refit(*world.scheduler, 2 * far > scratch.outgrown.size() ? most_worse : worse);
+      } else {
         world.shapes.trees[tree].rebuild_enlarged();
+      }
     }
 }
 
