@@ -2,10 +2,13 @@
 // crosses none of them is a small quadratic programme (after the plane movers of Box2D 3.1; the solver is Hildreth's).
 #include "carom/rigid/character.h"
 
+#include <algorithm>
+
 #include "carom/math/elementary.h"
 #include "carom/rigid/detail/character_shape.h"
 #include "carom/rigid/detail/check.h"
 #include "carom/rigid/detail/contacts.h"
+#include "carom/rigid/detail/seen_shapes.h"
 #include "carom/rigid/detail/vicinity.h"
 #include "carom/rigid/detail/world_implementation.h"
 

@@ -60,24 +60,33 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
   all.whole = merge(merge(needed, box), merge(geometry::Bounds<Vector>{box.low + steps, box.high + steps},
                                               geometry::Bounds<Vector>{box.low - steps, box.high - steps}));
   constexpr float most = 1;  // m that anything comes nearer
-  const auto asked = geometry::grow(all.whole, most);
-  const typename D::Bounds bounds{position_ + Position(asked.low), position_ + Position(asked.high)};
-  const QueryFilter filter{definition_.filter.category, definition_.filter.mask, body_};
-  if (!world.overlap_bounds(bounds, all.found, filter).ok()) return;
+  const typename D::Bounds whole{position_ + Position(all.whole.low), position_ + Position(all.whole.high)};
+  constexpr double rounding = 1e-3;
   const auto& store = *world.self_;
+  const detail::SeenFilter filter(store, {definition_.filter.category, definition_.filter.mask, body_});
+  all.found.clear();
+  // Of most that could come near, the box in the tree tells that they do not.
+  detail::visit_seen_boxes<D>(
+      store, geometry::grow(whole, most + rounding), [&](std::int32_t slot, const typename D::Bounds& held) {
+        const auto& shape = store.shapes.at(slot);
+        if (!detail::query_sees<D>(shape, filter)) return;
+        const int group = store.shapes.terms_of(shape).filter.group;
+        if (group < 0 && group == definition_.filter.group) return;
+        const std::size_t body = std::size_t(shape.body);
+        float way = 0;
+        if (const auto& record = store.bodies.record[body]; record.type != BodyType::fixed && record.awake_index >= 0) {
+          const float arm = float(math::length(position_ - store.bodies.motion[body].center)) +
+                            definition_.half_length + definition_.radius;
+          const auto& moves = store.bodies.solver[body];
+          way = min((math::length(moves.linear_velocity) + spin_of(moves.angular_velocity) * arm) * dt_, most);
+        }
+        if (geometry::overlaps(held, geometry::grow(whole, double(way) + rounding))) all.found.push_back({slot, way});
+      });
+  std::sort(all.found.begin(), all.found.end(), [](const auto& a, const auto& b) { return a.slot < b.slot; });
   bool special = false;
-  for (const ShapeId id : all.found) {
-    const auto& shape = store.shapes.at(std::int32_t(store.shapes.slots.slot(id)));
-    const std::size_t body = std::size_t(shape.body);
-    const int group = store.shapes.terms_of(shape).filter.group;
-    if (group < 0 && group == definition_.filter.group) continue;
-    float approach = 0;
-    if (const auto& record = store.bodies.record[body]; record.type != BodyType::fixed && record.awake_index >= 0) {
-      const float arm = float(math::length(position_ - store.bodies.motion[body].center)) + definition_.half_length +
-                        definition_.radius;
-      const auto& moves = store.bodies.solver[body];
-      approach = min((math::length(moves.linear_velocity) + spin_of(moves.angular_velocity) * arm) * dt_, most);
-    }
+  for (const auto& [slot, approach] : all.found) {
+    const auto& shape = store.shapes.at(slot);
+    const ShapeId id = store.shapes.slots.handle_at(slot);
     const typename D::Pose pose = detail::shape_pose(store, shape);
     const auto seen = geometry::bounds(shape.geometry, relative(typename D::Pose{position_, {}}, pose));
     if (!geometry::overlaps(geometry::grow(seen, approach), all.whole)) continue;

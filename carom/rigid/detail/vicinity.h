@@ -29,13 +29,19 @@ struct GatheredTriangles {
   bool known = false, of_this_move = false, kept = false;
 };
 
+/// A shape that may come near, and by how much (m) in this move by itself.
+struct Approaching {
+  std::int32_t slot;
+  float way;
+};
+
 template <class D>
 struct Vicinity {
   typename D::Position base{};
   geometry::Bounds<typename D::Vector> whole{};  ///< seen from there: what lies outside was not asked about
   std::vector<Neighbour<D>> near;
   std::vector<GatheredTriangles> triangles;  ///< of the neighbour of the same number; more are room for later
-  std::vector<ShapeId> found;
+  std::vector<Approaching> found;
 
   /// After `near` was found: who was there before keeps its triangles.
   void keep_triangles() {

@@ -9,35 +9,12 @@
 #include "carom/geometry/tree_walk.h"
 #include "carom/rigid/detail/contacts.h"
 #include "carom/rigid/detail/joint_check.h"
+#include "carom/rigid/detail/seen_shapes.h"
 #include "carom/rigid/detail/world_implementation.h"
 
 namespace carom::rigid {
 namespace detail {
 
-/// A filter with the slot of the body that it ignores.
-struct SeenFilter {
-  std::uint64_t category, mask;
-  const SharedValues<ShapeTerms>& terms;
-  std::int32_t ignored;
-  template <class D>
-  SeenFilter(const WorldImplementation<D>& world, const QueryFilter& f)
-      : category(f.category),
-        mask(f.mask),
-        terms(world.shapes.terms),
-        ignored(world.bodies.slots.contains(f.ignore) ? world.bodies.slots.slot(f.ignore) : none) {}
-};
-template <class D>
-bool query_sees(const ShapeRecord<D>& shape, const SeenFilter& filter) {
-  const Filter& own = filter.terms[shape.terms].filter;
-  return (shape.flags & shape_sensor) == 0 && (own.category & filter.mask) != 0 && (filter.category & own.mask) != 0 &&
-         shape.body != filter.ignored;
-}
-template <class D>
-typename D::Bounds world_bounds(const typename D::Shape& shape, const typename D::Pose& pose) {
-  using Position = typename D::Position;
-  const auto local = geometry::bounds(shape, typename D::Transform{{}, pose.rotation});
-  return {pose.position + Position(local.low), pose.position + Position(local.high)};
-}
 template <class D>
 RayHit<D> world_hit(const WorldImplementation<D>& world, std::int32_t slot, const typename D::Pose& pose,
                     const geometry::CastHit<typename D::Vector>& hit) {
@@ -107,16 +84,6 @@ inline void sort_by_slot(std::vector<ShapeId>& found, std::size_t from) {
   std::sort(found.begin() + std::ptrdiff_t(from), found.end(), [](ShapeId a, ShapeId b) { return a.index < b.index; });
 }
 
-template <class D>
-const QueryTree<typename D::Position>* query_tree(const WorldImplementation<D>& world, int index) {
-  const auto tight = [&](std::uint32_t item) {
-    const auto& shape = world.shapes.at(std::int32_t(item));
-    const typename D::Bounds box = world_bounds<D>(shape.geometry, shape_pose<D>(world, shape));
-    const auto& fat = world.shapes.trees[shape.tree].bounds(shape.leaf);  // finite, where a plane's is not
-    return typename D::Bounds{max(box.low, fat.low), min(box.high, fat.high)};
-  };
-  return world.query_trees.of(index, world.shapes.trees[index], index == tree_fixed ? 0 : world.moves, tight);
-}
 /// What of a world is seen: all of it.
 struct Everything {
   constexpr bool tree(int) const { return true; }
