@@ -81,15 +81,14 @@ build_native() {
 # What building for WebAssembly needs, given the version that newest_clang names.
 wasm_packages() { echo "clang-$1" "lld-$1" wasi-libc "libc++-$1-dev-wasm32" "libclang-rt-$1-dev-wasm32" binaryen; }
 
-# build_wasm TARGET…: in build/wasm. More that is wanted later (wasm_too) is linked beside it: a link takes one
-# processor for a minute.
-wasm_too=()
+# build_wasm: in build/wasm, the module of the page or what the caller wants.
+wasm_targets=(carom_module)
 build_wasm() {
   local extra=()
   command -v ccache >/dev/null && extra+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   say "building for WebAssembly"
   quietly configure-wasm cmake --preset wasm "${unity[@]}" "${extra[@]}"
-  quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "$@" "${wasm_too[@]}"
+  quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "${wasm_targets[@]}"
 }
 
 # build_page: for `carom serve`, in apps/playground/dist.
@@ -107,7 +106,7 @@ build_web() {
   # Linking the module takes one processor for a minute: bundling the page and drawing its pictures takes the other.
   build_page &
   local page=$!
-  build_wasm carom_module
+  build_wasm
   wait $page || exit 1
   quietly web node apps/playground/build.mjs --web out/web
 }

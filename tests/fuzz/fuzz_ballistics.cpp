@@ -5,8 +5,9 @@
 #include "carom/ballistics/drag_curve.h"
 #include "carom/ballistics/motor.h"
 #include "tests/fuzz/require.h"
+#include "tests/fuzz/target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(ballistics) {
   using namespace carom;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto curve = ballistics::read_drag_table(text, "f");
@@ -34,5 +35,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         before = impulse;
       }
     }
-  return 0;
 }

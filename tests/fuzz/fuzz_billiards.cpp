@@ -5,8 +5,9 @@
 #include "carom/scene/billiards.h"
 #include "carom/sports/billiards_engine.h"
 #include "tests/fuzz/require.h"
+#include "tests/fuzz/target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(billiards) {
   using namespace carom;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto setting = scene::read_billiard_table(text, "f");
@@ -25,5 +26,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(cloth.ok() || cloth.error().message.starts_with("f:"), "an error that does not name the file");
   const auto cue = scene::read_cue(text, "f");
   require(cue.ok() || cue.error().message.starts_with("f:"), "an error that does not name the file");
-  return 0;
 }

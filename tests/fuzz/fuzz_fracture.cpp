@@ -7,6 +7,7 @@
 #include "carom/geometry/mesh_builders.h"
 #include "tests/fuzz/require.h"
 #include "tests/fuzz/source.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 using namespace carom;
@@ -193,19 +194,18 @@ void break_outline(Source& in) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 2 || size > 2000) return 0;
+FUZZ_TARGET(fracture) {
+  if (size < 2 || size > 2000) return;
   Source in(data, size);
-  if (in.byte() % 4 == 3) return break_outline(in), 0;
+  if (in.byte() % 4 == 3) return break_outline(in);
   const Mesh mesh = mesh_from(in);
   const auto pattern = pattern_from(in, container_of(mesh.vertices));
-  if (!pattern.ok()) return require(!pattern.error().message.empty(), "a refusal says why"), 0;
+  if (!pattern.ok()) return require(!pattern.error().message.empty(), "a refusal says why");
   FractureOptions options;
   options.skin = double(in.byte()) / 2550;
   options.least_solidity = double(in.byte()) / 255;
   options.max_hulls = 1 + in.byte() % 3;
   const auto fracture = fracture_mesh(mesh.vertices, mesh.triangles, *pattern, options);
-  if (!fracture.ok()) return require(!fracture.error().message.empty(), "a refusal says why"), 0;
+  if (!fracture.ok()) return require(!fracture.error().message.empty(), "a refusal says why");
   check(mesh, *fracture);
-  return 0;
 }

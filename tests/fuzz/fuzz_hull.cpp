@@ -7,6 +7,7 @@
 #include "carom/geometry/hull.h"
 #include "carom/geometry/mass_properties.h"
 #include "carom/geometry/mesh_builders.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 
@@ -27,14 +28,14 @@ std::vector<carom::geometry::Vec3f> points_from(const std::uint8_t* data, std::s
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(hull) {
   using namespace carom::geometry;
-  if (size < 2) return 0;
+  if (size < 2) return;
   const auto points = points_from(data + 2, size - 2, data[0] % 2 == 0);
   const HullOptions options{.radius = data[0] & 2 ? 0.25f : 0, .max_vertices = 255, .simplify = (data[0] & 4) != 0};
   const auto hull = make_hull(points, options);
   if (!hull.ok()) {
-    if (hull.error().message.find("no sound hull") == std::string::npos) return 0;
+    if (hull.error().message.find("no sound hull") == std::string::npos) return;
     std::puts(hull.error().message.c_str());
     std::abort();
   }
@@ -49,5 +50,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 3; ++i)
     if (!(m.inertia(i, i) > 0)) std::abort();
   if (to_triangles(**hull).indices.empty()) std::abort();
-  return 0;
 }

@@ -5,10 +5,11 @@
 #include "carom/geometry/mass_properties.h"
 #include "carom/geometry/mesh_file.h"
 #include "carom/geometry/triangle_mesh.h"
+#include "tests/fuzz/target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(mesh) {
   using namespace carom::geometry;
-  if (size == 0) return 0;
+  if (size == 0) return;
   const std::string_view bytes(reinterpret_cast<const char*>(data + 1), size - 1);
   const MeshFormat formats[] = {MeshFormat::obj, MeshFormat::stl, MeshFormat::gltf, MeshFormat::glb};
   // Corpus files start with a letter that names the format; other bytes choose one all the same.
@@ -17,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto mesh = parse_mesh(bytes, formats[choice], {.max_triangles = 20000});
   if (!mesh.ok()) {
     if (mesh.error().message.empty()) std::abort();
-    return 0;
+    return;
   }
   for (const std::uint32_t i : mesh->indices)
     if (i >= mesh->vertices.size()) std::abort();
@@ -26,5 +27,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Triangles triangles = to_triangles(*mesh);
   const auto surface = make_triangle_mesh(triangles.positions, triangles.indices);
   if (surface.ok() && (*surface)->triangle_count() == 0) std::abort();
-  return 0;
 }

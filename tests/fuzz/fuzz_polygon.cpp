@@ -5,6 +5,7 @@
 #include "carom/geometry/decomposition.h"
 #include "carom/geometry/shape2.h"
 #include "tests/fuzz/require.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 using namespace carom::geometry;
@@ -36,15 +37,15 @@ double area_of(const carom::math::Vec2f* p, std::size_t n) {
 }
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 2 || size > 2000) return 0;
+FUZZ_TARGET(polygon) {
+  if (size < 2 || size > 2000) return;
   std::vector<Points> loops = loops_from(data + 1, size - 1, data[0] % 4 != 0);
   const Points outline = loops[0];
   loops.erase(loops.begin());
   const auto parts = decompose_convex(outline, loops);
   if (!parts.ok()) {
     require(parts.error().message.find("could not be cut") == std::string::npos, "every simple polygon has ears");
-    return 0;
+    return;
   }
   double whole = area_of(outline.data(), outline.size()), sum = 0;
   for (const Points& hole : loops) whole -= area_of(hole.data(), hole.size());
@@ -59,5 +60,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const double far = double(max(max(-low.x, high.x), max(-low.y, high.y)));
   const double tolerance = 1e-5 * extent + 1e-6 * far;
   require(std::fabs(sum - whole) <= tolerance * extent * double(size), "the parts have the area of the whole");
-  return 0;
 }

@@ -5,6 +5,7 @@
 
 #include "carom/core/hash.h"
 #include "carom/scene/recording.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 
@@ -56,10 +57,9 @@ void play(std::vector<std::uint8_t> bytes) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(recording) {
   std::vector<std::uint8_t> bytes(data, data + size);
   play(bytes);
   mend(bytes);
   play(std::move(bytes));
-  return 0;
 }

@@ -8,6 +8,7 @@
 #include "carom/scene/matter.h"
 #include "carom/scene/scene.h"
 #include "carom/scene/write_scene.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 
@@ -18,9 +19,9 @@ namespace {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(scene) {
   using namespace carom::scene;
-  if (size > 20000) return 0;
+  if (size > 20000) return;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   LoadOptions options;
   options.maximum_objects = 60;
@@ -32,20 +33,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Result<Scene> scene = parse_scene(text, "fuzz.json", resolver, options);
   if (!scene) {
     if (scene.error().message.empty()) broken("an error without a message", "");
-    return 0;
+    return;
   }
-  if (scene->kind == Kind::flight) return 0;
+  if (scene->kind == Kind::flight) return;
   Result<SceneWorld> world = scene->instantiate();
   if (!world) broken("what was parsed cannot be instantiated", world.error().message);
   for (int i = 0; i < 3; ++i)
-    if (!world->step()) return 0;
+    if (!world->step()) return;
   const Result<std::string> written = write_scene(*world);
   const auto more = [](const auto& of) {
     return !of.guns.empty() || !of.structures.empty() || !of.rockets.empty() || !of.shells.empty();
   };
   if (world->matter || (world->destruction && (more(world->destruction->plane) || more(world->destruction->space)))) {
     if (written) broken("ropes, guns and so on were left out of what was written", *written);
-    return 0;
+    return;
   }
   if (!written) broken("a world cannot be written", written.error().message);
   const Result<Scene> again = parse_scene(*written, "written.json");
@@ -53,5 +54,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Result<SceneWorld> copy = again->instantiate();
   if (!copy) broken("what was written cannot be instantiated", copy.error().message);
   if (copy->state_hash() != world->state_hash()) broken("what was written is another world", *written);
-  return 0;
 }

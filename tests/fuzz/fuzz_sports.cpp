@@ -6,8 +6,9 @@
 #include "carom/scene/game_presets.h"
 #include "carom/scene/sports_presets.h"
 #include "tests/fuzz/require.h"
+#include "tests/fuzz/target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(sports) {
   using namespace carom;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto ball = scene::parse_ball(text, "f");
@@ -60,5 +61,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(!path || math::is_finite(path->end().y), "a way down the lane that is not finite");
   if (const auto swing = scene::parse_swing(text, "f"); named(swing))
     require(sports::check(*swing).ok(), "a swing that cannot be");
-  return 0;
 }

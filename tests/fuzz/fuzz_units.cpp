@@ -8,6 +8,7 @@
 
 #include "carom/math/decimal.h"
 #include "carom/math/quantity.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 
@@ -56,13 +57,12 @@ void check_quantity(std::string_view text, std::string_view unit) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size > 4096) return 0;
+FUZZ_TARGET(units) {
+  if (size > 4096) return;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const std::size_t line = text.find('\n');
   const std::string_view first = text.substr(0, line);
   const std::string_view second = line == std::string_view::npos ? std::string_view("m") : text.substr(line + 1);
   check_decimal(first);
   check_quantity(first, second);
-  return 0;
 }

@@ -6,8 +6,9 @@
 #include "carom/ballistics/body_shell.h"
 #include "carom/scene/rocket_presets.h"
 #include "tests/fuzz/require.h"
+#include "tests/fuzz/target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(weapons) {
   using namespace carom;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto named = [](const auto& result) {
@@ -82,5 +83,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                {.time = 0.05, .ground = -1e300, .tolerance = 1e-6});
     require(!flight.ok() || math::is_finite(math::length(flight->path.end().velocity)), "a flight that is not finite");
   }
-  return 0;
 }

@@ -1,6 +1,7 @@
 // Calls of the interface in any order with any numbers: valid, invalid, stale, foreign, huge, not finite. A refused
 // call leaves the world as it was, nothing ever stops being finite, and snapshots go there and back.
 #include "tests/fuzz/require.h"
+#include "tests/fuzz/target.h"
 #include "tests/fuzz/world_maker.h"
 
 namespace {
@@ -420,12 +421,11 @@ void play(Source in) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 4 || size > 4096) return 0;
+FUZZ_TARGET(world) {
+  if (size < 4 || size > 4096) return;
   Source in(data, size);
   if (in.flag())
     play<Dim2>(in);
   else
     play<Dim3>(in);
-  return 0;
 }

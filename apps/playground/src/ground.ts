@@ -54,6 +54,7 @@ export class Ground {
   private spacing = 1;
   private level: number | undefined = 0;
   private plane?: {height: number; aspect: number; target: number[]};
+  private kept = new Map<string, THREE.Material>();
   private stale = true;
 
   constructor() { this.group.add(this.floor.mesh, this.marks); }
@@ -79,10 +80,11 @@ export class Ground {
     this.stale = false;
     for (const child of [...this.marks.children]) {
       this.marks.remove(child);
-      const drawn = child as THREE.Mesh;
-      drawn.geometry?.dispose();
-      (drawn.material as THREE.Material & {map?: THREE.Texture})?.map?.dispose();
-      (drawn.material as THREE.Material)?.dispose();
+      const {geometry, material} = child as THREE.Mesh<THREE.BufferGeometry, THREE.Material & {map?: THREE.Texture}>;
+      geometry.dispose();
+      material.map?.dispose();
+      // One of each kind stays, and with it the compiled program that those of the next demo share.
+      if (this.kept.has(material.type)) material.dispose(); else this.kept.set(material.type, material);
     }
     this.floor.mesh.visible = !this.plane && this.level !== undefined;
     if (this.plane) this.paper(this.plane.height, this.plane.aspect, this.plane.target);

@@ -19,7 +19,7 @@ before(async () => { server = await serve(); });
 after(() => server?.close());
 
 test('every demo opens, moves or stands, shows its numbers, and is accessible', async () => {
-  const page = await visit(`${server.url}#wrecking-ball`, {pause: 1e9, viewport: {width: 840, height: 560}});
+  const page = await visit(`${server.url}#wrecking-ball`, {viewport: {width: 840, height: 560}});
   const demos = await demosOf(page), seen = new Set();
   let asked = 0;
   for (const demo of demos) {

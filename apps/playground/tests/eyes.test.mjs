@@ -19,7 +19,7 @@ test('every layer of debug drawing, in space and in the plane', async () => {
   const all = new Set();
   let names;
   for (const [demo, shown] of Object.entries(SHOWN)) {
-    const page = await open(demo, {pause: 1e9});
+    const page = await open(demo);
     const lines = () => page.evaluate(() => window.caromPage.viewer.lineCount);
     await beyond(page, 40);
     await paused(page);
@@ -160,7 +160,7 @@ test('every kind of warning is told of the body that it is about, with what mend
 });
 
 test('a browser without WebGL2 is told what it lacks', async () => {
-  const page = await visit('about:blank', {pause: 0}, false);
+  const page = await visit('about:blank', {sparing: false}, false);
   await page.addInitScript(() => {
     const own = HTMLCanvasElement.prototype.getContext;
     HTMLCanvasElement.prototype.getContext = function (kind, ...rest) { return kind.startsWith('webgl') ? null : own.call(this, kind, ...rest); };

@@ -70,31 +70,35 @@ afterEach(async () => {
 after(async () => { await browser?.close(); });
 
 /**
- * In the page, before it: it draws when a test asks for a picture, and otherwise no sooner than `pause` ms after the
- * last one. Without a GPU a picture costs more than all else together, and most tests ask for numbers: one in 1.5 s
- * instead of in .5 s is a quarter of the processor time of hands.test. What is drawn is drawn as finely as ever.
+ * In the page, before it: it draws the pictures that a test asks for, as finely as ever. Without a GPU the first one of a
+ * page costs seconds of a processor (all shaders are compiled) and each one after it a good part of one, more than all else
+ * together, and most tests ask for numbers. Otherwise the page goes through all that it does for a picture, twenty times a
+ * second, but for having it drawn. demos.test draws every demo, load.mjs as many pictures as it can.
  */
-function drawSparingly(pause) {
+function drawSparingly() {
   let made;
   Object.defineProperty(window, 'caromPage', {get: () => made, set: (page) => {
     made = page;
-    const {viewer} = page, render = viewer.render.bind(viewer);
-    let last = -Infinity;
+    const {viewer} = page, {renderer} = viewer, look = viewer.render.bind(viewer), draw = renderer.render.bind(renderer);
+    let last = -Infinity, draws = true;  // what is drawn for a saved picture is drawn
     viewer.nextChange = Infinity;  // few pictures a second are this test's wish, not a slow machine's
+    renderer.render = (...all) => { if (draws) { window.drawNow = false; draw(...all); } };
     viewer.render = (now) => {
-      if (now - last < pause && !window.drawNow) return;
+      if (now - last < 50 && !window.drawNow) return;
       last = now;
-      window.drawNow = false;
-      render(now);
+      draws = window.drawNow;
+      viewer.stale ||= draws;
+      look(now);
+      draws = true;
     };
   }});
 }
 
-/** A page at an address; `done` fails the test on any error that the page had. `pause`: between its pictures, ms; 0: as many as it can. */
-export async function visit(address, {viewport = {width: 1000, height: 700}, pause = 1500, ...options} = {}, shows = true) {
+/** A page at an address; `done` fails the test on any error that the page had. `sparing`: it draws only what a test looks at. */
+export async function visit(address, {viewport = {width: 1000, height: 700}, sparing = true, ...options} = {}, shows = true) {
   const context = await (await launched()).newContext({viewport, ...options});
   contexts.push(context);
-  if (pause > 0) await context.addInitScript(drawSparingly, pause);
+  if (sparing) await context.addInitScript(drawSparingly);
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE);
   page.problems = [];
@@ -147,7 +151,8 @@ export const slide = (page, step) => page.$eval('#past', (slider, value) => { sl
 export const movedFrom = (page, id, before, metres) => page.waitForFunction(([i, from, far]) => Math.hypot(...window.caromPage.viewer.bodyPosition(i).map((x, k) => x - from[k])) > far, [id, before, metres]);
 /** A pointer holds a body. */
 export const holding = (page) => page.waitForFunction(() => [...window.caromPage.hands.holds.values()].some((h) => h.held));
-/** The picture of what has come is drawn. */
+/** What has come is arranged for a picture, as twenty times a second; it is drawn. */
+export const arranged = (page) => page.evaluate(() => new Promise((resolve) => { setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(resolve)), 60); }));
 export const drawn = (page) => page.evaluate(() => new Promise((resolve) => {
   window.drawNow = true;
   requestAnimationFrame(() => requestAnimationFrame(resolve));

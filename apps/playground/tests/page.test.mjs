@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import {after, before, test} from 'node:test';
-import {at, barriers, beyond, bodies, carom, demosOf, drawn, holding, movedFrom, paused, picture, place, root, runFor, screen, serve, stepOf, until, visit} from './harness.mjs';
+import {arranged, at, barriers, beyond, bodies, carom, demosOf, holding, movedFrom, paused, picture, place, root, runFor, screen, serve, stepOf, until, visit} from './harness.mjs';
 
 let server;
 before(async () => { server = await serve(); });
@@ -152,13 +152,12 @@ test('a narrow window shows the bodies that a wide one shows', async () => {
     const wide = await seen();
     assert.ok(wide.length > 0, demo);
     await page.setViewportSize({width: 360, height: 740});
-    await drawn(page);
-    await drawn(page);
+    await arranged(page);
     const lost = new Set(wide);
     for (const id of await seen()) lost.delete(id);
     assert.equal(lost.size, 0, `${demo}: ${lost.size} of ${wide.length} bodies are out of frame`);
     await page.setViewportSize({width: 1500, height: 800});
-    await drawn(page);
+    await arranged(page);
   }
   await page.done();
 });
