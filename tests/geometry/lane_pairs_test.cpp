@@ -28,6 +28,17 @@ Shape2 random_quad(Draw& draw, int k) {
     if (const auto polygon = make_polygon(points, radius); polygon) return polygon.value();
   }
 }
+Shape2 random_polygon(Draw& draw, int k) {
+  for (;;) {
+    std::vector<Vec2f> points(std::size_t(5 + k % 4));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float angle = (float(i) + draw.in(0, 0.7)) * 6.2f / float(points.size()), size = draw.in(0.5, 0.8);
+      points[i] = {size * math::cos(angle), size * math::sin(angle)};
+    }
+    if (const auto polygon = make_polygon(points, k % 3 == 0 ? 0.1f : 0.0f); polygon && polygon.value().count > 4)
+      return polygon.value();
+  }
+}
 Shape2 random_round(Draw& draw, LaneKind kind) {
   if (kind == LaneKind::quad_circle) return Circle{draw.in(0.2, 0.6)};
   return Capsule2{draw.in(0.2, 0.7), draw.in(0.1, 0.4)};
@@ -58,15 +69,21 @@ void agrees(LaneKind kind, int lanes, int most_left) {
     PairCache caches[LanePairs::capacity];
     for (int i = 0; i < count; ++i) {
       const int k = round * LanePairs::capacity + i;
-      shapes[std::size_t(2 * i)] = kind == LaneKind::capsules ? random_round(draw, kind) : random_quad(draw, k);
-      shapes[std::size_t(2 * i + 1)] = kind == LaneKind::quads ? random_quad(draw, k / 5) : random_round(draw, kind);
-      if (k / 7 % 2 == 0) std::swap(shapes[std::size_t(2 * i)], shapes[std::size_t(2 * i + 1)]);
-      pairs.a[i] = &shapes[std::size_t(2 * i)], pairs.b[i] = &shapes[std::size_t(2 * i + 1)];
+      Shape2 &a = shapes[std::size_t(2 * i)], &b = shapes[std::size_t(2 * i + 1)];
+      a = kind == LaneKind::capsules   ? random_round(draw, kind)
+          : kind == LaneKind::polygons ? random_polygon(draw, k)
+                                       : random_quad(draw, k);
+      if (kind == LaneKind::polygons && k % 2 == 0)
+        b = random_polygon(draw, k / 5);
+      else
+        b = kind == LaneKind::quads || kind == LaneKind::polygons ? random_quad(draw, k / 5) : random_round(draw, kind);
+      if (k / 7 % 2 == 0) std::swap(a, b);
+      pairs.a[i] = &a, pairs.b[i] = &b;
       ASSERT_EQ(lane_kind(*pairs.a[i], *pairs.b[i]), kind);
       const Transform2f x = random_place(draw, k);
       std::memcpy(pairs.b_in_a[i], &x, sizeof x);
       pairs.margin[i] = k % 5 == 0 ? 0.5f : 0.02f;
-      caches[i].kind = std::uint8_t(k / 3 % 3), caches[i].a = std::uint8_t(k / 9 % 5);
+      caches[i].kind = std::uint8_t(k / 3 % 3), caches[i].a = std::uint8_t(k / 9 % 9);
       pairs.kind[i] = caches[i].kind, pairs.edge[i] = caches[i].a;
     }
     const std::uint32_t alone = collide_lanes(pairs, count);
@@ -98,7 +115,8 @@ class InLanes : public ::testing::TestWithParam<int> {
     if (math::simd_width(math::detect_instruction_set()) < GetParam()) GTEST_SKIP() << "not on this machine";
   }
 };
-TEST_P(InLanes, Polygons) { agrees(LaneKind::quads, GetParam(), 3000); }
+TEST_P(InLanes, PolygonsOfFourCorners) { agrees(LaneKind::quads, GetParam(), 3000); }
+TEST_P(InLanes, PolygonsOfEightCorners) { agrees(LaneKind::polygons, GetParam(), 3000); }
 TEST_P(InLanes, PolygonsAndCapsules) { agrees(LaneKind::quad_capsule, GetParam(), 0); }
 TEST_P(InLanes, PolygonsAndCircles) { agrees(LaneKind::quad_circle, GetParam(), 0); }
 TEST_P(InLanes, Capsules) { agrees(LaneKind::capsules, GetParam(), 2000); }  // those in line overlap
@@ -107,6 +125,12 @@ INSTANTIATE_TEST_SUITE_P(Widths, InLanes, ::testing::Values(4, 8));
 TEST(LanePairs, KindsOfShapes) {
   const Shape2 box = make_box2({1, 1}), circle = Circle{1}, capsule = Capsule2{1, 1}, point = Capsule2{0, 1};
   EXPECT_EQ(lane_kind(box, box), LaneKind::quads);
+  Draw draw;
+  const Shape2 polygon = random_polygon(draw, 0);
+  EXPECT_EQ(lane_kind(polygon, box), LaneKind::polygons);
+  EXPECT_EQ(lane_kind(box, polygon), LaneKind::polygons);
+  EXPECT_EQ(lane_kind(polygon, polygon), LaneKind::polygons);
+  EXPECT_EQ(lane_kind(polygon, circle), LaneKind::none);
   EXPECT_EQ(lane_kind(circle, box), LaneKind::quad_circle);
   EXPECT_EQ(lane_kind(box, capsule), LaneKind::quad_capsule);
   EXPECT_EQ(lane_kind(box, point), LaneKind::none);

@@ -24,18 +24,19 @@ struct LanePairs {
 static_assert(sizeof(LanePairs::Found) == 64 && sizeof(Transform2f) == 16);
 
 /// Pairs for which there are kernels: of two polygons with at most four corners, one of them and something round, in
-/// either order, or two capsules.
-enum class LaneKind : std::uint8_t { quads, quad_capsule, quad_circle, capsules, none };
-inline constexpr int lane_kinds = 4;
+/// either order, two capsules, or other two polygons.
+enum class LaneKind : std::uint8_t { quads, quad_capsule, quad_circle, capsules, polygons, none };
+inline constexpr int lane_kinds = 5;
 inline bool is_quad(const Shape2& s) { return s.type == ShapeType2::polygon && s.polygon.count <= 4; }
 inline bool has_line(const Shape2& s) { return s.type == ShapeType2::capsule && s.capsule.half_length > 0; }
 inline LaneKind lane_kind(const Shape2& a, const Shape2& b) {
+  if (a.type == ShapeType2::polygon && b.type == ShapeType2::polygon)
+    return is_quad(a) && is_quad(b) ? LaneKind::quads : LaneKind::polygons;
   const bool first = is_quad(a);
   if (!first && !is_quad(b)) return has_line(a) && has_line(b) ? LaneKind::capsules : LaneKind::none;
   const Shape2& other = first ? b : a;
   if (other.type == ShapeType2::circle) return LaneKind::quad_circle;
-  if (has_line(other)) return LaneKind::quad_capsule;
-  return is_quad(other) ? LaneKind::quads : LaneKind::none;
+  return has_line(other) ? LaneKind::quad_capsule : LaneKind::none;
 }
 
 /// What collide() finds for the first `count` pairs, to the bit. Bits by pair: left alone, collide() has to tell.

@@ -28,68 +28,95 @@ CAROM_SIMD_INLINE Wide2 rotate(F c, F s, const Wide2& v) { return {c * v.x - s *
 CAROM_SIMD_INLINE Wide2 rotate_back(F c, F s, const Wide2& v) { return {c * v.x + s * v.y, (-s) * v.x + c * v.y}; }
 
 template <class T>
-CAROM_SIMD_INLINE T pick(const T (&of)[4], Int index) {
+CAROM_SIMD_INLINE T pick_of_four(const T* of, Int index) {
   const T low = select(index == Int::zero(), of[0], of[1]), high = select(index == Int::splat(2), of[2], of[3]);
   return select(index < Int::splat(2), low, high);
 }
-CAROM_SIMD_INLINE F least_of(const F (&a)[4]) { return min(min(a[0], a[1]), min(a[2], a[3])); }
+/// N: 4 or 8.
+template <class T, int N>
+CAROM_SIMD_INLINE T pick(const T (&of)[N], Int index) {
+  const T low = pick_of_four(of, index);
+  if constexpr (N == 4)
+    return low;
+  else
+    return select(index < Int::splat(4), low, pick_of_four(of + 4, index - Int::splat(4)));
+}
+template <int N>
+CAROM_SIMD_INLINE F least_of(const F (&a)[N]) {
+  F least = min(min(a[0], a[1]), min(a[2], a[3]));
+  if constexpr (N == 8) least = min(least, min(min(a[4], a[5]), min(a[6], a[7])));
+  return least;
+}
 /// The first that holds `value`.
-CAROM_SIMD_INLINE Int place_of(const F (&a)[4], F value) {
-  const Int late = math::select(a[2] == value, Int::splat(2), Int::splat(3));
-  return math::select(a[0] == value, Int::zero(), math::select(a[1] == value, Int::splat(1), late));
+template <int N>
+CAROM_SIMD_INLINE Int place_of(const F (&a)[N], F value) {
+  Int place = Int::splat(N - 1);
+  for (int k = N - 1; k-- > 0;) place = math::select(a[k] == value, Int::splat(k), place);
+  return place;
 }
-CAROM_SIMD_INLINE void along(const Wide2 (&v)[4], const Wide2& n, F (&d)[4]) {
-  for (int k = 0; k < 4; ++k) d[k] = n.x * v[k].x + n.y * v[k].y;
+template <int N>
+CAROM_SIMD_INLINE void along(const Wide2 (&v)[N], const Wide2& n, F (&d)[N]) {
+  for (int k = 0; k < N; ++k) d[k] = n.x * v[k].x + n.y * v[k].y;
 }
-CAROM_SIMD_INLINE F least_along(const Wide2 (&v)[4], const Wide2& n) {
-  F d[4];
+template <int N>
+CAROM_SIMD_INLINE F least_along(const Wide2 (&v)[N], const Wide2& n) {
+  F d[N];
   along(v, n, d);
   return least_of(d);
 }
-CAROM_SIMD_INLINE Int lowest_along(const Wide2 (&v)[4], const Wide2& n) {
-  F d[4];
+template <int N>
+CAROM_SIMD_INLINE Int lowest_along(const Wide2 (&v)[N], const Wide2& n) {
+  F d[N];
   along(v, n, d);
   return place_of(d, least_of(d));
 }
 
-/// Polygons of which the last corner and normal stand in for a fourth that is missing.
-struct Quads {
-  Wide2 v[4], n[4], centroid;
+/// Polygons with at most N corners, of which the last corner and normal stand in for those that are missing.
+template <int N>
+struct Polygons {
+  Wide2 v[N], n[N], centroid;
   F radius;
   Int count;
 
-  CAROM_SIMD_INLINE explicit Quads(const Shape2* const (&shapes)[width]) {
-    static_assert(offsetof(Polygon, normals) == 64 && offsetof(Polygon, centroid) == 128 &&
+  CAROM_SIMD_INLINE explicit Polygons(const Shape2* const (&shapes)[width]) {
+    static_assert(max_polygon_vertices == 8 && offsetof(Polygon, normals) == 64 && offsetof(Polygon, centroid) == 128 &&
                   offsetof(Polygon, radius) == 136 && offsetof(Polygon, count) == 140);
-    F corners[8], normals[8], last[4];
-    const float *rows[width], *at_normals[width], *at_last[width];
-    for (int i = 0; i < width; ++i) {
-      rows[i] = &shapes[i]->polygon.vertices[0].x;
-      at_normals[i] = rows[i] + 16, at_last[i] = rows[i] + 32;
+    const auto gather = [&](int from, auto& columns) __attribute__((always_inline)) {
+      const float* rows[width];
+      for (int i = 0; i < width; ++i) rows[i] = &shapes[i]->polygon.vertices[0].x + from;
+      math::gather_rows<int(sizeof columns / sizeof(F)), width>(rows, columns);
+    };
+    for (int first = 0; first < N; first += 4) {
+      F corners[8], normals[8];
+      gather(2 * first, corners);
+      gather(16 + 2 * first, normals);
+      for (int k = 0; k < 4; ++k) {
+        v[first + k] = {corners[2 * k], corners[2 * k + 1]};
+        n[first + k] = {normals[2 * k], normals[2 * k + 1]};
+      }
     }
-    math::gather_rows<8, width>(rows, corners);
-    math::gather_rows<8, width>(at_normals, normals);
-    math::gather_rows<4, width>(at_last, last);
-    for (int k = 0; k < 4; ++k) {
-      v[k] = {corners[2 * k], corners[2 * k + 1]};
-      n[k] = {normals[2 * k], normals[2 * k + 1]};
-    }
+    F last[4];
+    gather(32, last);
     centroid = {last[0], last[1]};
     radius = last[2];
     count = bits(last[3]);
-    v[3] = select(count > Int::splat(3), v[3], v[2]);
-    n[3] = select(count > Int::splat(3), n[3], n[2]);
+    for (int k = 3; k < N; ++k) {
+      const Mask has = count > Int::splat(k);
+      v[k] = select(has, v[k], v[k - 1]);
+      n[k] = select(has, n[k], n[k - 1]);
+    }
   }
   /// Half the smallest thickness, roughly.
   CAROM_SIMD_INLINE F size() const {
-    F d[4];
-    for (int k = 0; k < 4; ++k) d[k] = dot(n[k], v[k] - centroid);
+    F d[N];
+    for (int k = 0; k < N; ++k) d[k] = dot(n[k], v[k] - centroid);
     return least_of(d) + radius;
   }
   CAROM_SIMD_INLINE Int next(Int i) const {
     return math::select(i + Int::splat(1) < count, i + Int::splat(1), Int::zero());
   }
 };
+using Quads = Polygons<4>;
 
 struct Point {
   Wide2 at;
@@ -220,7 +247,7 @@ struct Lanes {
 
 }  // namespace carom::geometry::detail::CAROM_PAIRS_NAMESPACE
 
-#include "carom/geometry/detail/lane_quads.inl"
+#include "carom/geometry/detail/lane_polygons.inl"
 #include "carom/geometry/detail/lane_round.inl"
 
 namespace carom::geometry::detail::CAROM_PAIRS_NAMESPACE {
@@ -233,8 +260,8 @@ std::uint32_t collide(LanePairs& pairs, int count) {
 }
 
 LaneColliders colliders() {
-  return {{collide<collide_quads>, collide<collide_quad_capsules>, collide<collide_quad_circles>,
-           collide<collide_capsules>}};
+  return {{collide<collide_polygons<4>>, collide<collide_quad_capsules>, collide<collide_quad_circles>,
+           collide<collide_capsules>, collide<collide_polygons<8>>}};
 }
 
 }  // namespace carom::geometry::detail::CAROM_PAIRS_NAMESPACE

@@ -358,14 +358,11 @@ void update_trees(WorldImplementation<D>& world) {
   }
   for (int tree = 0; tree < 3; ++tree)
     if (enlarged[tree]) {
-      if (refit && tree == tree_dynamic) {
-        // The fewer leave their bounds, the longer a good tree stays one. What flies is soon elsewhere, and its pairs
-        // are found without the tree (sweep_dynamic).
-        const double worse = 1 + 0.8 * min(double(scratch.outgrown.size()) / double(leaves), 0.25);
-        world.shapes.trees[tree].refit(*world.scheduler, 2 * far > scratch.outgrown.size() ? most_worse : worse);
-      } else {
+      if (refit && tree == tree_dynamic)
+        // What flies is soon elsewhere, and its pairs are found without the tree (sweep_dynamic).
+        world.shapes.trees[tree].refit(*world.scheduler, 2 * far > scratch.outgrown.size() ? most_worse : 1.1);
+      else
         world.shapes.trees[tree].rebuild_enlarged();
-      }
     }
 }
 

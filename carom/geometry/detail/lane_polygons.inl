@@ -1,26 +1,30 @@
-// Two polygons with at most four corners in each lane: part of lane_pairs.inl, the same as polygon_pair::collide of
-// manifold2_polygon.cpp.
+// Two polygons with at most four or eight corners in each lane: part of lane_pairs.inl, the same as
+// polygon_pair::collide of manifold2_polygon.cpp.
 
 namespace carom::geometry::detail::CAROM_PAIRS_NAMESPACE {
 
 /// Where along the edges' normals the corners of the other polygon begin, and the edge where that is farthest.
+template <int N>
 struct Axes {
-  F s[4], separation;
+  F s[N], separation;
   Int edge;
 
-  CAROM_SIMD_INLINE Axes(const Quads& of, const Quads& other) {
-    for (int k = 0; k < 4; ++k) {
-      F d[4];
+  CAROM_SIMD_INLINE Axes(const Polygons<N>& of, const Polygons<N>& other) {
+    for (int k = 0; k < N; ++k) {
+      F d[N];
       along(other.v, of.n[k], d);
-      s[k] = min(min(min(d[0], d[1]), d[2]), d[3]) - dot(of.n[k], of.v[k]);
+      F least = d[0];
+      for (int i = 1; i < N; ++i) least = min(least, d[i]);
+      s[k] = least - dot(of.n[k], of.v[k]);
     }
-    separation = max(max(s[0], s[1]), max(s[2], s[3]));
+    separation = s[0];
+    for (int k = 1; k < N; ++k) separation = max(separation, s[k]);
     edge = place_of(s, separation);
   }
   /// Has it an edge across n, along which the two hardly overlap?
-  CAROM_SIMD_INLINE Mask any_across(const Quads& of, const Wide2& n, F tolerance) const {
+  CAROM_SIMD_INLINE Mask any_across(const Polygons<N>& of, const Wide2& n, F tolerance) const {
     Mask any = Mask::none();
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < N; ++k) {
       const F turned = n.x * of.n[k].x + n.y * of.n[k].y;
       any = any | ((abs(turned) <= F::splat(0.02f)) & (s[k] > -tolerance));
     }
@@ -29,8 +33,9 @@ struct Axes {
 };
 
 /// The contacts of an edge of r, which has the number e, with the edge of s that faces it. Mask: it is more than that.
-CAROM_SIMD_INLINE Mask contacts_along(const Quads& r, const Quads& s, Int e, F separation, F slack, Mask of_b, F margin,
-                                      Answers& out) {
+template <int N>
+CAROM_SIMD_INLINE Mask contacts_along(const Polygons<N>& r, const Polygons<N>& s, Int e, F separation, F slack,
+                                      Mask of_b, F margin, Answers& out) {
   const Wide2 n = pick(r.n, e), t = {-n.y, n.x}, start = pick(r.v, e);
   const F length = dot(t, pick(r.v, r.next(e)) - start);
   const Int corner = lowest_along(s.v, n), f = lowest_along(s.n, n);
@@ -44,10 +49,11 @@ CAROM_SIMD_INLINE Mask contacts_along(const Quads& r, const Quads& s, Int e, F s
   return at_corner | (out.count == Int::zero());
 }
 
-std::uint32_t collide_quads(LanePairs& pairs, int first, int count) {
+template <int N>
+std::uint32_t collide_polygons(LanePairs& pairs, int first, int count) {
   const Lanes lanes(pairs, first, count);
-  const Quads a(lanes.a);
-  Quads b(lanes.b);
+  const Polygons<N> a(lanes.a);
+  Polygons<N> b(lanes.b);
   const Wide2 p = lanes.p;
   const F c = lanes.c, s = lanes.s, margin = lanes.margin, radius = a.radius + b.radius;
   const Int kind = lanes.kind, edge = lanes.edge, one = Int::splat(1), two = Int::splat(2);
@@ -76,7 +82,7 @@ std::uint32_t collide_quads(LanePairs& pairs, int first, int count) {
          edge);
   }
   const F small = max(min(a.size(), b.size()), F::zero()), slack = F::splat(1e-3f) * small;
-  for (int k = 0; k < 4; ++k) b.n[k] = rotate(c, s, b.n[k]);
+  for (int k = 0; k < N; ++k) b.n[k] = rotate(c, s, b.n[k]);
   const auto normal_apart = [&] {
     const Wide2 of_b = pick(b.n, out.edge);
     out.normal = select(out.kind == two, -of_b, pick(a.n, out.edge));
@@ -86,8 +92,8 @@ std::uint32_t collide_quads(LanePairs& pairs, int first, int count) {
     store(out, Mask::none(), pairs, first, count);
     return 0;
   }
-  for (int k = 0; k < 4; ++k) b.v[k] = rotate(c, s, b.v[k]) + p;
-  const Axes of_a(a, b), of_b(b, a);
+  for (int k = 0; k < N; ++k) b.v[k] = rotate(c, s, b.v[k]) + p;
+  const Axes<N> of_a(a, b), of_b(b, a);
   part(Mask::all(), of_a.separation, one, of_a.edge);
   part(Mask::all(), of_b.separation, two, of_b.edge);
   normal_apart();
@@ -98,8 +104,8 @@ std::uint32_t collide_quads(LanePairs& pairs, int first, int count) {
   const Mask by_b = of_b.separation > of_a.separation + select(kind == two, -slack, slack);
   const F separation = select(by_b, of_b.separation, of_a.separation);
   const Int number = math::select(by_b, of_b.edge, of_a.edge);
-  Quads r = a, other = b;
-  for (int k = 0; k < 4; ++k) {
+  Polygons<N> r = a, other = b;
+  for (int k = 0; k < N; ++k) {
     r.v[k] = select(by_b, b.v[k], a.v[k]), other.v[k] = select(by_b, a.v[k], b.v[k]);
     r.n[k] = select(by_b, b.n[k], a.n[k]), other.n[k] = select(by_b, a.n[k], b.n[k]);
   }
