@@ -24,7 +24,7 @@ struct LanePairs {
 static_assert(sizeof(LanePairs::Found) == 64 && sizeof(Transform2f) == 16);
 
 /// Pairs for which there are kernels: of two polygons with at most four corners, one of them and something round, in
-/// either order, two capsules, or other two polygons.
+/// either order, two capsules, or two other polygons.
 enum class LaneKind : std::uint8_t { quads, quad_capsule, quad_circle, capsules, polygons, none };
 inline constexpr int lane_kinds = 5;
 inline bool is_quad(const Shape2& s) { return s.type == ShapeType2::polygon && s.polygon.count <= 4; }
