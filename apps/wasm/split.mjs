@@ -335,16 +335,23 @@ export async function split(modulePath, files, out) {
   }
 }
 
-/** A module without its name section: the names that the next cut goes by are written to the part too. */
-function withoutNames(module) {
-  const kept = [module.subarray(0, 8)];
+/** The sections of a module: which, from where, where their content begins and ends. */
+function* sectionsOf(module) {
   for (let at = 8; at < module.length;) {
     const begin = at, id = module[at++];
     let size = 0;
     for (let scale = 1; ; scale *= 128) { size += (module[at] & 127) * scale; if (!(module[at++] & 128)) break; }
-    const named = id === 0 && module[at] === 4 && module.subarray(at + 1, at + 5).toString() === 'name';
+    yield {id, begin, content: at, end: at + size};
     at += size;
-    if (!named) kept.push(module.subarray(begin, at));
+  }
+}
+
+/** A module without its name section: the names that the next cut goes by are written to the part too. */
+function withoutNames(module) {
+  const kept = [module.subarray(0, 8)];
+  for (const {id, begin, content, end} of sectionsOf(module)) {
+    const named = id === 0 && module[content] === 4 && module.subarray(content + 1, content + 5).toString() === 'name';
+    if (!named) kept.push(module.subarray(begin, end));
   }
   return Buffer.concat(kept);
 }
@@ -353,13 +360,9 @@ function withoutNames(module) {
 function withData(module, section) {
   if (!section) return module;
   const bytes = Buffer.from(module);
-  for (let at = 8; at < bytes.length;) {
-    const id = bytes[at++];
-    let size = 0;
-    for (let scale = 1; ; scale *= 128) { size += (bytes[at] & 127) * scale; if (!(bytes[at++] & 128)) break; }
-    at += size;
+  for (const {id, end} of sectionsOf(bytes)) {
     if (id === 11 || id === 12) throw new Error('a part that has data of its own');
-    if (id === 10) return Buffer.concat([bytes.subarray(0, at), section, bytes.subarray(at)]);
+    if (id === 10) return Buffer.concat([bytes.subarray(0, end), section, bytes.subarray(end)]);
   }
   throw new Error('a part without code');
 }

@@ -151,8 +151,9 @@ export const slide = (page, step) => page.$eval('#past', (slider, value) => { sl
 export const movedFrom = (page, id, before, metres) => page.waitForFunction(([i, from, far]) => Math.hypot(...window.caromPage.viewer.bodyPosition(i).map((x, k) => x - from[k])) > far, [id, before, metres]);
 /** A pointer holds a body. */
 export const holding = (page) => page.waitForFunction(() => [...window.caromPage.hands.holds.values()].some((h) => h.held));
-/** What has come is arranged for a picture, as twenty times a second; it is drawn. */
+/** What has come is arranged for a picture, as it is twenty times a second. */
 export const arranged = (page) => page.evaluate(() => new Promise((resolve) => { setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(resolve)), 60); }));
+/** The picture of what has come is drawn. */
 export const drawn = (page) => page.evaluate(() => new Promise((resolve) => {
   window.drawNow = true;
   requestAnimationFrame(() => requestAnimationFrame(resolve));

@@ -41,11 +41,18 @@ CAROM_SIMD_INLINE T pick(const T (&of)[N], Int index) {
   else
     return select(index < Int::splat(4), low, pick_of_four(of + 4, index - Int::splat(4)));
 }
+/// As least_of and greatest_of of polygon_lanes.h, after those of eight that lie in one lane there: in their order.
 template <int N>
 CAROM_SIMD_INLINE F least_of(const F (&a)[N]) {
-  F least = min(min(a[0], a[1]), min(a[2], a[3]));
-  if constexpr (N == 8) least = min(least, min(min(a[4], a[5]), min(a[6], a[7])));
-  return least;
+  F d[4];
+  for (int k = 0; k < 4; ++k) d[k] = N == 4 ? a[k] : min(a[k], a[k + N - 4]);
+  return min(min(d[0], d[1]), min(d[2], d[3]));
+}
+template <int N>
+CAROM_SIMD_INLINE F greatest_of(const F (&a)[N]) {
+  F d[4];
+  for (int k = 0; k < 4; ++k) d[k] = N == 4 ? a[k] : max(a[k], a[k + N - 4]);
+  return max(max(d[0], d[1]), max(d[2], d[3]));
 }
 /// The first that holds `value`.
 template <int N>

@@ -17,8 +17,7 @@ struct Axes {
       for (int i = 1; i < N; ++i) least = min(least, d[i]);
       s[k] = least - dot(of.n[k], of.v[k]);
     }
-    separation = s[0];
-    for (int k = 1; k < N; ++k) separation = max(separation, s[k]);
+    separation = greatest_of(s);
     edge = place_of(s, separation);
   }
   /// Has it an edge across n, along which the two hardly overlap?

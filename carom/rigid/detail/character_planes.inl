@@ -67,7 +67,7 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
   all.found.clear();
   // Of most that could come near, the box in the tree tells that they do not.
   detail::visit_seen_boxes<D>(
-      store, geometry::grow(whole, most + rounding), [&](std::int32_t slot, const typename D::Bounds& held) {
+      store, geometry::grow(whole, most + rounding), [&](std::int32_t slot, const typename D::Bounds& held, bool) {
         const auto& shape = store.shapes.at(slot);
         if (!detail::query_sees<D>(shape, filter)) return;
         const int group = store.shapes.terms_of(shape).filter.group;

@@ -41,7 +41,7 @@ const QueryTree<typename D::Position>* query_tree(const WorldImplementation<D>& 
   };
   return world.query_trees.of(index, world.shapes.trees[index], index == tree_fixed ? 0 : world.moves, tight);
 }
-/// Every shape that may meet `box`: visit(slot, a box that holds it), the tight one or that of the tree.
+/// Every shape that may meet `box`: visit(slot, a box that holds it, whether that is the tight one or the tree's).
 template <class D, class Visit>
 void visit_seen_boxes(const WorldImplementation<D>& world, const typename D::Bounds& box, Visit&& visit) {
   for (int t = 0; t < 3; ++t) {
@@ -50,13 +50,13 @@ void visit_seen_boxes(const WorldImplementation<D>& world, const typename D::Bou
     const auto* made = query_tree<D>(world, t);
     if (made == nullptr) {
       tree.query_boxes(box, [&](std::uint32_t item, const typename D::Bounds& fat) {
-        visit(std::int32_t(item), fat);
+        visit(std::int32_t(item), fat, false);
         return true;
       });
       continue;
     }
     const auto look = [&](std::size_t place) {
-      if (geometry::detail::boxes_meet(made->boxes[place], box)) visit(made->slots[place], made->boxes[place]);
+      if (geometry::detail::boxes_meet(made->boxes[place], box)) visit(made->slots[place], made->boxes[place], true);
       return true;
     };
     if (made->wide.nodes.empty())

@@ -119,26 +119,10 @@ void cast_in_trees(const WorldImplementation<D>& world, const Seen& seen, const 
 /// Every shape whose tight box meets `box`: visit(slot).
 template <class D, class Visit>
 void query_trees(const WorldImplementation<D>& world, const typename D::Bounds& box, Visit&& visit) {
-  for (int t = 0; t < 3; ++t) {
-    const auto& tree = world.shapes.trees[t];
-    if (tree.empty()) continue;
-    if (const auto* made = query_tree<D>(world, t)) {
-      const auto look = [&](std::size_t place) {
-        if (geometry::detail::boxes_meet(made->boxes[place], box)) visit(made->slots[place]);
-        return true;
-      };
-      if (made->wide.nodes.empty())
-        for (std::size_t i = 0; i < made->slots.size(); ++i) look(i);
-      else
-        query(made->wide, box, look);
-    } else {
-      tree.query(box, [&](std::uint32_t item) {
-        const auto& shape = world.shapes.at(std::int32_t(item));
-        if (overlaps(world_bounds<D>(shape.geometry, shape_pose<D>(world, shape)), box)) visit(std::int32_t(item));
-        return true;
-      });
-    }
-  }
+  visit_seen_boxes<D>(world, box, [&](std::int32_t slot, const typename D::Bounds&, bool tight) {
+    const auto& shape = world.shapes.at(slot);
+    if (tight || overlaps(world_bounds<D>(shape.geometry, shape_pose<D>(world, shape)), box)) visit(slot);
+  });
 }
 
 inline constexpr int rays_a_group = 16, rays_a_chunk = 8 * rays_a_group;
