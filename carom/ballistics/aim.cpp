@@ -33,8 +33,9 @@ core::Result<Aims> aim(const Projectile& projectile, const Conditions& condition
                        core::FunctionRef<Vec3d(double)> target, const AimOptions& options) {
   const core::Result<void> checked = detail::check(projectile, shooter, options);
   if (!checked.ok()) return checked.error();
+  const detail::AimSolver solver(projectile, conditions, shooter, target, options);
   Aims aims;
-  detail::AimSolver(projectile, conditions, shooter, target, options).scan(aims);
+  if (!solver.two_arcs(aims)) solver.scan(aims);
   return aims;
 }
 

@@ -74,15 +74,17 @@ AimSolver::Guess AimSolver::steep_guess() const {
   return {shooter_.velocity + barrel, time};
 }
 
-bool AimSolver::by_guesses(const Guess& flat, Aims& aims, Root& late) const {
+bool AimSolver::by_guesses(const Guess& flat, double apart, Aims& aims, Root& late) const {
   const double speed = shooter_.muzzle_speed, longest = options_.longest_time;
   if (!(flat.time > 0)) return false;
   const Root low = refine(flat, 14, true);
   if (!low.found) return false;
-  if (low.slope * low.guess.time > 0.02 * speed) {
+  // Near the peak two roots are close together, and where the low one alone is asked for it must be the earlier.
+  if (low.slope * low.guess.time > (options_.high_arc ? 0.02 * speed : 0)) {
     late = low;
     return false;
   }
+  if (apart > 0 && !(low.slope * low.guess.time < -apart * speed)) return false;
   if (!options_.high_arc) {
     // It is the earliest where a little less time would need more speed; the slope tells, unless it is near the peak.
     if (low.slope * low.guess.time < -0.1 * speed) {
@@ -112,6 +114,7 @@ bool AimSolver::by_guesses(const Guess& flat, Aims& aims, Root& late) const {
     return true;
   }
   if (high.guess.time < 1.001 * low.guess.time) return false;  // two roots are all there are
+  if (apart > 0 && !(high.slope * high.guess.time > apart * speed)) return false;
   keep(aims, low);
   keep(aims, high);
   return true;

@@ -164,12 +164,7 @@ void AimSolver::measure(Path& path) const {
       parts[count].from = next.from;
       parts[count].to = next.to;
     }
-#if defined(__x86_64__)
-    if (wide_)
-      aim_avx2::measure(medium_, path, parts, count);
-    else
-#endif
-      aim_baseline::measure(medium_, path, parts, count);
+    lanes_.measure(medium_, path, parts, count);
     for (int i = count - 1; i >= 0; --i) {
       const AimPart& part = parts[i];
       Hard& whole = hard[of_hard[i]];
@@ -200,12 +195,7 @@ void AimSolver::measure(Path& path) const {
       of.v[j][n] = float(more_v[j]);
     }
   }
-#if defined(__x86_64__)
-  if (wide_)
-    aim_avx2::settle(path);
-  else
-#endif
-    aim_baseline::settle(path);
+  lanes_.settle(path);
 }
 
 }  // namespace carom::ballistics::detail

@@ -5,12 +5,7 @@
 namespace carom::ballistics::detail {
 
 void AimSolver::linearize(Path& path, bool finely) const {
-#if defined(__x86_64__)
-  if (wide_)
-    aim_avx2::linearize(medium_, path, finely);
-  else
-#endif
-    aim_baseline::linearize(medium_, path, finely);
+  (path.count > 4 ? lanes_ : few_lanes_).linearize(medium_, path, finely);
   path.lands = path.bends = false;
 }
 

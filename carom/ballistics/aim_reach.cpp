@@ -64,6 +64,12 @@ AimSolver::Nearest AimSolver::nearest(double time) const {
   const double away = math::length(target_(0) - shooter_.muzzle), longest = options_.longest_time;
   const Guess first = straight(math::min(math::min(time, math::sqrt(1.6 * away / conditions_.gravity)), longest));
   Nearest found = nearest_from(first);
+  // What seemed to be within, by a ball that is far from it, is looked at again.
+  if (found.sure && found.gap > 0 && found.doubtful.time > 0) {
+    const Reach at = reach_nearest(found.doubtful);
+    const Nearest other = at.known ? nearest_from(at.guess) : Nearest{};
+    if (other.sure && other.gap < found.gap) found = other;
+  }
   // There may be a nearer place elsewhere: where winds bend the surface, or where the target turns.
   const auto look = [&](double at) {
     if (!found.sure || found.gap < 0) return;
@@ -92,14 +98,18 @@ AimSolver::Nearest AimSolver::nearest_from(Guess guess) const {
     if (early > 0 && late < 1e300)
       next = math::clamp(early + (late - early) * closing / (closing - opening), 0.95 * early + 0.05 * late,
                          0.05 * early + 0.95 * late);
+    const double wanted = next;
     next = math::clamp(next, 0.4 * time, math::min(2.5 * time, longest));
     const double dt = next - time, least = at.gap + dt * (at.rate + 0.5 * at.bend * dt);
     const double change = math::abs(least - before);
+    const bool within = at.gap < -0.02 * at.scale && at.bulge < -0.4 * at.gap;
+    if (at.gap < 0) found.doubtful = guess;
     found.at = at;
-    found.time = next;
-    found.gap = least;
-    found.sure = change < 0.25 * math::abs(least) || change < 2e-4 * at.scale ||
-                 (at.gap < -0.02 * at.scale && at.bulge < -0.4 * at.gap);
+    found.time = within && at.gap < least ? time : next;
+    found.gap = within ? math::min(at.gap, least) : least;
+    // What is foretold from far away tells little.
+    const bool near = wanted > 0.5 * time && wanted < 1.6 * time;
+    found.sure = within || (near && change < 0.25 * math::abs(least)) || change < 2e-4 * at.scale;
     if (found.sure) return found;
     before = least;
     guess = toward(at, next);
@@ -140,6 +150,7 @@ bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late)
   // By the parabola that is foretold.
   const double way = math::sqrt(2 * math::max(-nearest.gap, edge) / at.bend), peak = at.guess.time - at.rate / at.bend;
   for (const double side : {-1.0, 1.0}) {
+    if (side > 0 && !options_.high_arc && aims.low) break;
     if (side > 0 && late.found && late.guess.time > nearest.time) {
       keep(aims, late);
       continue;

@@ -2,7 +2,6 @@
 #include <bit>
 
 #include "carom/ballistics/detail/aim_solver.h"
-#include "carom/math/cpu.h"
 
 namespace carom::ballistics::detail {
 
@@ -35,17 +34,32 @@ AimMedium medium_of(const Projectile& projectile, const Conditions& conditions) 
   return m;
 }
 
+const AimKernel& best_kernel(math::InstructionSet most) {
+#if defined(__x86_64__)
+  switch (math::choose_instruction_set(most)) {
+    case math::InstructionSet::avx512:
+      return aim_avx512::kernel;
+    case math::InstructionSet::avx2:
+      return aim_avx2::kernel;
+    case math::InstructionSet::baseline:
+      break;
+  }
+#endif
+  return aim_baseline::kernel;
+}
+
 /// m/s, faster than anything will fly.
 double fastest(const Shooter& shooter) { return 1.5 * (shooter.muzzle_speed + math::length(shooter.velocity)); }
 
 }  // namespace
 
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
-                     core::FunctionRef<Vec3d(double)> target, const AimOptions& options)
+                     core::FunctionRef<Vec3d(double)> target, const AimOptions& options, math::InstructionSet most)
     : pull_(projectile, conditions),
       rough_(projectile, conditions),
       medium_(medium_of(projectile, conditions)),
-      wide_(math::detect_instruction_set() != math::InstructionSet::baseline),
+      lanes_(best_kernel(most)),
+      few_lanes_(best_kernel(math::min(most, math::InstructionSet::avx2))),
       projectile_(projectile),
       conditions_(conditions),
       shooter_(shooter),
@@ -97,19 +111,47 @@ bool AimSolver::one_peak(const Target& target) const {
   return peaks + (rises ? 1 : 0) <= 1;
 }
 
+// A target slower than half of what drag leaves of any shot's speed is passed once by the surface on its way out and
+// once on its way back, however it moves, but for the time about the peak, when that surface hardly moves.
+bool AimSolver::slow_target() const {
+  constexpr int samples = 64;
+  const double most = 0.5 * fall_speed_, longest = options_.longest_time;
+  Vec3d before = target_(0);
+  double last = 0;
+  for (int i = 1; i <= samples; ++i) {
+    const double time = longest * math::square(double(i) / samples);
+    const Vec3d place = target_(time);
+    // Over the whole way between samples, lest it leap, and at the sample, lest it turn back between them.
+    if (!(math::length(place - before) < most * (time - last)) || !(math::length(velocity_of_target(time)) < most))
+      return false;
+    before = place;
+    last = time;
+  }
+  return true;
+}
+
 bool AimSolver::two_arcs(const Target& target, Aims& aims) const {
   // More than one peak even in vacuum means a target whose motion makes further arcs.
-  if (!one_peak(target)) return false;
+  return one_peak(target) && arcs(0, aims);
+}
+
+bool AimSolver::two_arcs(Aims& aims) const { return slow_target() && arcs(0.1, aims); }
+
+bool AimSolver::arcs(double apart, Aims& aims) const {
   const Guess flat = flat_guess();
   Nearest near;
   // On such a flight it would fall by more than the shots that go farthest do (.3 to .55 of the way).
   if (0.5 * conditions_.gravity * flat.time * flat.time > 0.65 * math::length(target_(flat.time) - shooter_.muzzle)) {
     near = nearest(flat.time);
-    if (near.sure && near.gap > 1e-3 * near.at.scale) return true;
+    if (near.sure && near.gap > math::max(apart, 1e-3) * near.at.scale) return true;
   }
   Root late;
-  if (by_guesses(flat, aims, late)) return true;
+  // At the edge of reach guesses lead nowhere.
+  const bool at_edge = near.sure && near.gap > -0.1 * near.at.scale;
+  if (!at_edge && by_guesses(flat, apart, aims, late)) return true;
+  if (apart > 0) return false;
   if (!near.sure) near = nearest(flat.time);
+  if (late.found && near.gap > 0) return false;  // that is not where they come nearest
   return by_nearest(aims, near, late);
 }
 

@@ -117,7 +117,7 @@ TEST(ModelsBar, TakingAim) {
   EXPECT_LT(fastest(200, [&] { (void)aim(shot, air, shooter, moving, {.high_arc = false}).value().low.value(); }),
             2 * 20e-6);
   EXPECT_LT(fastest(200, [&] { EXPECT_FALSE(aim(shot, air, shooter, {{2000, 0, 0}, {}, {}}).value()); }), 2 * 20e-6);
-  // Both arcs, as much for each: of a bullet in the wind, and of a mortar bomb.
+  // Both arcs of a bullet in the wind, of a mortar bomb, and at a target that circles.
   const Conditions windy{.wind = environment::WindColumn(
                              environment::Wind{.velocity = {6, 0, 3}, .profile = environment::WindProfile::power})};
   const auto both = [&](const Projectile& projectile, double speed, Vec3d target) {
@@ -126,8 +126,11 @@ TEST(ModelsBar, TakingAim) {
       EXPECT_TRUE(aims.low && aims.high);
     });
   };
-  EXPECT_LT(both(projectile_from_coefficient(DragFunction::g7, .3), 400, {900, 30, 200}), 2 * 2 * 20e-6);
-  EXPECT_LT(both(projectile_from_size(DragCurve(.14), 13.585, .11956), 250, {3500, 50, 300}), 2 * 2 * 20e-6);
+  EXPECT_LT(both(projectile_from_coefficient(DragFunction::g7, .3), 400, {900, 30, 200}), 2 * 20e-6);
+  EXPECT_LT(both(projectile_from_size(DragCurve(.14), 13.585, .11956), 250, {3500, 50, 300}), 2 * 20e-6);
+  const auto circles = [](double t) { return Vec3d{800 + 30 * math::cos(.5 * t), 20, 30 * math::sin(.5 * t)}; };
+  const Projectile bullet = projectile_from_coefficient(DragFunction::g7, .3);
+  EXPECT_LT(fastest(200, [&] { EXPECT_TRUE(aim(bullet, windy, {.muzzle_speed = 400}, circles).value()); }), 2 * 20e-6);
 }
 
 TEST(ModelsBar, CellsAndPieces) {

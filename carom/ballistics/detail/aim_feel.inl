@@ -29,8 +29,10 @@ template <class F>
 CAROM_SIMD_INLINE D gather(F&& f) {
   if constexpr (lanes == 2)
     return D{typename D::Vector{f(0), f(1)}};
-  else
+  else if constexpr (lanes == 4)
     return D{typename D::Vector{f(0), f(1), f(2), f(3)}};
+  else
+    return D{typename D::Vector{f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)}};
 }
 
 /// Four numbers that lie side by side in memory, of every lane: the first of all, the second, and so on.
@@ -51,6 +53,24 @@ struct Columns {
         x[at].v = __builtin_shufflevector(a, b, 0, 2);
         x[at + 1].v = __builtin_shufflevector(a, b, 1, 3);
       }
+    } else if constexpr (N == 8) {
+      // Two lanes in a register: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
+      const auto both = [&](int lane) __attribute__((always_inline)) {
+        typedef double Row __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
+        Row low, high;
+        __builtin_memcpy(&low, of_lane(lane), sizeof low);
+        __builtin_memcpy(&high, of_lane(lane + 4), sizeof high);
+        return typename Wide::Vector(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7));
+      };
+      const auto a = both(0), b = both(1), c = both(2), d = both(3);
+      const auto ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+                 to_ab = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
+                 cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14),
+                 to_cd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+      x[0].v = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13);
+      x[1].v = __builtin_shufflevector(to_ab, to_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+      x[2].v = __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15);
+      x[3].v = __builtin_shufflevector(to_ab, to_cd, 2, 3, 10, 11, 6, 7, 14, 15);
     } else {
       const auto a = row(0, 0), b = row(1, 0), c = row(2, 0), d = row(3, 0);
       const auto ac = __builtin_shufflevector(a, c, 0, 1, 4, 5), bd = __builtin_shufflevector(b, d, 0, 1, 4, 5),
@@ -108,7 +128,7 @@ CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v
     const D above = height - D::splat(m.wind.legs[0].height);
     const Mask cells = Mask(smaller(larger(above, m.lowest_cell), m.highest_cell).v) >> 48;
     const environment::WindColumn::Leg* leg[lanes];
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (int i = 0; i < lanes; ++i) {
       const double here = height.v[i];
       leg[i] = m.wind.legs + m.wind.first[std::uint64_t(cells[i]) - m.wind.first_cell];
@@ -129,7 +149,7 @@ CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v
   const D speed = math::sqrt(dot(f.w, f.w)), mach = smaller(speed * slowness, 1e9);
   const Cell part_of_curve(smaller(mach * D::splat(m.drag.cells_per_mach), double(DragCurve::cells) - 1));
   const DragCurve::Piece* piece[lanes];
-#pragma GCC unroll 4
+#pragma GCC unroll 8
   for (int i = 0; i < lanes; ++i) {
     const double here = mach.v[i];
     piece[i] = m.drag.pieces + m.drag.first[part_of_curve[i]];

@@ -42,18 +42,24 @@ struct AimPart {
   AimMoments moments;
 };
 
-/// By how much a path is off, to first order, and how: `finely` by five points within every element, else by three.
+/// What lanes do, once for each instruction set.
+struct AimKernel {
+  /// By how much a path is off, to first order, and how: `finely` by five points within every element, else by three.
+  void (*linearize)(const AimMedium& medium, FlightPath& path, bool finely);
+  void (*measure)(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
+  /// Where the path arrives by what its elements owe now.
+  void (*settle)(FlightPath& path);
+};
 namespace aim_baseline {
-void linearize(const AimMedium& medium, FlightPath& path, bool finely);
-void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
-void settle(FlightPath& path);
-}  // namespace aim_baseline
+extern const AimKernel kernel;
+}
 #if defined(__x86_64__)
 namespace aim_avx2 {
-void linearize(const AimMedium& medium, FlightPath& path, bool finely);
-void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
-void settle(FlightPath& path);
-}  // namespace aim_avx2
+extern const AimKernel kernel;
+}
+namespace aim_avx512 {
+extern const AimKernel kernel;
+}
 #endif
 
 }  // namespace carom::ballistics::detail

@@ -348,8 +348,6 @@ void measure_parts(const AimMedium& medium, const FlightPath& path, AimPart* par
   }
 }
 
-}  // namespace
-
 void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
   const int last = path.count;
   for (int i = 1; i <= lanes; ++i) {  // what lanes read beyond the end
@@ -371,13 +369,16 @@ void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
   owe<false>(path);
 }
 
-void settle(FlightPath& path) { owe<true>(path); }
-
 void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count) {
   if (medium.beside == nullptr)
     measure_parts<true>(medium, path, parts, count);
   else
     measure_parts<false>(medium, path, parts, count);
 }
+
+}  // namespace
+
+extern const AimKernel kernel;
+const AimKernel kernel{linearize, measure, owe<true>};
 
 }  // namespace carom::ballistics::detail::CAROM_AIM_NAMESPACE

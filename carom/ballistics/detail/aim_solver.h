@@ -7,6 +7,7 @@
 #include "carom/ballistics/detail/aim_kernel.h"
 #include "carom/ballistics/detail/flight_step.h"
 #include "carom/ballistics/detail/rough_pull.h"
+#include "carom/math/cpu.h"
 
 namespace carom::ballistics::detail {
 
@@ -15,8 +16,10 @@ using math::Vec3d;
 /// One aiming problem. The target's velocity is only needed near enough for Newton's method: differences serve.
 class AimSolver {
  public:
+  /// `most`: lanes of no wider instruction set.
   AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
-            core::FunctionRef<Vec3d(double)> target, const AimOptions& options);
+            core::FunctionRef<Vec3d(double)> target, const AimOptions& options,
+            math::InstructionSet most = math::InstructionSet::avx512);
 
   struct Guess {
     Vec3d u{};  // the initial velocity in the world
@@ -40,6 +43,8 @@ class AimSolver {
   /// The usual case, in which the speed to spare has one peak over T, with an arc on either side of it. False: it is
   /// not the usual case, and the scan must tell.
   bool two_arcs(const Target& target, Aims& aims) const;
+  /// The same for any motion.
+  bool two_arcs(Aims& aims) const;
 
  private:
   /// The initial velocity that hits at T in vacuum.
@@ -49,6 +54,10 @@ class AimSolver {
   }
   /// Has the speed to spare one peak over T in vacuum?
   bool one_peak(const Target& target) const;
+  bool slow_target() const;
+  /// The roots on either side of the one peak, where each is so far from it that the speed that is needed changes by
+  /// `apart` of the muzzle speed in its flight time.
+  bool arcs(double apart, Aims& aims) const;
   double vacuum_lack(double time) const {
     return shooter_.muzzle_speed - math::length(vacuum(time) - shooter_.velocity);
   }
@@ -64,7 +73,7 @@ class AimSolver {
   Guess steep_guess() const;
   void keep(Aims& aims, const Root& root) const;
   /// `late`: the root on the high side, where the search for the low one led there.
-  bool by_guesses(const Guess& flat, Aims& aims, Root& late) const;
+  bool by_guesses(const Guess& flat, double apart, Aims& aims, Root& late) const;
   /// The inverse of ∂x(T)/∂u.
   struct Inverse {
     Vec3d row[3];
@@ -99,6 +108,7 @@ class AimSolver {
     bool sure = false;
     Reach at{};                // near there
     double time = 0, gap = 0;  // s, m, foretold from there
+    Guess doubtful{};          // on the way to it: the last that seemed to reach farther than the target
   };
   Nearest nearest_from(Guess guess) const;
   /// `time`: of a flat shot, s.
@@ -168,7 +178,8 @@ class AimSolver {
   const PointMassPull pull_;  // what holds
   const RoughPull rough_;     // what flights feel
   const AimMedium medium_;    // what holds, for lanes
-  const bool wide_;           // they are those of AVX2
+  const AimKernel& lanes_;
+  const AimKernel& few_lanes_;  // for up to four elements
   const Projectile& projectile_;
   const Conditions& conditions_;
   const Shooter& shooter_;
