@@ -86,11 +86,12 @@ void ClothState::tile_folds() {
 
 void ClothState::find_fold_pairs(float h, float apart) {
   constexpr float none = 1e30f;
-  fold_records.resize(2 * position.size());
+  fold_records.resize(2 * position.size() + 2);
   for (std::size_t i = 0; i < position.size(); ++i) {
     fold_records[2 * i] = Vec3f(position[i] - position[0]);
     fold_records[2 * i + 1] = velocity[i];
   }
+  fold_records[2 * position.size()] = Vec3f{none, none, none};  // where edges that are none end
   for (FoldVertices& group : fold_vertices) {
     Vec3f all_low{none, none, none}, all_high = -all_low;
     for (std::size_t k = 0; k < fold_lanes; ++k) {

@@ -44,21 +44,11 @@ struct ClothEdgePair {
   float wanted = 0;     ///< m/s, at least, apart
   float mass = 0;       ///< kg, of the two against each other
 };
-/// The edges of a tile of triangles that no tile before it has.
-struct FoldEdges {
-  std::uint32_t end[3 * fold_lanes][2] = {};
-  int count = 0;
-};
 /// The normals of a tile's triangles lie within this cosine of an axis; below 0: not known.
 struct FoldCone {
   Vec3f axis{};
   float cosine = -1;
 };
-/// The bounds of some tiles that follow each other.
-struct FoldRun {
-  float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
-};
-
 struct ClothState final : SoftThing {
   Fabric fabric{};
   bool self_collide = true, self_collide_edges = false, torn = false;
@@ -95,6 +85,7 @@ struct ClothState final : SoftThing {
   std::vector<FoldRun> fold_runs;
   std::vector<SoftVector> fold_records;  ///< by vertex: place from the first, velocity
   std::vector<FoldHit> fold_hits;
+  std::vector<EdgeHit> edge_hits;
   std::vector<std::uint8_t> tangled;  ///< by vertex: where folds cross
   math::Vec3d wind_force{};
   double greatest_tension = 0;
@@ -125,6 +116,8 @@ struct ClothState final : SoftThing {
   /// Edges of one tile against those of another, whose triangles' bounds are given.
   void meet_edges(const FoldEdges& ours, const FoldTriangles& bounds, const FoldEdges& theirs, bool same, float h,
                   float apart);
+  void lay_cones();
+  void lay_runs();
   void push_edges();
   /// Whether an edge of the vertex goes through the triangle, or one of the triangle through one of the vertex's; marks
   /// the vertices of both as tangled.

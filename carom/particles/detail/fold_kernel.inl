@@ -77,25 +77,33 @@ CAROM_SIMD_INLINE std::uint32_t above(const FoldTriangles& tile, int vertex, flo
   return hits;
 }
 
+/// Bounds, the same in every lane.
+struct Bounds {
+  V low, high;
+  CAROM_SIMD_INLINE Bounds(const float* from, const float* to)
+      : low{F::splat(from[0]), F::splat(from[1]), F::splat(from[2])},
+        high{F::splat(to[0]), F::splat(to[1]), F::splat(to[2])} {}
+  CAROM_SIMD_INLINE auto meets(const V& from, const V& to) const {
+    return (low.x <= to.x) & (from.x <= high.x) & (low.y <= to.y) & (from.y <= high.y) & (low.z <= to.z) &
+           (from.z <= high.z);
+  }
+  /// Sixteen bounds.
+  CAROM_SIMD_INLINE std::uint32_t meets(const float* from, const float* to) const {
+    std::uint32_t mask = 0;
+    for (int lane = 0; lane < fold_lanes; lane += width)
+      mask |= math::bitmask(meets(load(from, lane), load(to, lane))) << lane;
+    return mask;
+  }
+};
+
 /// Vertices of a group above or below triangles of a tile: at most 16³. Returns how many.
 int meet_folds(const FoldTriangles& tile, const FoldVertices& group, FoldHit* hits) {
-  const V low{F::splat(tile.low[0]), F::splat(tile.low[1]), F::splat(tile.low[2])};
-  const V high{F::splat(tile.high[0]), F::splat(tile.high[1]), F::splat(tile.high[2])};
-  const auto meets = [&](const float* from, const float* to) __attribute__((always_inline)) {
-    std::uint32_t mask = 0;
-    for (int lane = 0; lane < fold_lanes; lane += width) {
-      const V a = load(from, lane), b = load(to, lane);
-      mask |= math::bitmask((low.x <= b.x) & (a.x <= high.x) & (low.y <= b.y) & (a.y <= high.y) & (low.z <= b.z) &
-                            (a.z <= high.z))
-              << lane;
-    }
-    return mask;
-  };
+  const Bounds bounds(tile.low, tile.high);
   int count = 0;
-  for (std::uint32_t near = meets(group.low[0], group.high[0]); near != 0; near &= near - 1) {
+  for (std::uint32_t near = bounds.meets(group.low[0], group.high[0]); near != 0; near &= near - 1) {
     const int k = __builtin_ctz(near);
     const auto& at = group.at[k];
-    for (std::uint32_t inside = meets(at[0], at[0]); inside != 0; inside &= inside - 1) {
+    for (std::uint32_t inside = bounds.meets(at[0], at[0]); inside != 0; inside &= inside - 1) {
       const int i = __builtin_ctz(inside), vertex = group.vertex[k][i];
       for (std::uint32_t over = above(tile, vertex, at[0][i], at[1][i], at[2][i]); over != 0; over &= over - 1)
         hits[count++] = {vertex, tile.triangle[__builtin_ctz(over)]};
@@ -104,8 +112,81 @@ int meet_folds(const FoldTriangles& tile, const FoldVertices& group, FoldHit* hi
   return count;
 }
 
+std::uint32_t meet_run(const FoldRun& run, const FoldTriangles& tile) {
+  return Bounds(tile.low, tile.high).meets(run.low[0], run.high[0]);
+}
+
+CAROM_SIMD_INLINE V load_edges(const float (&of)[3][FoldEdges::most], int k) {
+  return {F::load_aligned(of[0] + k), F::load_aligned(of[1] + k), F::load_aligned(of[2] + k)};
+}
+CAROM_SIMD_INLINE V least(const V& a, const V& b) {
+  return {math::min(a.x, b.x), math::min(a.y, b.y), math::min(a.z, b.z)};
+}
+CAROM_SIMD_INLINE V greatest(const V& a, const V& b) {
+  return {math::max(a.x, b.x), math::max(a.y, b.y), math::max(a.z, b.z)};
+}
+
+void lay_edges(FoldEdges* tiles, int count, const float* records) {
+  for (FoldEdges* tile = tiles; tile != tiles + count; ++tile)
+    for (int k = 0; k < tile->count; k += width) {
+      F a[8], b[8];
+      math::gather_rows<8, width>(records, tile->end[0] + k, a);
+      math::gather_rows<8, width>(records, tile->end[1] + k, b);
+      for (int axis = 0; axis < 3; ++axis) {
+        a[axis].store_aligned(tile->from[axis] + k);
+        b[axis].store_aligned(tile->to[axis] + k);
+      }
+    }
+}
+
+int meet_edges(const FoldEdges& ours, const FoldTriangles& triangles, const FoldEdges& theirs, bool same, float widest,
+               EdgeHit* hits) {
+  using I = math::WideInt<width>;
+  const Bounds bounds(triangles.low, triangles.high);
+  int count = 0;
+  for (int first = 0; first < ours.count; first += width) {
+    const V from = load_edges(ours.from, first), to = load_edges(ours.to, first);
+    for (std::uint32_t near = math::bitmask(bounds.meets(least(from, to), greatest(from, to))); near != 0;
+         near &= near - 1) {
+      const int i = first + __builtin_ctz(near);
+      const float begin[3] = {ours.from[0][i], ours.from[1][i], ours.from[2][i]},
+                  end[3] = {ours.to[0][i], ours.to[1][i], ours.to[2][i]};
+      float low[3], high[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = (begin[axis] < end[axis] ? begin[axis] : end[axis]) - widest;
+        high[axis] = (begin[axis] < end[axis] ? end[axis] : begin[axis]) + widest;
+      }
+      const Bounds around(low, high);
+      const V a{F::splat(begin[0]), F::splat(begin[1]), F::splat(begin[2])},
+          u = V{F::splat(end[0]), F::splat(end[1]), F::splat(end[2])} - a;
+      const F uu = dot(u, u), zero = F::zero(), one = F::splat(1);
+      const I p = I::splat(ours.end[0][i]), q = I::splat(ours.end[1][i]);
+      for (int k = same ? (i + 1) / width * width : 0; k < theirs.count; k += width) {
+        const V c = load_edges(theirs.from, k), d = load_edges(theirs.to, k);
+        auto meet = around.meets(least(c, d), greatest(c, d));
+        if (math::bitmask(meet) == 0) continue;
+        // Where the two lines are nearest, if that lies on both edges.
+        const V v = d - c, w = a - c;
+        const F vv = dot(v, v), uv = dot(u, v), across = uu * vv - uv * uv, uw = dot(u, w), vw = dot(v, w);
+        const auto cross = across > F::splat(FoldEdges::least_sine * FoldEdges::least_sine) * uu * vv;
+        const F safe = math::select(cross, across, one), share = (uv * vw - vv * uw) / safe,
+                other = (uu * vw - uv * uw) / safe;
+        const V way = w + share * u - other * v;
+        const I r = I::load(theirs.end[0] + k), s = I::load(theirs.end[1] + k);
+        meet = meet & cross & (zero <= share) & (share <= one) & (zero <= other) & (other <= one) &
+               (dot(way, way) <= F::splat(1.001f * widest * widest)) & (p != r) & (p != s) & (q != r) & (q != s);
+        std::uint32_t mask = math::bitmask(meet);
+        if (same && k <= i) mask &= ~((2u << (i - k)) - 1);
+        for (; mask != 0; mask &= mask - 1) hits[count++] = {i, k + __builtin_ctz(mask)};
+      }
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
-const SoftKernels kernels = {fill, start, up, down, go, strain, join_edges, join_corners, lay_folds, meet_folds};
+const SoftKernels kernels = {fill,         start,     up,         down,      go,         strain,  join_edges,
+                             join_corners, lay_folds, meet_folds, lay_edges, meet_edges, meet_run};
 
 }  // namespace carom::particles::detail::CAROM_SOFT_NAMESPACE

@@ -25,6 +25,26 @@ struct alignas(64) FoldTriangles {
   float low[3], high[3];     ///< m, of all, with their margins
 };
 
+/// The edges of a tile of triangles that no tile before it has.
+struct alignas(64) FoldEdges {
+  static constexpr int most = 3 * fold_lanes;
+  static constexpr float least_sine = 0.05f;  ///< edges that lie so nearly along each other are left to the vertices
+  int end[2][most] = {};                      ///< vertices; beyond the last edge one more than there are, far away
+  float from[3][most], to[3][most];           ///< m, of the ends; far away beyond the last
+  int count = 0;
+};
+
+/// Two edges that may meet, by their places in their tiles.
+struct EdgeHit {
+  int first = 0, second = 0;
+};
+
+/// The bounds of tiles of triangles that follow each other: a lane each, the wrong way round where there is none.
+struct alignas(64) FoldRun {
+  float low[3][fold_lanes], high[3][fold_lanes];
+  float all_low[3], all_high[3];
+};
+
 struct FoldMeasures {
   float apart = 0;    ///< m
   float ahead = 0;    ///< s: margins grow with a triangle's change of shape in this time

@@ -72,6 +72,13 @@ struct SoftKernels {
   void (*lay_folds)(FoldTriangles* tiles, int count, const float* records, const FoldMeasures& measures);
   /// Vertices of a group above or below triangles of a tile that they are not in: at most 16³. Returns how many.
   int (*meet_folds)(const FoldTriangles& tile, const FoldVertices& group, FoldHit* hits);
+  void (*lay_edges)(FoldEdges* tiles, int count, const float* records);
+  /// Edges of one tile within the bounds of another's triangles and nearer than `widest` to an edge of that one between
+  /// their ends: at most FoldEdges::most². `same`: it is the same tile. Returns how many.
+  int (*meet_edges)(const FoldEdges& ours, const FoldTriangles& bounds, const FoldEdges& theirs, bool same,
+                    float widest, EdgeHit* hits);
+  /// Which tiles of a run a tile's bounds meet, as bits.
+  std::uint32_t (*meet_run)(const FoldRun& run, const FoldTriangles& tile);
 };
 
 namespace soft_baseline {
