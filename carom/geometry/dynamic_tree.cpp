@@ -138,6 +138,7 @@ double DynamicTree<V>::refit_below(int top, int levels) {
     Node& node = nodes[at];
     const auto goes_down = [&](int child) { return depth < levels && nodes[child].child_b >= 0; };
     int next = -1;
+    if (from == node.parent) __builtin_prefetch(nodes + node.child_b);
     if (from == node.parent && goes_down(node.child_a))
       next = node.child_a;
     else if (from != node.child_b && goes_down(node.child_b))

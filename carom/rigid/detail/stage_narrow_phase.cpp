@@ -152,6 +152,14 @@ void update_contacts(WorldImplementation<D>& world) {
     const ContactRecord<D>* const contacts = world.contacts.contacts.data();
     const ShapeRecord<D>* const shapes = world.shapes.record.data();
     const ManifoldRecord<D>* const manifolds = world.contacts.manifolds.data();
+    // Of fewer bodies the poses stay in the processor's second cache from the step before.
+    const bool many = world.bodies.pose.size() * (sizeof *poses + sizeof *sweeps) > (512u << 10);
+    const auto bodies_soon = [&](const std::int32_t(&pair)[2]) __attribute__((always_inline)) {
+      for (const std::int32_t body : pair) {
+        __builtin_prefetch(poses + body);
+        __builtin_prefetch(sweeps + body);
+      }
+    };
     while (begin < end) {
       const int stop = min(begin + contact_grain, end);
       int number = 0;
@@ -160,11 +168,7 @@ void update_contacts(WorldImplementation<D>& world) {
         for (int soon = begin + width; soon < min(begin + 2 * width, stop); ++soon) {
           const ContactWatch<D>& watch = watches[soon];
           __builtin_prefetch(&watch + 4 * width);
-          if (watch.body[0] == none) continue;
-          for (const std::int32_t body : watch.body) {
-            __builtin_prefetch(poses + body);
-            __builtin_prefetch(sweeps + body);
-          }
+          if (many && watch.body[0] != none) bodies_soon(watch.body);
         }
         const std::uint32_t old =
             world.kernels.nothing_new(watches + begin, lanes, poses, sweeps, world.last_dt);  // bits by lane
@@ -177,10 +181,7 @@ void update_contacts(WorldImplementation<D>& world) {
       if (D::dimension == 2) sort_by_kind(due, number, contacts, awake);
       const auto look_at_soon = [&](int k) __attribute__((always_inline)) {  // as prefetch_lines
         const ContactRecord<D>& soon = contacts[awake[due[k]]];
-        for (const std::int32_t body : soon.body) {
-          __builtin_prefetch(poses + body);
-          __builtin_prefetch(sweeps + body);
-        }
+        if (many) bodies_soon(soon.body);
         prefetch_shapes(shapes, soon);
         if (soon.first_manifold != none) prefetch_lines(manifolds + soon.first_manifold, ManifoldRecord<D>::hot_bytes);
       };
