@@ -1,5 +1,6 @@
-// Bars of speed of particles, projectiles, aim, fracture, liquids and grains. Those that the machine of docs/benchmarks.md
-// meets by less than half are held to twice the bar here: another machine may be slower, a mistake shows all the same.
+// Bars of speed of particles, projectiles, aim, fracture, liquids and grains. Those that the machine of
+// docs/benchmarks.md meets by less than half are held to twice the bar here: another machine may be slower, a mistake
+// shows all the same.
 #include <gtest/gtest.h>
 
 #include <algorithm>
