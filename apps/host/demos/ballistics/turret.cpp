@@ -79,13 +79,13 @@ class Turret final : public Repeatable<Turret, Demo3> {
     const ballistics::Shooter gun{
         .muzzle_speed = stage.value("speed"), .muzzle = muzzle(t), .velocity = gun_velocity(t)};
     const double pace = stage.value("pace"), range = range_;
-    auto aims = ballistics::aim(shell_, air_, gun, [=, this](double s) { return path(t + s, range, pace); },
-                                {.longest_time = 60});
+    const auto ahead = [=](double s) { return path(t + s, range, pace); };
+    auto aims = ballistics::aim(shell_, air_, gun, ahead, {.longest_time = 60});
     if (!aims.ok()) return stage.fail(aims.error());
     aims_ = *aims;
     arcs_.clear();
-    const auto vacuum = ballistics::aim(shell_, {.air = environment::AirColumn::uniform(0)}, gun,
-                                        [=, this](double s) { return path(t + s, range, pace); }, {.longest_time = 60});
+    const auto vacuum =
+        ballistics::aim(shell_, {.air = environment::AirColumn::uniform(0)}, gun, ahead, {.longest_time = 60});
     if (!vacuum.ok()) return stage.fail(vacuum.error());
     vacuum_ = *vacuum;
     if (!aims_) {
@@ -96,19 +96,19 @@ class Turret final : public Repeatable<Turret, Demo3> {
       auto flight = ballistics::fly(shell_, air_, {gun.muzzle, gun.velocity + gun.muzzle_speed * shot->direction},
                                     {.time = shot->time, .tolerance = 1e-7});
       if (!flight.ok()) continue;
-      answer_ = max(answer_, length(flight->end().position - path(t + shot->time, range, pace)));
+      answer_ = max(answer_, length(flight->end().position - ahead(shot->time)));
       arcs_.push_back(std::move(flight).value());
     }
     const ballistics::Shot& shot = stage.value("high") > 0.5 ? *aims_.high : *aims_.low;
     // A shot where the target would be if it kept the velocity of this moment.
     constexpr double moment = 1e-3;
-    const Vec3d velocity = (0.5 / moment) * (path(t + moment, range, pace) - path(t - moment, range, pace));
-    const auto straight = ballistics::aim(shell_, air_, gun, {path(t, range, pace), velocity}, {.longest_time = 60});
+    const Vec3d velocity = (0.5 / moment) * (ahead(moment) - ahead(-moment));
+    const auto straight = ballistics::aim(shell_, air_, gun, {ahead(0), velocity}, {.longest_time = 60});
     if (!straight.ok()) return stage.fail(straight.error());
     double astray = -1;
     if (*straight) {
       const ballistics::Shot& led = stage.value("high") > 0.5 ? *straight->high : *straight->low;
-      astray = length(path(t + led.time, range, pace) - led.place);
+      astray = length(ahead(led.time) - led.place);
     }
     fire(stage, gun, shot, t, astray);
   }
