@@ -10,22 +10,6 @@ using namespace carom;
 using namespace carom::ballistics;
 using math::Vec3d;
 
-// The lag rule: a crosswind w moves a point mass by w (T − T in vacuum), exactly.
-TEST(Flight, CrosswindDriftIsTheLagRule) {
-  const Projectile bullet = projectile_from_coefficient(DragFunction::g1, .45);
-  const double w = 6;
-  const Conditions conditions{
-      .air = environment::AirColumn::uniform(1.225), .wind = environment::WindColumn(Vec3d{0, 0, w}), .gravity = 0};
-  // Where the wind blows across, the air meets the bullet from ahead and aside; in the wind's frame the flight is
-  // straight: z = w (t − x/v_x0).
-  const auto flight = fly(bullet, conditions, {{}, {850, 0, 0}}, {.time = 3});
-  ASSERT_TRUE(flight);
-  for (const double t : {.3, 1.0, 2.5}) {
-    const auto p = flight->at(t);
-    EXPECT_NEAR(p.position.z, w * (t - p.position.x / 850), 1e-7);
-  }
-}
-
 TEST(Flight, VacuumIsReversibleAndScalesWithTheCoefficient) {
   const Conditions vacuum{.air = environment::AirColumn::uniform(0)};
   const auto there = fly({}, vacuum, {{}, {300, 200, 10}}, {.time = 20});

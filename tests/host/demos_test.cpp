@@ -105,6 +105,10 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"blast-field", {{"air", 1}}, "impulse at the open gauge"},
         Variant{"blast-field", {{"air", 2}}, "height of the Mach stem at the open gauge"},
         Variant{"blast-field", {{"air", 2}, {"burst", 6}}, "height of the Mach stem at the open gauge"},
+        Variant{"rocket-launch", {{"motor", 1}}, "the upper stage goes on"},
+        Variant{"rocket-launch", {{"motor", 2}}, "the upper stage goes on"},
+        Variant{"rocket-launch", {{"motor", 4}}, "the upper stage goes on"},
+        Variant{"rocket-launch", {{"motor", 4}, {"stages", 1}}, "into the wind"},
         Variant{"golf-swing", {{"links", 3}}, "energy gained"},
         Variant{
             "shooting-range", {{"distance", 400}, {"zero", 400}}, "greatest difference of shares and probabilities"},

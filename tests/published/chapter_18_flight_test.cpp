@@ -99,6 +99,23 @@ TEST(Chapter18Flight, DroppedBodyDriftsEast) {
   EXPECT_NEAR(up->end().position.x, -4.0 / 3 * 7.292115e-5 * 125000 / (9.80665 * 9.80665), 1e-5);
 }
 
+// The lag rule, in py-ballisticcalc's tests as well (section 2.7): a crosswind w moves a point mass by w (T − T in
+// vacuum), exactly: 1e-7 m.
+TEST(Chapter18Flight, CrosswindDriftIsTheLagRule) {
+  const Projectile bullet = projectile_from_coefficient(DragFunction::g1, .45);
+  const double w = 6;
+  const Conditions conditions{
+      .air = environment::AirColumn::uniform(1.225), .wind = environment::WindColumn(Vec3d{0, 0, w}), .gravity = 0};
+  // Where the wind blows across, the air meets the bullet from ahead and aside; in the wind's frame the flight is
+  // straight: z = w (t − x/v_x0).
+  const auto flight = fly(bullet, conditions, {{}, {850, 0, 0}}, {.time = 3});
+  ASSERT_TRUE(flight);
+  for (const double t : {.3, 1.0, 2.5}) {
+    const auto p = flight->at(t);
+    EXPECT_NEAR(p.position.z, w * (t - p.position.x / 850), 1e-7);
+  }
+}
+
 // The Napoleon's shot by the GS table in the standard atmosphere (section 2.6): 4.52 in, 12.3 lb, 1440 ft/s.
 TEST(Chapter18Flight, PeriodArtilleryByTheSphereTable) {
   const Projectile shot = projectile_from_size(DragCurve(DragFunction::gs), 12.3 * .45359237, 4.52 * .0254);

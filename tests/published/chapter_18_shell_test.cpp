@@ -18,8 +18,8 @@ constexpr double degree = math::pi / 180;
 struct Impact {
   double range, time, drift, speed, height;
 };
-Impact shoot(ShellModel model, double speed, double elevation, double tolerance = 1e-10) {
-  const auto flight = fly_shell(m107(), artillery(), {{}, speed * direction(elevation)}, model,
+Impact shoot(ShellModel model, double speed, double elevation, double tolerance = 1e-10, const Shell& shell = m107()) {
+  const auto flight = fly_shell(shell, artillery(), {{}, speed * direction(elevation)}, model,
                                 {.time = 200, .ground = 0, .tolerance = tolerance});
   EXPECT_TRUE(flight) << flight.error().message;
   const Trajectory::Point end = flight->path.end();
@@ -89,38 +89,56 @@ TEST(Chapter18Shell, FiringTable) {
   }
 }
 
-// In six degrees of freedom as well. A published program of six degrees misses the range by .48 % and the time by .53 %
-// in the mean of squares, and drifts by a tenth too far: so may we by twice that.
+// In six degrees of freedom as well. A published program of six degrees, on the same deck, misses the range by .48 %
+// and the time by .53 % in the mean of squares, and drifts 10 % too far in the mean. Ours: .42 %, .24 %, 15.9 % in the
+// mean of the six ratios, 9.9 % in all six shots' metres; the modified point mass drifts as far to .4 % (its first
+// shot, 4.05 m for 3.2, is that of the reference).
 TEST(Chapter18Shell, SixDegreesOnTheFiringTable) {
   const struct {
     double speed, mils, range, time, drift;
   } rows[] = {{337, 97.2, 2000, 6.4, 3.2},    {337, 152.0, 3000, 9.8, 7.8},   {337, 211.6, 4000, 13.5, 15.2},
               {474, 258.4, 7000, 20.8, 45.5}, {474, 378.6, 9000, 28.9, 88.2}, {474, 539.9, 11000, 39.1, 169.4}};
-  double range = 0, time = 0;
+  double range = 0, time = 0, drift = 0, drifted = 0, tabulated = 0;
   for (const auto& row : rows) {
     const Impact i = shoot(ShellModel::six_degrees, row.speed, row.mils * 2 * math::pi / 6400, 1e-8);
     range += math::square(i.range / row.range - 1) / std::size(rows);
     time += math::square(i.time / row.time - 1) / std::size(rows);
+    drift += (i.drift / row.drift - 1) / std::size(rows);
+    drifted += i.drift;
+    tabulated += row.drift;
     EXPECT_GT(i.drift, 0) << "to the right";
     EXPECT_LE(i.drift, 1.2 * row.drift + 1);
   }
-  RecordProperty("range_rms", std::to_string(math::sqrt(range)));
-  RecordProperty("time_rms", std::to_string(math::sqrt(time)));
-  EXPECT_LT(math::sqrt(range), 2 * .0048);
-  EXPECT_LT(math::sqrt(time), 2 * .0053);
+  EXPECT_LT(math::sqrt(range), .0048);
+  EXPECT_LT(math::sqrt(time), .0053);
+  EXPECT_NEAR(drifted / tabulated - 1, .10, .005);
+  EXPECT_NEAR(drift, .159, .005) << "short shots weigh as much as long ones";
 }
 
-// The nose first swings about its yaw of repose; the shell flies to the same place within a thousandth of its range.
+// The nose first swings about its yaw of repose; the shell flies to the same place. A published pair of programs agrees
+// within .2 to 2.6 m over 2 to 16 km; it is not said of which shots and with which moments. Ours: −.1 to 3.5 m on the
+// firing table's six, and 8.2 m at most from 2 to 17.8 km, 1.4 m of it to the side. Most of that is the deck's Magnus
+// moment, which tilts the yaw of repose a little up or down and which the modified point mass does not know: without it
+// 3.2 m at most, of which the first swing is 1 to 2.
 TEST(Chapter18Shell, SixDegreesAgreeWithTheModifiedPointMass) {
+  constexpr double mil = 2 * math::pi / 6400;
   const struct {
-    double speed, elevation;
-  } shots[] = {{337, 97.2 * 2 * math::pi / 6400}, {474, 258.4 * 2 * math::pi / 6400}, {684, 30 * degree}};
+    double speed, elevation, range, apart;
+  } shots[] = {{337, 97.2 * mil, 2010.3, 3.6},  {337, 152.0 * mil, 3015, 3.6},    {337, 211.6 * mil, 4012.1, 3.6},
+               {474, 258.4 * mil, 7025.6, 3.6}, {474, 378.6 * mil, 9010, 3.6},    {474, 539.9 * mil, 10955.9, 3.6},
+               {474, 45 * degree, 12202, 8.5},  {684, 5 * degree, 5838, 8.5},     {684, 15 * degree, 11363.43, 8.5},
+               {684, 30 * degree, 15941, 8.5},  {684, 45 * degree, 17792.65, 8.5}};
+  Shell without = m107();
+  for (ShellCoefficients& row : without.aerodynamics) row.magnus_moment = 0;
   for (const auto& shot : shots) {
     const Impact mpm = shoot(ShellModel::modified_point_mass, shot.speed, shot.elevation);
     const Impact six = shoot(ShellModel::six_degrees, shot.speed, shot.elevation, 1e-9);
-    EXPECT_NEAR(six.range, mpm.range, 1e-3 * mpm.range) << shot.speed;
-    EXPECT_NEAR(six.drift, mpm.drift, .03 * mpm.drift + 1) << shot.speed;
-    EXPECT_NEAR(six.time, mpm.time, 1e-3 * mpm.time);
+    EXPECT_NEAR(mpm.range, shot.range, 1e-3 * shot.range) << "so far does it go";
+    EXPECT_LT(math::hypot(six.range - mpm.range, six.drift - mpm.drift), shot.apart) << shot.range;
+    EXPECT_NEAR(six.drift, mpm.drift, 1.5) << shot.range;
+    EXPECT_NEAR(six.time, mpm.time, .03) << shot.range;
+    const Impact straight = shoot(ShellModel::six_degrees, shot.speed, shot.elevation, 1e-9, without);
+    EXPECT_LT(math::hypot(straight.range - mpm.range, straight.drift - mpm.drift), 3.3) << shot.range;
   }
 }
 

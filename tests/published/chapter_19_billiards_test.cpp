@@ -1,8 +1,10 @@
 // Chapter 19.3–19.8, billiards: published and exact numbers (shared reference "ballistics-sports", 2.13).
 #include <gtest/gtest.h>
 
+#include "carom/scene/billiards.h"
 #include "carom/sports/billiards_engine.h"
 #include "carom/sports/billiards_rack.h"
+#include "tests/scene/source_file.h"
 
 namespace chapter_19_billiards_test {
 using namespace carom;
@@ -66,6 +68,27 @@ TEST(Chapter19Billiards, PublishedParameters) {
   EXPECT_EQ(snooker_table().width, 1.7465);
   EXPECT_NEAR(seven_foot_pool().nose_height, .64 * 2 * pool.ball.radius, 1e-12);
   EXPECT_NEAR(snooker_table().nose_height, .64 * 2 * snooker.ball.radius, 1e-12);
+}
+
+// Of section 2.13 too, as files: what FastFiz, tailuge/billiards and Mathavan's snooker tests play with.
+TEST(Chapter19Billiards, PublishedPresets) {
+  const auto text = [](const char* file) { return scene::test::read_source(file).value(); };
+  const auto fastfiz = scene::read_billiard_table(text("presets/table/fastfiz.json"), "fastfiz");
+  ASSERT_TRUE(fastfiz.ok()) << fastfiz.error().message;
+  EXPECT_NEAR(fastfiz->physics.ball.mass, .16301, 1e-12);
+  EXPECT_EQ(fastfiz->physics.balls.friction_floor, .01) << "the same at every speed";
+  EXPECT_EQ(fastfiz->physics.balls.friction_range, 0);
+  EXPECT_EQ(scene::read_cue(text("presets/cue/fastfiz.json"), "fastfiz")->tip_friction, .7);
+  const auto heated = scene::read_billiard_table(text("presets/table/heated_carom.json"), "heated");
+  ASSERT_TRUE(heated.ok()) << heated.error().message;
+  EXPECT_NEAR(heated->physics.ball.radius, .03275, 1e-12);
+  EXPECT_NEAR(heated->physics.ball.mass, .23, 1e-12);
+  const auto cloth = scene::read_cloth(text("presets/cloth/heated_carom.json"), "heated");
+  for (const Cloth& c : {*cloth, heated->physics.cloth}) {
+    EXPECT_EQ(c.sliding_friction, .126);
+    EXPECT_EQ(c.rolling_friction, .0055);
+  }
+  EXPECT_EQ(scene::read_cloth(text("presets/cloth/mathavan_snooker.json"), "mathavan")->sliding_friction, .212);
 }
 
 // Exact: t = 2 v₀/(7 μ g), x = 12 v₀²/(49 μ g), v = 5/7 v₀. The reference prints g 9.80665 beside its second case, but
@@ -270,20 +293,29 @@ TEST(Chapter19Billiards, CushionByStronge) {
   EXPECT_NEAR(after.normal, .7, 1e-12);
 }
 
-// 19.3: the rack's balls touch exactly; a break tunnels through nothing.
+// 19.3: the rack's balls touch exactly, on every table that has a triangle.
 TEST(Chapter19Billiards, Rack) {
-  const BilliardPhysics p = pool_physics();
-  const RectangularTable shape = nine_foot_pool();
-  const std::vector<Vec2d> balls = eight_ball_rack(shape, p.ball.radius);
-  ASSERT_EQ(balls.size(), 16u);
-  int contacts = 0;
-  for (std::size_t i = 1; i < balls.size(); ++i)
-    for (std::size_t k = i + 1; k < balls.size(); ++k) {
-      const double gap = distance(balls[i], balls[k]) - 2 * p.ball.radius;
-      EXPECT_GT(gap, -1e-15);
-      contacts += gap < 1e-15;
-    }
-  EXPECT_EQ(contacts, 30) << "of a triangle of 15";
+  const double pool = pool_physics().ball.radius, snooker = snooker_physics().ball.radius;
+  const struct {
+    std::vector<Vec2d> balls;
+    double radius;
+    std::size_t first;  // of the triangle
+  } racks[] = {{eight_ball_rack(seven_foot_pool(), pool), pool, 1},
+               {eight_ball_rack(eight_foot_pool(), pool), pool, 1},
+               {eight_ball_rack(nine_foot_pool(), pool), pool, 1},
+               {eight_ball_rack(russian_table(), russian_physics().ball.radius), russian_physics().ball.radius, 1},
+               {snooker_rack(snooker_table(), snooker), snooker, 7}};
+  for (const auto& rack : racks) {
+    ASSERT_EQ(rack.balls.size(), rack.first + 15);
+    int contacts = 0;
+    for (std::size_t i = rack.first; i < rack.balls.size(); ++i)
+      for (std::size_t k = i + 1; k < rack.balls.size(); ++k) {
+        const double gap = distance(rack.balls[i], rack.balls[k]) - 2 * rack.radius;
+        EXPECT_GT(gap, -1e-15);
+        contacts += gap < 1e-15;
+      }
+    EXPECT_EQ(contacts, 30) << "of a triangle of 15";
+  }
 }
 
 }  // namespace chapter_19_billiards_test

@@ -41,6 +41,12 @@ inline Billiards on_plain(const std::vector<Vec2d>& balls, const BilliardPhysics
   return std::move(*game);
 }
 
+/// A rack of eight-ball on the nine-foot table and its cue ball.
+inline std::vector<Vec2d> break_set(double gap = 0, std::uint64_t seed = 1) {
+  std::vector<Vec2d> balls = eight_ball_rack(nine_foot_pool(), BilliardBall{}.radius, {gap, 1, seed});
+  return balls;
+}
+
 /// Random places on the table, not touching.
 inline std::vector<Vec2d> scatter(math::Random& random, const BilliardTable& table, Vec2d half, int count,
                                   double radius) {

@@ -13,6 +13,9 @@ std::unique_ptr<Demo> make_shooting_range();
 std::unique_ptr<Demo> make_turret();
 std::unique_ptr<Demo> make_ballistic_pendulum();
 
+/// The text of presets/motor/black_powder.eng: compiled in (motors.cpp.in), as a demo has no files where it runs.
+std::string_view black_powder_motors();
+
 /// A body that follows a path of a model and touches nothing.
 inline rigid::BodyId add_marker(Stage3& stage, std::string_view name, const geometry::Shape3& shape, Vec3d position,
                                 std::uint32_t color) {

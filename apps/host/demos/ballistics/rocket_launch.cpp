@@ -1,4 +1,6 @@
 // A model rocket with two motors from a thrust file, fins, wind and a parachute (chapter 6.4).
+#include <algorithm>
+
 #include "apps/host/demos/ballistics/range.h"
 #include "carom/ballistics/rocket.h"
 
@@ -6,6 +8,14 @@ namespace carom::host::demo {
 namespace {
 
 using ballistics::RocketEvent;
+
+/// What the National Association of Rocketry certified (N s, N, s), of the Estes motors in the file.
+struct Certificate {
+  const char* name = "";
+  double impulse = 0, peak = 0, burn = 0;
+};
+constexpr Certificate certified[] = {
+    {"A8", 2.32, 9.73, 0.73}, {"B6", 4.33, 12.14, 0.86}, {"C6", 8.82, 14.09, 1.86}, {"D12", 16.84, 29.73, 1.65}};
 
 class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
  public:
@@ -20,17 +30,18 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     d.text =
         "What a rocket gains without air and gravity depends on masses and the exhaust speed alone, stage by stage:\n\n"
         "  m dv/dt = F + u dm/dt,   Δv = v_e ln(m₀/m₁)\n\n"
-        "Its motor is given in the RASP format, in which hobby rocketry keeps thrust curves: an Estes C6, whose total "
-        "impulse is that of its certificate. Fins pull the nose toward the air that meets it, with the normal force "
-        "and centre of pressure of Barrowman's equations, so "
-        "that it flies into the wind. At the top the parachute opens; then it sinks at √(2 m g/(ρ C_D A)). The rocket "
-        "is "
-        "drawn thirty times its size.";
+        "Its motors are those of presets/motor/black_powder.eng, in the RASP format, in which hobby rocketry keeps "
+        "thrust curves: Estes motors of the classes A to D, each of at most twice the impulse of the class before. "
+        "Fins pull the nose toward the air that meets it, with the normal force and centre of pressure of Barrowman's "
+        "equations, so that it flies into the wind. At the top the parachute opens; then it sinks at "
+        "√(2 m g/(ρ C_D A)). The rocket is drawn thirty times its size.";
     d.duration = 30;
     d.camera = {{0, 110, 330}, {0, 110, 0}};
     d.ground = 0;
     d.parameters = {
         {"stages", "Stages", "", "", "1 or 2", 1, 2, 1, 2, false},
+        {"motor", "Motor", "", "", "of each stage: 1 A8, 2 B6, 3 C6, 4 D12", 1, double(std::size(certified)), 1, 3,
+         false},
         {"fuel", "Propellant", "", "%", "of what the motors hold", 0.2, 1, 0, 1, false},
         {"payload", "Payload", "kg", "g", "", 0, 0.15, 0, 0.02, false},
         {"wind", "Wind", "m/s", "m/s", "from the left", -10, 10, 0.5, 3, false},
@@ -38,34 +49,36 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
         {"fins", "Span of the fins", "m", "mm", "", 0.02, 0.12, 0, 0.06, false},
         {"parachute", "Diameter of the parachute", "m", "cm", "0: none", 0, 1.2, 0, 0.4, false},
     };
-    d.plots = {
-        {"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
-        {"Speed",
-         {"time", "s"},
-         {"speed", "m/s"},
-         {{"rocket"},
-          {"sinks at √(2 m g/ρ C_D A)", Series::Style::points},
-          {"without air: v_e ln(m₀/m) − g t", Series::Style::points}}},
-        {"Thrust", {"time", "s"}, {"thrust", "N"}, {{"motors"}, {"certificate of the C6", Series::Style::points}}},
-        {"Mass", {"time", "s"}, {"mass", "g"}, {{"rocket"}}}};
+    d.plots = {{"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
+               {"Speed",
+                {"time", "s"},
+                {"speed", "m/s"},
+                {{"rocket"},
+                 {"sinks at √(2 m g/ρ C_D A)", Series::Style::points},
+                 {"without air: v_e ln(m₀/m) − g t", Series::Style::points}}},
+               {"Thrust", {"time", "s"}, {"thrust", "N"}, {{"motors"}, {"as certified", Series::Style::points}}},
+               {"Mass", {"time", "s"}, {"mass", "g"}, {{"rocket"}}}};
     return d;
   }
 
   void build(Stage3& stage) override {
     stage.start({});
-    auto motors = ballistics::read_rasp(motor_file(), "motors.eng");
+    auto motors = ballistics::read_rasp(black_powder_motors(), "presets/motor/black_powder.eng");
     if (!motors.ok()) return stage.fail(motors.error());
-    const double fuel = stage.value("fuel");
+    certificate_ = certified[std::size_t(stage.count("motor") - 1)];
+    const auto chosen = std::find_if(motors->begin(), motors->end(),
+                                     [&](const ballistics::Motor& m) { return m.name == certificate_.name; });
+    if (chosen == motors->end())
+      return stage.fail(core::Error{std::string("presets/motor/black_powder.eng: no motor ") + certificate_.name});
+    whole_ = *chosen;
+    ballistics::Motor motor = whole_;
+    burn_less(stage, motor, stage.value("fuel"));
     rocket_ = {};
-    for (ballistics::Motor& motor : *motors) burn_less(stage, motor, fuel);
     const int stages = stage.count("stages");
     if (stages == 2)
-      rocket_.stages.push_back({.motor = (*motors)[0],
-                                .dry_mass = 0.025,
-                                .dry_centre = 0.72,
-                                .motor_centre = 0.74,
-                                .separation_delay = 0.1});
-    rocket_.stages.push_back({.motor = (*motors)[1],
+      rocket_.stages.push_back(
+          {.motor = motor, .dry_mass = 0.025, .dry_centre = 0.72, .motor_centre = 0.74, .separation_delay = 0.1});
+    rocket_.stages.push_back({.motor = motor,
                               .dry_mass = 0.05 + stage.value("payload"),
                               .dry_centre = 0.34,
                               .motor_centre = stages == 2 ? 0.6 : 0.74,
@@ -163,15 +176,21 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
   }
 
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
-    auto motors = ballistics::read_rasp(motor_file(), "motors.eng");
-    if (!motors.ok() || !flight_) return stage.fail(core::Error{"no flight"});
-    out.push_back({"total impulse of the motor file", "N s", "NAR's certificate of the Estes C6: 8.82 N s",
-                   (*motors)[1].curve.total_impulse(), 8.82, 0.02});
+    if (!flight_) return stage.fail(core::Error{"no flight"});
+    const auto& points = whole_.curve.points();
+    const auto peak = std::max_element(points.begin(), points.end(),
+                                       [](const auto& a, const auto& b) { return a.thrust < b.thrust; });
+    const std::string source = std::string("NAR's certificate of the Estes ") + certificate_.name;
+    out.push_back({"total impulse of the motor file", "N s", source, whole_.curve.total_impulse(), certificate_.impulse,
+                   0.002 * certificate_.impulse});
+    out.push_back({"peak thrust of the motor file", "N", source, peak->thrust, certificate_.peak, 0.005});
+    out.push_back({"burn time of the motor file", "s", source, whole_.curve.burn_time(), certificate_.burn, 0.005});
     out.push_back({"sinking speed", "m/s", "√(2 m g/(ρ C_D A))", -flight_->path.end().velocity.y, sink_speed(), 0.02});
     const RocketMoment *separation = flight_->first(RocketEvent::separation), *apex = flight_->first(RocketEvent::apex);
     const double first = separation != nullptr ? separation->position.y : 0;
-    out.push_back({"the upper stage goes on", "", "higher at the top than at the separation",
-                   separation != nullptr && apex != nullptr && apex->position.y > 2 * first ? 1.0 : 0.0, 1, 0});
+    if (rocket_.stages.size() == 2)
+      out.push_back({"the upper stage goes on", "", "higher at the top than at the separation",
+                     separation != nullptr && apex != nullptr && apex->position.y > 2 * first ? 1.0 : 0.0, 1, 0});
     out.push_back({"into the wind", "", "the top lies to the left of the pad",
                    apex != nullptr && apex->position.x < 0 ? 1.0 : 0.0, 1, 0});
   }
@@ -179,22 +198,6 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
  private:
   using RocketMoment = ballistics::RocketMoment;
   static constexpr double scale_ = 30;
-  // The Estes C6 as the National Association of Rocketry certified it (presets/motor/black_powder.eng): a peak of 14 N
-  // as the hollow grain lights, then an even burn; 8.82 N s in 1.86 s. Booster and upper stage differ by their delay.
-  static std::string motor_file() {
-    constexpr std::string_view curve =
-        " 0.031 0.946\n 0.092 4.826\n 0.139 9.936\n 0.192 14.09\n 0.209 11.446\n 0.231 7.381\n 0.248 6.151\n"
-        " 0.292 5.489\n 0.37 4.921\n 0.475 4.448\n 0.671 4.258\n 0.702 4.542\n 0.723 4.164\n 0.85 4.448\n"
-        " 1.063 4.353\n 1.211 4.353\n 1.242 4.069\n 1.303 4.258\n 1.468 4.353\n 1.656 4.448\n 1.821 4.448\n"
-        " 1.834 2.933\n 1.847 1.325\n 1.86 0.0\n";
-    std::string file = "; Estes C6\n";
-    for (const char* header : {"C6 18 70 0 0.0108 0.0226 Estes\n", "C6 18 70 5 0.0108 0.0240 Estes\n"}) {
-      file += header;
-      file += curve;
-    }
-    return file;
-  }
-
   /// The grain is shorter: it burns as hard, but not as long.
   static void burn_less(Stage3& stage, ballistics::Motor& motor, double share) {
     std::vector<ballistics::ThrustPoint> points = motor.curve.points();
@@ -223,6 +226,8 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
                : 0;
   }
 
+  Certificate certificate_{};
+  ballistics::Motor whole_{};  // as it is in the file
   ballistics::Rocket rocket_{};
   ballistics::Conditions air_{};
   std::optional<ballistics::RocketFlight> flight_;

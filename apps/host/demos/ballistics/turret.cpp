@@ -24,7 +24,10 @@ class Turret final : public Repeatable<Turret, Demo3> {
         "  |u(T) − v_gun| = v_muzzle\n\n"
         "The earliest such T is the low arc (blue), the latest the high one (teal). Where the speed to spare stays "
         "below zero there is no solution, and the gun holds its fire. The target here flies a figure that the solver "
-        "knows only as a function of time; constant lead would miss. Shells are bodies of the world that an effector "
+        "knows only as a function of time. A lead for its velocity alone would miss, by what it turns and speeds up in "
+        "the "
+        "time of flight (second plot); aims in vacuum (first plot) tell what air is worth. Shells are bodies of the "
+        "world that an effector "
         "lets fly by the same drag curve. The gun may ride to and fro on a rail across the range: it gives its own "
         "velocity to every shell, and the solver takes it into account. Double the range, or let the muzzle speed "
         "fall, to see the arcs meet and vanish.";
@@ -41,8 +44,14 @@ class Turret final : public Repeatable<Turret, Demo3> {
         {"rate", "Time between shots", "s", "s", "", 0.5, 5, 0.1, 1.5, true},
         {"own", "Speed of the gun", "m/s", "m/s", "at most, to and fro on 120 m of rail", 0, 40, 1, 0, false},
     };
-    d.plots = {{"Elevation", {"time", "s"}, {"elevation", "deg"}, {{"low arc"}, {"high arc"}}},
-               {"Miss of each shell", {"time", "s"}, {"distance", "m"}, {{"nearest", Series::Style::points}}}};
+    d.plots = {{"Elevation",
+                {"time", "s"},
+                {"elevation", "deg"},
+                {{"low arc"}, {"high arc"}, {"low arc in vacuum"}, {"high arc in vacuum"}}},
+               {"Miss of each shell",
+                {"time", "s"},
+                {"distance", "m"},
+                {{"nearest", Series::Style::points}, {"if led as though it flew straight on", Series::Style::points}}}};
     return d;
   }
 
@@ -70,11 +79,15 @@ class Turret final : public Repeatable<Turret, Demo3> {
     const ballistics::Shooter gun{
         .muzzle_speed = stage.value("speed"), .muzzle = muzzle(t), .velocity = gun_velocity(t)};
     const double pace = stage.value("pace"), range = range_;
-    auto aims = ballistics::aim(shell_, air_, gun, [=, this](double s) { return path(t + s, range, pace); },
-                                {.longest_time = 60});
+    const auto ahead = [=](double s) { return path(t + s, range, pace); };
+    auto aims = ballistics::aim(shell_, air_, gun, ahead, {.longest_time = 60});
     if (!aims.ok()) return stage.fail(aims.error());
     aims_ = *aims;
     arcs_.clear();
+    const auto vacuum =
+        ballistics::aim(shell_, {.air = environment::AirColumn::uniform(0)}, gun, ahead, {.longest_time = 60});
+    if (!vacuum.ok()) return stage.fail(vacuum.error());
+    vacuum_ = *vacuum;
     if (!aims_) {
       ++refused_;
       return;
@@ -82,9 +95,22 @@ class Turret final : public Repeatable<Turret, Demo3> {
     for (const auto& shot : {aims_.low, aims_.high}) {
       auto flight = ballistics::fly(shell_, air_, {gun.muzzle, gun.velocity + gun.muzzle_speed * shot->direction},
                                     {.time = shot->time, .tolerance = 1e-7});
-      if (flight.ok()) arcs_.push_back(std::move(flight).value());
+      if (!flight.ok()) continue;
+      answer_ = max(answer_, length(flight->end().position - ahead(shot->time)));
+      arcs_.push_back(std::move(flight).value());
     }
-    fire(stage, gun, stage.value("high") > 0.5 ? *aims_.high : *aims_.low, t);
+    const ballistics::Shot& shot = stage.value("high") > 0.5 ? *aims_.high : *aims_.low;
+    // A shot where the target would be if it kept the velocity of this moment.
+    constexpr double moment = 1e-3;
+    const Vec3d velocity = (0.5 / moment) * (ahead(moment) - ahead(-moment));
+    const auto straight = ballistics::aim(shell_, air_, gun, {ahead(0), velocity}, {.longest_time = 60});
+    if (!straight.ok()) return stage.fail(straight.error());
+    double astray = -1;
+    if (*straight) {
+      const ballistics::Shot& led = stage.value("high") > 0.5 ? *straight->high : *straight->low;
+      astray = length(ahead(led.time) - led.place);
+    }
+    fire(stage, gun, shot, t, astray);
   }
 
   void after_step(Stage3& stage) override {
@@ -119,6 +145,8 @@ class Turret final : public Repeatable<Turret, Demo3> {
         hits_ += s.nearest < double(target_radius_);
         worst_ = max(worst_, s.nearest);
         stage.sample(1, 0, t, s.nearest);
+        if (s.astray >= 0) stage.sample(1, 1, t, s.astray);
+        astray_ = max(astray_, s.astray);
         bursts_.push_back({Vec3f(p), t});
       }
       if (done || p.y < 0) {
@@ -136,6 +164,10 @@ class Turret final : public Repeatable<Turret, Demo3> {
       const auto low = ballistics::laying(aims_.low->direction), high = ballistics::laying(aims_.high->direction);
       stage.sample(0, 0, t, degrees(low.elevation));
       stage.sample(0, 1, t, degrees(high.elevation));
+      if (vacuum_) {
+        stage.sample(0, 2, t, degrees(ballistics::laying(vacuum_.low->direction).elevation));
+        stage.sample(0, 3, t, degrees(ballistics::laying(vacuum_.high->direction).elevation));
+      }
       const Vec3d d = (stage.value("high") > 0.5 ? aims_.high : aims_.low)->direction;
       stage.check(stage.world().set_pose(barrel_, muzzle(t) - 8.0 * d, turn_of_y(d)));
       stage.say(format("low arc %.1f° in %.1f s, high arc %.1f° in %.1f s; ", degrees(low.elevation), aims_.low->time,
@@ -149,6 +181,11 @@ class Turret final : public Repeatable<Turret, Demo3> {
   void expectations(Stage3&, std::vector<Expectation>& out) override {
     out.push_back({"shells that arrived", "", "one each 1.5 s", double(arrived_ >= 8), 1, 0});
     out.push_back({"hits among them", "", "every answer of the solver is a hit", double(hits_), double(arrived_), 0});
+    out.push_back(
+        {"farthest miss of the answers", "m", "both arcs, flown by the model: less than 1 cm", answer_, 0, 0.01});
+    if (pace_ >= 20)
+      out.push_back({"a lead for the velocity alone misses", "", "by more than the target's radius",
+                     double(astray_ > double(target_radius_)), 1, 0});
     out.push_back({"farthest miss", "m", "a body flies like the model, to the step of 1/60 s", worst_, 0, 0.5});
   }
 
@@ -157,7 +194,9 @@ class Turret final : public Repeatable<Turret, Demo3> {
   struct Shell {
     rigid::BodyId body;
     Vec3d last{};
-    double due = 0, nearest = 1e300;
+    double due = 0;
+    double astray = -1;  ///< m, by which one led for the target's velocity alone goes past it; −1: it could not be led
+    double nearest = 1e300;
   };
   struct Burst {
     Vec3f place;
@@ -174,7 +213,7 @@ class Turret final : public Repeatable<Turret, Demo3> {
   Vec3d muzzle(double t) const { return muzzle_ + Vec3d{0, 0, rail_ * sin(own_ / rail_ * t)}; }
   Vec3d gun_velocity(double t) const { return {0, 0, own_ * cos(own_ / rail_ * t)}; }
 
-  void fire(Stage3& stage, const ballistics::Shooter& gun, const ballistics::Shot& shot, double t) {
+  void fire(Stage3& stage, const ballistics::Shooter& gun, const ballistics::Shot& shot, double t, double astray) {
     if (shells_.size() > 40) return;
     rigid::BodyDef<Dim3> body;
     body.name = "shell";
@@ -186,7 +225,7 @@ class Turret final : public Repeatable<Turret, Demo3> {
     auto effector = ballistics::flight_effector<Dim3>(id, {shell_, air_, stage.declaration().dt});
     if (!effector.ok()) return stage.fail(effector.error());
     (void)stage.keep(stage.world().add_effector(*effector));
-    shells_.push_back({id, gun.muzzle, t + shot.time});
+    shells_.push_back({id, gun.muzzle, t + shot.time, astray});
   }
 
   static constexpr Vec3d muzzle_{0, 12, 0};
@@ -195,12 +234,12 @@ class Turret final : public Repeatable<Turret, Demo3> {
   Vec3d wind_{};
   ballistics::Conditions air_{};
   ballistics::Projectile shell_{};
-  ballistics::Aims aims_{};
+  ballistics::Aims aims_{}, vacuum_{};
   std::vector<Trajectory> arcs_;
   std::vector<Shell> shells_;
   std::vector<Burst> bursts_;
   rigid::BodyId target_, base_, barrel_;
-  double next_ = 0.5, worst_ = 0;
+  double next_ = 0.5, worst_ = 0, answer_ = 0, astray_ = 0;
   int hits_ = 0, arrived_ = 0, refused_ = 0;
 };
 
