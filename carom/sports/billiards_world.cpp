@@ -27,7 +27,7 @@ rigid::CustomEffector<rigid::Dim3> cloth_effector(const BilliardPhysics& physics
     const double speed = math::hypot(ball.velocity.x, ball.velocity.z);
     // What the contact's friction stops in this step rolls.
     const double slip = 3.5 * cloth.sliding_friction * g * step + rolling_slip * speed;
-    if (speed > 0 && length(bed_slip(ball, r)) < slip) {
+    if (speed > 0 && math::length(bed_slip(ball, r)) < slip) {
       const double rate = math::min(cloth.rolling_friction * g, speed / step) / speed;
       const Vec3d brake{-rate * ball.velocity.x, 0, -rate * ball.velocity.z}, turn = rolling_spin(brake, r);
       load.force = math::Vec3f(m * brake);

@@ -12,15 +12,16 @@
 
 namespace carom::sports {
 
-/// The cloth under a ball: while it rolls it slows down by μ_r g. While it slides it feels the contact's friction alone,
-/// which a rolling resistance of the materials does not leave alone. `step` (s) is the length of the world's steps,
-/// `bed` (m) the height of the bed. Balls roll far at the end: a BodyDef::sleep_speed of .005 m/s lets them.
+/// The cloth under a ball: while it rolls it slows down by μ_r g. While it slides nothing acts but the friction of the
+/// contact; a rolling resistance of the materials would turn it then as well. `step` (s) is the length of the world's
+/// steps, `bed` (m) the height of the bed. Balls roll on slowly at the end: a BodyDef::sleep_speed of .005 m/s lets
+/// them.
 CAROM_API rigid::CustomEffector<rigid::Dim3> cloth_effector(const BilliardPhysics& physics, rigid::BodyId body,
                                                             double step, double bed = 0);
 
-/// After a step: a ball on the bed that has gone beyond a nose is struck by the cushion's law at the moment when it
-/// reached it, and has gone on since. The noses need no shapes in the world then. Returns the approach speed (m/s), 0
-/// where it met nothing.
+/// After a step, in the table's frame: a ball on the bed that has gone beyond a nose is struck by the cushion's law at
+/// the moment when it reached it, and has gone on from there since. The noses need no shapes in the world then. Returns
+/// the approach speed (m/s), 0 where it met nothing.
 CAROM_API double meet_cushions(BilliardState& state, const BilliardTable& table, const BilliardPhysics& physics);
 
 }  // namespace carom::sports
