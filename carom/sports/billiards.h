@@ -44,11 +44,15 @@ struct BallContact {
   };
   Model model = Model::closed_form;
   double restitution = 0.95;
-  /// μ = floor + range·exp(−slip/scale): TP A.14's fit, slip in m/s. A constant μ: {μ, 0, …}.
+  /// μ = floor + range·exp(−rate·slip): TP A.14's fit, slip in m/s. A constant μ: {μ, 0, …}.
   double friction_floor = 0.009951, friction_range = 0.108, friction_rate = 1.088;
   double contact_time = 2.5e-4;  ///< s, how long an impact at 1 m/s lasts: only where gaps of a cluster must close
   int steps = 400;               ///< of the integrated model
 };
+/// μ between two balls whose surfaces slip by so much (m/s).
+inline double ball_friction(const BallContact& c, double slip) {
+  return c.friction_floor + (c.friction_range > 0 ? c.friction_range * math::exp(-c.friction_rate * slip) : 0);
+}
 
 /// Everything a shot depends on besides the table's outline.
 struct BilliardPhysics {

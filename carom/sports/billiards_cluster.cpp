@@ -156,7 +156,7 @@ void Billiards::compress(double blow, double depth) {
       t.push += t.now;
       Vec3d u = relative - speed * t.normal + r * cross(a.angular_velocity + b.angular_velocity, t.normal);
       const double slip = math::length(u);
-      if (t.friction < 0 || step % 16 == 0) t.friction = detail::ball_friction(physics_.balls, slip);
+      if (t.friction < 0 || step % 16 == 0) t.friction = ball_friction(physics_.balls, slip);
       t.rub = slip > 1e-12 ? (-math::min(t.friction * t.now, slip / 7) / slip) * u : Vec3d{};
     }
     if (!pressed) break;

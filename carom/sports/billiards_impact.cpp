@@ -24,7 +24,7 @@ void integrate_balls(BilliardState& a, BilliardState& b, Vec3d n, double approac
     Vec3d u = va - vb + r * cross(wa + wb, n);
     u -= dot(u, n) * n;
     const double speed = math::length(u);
-    const Vec3d f = speed > 1e-14 ? (-detail::ball_friction(c, speed) * impulse / speed) * u : Vec3d{};
+    const Vec3d f = speed > 1e-14 ? (-ball_friction(c, speed) * impulse / speed) * u : Vec3d{};
     va += Vec3d{f.x, 0, f.z} - impulse * n;
     vb += impulse * n - Vec3d{f.x, 0, f.z};
     const Vec3d turn = spin * cross(n, f);

@@ -5,10 +5,6 @@
 
 namespace carom::sports::detail {
 
-inline double ball_friction(const BallContact& c, double slip) {
-  return c.friction_floor + (c.friction_range > 0 ? c.friction_range * math::exp(-c.friction_rate * slip) : 0);
-}
-
 /// The impulse of friction that goes with a normal impulse `push` (per mass), against the slip of a over b before the
 /// impact: Coulomb, and no more than stops the slip, which is u/7 for equal solid spheres.
 inline void rub_balls(BilliardState& a, BilliardState& b, math::Vec3d normal, double push, math::Vec3d slip,
