@@ -37,6 +37,35 @@ TYPED_TEST(Impact, BallReboundsToESquaredOfItsHeight) {
     }
 }
 
+// How fast a ball spins does not matter to where it will meet another, whichever was made first: without friction the
+// blow is along the line between them.
+TYPED_TEST(Impact, ABallThatSpinsStrikesStraight) {
+  using D = TypeParam;
+  for (const bool first : {true, false})
+    for (const float rate : {60.0f, 240.0f}) {
+      WorldDef<D> definition = world_with<D>();
+      definition.gravity = {};
+      World<D> world(definition);
+      BodyId ball[2];
+      for (const int k : {first ? 0 : 1, first ? 1 : 0})
+        ball[k] = add_ball<D>(world, at<D>(0.2 * k, 0), 0.02619f, {0, 0.95f, 1860, 0});
+      typename D::Angular spin{};
+      if constexpr (D::dimension == 2)
+        spin = -73;
+      else
+        spin = {0, 0, -73};
+      typename D::Vector along{};
+      along.x = 1.926f;
+      world.set_velocity(ball[0], along, spin).value();
+      for (int i = 0; i < int(0.15f * rate); ++i) world.step(1 / rate).value();
+      const BodyState<D> one = world.state(ball[0]).value(), other = world.state(ball[1]).value();
+      EXPECT_NEAR(one.linear_velocity.x, 0.5 * (1 - 0.95) * 1.926, 2e-3) << first << ' ' << rate;
+      EXPECT_NEAR(other.linear_velocity.x, 0.5 * (1 + 0.95) * 1.926, 2e-3) << first << ' ' << rate;
+      EXPECT_NEAR(one.linear_velocity.y, 0, 1e-3) << first << ' ' << rate;
+      EXPECT_NEAR(other.linear_velocity.y, 0, 1e-3) << first << ' ' << rate;
+    }
+}
+
 TYPED_TEST(Impact, BallWithoutRestitutionDoesNotRebound) {
   using D = TypeParam;
   for (const float v : {5.0f, 50.0f, 200.0f}) {

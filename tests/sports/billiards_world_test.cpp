@@ -73,14 +73,11 @@ class RigidTable {
     rule(ball, bed, physics.cloth.sliding_friction, 0, physics.cloth.spinning_friction);
     add(rigid::BodyType::fixed, geometry::Box{{10, 1, 10}}, {0, -1, 0}, bed);
     if (cushions == Cushions::by_contact) add_plates(rule);
-    // The cue ball last: contacts turn within a step with that of their bodies that was made first.
-    for (std::size_t i = balls.size(); i-- > 0;) {
-      const Vec2d place = balls[i];
+    for (const Vec2d place : balls) {
       balls_.push_back(add(rigid::BodyType::dynamic, geometry::Sphere{float(r)}, {place.x, r, place.y}, ball));
       world_.add_effector(cloth_effector(physics, balls_.back(), 1 / rate)).value();
       pocket_.push_back(-1);
     }
-    std::reverse(balls_.begin(), balls_.end());
     world_.set_contact_modifier([c = physics.balls](rigid::ContactModification<Dim3>& contact) {
       if (contact.material_a != ball || contact.material_b != ball) return;
       const math::Vec3f n = contact.normal, v = contact.relative_velocity;

@@ -62,10 +62,11 @@ bool foresee(const WorldImplementation<D>& world, const ContactRecord<D>& c, con
   for (int side = 0; side < 2; ++side) {
     const std::size_t body = std::size_t(c.body[side]);
     const SolverBody<D>& s = world.bodies.solver[body];
-    // A ball's own turns do not move it; of other shapes only the ways of the bodies count.
+    // A ball's own turns do not move it, nor its surface; of other shapes only the ways of the bodies count.
+    const bool of_b = ra > 0 && rb > 0 ? side == 1 : rb > 0;
     V v = s.linear_velocity;
     if (ra > 0 || rb > 0)
-      v += cross(s.angular_velocity, V((rb > 0 ? pose_b : pose_a).position - world.bodies.motion[body].center));
+      v += cross(s.angular_velocity, V((of_b ? pose_b : pose_a).position - world.bodies.motion[body].center));
     w = side == 0 ? w - v : w + v;
   }
   const V way = inverse_rotate(pose_a.rotation, w), past = way - m.normal * dot(m.normal, way);
