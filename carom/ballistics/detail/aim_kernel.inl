@@ -378,7 +378,6 @@ void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, in
 
 }  // namespace
 
-extern const AimKernel kernel;
 const AimKernel kernel{linearize, measure, owe<true>};
 
 }  // namespace carom::ballistics::detail::CAROM_AIM_NAMESPACE
