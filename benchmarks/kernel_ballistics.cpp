@@ -3,6 +3,8 @@
 
 #include "carom/ballistics/aim.h"
 #include "carom/ballistics/hits.h"
+#include "carom/ballistics/rocket.h"
+#include "carom/ballistics/shell.h"
 #include "carom/ballistics/sights.h"
 #include "carom/math/random.h"
 
@@ -109,6 +111,44 @@ void rifle_flight(benchmark::State& state) {
   state.SetLabel(std::to_string(speed) + " ft/s, " + std::to_string(height) + " in");
 }
 BENCHMARK(rifle_flight)->Unit(benchmark::kMicrosecond);
+
+/// The M107 at 684 m/s and 45°, 17.8 km and 85 s: the modified point mass (0), six degrees of freedom (1).
+void shell_flight(benchmark::State& state) {
+  const Shell shell = m107();
+  const auto model = state.range(0) == 0 ? ShellModel::modified_point_mass : ShellModel::six_degrees;
+  const FlightPoint muzzle{{}, 684 * math::normalize(Vec3d{1, 1, 0})};
+  double range = 0;
+  for (auto _ : state) {
+    const auto flight = fly_shell(shell, {}, muzzle, model, {.time = 200, .ground = 0});
+    if (!flight.ok()) return state.SkipWithError("the shell");
+    range = flight->path.end().position.x;
+  }
+  state.SetLabel(std::to_string(range) + " m");
+}
+BENCHMARK(shell_flight)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+/// A model rocket of two stages from the rail to the ground under its parachute: the axis in the wind (0), fins that
+/// swing it (1).
+void rocket_flight(benchmark::State& state) {
+  const char* file = "C6 18 70 0 0.0108 0.0226 E\n 0.03 1\n 0.14 10\n 0.19 14\n 0.25 6\n 0.5 4.4\n 1.8 4.4\n 1.86 0\n";
+  const auto motors = read_rasp(file, "C6");
+  if (!motors.ok()) return state.SkipWithError("the motor");
+  Rocket rocket;
+  rocket.stages = {
+      {.motor = (*motors)[0], .dry_mass = .025, .dry_centre = .72, .motor_centre = .74, .separation_delay = .1},
+      {.motor = (*motors)[0], .dry_mass = .05, .dry_centre = .34, .motor_centre = .6}};
+  rocket.diameter = .025;
+  rocket.parachute = {.drag_area = .1};
+  const auto model = state.range(0) == 0 ? RocketModel::point_mass : RocketModel::six_degrees;
+  double apex = 0;
+  for (auto _ : state) {
+    const auto flight = fly_rocket(rocket, windy, {.rail_length = 1}, model);
+    if (!flight.ok()) return state.SkipWithError(flight.error().message.c_str());
+    apex = flight->path.apex().position.y;
+  }
+  state.SetLabel(std::to_string(apex) + " m");
+}
+BENCHMARK(rocket_flight)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 enum AimCase { low_arc, both_arcs, out_of_reach, moving, mortar, again, just_out, flees, flees_fast, edge };
 void take_aim(benchmark::State& state) {

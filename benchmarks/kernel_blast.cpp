@@ -5,6 +5,7 @@
 #include "carom/blast/explosion.h"
 #include "carom/blast/fracture2.h"
 #include "carom/blast/structure.h"
+#include "carom/blast/wave.h"
 #include "carom/geometry/mesh_builders.h"
 #include "carom/math/elementary.h"
 
@@ -29,6 +30,16 @@ void CellHull(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(make_cell_hull(pattern.cells[i++ % 200], {}, 1e-3));
 }
 BENCHMARK(CellHull);
+
+/// All quantities of a charge's wave at a place.
+void WaveOfACharge(benchmark::State& state) {
+  double distance = 5;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(blast_wave(100, distance));
+    distance = distance > 100 ? 5 : distance + .1;
+  }
+}
+BENCHMARK(WaveOfACharge);
 
 /// From a body to two hundred in the world, on so many threads.
 void FractureAtRunTime(benchmark::State& state) {

@@ -20,8 +20,8 @@ class SiteGrid {
     const double largest = math::max(size.x, math::max(size.y, size.z));
     size = max(size, 0.01 * math::Vec3d{largest, largest, largest});
     edge_ = math::cbrt(2 * size.x * size.y * size.z / double(sites.size()));
-    if (!(edge_ > 0)) edge_ = 1;
-    for (int k = 0; k < 3; ++k) count_[k] = math::clamp(int(size[k] / edge_) + 1, 1, 256);
+    if (!(edge_ > 0)) edge_ = largest > 0 ? largest : 1;
+    for (int k = 0; k < 3; ++k) count_[k] = 1 + int(math::clamp(size[k] / edge_, 0.0, 255.0));
     std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
     order.reserve(sites.size());
     for (std::uint32_t i = 0; i < sites.size(); ++i) order.push_back({index(sites[i]), i});
@@ -93,7 +93,7 @@ class SiteGrid {
 
  private:
   int place(math::Vec3d p, int axis) const {
-    return math::clamp(int((p[axis] - low_[axis]) / edge_), 0, count_[axis] - 1);
+    return int(math::clamp((p[axis] - low_[axis]) / edge_, 0.0, double(count_[axis] - 1)));
   }
   std::uint32_t index(math::Vec3d p) const {
     return std::uint32_t((place(p, 2) * count_[1] + place(p, 1)) * count_[0] + place(p, 0));
