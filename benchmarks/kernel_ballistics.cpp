@@ -144,7 +144,8 @@ void rocket_flight(benchmark::State& state) {
   for (auto _ : state) {
     const auto flight = fly_rocket(rocket, windy, {.rail_length = 1}, model);
     if (!flight.ok()) return state.SkipWithError(flight.error().message.c_str());
-    apex = flight->path.apex().position.y;
+    const RocketMoment* top = flight->first(RocketEvent::apex);
+    apex = top != nullptr ? top->position.y : 0;
   }
   state.SetLabel(std::to_string(apex) + " m");
 }
