@@ -71,11 +71,13 @@ Aims by_scan(const Case& c) {
 }
 
 /// How far the shot passes the target, by the exact integration.
-double miss(const Case& c, const Shot& shot) {
+double miss(const Case& c, const Shot& shot, core::FunctionRef<Vec3d(double)> place) {
   const Vec3d u = c.shooter.velocity + c.shooter.muzzle_speed * shot.direction;
   const auto flight = fly(c.projectile, c.conditions, {c.shooter.muzzle, u}, {.time = shot.time, .tolerance = 1e-11});
-  if (!flight) return 1e300;
-  return math::length(flight->end().position - (c.target.position + shot.time * c.target.velocity));
+  return flight ? math::length(flight->end().position - place(shot.time)) : 1e300;
+}
+double miss(const Case& c, const Shot& shot) {
+  return miss(c, shot, [&](double t) { return c.target.position + t * c.target.velocity; });
 }
 
 // Every shot that is told passes within 1 cm; the scan, which walks through the flight times, finds none where none is
@@ -226,14 +228,13 @@ TEST(Aim, SpentShotsMeetATargetThatFlees) {
   int met = 0;
   for (int i = 0; i < 8; ++i) {
     const Target target{{-918, 42, -1914}, Vec3d{-75.8, -9.8, -55} * (1.0 + 0.2 * i)};
+    const Case c{shot, {}, shooter, target};
     const auto aims = aim(shot, {}, shooter, target, {.longest_time = 60});
     ASSERT_TRUE(aims);
-    EXPECT_TRUE(aims->low || !by_scan({shot, {}, shooter, target}).low) << i;
+    EXPECT_TRUE(aims->low || !by_scan(c).low) << i;
     if (!aims->low) continue;
     ++met;
-    const auto flight = fly(shot, {}, {shooter.muzzle, shooter.velocity + 790.0 * aims->low->direction},
-                            {.time = aims->low->time, .tolerance = 1e-11});
-    EXPECT_LT(math::length(flight->end().position - (target.position + aims->low->time * target.velocity)), .01) << i;
+    EXPECT_LT(miss(c, *aims->low), .01) << i;
   }
   EXPECT_GT(met, 0);
 }
@@ -280,10 +281,7 @@ TEST(Aim, SlowTargetsOfAnyMotionAgreeWithTheScan) {
     ++hits;
     EXPECT_NEAR(aims.low->time, scan.low->time, 1e-3 * scan.low->time + 1e-4) << i;
     EXPECT_NEAR(aims.high->time, scan.high->time, 1e-3 * scan.high->time + 1e-4) << i;
-    const auto flight = fly(c.projectile, c.conditions,
-                            {c.shooter.muzzle, c.shooter.velocity + c.shooter.muzzle_speed * aims.low->direction},
-                            {.time = aims.low->time, .tolerance = 1e-11});
-    EXPECT_LT(math::length(flight->end().position - place(aims.low->time)), .01) << i;
+    EXPECT_LT(miss(c, *aims.low, place), .01) << i;
   }
   EXPECT_GT(guessed, 7 * cases / 10);
   EXPECT_GT(hits, 6 * cases / 10);

@@ -128,10 +128,10 @@ TEST(ModelsBar, TakingAim) {
       EXPECT_TRUE(aims.low && aims.high);
     });
   };
-  EXPECT_LT(both(projectile_from_coefficient(DragFunction::g7, .3), 400, {900, 30, 200}), 2 * 20e-6);
+  const Projectile bullet = projectile_from_coefficient(DragFunction::g7, .3);
+  EXPECT_LT(both(bullet, 400, {900, 30, 200}), 2 * 20e-6);
   EXPECT_LT(both(projectile_from_size(DragCurve(.14), 13.585, .11956), 250, {3500, 50, 300}), 2 * 20e-6);
   const auto circles = [](double t) { return Vec3d{800 + 30 * math::cos(.5 * t), 20, 30 * math::sin(.5 * t)}; };
-  const Projectile bullet = projectile_from_coefficient(DragFunction::g7, .3);
   EXPECT_LT(fastest(200, [&] { EXPECT_TRUE(aim(bullet, windy, {.muzzle_speed = 400}, circles).value()); }), 2 * 20e-6);
 }
 
