@@ -117,25 +117,6 @@ AimSolver::Nearest AimSolver::nearest_from(Guess guess) const {
   return found;
 }
 
-bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
-  const double first = math::min(a.guess.time, b.guess.time), last = math::max(a.guess.time, b.guess.time);
-  const double margin = 0.02 * (last - first) + 2e-3 * last;  // gaps are known to about 1e-3
-  for (int i = 0; i < 24; ++i) {
-    const double chord = a.gap / (a.gap - b.gap), share = i % 3 == 2 ? 0.5 : math::clamp(chord, 0.1, 0.9);
-    const double time = a.guess.time + share * (b.guess.time - a.guess.time);
-    const Guess guess = toward(share < 0.5 ? a : b, time);
-    const Root root = refine(guess);
-    if (root.found && root.guess.time > first - margin && root.guess.time < last + margin) {
-      keep(aims, root);
-      return true;
-    }
-    const Reach at = reach_nearest(guess);
-    if (!at.known) return false;
-    ((at.gap > 0) == (a.gap > 0) ? a : b) = at;
-  }
-  return false;
-}
-
 bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const {
   if (!nearest.sure) return false;
   const Reach& at = nearest.at;
@@ -179,46 +160,6 @@ bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late)
     if (outside.gap > 0 && !between(inside, outside, aims)) return false;
   }
   return aims.low.has_value();
-}
-
-void AimSolver::scan(Aims& aims) const {
-  const double fastest =
-      shooter_.muzzle_speed + math::length(shooter_.velocity) + math::length(conditions_.wind.at(shooter_.muzzle.y));
-  const double first_time = math::max(
-      1e-4, 0.2 * math::length(target_(0) - shooter_.muzzle) / (fastest + math::length(velocity_of_target(0))));
-  const double ratio = math::max(options_.longest_time / first_time, 1.01);
-  constexpr int steps = 160;
-  Reach before = reach(straight(first_time));
-  for (int i = 1; i <= steps; ++i) {
-    const double time = first_time * math::pow(ratio, double(i) / steps);
-    const Reach at = reach_nearest(before.known ? toward(before, time) : straight(time));
-    if (before.known && at.known) {
-      if ((before.gap > 0) != (at.gap > 0))
-        between(before, at, aims);
-      else if (at.gap > 0 && before.rate < 0 && at.rate > 0)
-        touch(before, at, aims);
-    }
-    before = at;
-  }
-}
-
-void AimSolver::touch(Reach a, Reach b, Aims& aims) const {
-  for (int i = 0; i < 24; ++i) {
-    const double share = i % 3 == 2 ? 0.5 : math::clamp(a.rate / (a.rate - b.rate), 0.05, 0.95);
-    const double time = a.guess.time + share * (b.guess.time - a.guess.time);
-    const Reach at = reach_nearest(toward(share < 0.5 ? a : b, time));
-    if (!at.known || at.gap > 10 * (b.guess.time - a.guess.time) * (math::abs(a.rate) + b.rate)) return;
-    if (at.gap <= 0) {
-      between(a, at, aims);
-      between(at, b, aims);
-      return;
-    }
-    (at.rate < 0 ? a : b) = at;
-    if (b.guess.time - a.guess.time < 1e-3 * b.guess.time) {
-      keep(aims, refine(at.guess));
-      return;
-    }
-  }
 }
 
 }  // namespace carom::ballistics::detail

@@ -24,7 +24,7 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   const Arrival& end = path.arrival;
   const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
   const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
-  const Vec3d d = barrel / speed, drift = velocity_of_target(guess.time) - end.velocity;
+  const Vec3d d = barrel / speed, goes = velocity_of_target(guess.time), drift = goes - end.velocity;
   const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
   to.slope = math::dot(d, to_drift);
   to.known = math::is_finite(missed) && math::is_finite(to.slope) && to.slope != 0;
@@ -38,7 +38,8 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
   // The leap of a wind profile at its beginning they do not know.
-  to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale);
+  to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale) +
+            math::length(target_(time) - target_(guess.time) - to.dt * goes);
   return to;
 }
 

@@ -114,19 +114,9 @@ bool AimSolver::one_peak(const Target& target) const {
 // A target slower than half of what drag leaves of any shot's speed is passed once by the surface on its way out and
 // once on its way back, however it moves, but for the time about the peak, when that surface hardly moves.
 bool AimSolver::slow_target() const {
-  constexpr int samples = 64;
-  const double most = 0.5 * fall_speed_, longest = options_.longest_time;
-  Vec3d before = target_(0);
-  double last = 0;
-  for (int i = 1; i <= samples; ++i) {
-    const double time = longest * math::square(double(i) / samples);
-    const Vec3d place = target_(time);
-    // Over the whole way between samples, lest it leap, and at the sample, lest it turn back between them.
-    if (!(math::length(place - before) < most * (time - last)) || !(math::length(velocity_of_target(time)) < most))
-      return false;
-    before = place;
-    last = time;
-  }
+  Vec3d place = target_(0);
+  for (int look = 1; look <= looks; ++look)
+    if (!(pace_of_target(look, place) < 0.5 * fall_speed_)) return false;
   return true;
 }
 

@@ -1,6 +1,7 @@
 // How AimSolver and its parts are divided: aim_flight.cpp flies, aim_path.cpp knows what a flight owes to its start,
 // aim_measure.cpp by how much it is off, aim_roots.cpp finds the shot near a guess, aim_guesses.cpp guesses,
-// aim_reach.cpp knows how near shots come to the target and when, aim_search.cpp asks them in turn.
+// aim_reach.cpp knows how near shots come to the target and when, aim_walk.cpp walks through the flight times,
+// aim_search.cpp asks them in turn.
 #pragma once
 
 #include "carom/ballistics/aim.h"
@@ -55,6 +56,11 @@ class AimSolver {
   /// Has the speed to spare one peak over T in vacuum?
   bool one_peak(const Target& target) const;
   bool slow_target() const;
+  /// Looks at how the target moves, closer together at first.
+  static constexpr int looks = 64;
+  double time_of_look(int look) const { return options_.longest_time * math::square(double(look) / looks); }
+  /// m/s, at most, as far as two looks tell, between the one before, when it was at `place`, and this one, when it is.
+  double pace_of_target(int look, Vec3d& place) const;
   /// The roots on either side of the one peak, where each is so far from it that the speed that is needed changes by
   /// `apart` of the muzzle speed in its flight time.
   bool arcs(double apart, Aims& aims) const;
@@ -62,8 +68,8 @@ class AimSolver {
     return shooter_.muzzle_speed - math::length(vacuum(time) - shooter_.velocity);
   }
   Vec3d velocity_of_target(double time) const {
-    const double h = 1e-3 * math::max(time, 1e-2);
-    return (target_(time + h) - target_(time)) / h;
+    const double h = 1e-4 * math::max(time, 1e-2), from = math::max(time - h, 0.0);
+    return (target_(time + h) - target_(from)) / (time + h - from);
   }
   /// 1/m, the share of the speed that drag takes by way.
   double drag_by_way(double speed, double height) const;
@@ -96,6 +102,7 @@ class AimSolver {
     Vec3d drift{};              // m/s, of the target past the shot
     Inverse inverse{};
   };
+  Vec3d velocity_of_shot(const Reach& at) const { return velocity_of_target(at.guess.time) - at.drift; }
   Reach reach(const Guess& guess) const;
   /// By a flight that may be so far off, a share of the scale, before it is known by how much.
   Reach reach(const Guess& guess, double accuracy) const;
@@ -118,9 +125,10 @@ class AimSolver {
   bool by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const;
   /// The root between a and b, on different sides of the surface: by secants until Newton's method finds one there.
   bool between(Reach a, Reach b, Aims& aims) const;
-  /// The target comes nearer to the surface at a, and farther at b: where it passes it between them there are two
-  /// roots.
-  void touch(Reach a, Reach b, Aims& aims) const;
+  /// Keeps the first root that it comes to. `pace`: of the target by looks, m/s.
+  void walk(double from, double to, const double* pace, Aims& aims) const;
+  /// The root at about a time at which the gap would close, as far as it is looked at on the way.
+  bool soon(const Reach& at, double time, Aims& aims) const;
   /// The shot at a target in vacuum, by muzzle speed.
   Guess straight(double time) const;
 

@@ -1,0 +1,104 @@
+// Where the target passes the surface that shots reach, however it moves: walks through the flight times from both
+// ends.
+#include "carom/ballistics/detail/aim_solver.h"
+
+namespace carom::ballistics::detail {
+
+// Over the whole way between two looks, lest it leap, and at the later one, lest it turn back between them.
+double AimSolver::pace_of_target(int look, Vec3d& place) const {
+  const double time = time_of_look(look);
+  const Vec3d way = target_(time) - place;
+  place += way;
+  return math::max(math::length(way) / (time - time_of_look(look - 1)), math::length(velocity_of_target(time)));
+}
+
+bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
+  const double first = math::min(a.guess.time, b.guess.time), last = math::max(a.guess.time, b.guess.time);
+  const double margin = 0.02 * (last - first) + 2e-3 * last;  // gaps are known to about 1e-3
+  for (int i = 0; i < 24; ++i) {
+    const double chord = a.gap / (a.gap - b.gap), share = i % 3 == 2 ? 0.5 : math::clamp(chord, 0.1, 0.9);
+    const double time = a.guess.time + share * (b.guess.time - a.guess.time);
+    const Guess guess = toward(share < 0.5 ? a : b, time);
+    const Root root = refine(guess);
+    if (root.found && root.guess.time > first - margin && root.guess.time < last + margin) {
+      keep(aims, root);
+      return true;
+    }
+    const Reach at = reach_nearest(guess);
+    if (!at.known) return false;
+    ((at.gap > 0) == (a.gap > 0) ? a : b) = at;
+  }
+  return false;
+}
+
+// The gap changes by no more than the target and the surface move: so long a step leaves it on its side of the surface.
+void AimSolver::walk(double from, double to, const double* pace, Aims& aims) const {
+  const double side = to > from ? 1 : -1;
+  // Of the time: from step to step a shot's speed changes little more; a passing touch may be as short as the least.
+  const double longest_step = side > 0 ? 0.4 : 0.25, least_step = 4e-3;
+  Guess guess = straight(from);
+  Reach before;
+  double foretold = 0;     // s, when the gap would close, by the look before
+  double refused = 1e300;  // s, how far ahead that was where it was not so
+  for (int i = 0; i < 1000; ++i) {
+    const double time = guess.time;
+    const Reach at = reach_nearest(guess);
+    if (at.known && before.known && (before.gap > 0) != (at.gap > 0) && between(before, at, aims)) return;
+    double step = (at.known ? least_step : 5 * least_step) * time;
+    if (at.known) {
+      const double ahead = -side * at.gap / at.rate, closes = time + side * ahead;
+      if (ahead > 0 && ahead < math::min((side > 0 ? .5 : .25) * time, 0.6 * refused) &&
+          math::abs(closes - foretold) < 0.3 * ahead) {
+        if (soon(at, closes, aims)) return;
+        refused = ahead;
+      }
+      foretold = closes;
+      // Where drag is strong speeds fall as the inverse of the time.
+      const double shots = math::max(math::length(velocity_of_shot(at)), 0.5 * fall_speed_) * (side > 0 ? 1 : 1.3);
+      const double far = longest_step * time;
+      double most = 0;
+      for (int look = 1; look <= looks; ++look)
+        if (time_of_look(look) >= time - far && time_of_look(look - 1) <= time + far)
+          most = math::max(most, pace[look]);
+      step = math::clamp(0.8 * math::abs(at.gap) / (shots + most), step, far);
+    }
+    if (time == to) return;
+    before = at;
+    double next = time + side * step;
+    if (side * (to - next) < 0) next = to;
+    guess = at.known ? toward(at, next) : straight(next);
+  }
+}
+
+bool AimSolver::soon(const Reach& at, double time, Aims& aims) const {
+  const double from = at.guess.time, ahead = math::abs(time - from);
+  const Root root = refine(toward(at, time), 14, true);
+  if (!root.found || math::abs(root.guess.time - time) > 0.3 * ahead + 1e-3 * from) return false;
+  if ((root.slope < 0) != ((at.gap > 0) == (time > from))) return false;  // that is where it comes back
+  if (ahead > .05 * from) {
+    const Reach halfway = reach_nearest(toward(at, 0.5 * (from + root.guess.time)));
+    if (!halfway.known || math::abs(halfway.gap - 0.5 * at.gap) > .1 * math::abs(at.gap)) return false;
+  }
+  keep(aims, root);
+  return true;
+}
+
+void AimSolver::scan(Aims& aims) const {
+  double pace[looks + 1] = {}, most = 0;
+  Vec3d place = target_(0);
+  for (int look = 1; look <= looks; ++look) most = math::max(most, pace[look] = pace_of_target(look, place));
+  const double longest = options_.longest_time;
+  const double fastest =
+      shooter_.muzzle_speed + math::length(shooter_.velocity) + math::length(conditions_.wind.at(shooter_.muzzle.y));
+  double first = 0;  // s, before it no shot comes to the target
+  for (int i = 0; i < 3; ++i) {
+    const double g = conditions_.gravity, went = first * (fastest + 0.5 * g * first),
+                 away = math::max(math::length(target_(first) - shooter_.muzzle) - went, 0.0);
+    first += 0.8 * away / (fastest + g * (first + away / fastest) + most);
+  }
+  first = math::max(first, 1e-4);
+  walk(math::min(first, longest), longest, pace, aims);
+  if (options_.high_arc && aims.low) walk(longest, math::max(aims.low->time, 1e-4), pace, aims);
+}
+
+}  // namespace carom::ballistics::detail
