@@ -191,9 +191,17 @@ Chart chart_of(const host::Plot& plot, int index, const std::vector<host::Sample
   Chart chart{plot.title, "", axis_text(plot.x), axis_text(plot.y), {}};
   for (const host::Series& s : plot.series)
     chart.series.push_back({s.name, s.style == host::Series::Style::points, s.points, s.color});
-  for (const host::Sample& s : samples)
-    if (s.plot == index && s.series >= 0 && std::size_t(s.series) < chart.series.size())
-      chart.series[std::size_t(s.series)].data.push_back({s.x, s.y});
+  for (const host::Sample& s : samples) {
+    if (s.plot != index || s.series < 0 || std::size_t(s.series) >= chart.series.size()) continue;
+    auto& data = chart.series[std::size_t(s.series)].data;
+    const auto old = plot.series[std::size_t(s.series)].latest
+                         ? std::find_if(data.begin(), data.end(), [&](const auto& p) { return p.x == s.x; })
+                         : data.end();
+    if (old != data.end())
+      old->y = s.y;
+    else
+      data.push_back({s.x, s.y});
+  }
   return chart;
 }
 

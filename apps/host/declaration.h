@@ -37,6 +37,7 @@ struct Series {
   Style style = Style::line;
   std::vector<Vec2d> points{};  ///< a fixed curve (analytic or published); empty: fed while the demo runs
   std::uint32_t color = 0;      ///< 0xRRGGBB, 0: the viewer's choice
+  bool latest = false;          ///< a sample replaces the one at the same x: a histogram that fills
 };
 
 struct Plot {

@@ -66,6 +66,7 @@ Json plot_json(const Plot& plot) {
   for (const Series& s : plot.series) {
     Json entry = {{"name", s.name}, {"style", s.style == Series::Style::line ? "line" : "points"}};
     if (s.color) entry["color"] = color_text(s.color);
+    if (s.latest) entry["latest"] = true;
     if (!s.points.empty()) {
       Json points = Json::array();
       for (const Vec2d p : s.points) points.push_back({p.x, p.y});

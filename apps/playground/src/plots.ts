@@ -103,6 +103,12 @@ export class Plots {
   add(plot: number, series: number, x: number, y: number): void {
     const curve = this.curves[plot]?.[series];
     if (!curve || this.declarations[plot].series[series].points) return;
+    if (plot === this.chosen) this.dirty = true;
+    const old = this.declarations[plot].series[series].latest ? curve.x.indexOf(x) : -1;
+    if (old >= 0) {
+      curve.y[old] = y;
+      return;
+    }
     if (curve.x.length > 0 && x < curve.x[curve.x.length - 1] - 1e-9 && this.declarations[plot].x.unit === 's') curve.x.length = curve.y.length = 0;
     curve.x.push(x);
     curve.y.push(y);
@@ -110,7 +116,6 @@ export class Plots {
       curve.x = curve.x.filter((_, i) => i % 2 === 0);
       curve.y = curve.y.filter((_, i) => i % 2 === 0);
     }
-    if (plot === this.chosen) this.dirty = true;
   }
 
   draw(): void {

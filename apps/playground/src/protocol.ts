@@ -6,7 +6,7 @@ export interface Parameter {
   description: string; minimum: number; maximum: number; step: number; value: number; live: boolean;
 }
 export interface Axis { label: string; unit: string }
-export interface Series { name: string; style: 'line' | 'points'; color?: string; points?: [number, number][] }
+export interface Series { name: string; style: 'line' | 'points'; color?: string; latest?: boolean; points?: [number, number][] }
 export interface PlotDeclaration { title: string; x: Axis; y: Axis; series: Series[] }
 export interface Camera { position: number[]; target: number[]; field_of_view?: number; height?: number; width?: number; follow?: number }
 export interface Input { action: string; label: string; keys: string[]; kind: 'hold' | 'press'; value: number }

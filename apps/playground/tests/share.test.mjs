@@ -182,3 +182,12 @@ test('a plot is saved as a table and as a picture, and read at the cursor', asyn
   await page.done();
 });
 
+test('a histogram keeps one point a place', async () => {
+  const page = await open('hail-on-pegs?step=600');
+  await at(page, 600);
+  const {x, y} = await page.evaluate(() => window.caromPage.plots.curves[0][1]);
+  assert.deepEqual(x.map((place) => place / 0.25).sort((a, b) => a - b), [-4, -3, -2, -1, 0, 1, 2, 3, 4]);
+  assert.ok(Math.abs(y.reduce((sum, share) => sum + share, 0) - 1) < 0.05, `shares ${y}`);
+  await picture(page, 'hail-on-pegs');
+  await page.done();
+});
