@@ -17,6 +17,7 @@ void Rope::resize(std::size_t n) {
   edges.resize(n - 1);
   nodes.resize(n);
   mass.resize(n);
+  room.resize(n);
   rest.resize(n - 1);
   tension.resize(n - 1);
   theta.resize(2 * (n - 1));

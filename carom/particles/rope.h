@@ -152,7 +152,7 @@ class CAROM_API RopeSet {
  private:
   friend struct detail::RopeSolver;
   std::vector<detail::Rope> ropes_;
-  std::vector<detail::RopeBody> bodies_;
+  std::vector<detail::RopeBody> bodies_, bodies_before_;
   std::vector<detail::RopeShape> shapes_;
   std::vector<detail::RopeMemory> memory_;
   std::vector<double> matrix_, right_;

@@ -69,7 +69,6 @@ struct ThinPost {
       }
     return worst;
   }
-  double speed(int end) const { return double(world.state(ends[end])->linear_velocity.y); }
 };
 
 TEST(RopeEdges, LongSegmentsHangOverAThinPostWithoutPassingThrough) {
@@ -89,10 +88,15 @@ TEST(RopeEdges, LongSegmentsHangOverAThinPostWithoutPassingThrough) {
 TEST(RopeEdges, WithoutFrictionItIsAtwoodsMachine) {
   // Segments of 5 cm pass over a post of 2 cm one by one.
   ThinPost atwood(0, 3, 2, 24);
+  // Laid through the post it takes some time to come out. By places: the loads swing on the rope.
+  const double span = 0.15;
+  double height[3];
   atwood.run(0.1);
-  const double before = atwood.speed(0);
-  atwood.run(0.3);
-  const double found = (before - atwood.speed(0)) / 0.3, expected = g * (3 - 2) / (3 + 2);
+  for (double& y : height) {
+    atwood.run(span);
+    y = atwood.world.state(atwood.ends[0])->center_of_mass.y;
+  }
+  const double found = (2 * height[1] - height[0] - height[2]) / (span * span), expected = g * (3 - 2) / (3 + 2);
   RecordProperty("share", std::to_string(found / expected));
   EXPECT_NEAR(found, expected, 0.1 * expected);
 }

@@ -158,6 +158,7 @@ void RopeSolver::find_support() {
 
 void RopeSolver::gather() {
   set.bodies_.clear();
+  set.shapes_.clear();
   for (Rope& rope : set.ropes_) {
     std::erase_if(rope.grips, [&](const RopeGrip& grip) {
       return grip.attachment.body != rigid::BodyId{} && !world.contains(grip.attachment.body);

@@ -8,8 +8,11 @@ namespace carom::particles::detail {
 
 namespace {
 
-constexpr double rope_slip = 0.01;                             // m/s: friction grows up to here
-constexpr int touch_iterations = 6, friction_iterations = 15;  // in which what touches, and how it rubs, is found anew
+constexpr double rope_slip = 0.01;       // m/s: friction grows up to here
+constexpr int friction_iterations = 15;  // in which how things rub is found anew
+constexpr double meet_depth = 0.25;      // radii: where a motion within a substep enters a shape
+constexpr double fastest_body = 20;      // m/s: what comes to a rope faster than that may be found late
+constexpr int meet_steps = 24;
 
 }  // namespace
 
@@ -17,6 +20,19 @@ Vec3d RopeSolver::shape_point(const RopeShape& shape, Vec3d point) const {
   const RopeBody& body = set.bodies_[std::size_t(shape.body)];
   const Vec3d local = inverse_rotate(body.rotation, point - body.center) + body.local_center;
   return inverse_rotate(shape.turn, local - shape.place);
+}
+
+/// How far from it what is near a particle is looked for.
+double RopeSolver::reach_at(const Rope& rope, double speed) const {
+  return 0.25 * rope.segment + 1.5 * dt * (speed + dt * length(gravity));
+}
+
+/// A blow may throw a particle beyond where it was to be in this step.
+bool RopeSolver::strayed(const Rope& rope) const {
+  if (!rope.collide) return false;
+  for (std::size_t i = 0; i < rope.position.size(); ++i)
+    if (rope.room[i] < h * length(rope.velocity[i])) return true;
+  return false;
 }
 
 void RopeSolver::find_contacts(Rope& rope) {
@@ -28,10 +44,12 @@ void RopeSolver::find_contacts(Rope& rope) {
   for (std::size_t i = 0; i < n; ++i) {
     bounds.low = min(bounds.low, rope.position[i]);
     bounds.high = max(bounds.high, rope.position[i]);
-    fastest = math::max(fastest, length(rope.velocity[i]));
+    const double speed = length(rope.velocity[i]);
+    fastest = math::max(fastest, speed);
+    rope.room[i] = reach_at(rope, speed);
   }
-  const double reach = 0.25 * rope.segment + 1.5 * dt * (fastest + dt * length(gravity));
-  (void)world.overlap_bounds(grow(bounds, radius + reach), set.found_);
+  const double reach = reach_at(rope, fastest);
+  (void)world.overlap_bounds(grow(bounds, radius + reach + dt * fastest_body), set.found_);
 
   for (RopeContact& contact : rope.contacts) contact.separation = 1e30;
   for (RopeEdge& edge : rope.edges) edge.contact.separation = 1e30;
@@ -51,7 +69,8 @@ void RopeSolver::find_contacts(Rope& rope) {
     const double friction = math::sqrt(rope.material.friction * double(definition->material.friction));
     const geometry::Bounds3f tight = geometry::bounds(*shape, {});
     for (std::size_t i = 0; i < n; ++i) {
-      const double margin = 0.25 * rope.segment + 1.5 * dt * (length(rope.velocity[i]) + dt * length(gravity));
+      const double speed = length(rope.velocity[i] - set.bodies_[std::size_t(index)].velocity_at(rope.position[i]));
+      const double margin = reach_at(rope, speed);
       const Vec3f local(shape_point(set.shapes_.back(), rope.position[i]));
       if (!contains(grow(tight, float(radius + margin)), geometry::Bounds3f{local, local})) continue;
       RopeContact& contact = rope.contacts[i];
@@ -74,79 +93,154 @@ void RopeSolver::find_contacts(Rope& rope) {
     if (edge.contact.separation == 1e30) edge = RopeEdge{};
 }
 
+Vec3d RopeSolver::shape_point_after(const RopeShape& shape, Vec3d point, Vec3d velocity, bool solved) const {
+  const RopeBody& body = set.bodies_[std::size_t(shape.body)];
+  Vec3d drift = velocity - body.velocity_at(point);
+  if (solved) drift -= change_at(shape.body, point - body.center);
+  return shape_point(shape, point + h * drift);
+}
+
+RopeNearest RopeSolver::nearest(const RopeShape& shape, const RopePlace& place, double radius) const {
+  RopeNearest found;
+  const auto separation = [&](double share) {
+    float out = 1e30f;
+    (void)nearest_plane(shape.shape, Vec3f(place.at(share)), float(radius), 1e3f, found.normal, out);
+    return double(out);
+  };
+  if (place.end[0] != place.end[1]) found.share = nearest_share(separation);
+  found.separation = separation(found.share);
+  return found;
+}
+
+RopeNearest RopeSolver::meet(const RopeShape& shape, const RopePlace& now, const RopePlace& then,
+                             const RopeNearest& last, double radius) const {
+  const double motion = math::max(distance(now.end[0], then.end[0]), distance(now.end[1], then.end[1]));
+  const double room = meet_depth * radius;
+  if (last.separation - motion > -room) return last;
+  RopeNearest at = nearest(shape, now, radius);
+  // What is deep already may come out, and go no deeper. Nowhere on the way is it deeper than the mean of both ends
+  // less half of the motion, since a distance changes by no more than that.
+  const double least = math::min(-room, at.separation - 0.5 * room);
+  if (0.5 * (at.separation + last.separation - motion) > least) return last;
+  double share = 0;
+  for (int k = 0; k < meet_steps && at.separation > least + 0.1 * room; ++k) {
+    share += (at.separation - least) / motion;
+    if (share >= 1) return last;
+    at = nearest(shape, lerp(now, then, share), radius);
+  }
+  at.separation += dot(then.at(at.share) - lerp(now, then, share).at(at.share), Vec3d(at.normal));
+  return at;
+}
+
 void RopeSolver::place_contacts(Rope& rope) {
   if (!rope.collide) return;
   for (std::size_t i = 0; i < rope.position.size(); ++i) {
-    RopeContact& contact = rope.contacts[i];
-    RopeNode& node = rope.nodes[i];
-    if (contact.near < 0 || node.hold == RopeHold::attached) continue;
-    // The plane where the particle will be: that of the start would brake what runs round a post, since the tension of
-    // the implicit step acts in the directions of its end.
-    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
-    const RopeBody& body = set.bodies_[std::size_t(contact.body)];
-    const float radius = float(rope.material.radius);
-    const Vec3d drift = rope.velocity[i] - body.velocity_at(rope.position[i]);
-    const Vec3d from = shape_point(near, rope.position[i]), to = shape_point(near, rope.position[i] + h * drift);
-    Vec3f normal, side;
-    float here = 0, there = 0;
-    if (!nearest_plane(near.shape, Vec3f(from), radius, 1e3f, side, here) ||
-        !nearest_plane(near.shape, Vec3f(to), radius, 1e3f, normal, there)) {
-      contact.state = RopeHold::none;
-      continue;
-    }
-    double ahead = double(there);
-    if (dot(side, normal) < 0 && here > -radius && passes([&](double f) {
-          Vec3f unused;
-          float out = 1;
-          (void)nearest_plane(near.shape, Vec3f(lerp(from, to, f)), radius, 1e3f, unused, out);
-          return double(out);
-        })) {  // what is thin: it stays on the side where it is
-      normal = side;
-      ahead = double(here) + dot(to - from, Vec3d(side));
-    }
-    contact.separation = double(here);
-    node.normal = rotate(body.rotation, rotate(near.turn, Vec3d(normal)));
-    place_hold(contact, node, rope.position[i], rope.velocity[i], ahead, rope.material.radius);
+    if (rope.contacts[i].near < 0 || rope.nodes[i].hold == RopeHold::attached) continue;
+    place_contact(rope, i, false);
   }
+}
+
+// The plane where the particle will be: that of the start would brake what runs round a post, since the tension of the
+// implicit step acts in the directions of its end.
+void RopeSolver::place_contact(Rope& rope, std::size_t i, bool solved) {
+  RopeContact& contact = rope.contacts[i];
+  RopeNode& node = rope.nodes[i];
+  const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+  const Vec3d at = rope.position[i], velocity = solved ? rope.solution[i] : rope.velocity[i];
+  const double radius = rope.material.radius;
+  const Vec3d from = shape_point(near, at), to = shape_point_after(near, at, velocity, solved);
+  const RopeNearest last = nearest(near, {{to, to}}, radius);
+  const RopeNearest meeting = meet(near, {{from, from}}, {{to, to}}, last, radius);
+  if (!solved) contact.separation = nearest(near, {{from, from}}, radius).separation;
+  const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+  node.normal = rotate(body.rotation, rotate(near.turn, Vec3d(meeting.normal)));
+  place_hold(contact, node, at, velocity, meeting.separation, radius, solved);
+}
+
+/// Where a substep is to leave what is this deep at least: on the surface, or a fifth less deep than now.
+double RopeSolver::depth_allowed(double separation) const {
+  const double deep = math::min(separation, 0.0);
+  return deep + math::min(-0.2 * deep, h * 1.0);
 }
 
 /// What holds a point of the rope in this substep, by the plane that `node.normal` and the separations here and ahead
 /// tell.
 void RopeSolver::place_hold(RopeContact& contact, RopeNode& node, Vec3d position, Vec3d velocity, double ahead,
-                            double radius) const {
+                            double radius, bool solved) const {
   const RopeBody& body = set.bodies_[std::size_t(contact.body)];
-  const Vec3d drift = velocity - body.velocity_at(position);
+  Vec3d drift = velocity - body.velocity_at(position);
+  if (solved) drift -= change_at(contact.body, position - body.center);
   node.body = contact.body;
   node.arm = position - radius * node.normal - body.center;
-  // Where the step is to leave it at least: on the surface, or a fifth less deep than now.
-  const double deep = math::min(contact.separation, 0.0), end = deep + math::min(-0.2 * deep, h * 1.0);
-  node.target =
-      body.velocity + cross(body.spin, node.arm) + (dot(node.normal, drift) + (end - ahead) / h) * node.normal;
-  node.hold = contact.state;
+  node.target = body.velocity + cross(body.spin, node.arm) +
+                (dot(node.normal, drift) + (depth_allowed(contact.separation) - ahead) / h) * node.normal;
+  if (!solved)
+    node.hold = contact.state;
+  else if (node.hold == RopeHold::none)
+    node.hold = RopeHold::slide;
   const double most = h * contact.friction * contact.push;
   node.resistance = most / rope_slip;
   node.grip = h * (contact.grip - dot(contact.grip, node.normal) * node.normal);
-  if (contact.state != RopeHold::slide) return;
+  if (node.hold != RopeHold::slide) return;
   const Vec3d against = velocity - node.target;
   node.resistance = most / math::max(length(against - dot(against, node.normal) * node.normal), rope_slip);
   node.grip = {};
 }
 
-Vec3d RopeSolver::change_at(const RopeNode& node) const {
-  if (node.body < 0) return {};
-  const RopeBody& body = set.bodies_[std::size_t(node.body)];
+bool RopeSolver::place_again(Rope& rope) {
+  if (!rope.collide) return false;
+  bool any = false;
+  const double radius = rope.material.radius, room = meet_depth * radius;
+  // What moves as the planes were placed for is left out.
+  const auto as_expected = [&](std::size_t i, const RopeContact& contact) {
+    const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+    const Vec3d change = change_at(contact.body, rope.position[i] - body.center);
+    return length(rope.solution[i] - rope.start[i] - change) < 0.5 * room / h;
+  };
+  const auto too_deep = [&](const RopeContact& contact, const RopePlace& now, const RopePlace& then) {
+    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+    return meet(near, now, then, nearest(near, then, radius), radius).separation <
+           math::min(depth_allowed(contact.separation), 0.0) - room;
+  };
+  for (std::size_t i = 0; i < rope.position.size(); ++i) {
+    const RopeContact& contact = rope.contacts[i];
+    if (contact.near < 0 || rope.nodes[i].hold == RopeHold::attached || as_expected(i, contact)) continue;
+    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+    const Vec3d now = shape_point(near, rope.position[i]),
+                then = shape_point_after(near, rope.position[i], rope.solution[i], true);
+    if (!too_deep(contact, {{now, now}}, {{then, then}})) continue;
+    place_contact(rope, i, true);
+    any = true;
+  }
+  for (std::size_t e = 0; e < rope.edges.size(); ++e) {
+    const RopeContact& contact = rope.edges[e].contact;
+    if (contact.near < 0 || rope.broken[e] || (as_expected(e, contact) && as_expected(e + 1, contact))) continue;
+    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+    RopePlace now, then;
+    for (std::size_t k = 0; k < 2; ++k) {
+      now.end[k] = shape_point(near, rope.position[e + k]);
+      then.end[k] = shape_point_after(near, rope.position[e + k], rope.solution[e + k], true);
+    }
+    if (too_deep(contact, now, then)) any |= place_edge(rope, e, true);
+  }
+  return any;
+}
+
+Vec3d RopeSolver::change_at(int index, Vec3d arm) const {
+  if (index < 0) return {};
+  const RopeBody& body = set.bodies_[std::size_t(index)];
   if (body.column < 0) return {};
   const double* change = &set.right_[std::size_t(body.column) * 6];
-  return Vec3d{change[0], change[1], change[2]} + cross(Vec3d{change[3], change[4], change[5]}, node.arm);
+  return Vec3d{change[0], change[1], change[2]} + cross(Vec3d{change[3], change[4], change[5]}, arm);
 }
 
 // Coulomb's friction as an implicit resistance whose coefficient follows the normal force and the slip of the last
 // iteration. What sticks keeps its grip from substep to substep, so that it does not creep.
 bool RopeSolver::update_hold(RopeContact& contact, RopeNode& node, Vec3d velocity, int iteration) const {
-  const Vec3d against = velocity - node.target - change_at(node);
+  const Vec3d against = velocity - node.target - change_at(node.body, node.arm);
   const double closing = dot(node.normal, against);
   if (node.hold == RopeHold::none) {
-    if (closing >= -1e-9 || iteration >= touch_iterations) return false;
+    if (closing >= -1e-9) return false;
     node.hold = RopeHold::slide;
     node.resistance = 0;
     node.grip = {};

@@ -106,6 +106,7 @@ struct RopeEdge {
   RopeContact contact{};
   RopeNode point{};
   double share = 0.5;           ///< of the second end
+  double nearest = -1e30;       ///< m: no less is its separation at the start of the substep
   Mat3d stiff = Mat3d::zero();  ///< kg: impulse = stiff (target − velocity) + grip
 };
 
@@ -170,6 +171,8 @@ struct Rope {
   std::vector<int> reach;      ///< two a body: particles from … to that its motion moves
   std::vector<Vec3d> columns;  ///< 6 a body, as many as particles
   std::vector<double> theta, pull;
+  double before[2] = {0, 0};        ///< m, the rest lengths at the ends, at the start of the substep
+  std::vector<double> room;         ///< m, by particle: as far as it may go before what is near it is to be found anew
   std::vector<std::uint8_t> slack;  ///< by segment
   geometry::Bounds3d around{};      ///< all that it may reach in a step
 

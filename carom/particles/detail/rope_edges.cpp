@@ -15,17 +15,20 @@ constexpr double edge_stiffness = 1e6;  // over the mass of a segment's ends
 // stretch.
 constexpr double edge_depth = 0.25, edge_kept = 0.1;
 constexpr double edge_length = 0.2;
+constexpr double deepest = 0.8;  // of the way from the surface to the middle of what is thin
+constexpr int free_steps = 32;
 
 }  // namespace
 
 void RopeSolver::find_edges(Rope& rope, const RopeShape& near, int number, double friction,
                             const geometry::Bounds3f& tight) {
   const double radius = rope.material.radius;
+  const RopeBody& body = set.bodies_[std::size_t(near.body)];
   for (std::size_t e = 0; e < rope.edges.size(); ++e) {
     if (rope.broken[e]) continue;
-    const double fastest = math::max(length(rope.velocity[e]), length(rope.velocity[e + 1]));
-    const double margin = 0.5 * distance(rope.position[e], rope.position[e + 1]) + 0.25 * rope.segment +
-                          1.5 * dt * (fastest + dt * length(gravity));
+    const double fastest = math::max(length(rope.velocity[e] - body.velocity_at(rope.position[e])),
+                                     length(rope.velocity[e + 1] - body.velocity_at(rope.position[e + 1])));
+    const double margin = 0.5 * distance(rope.position[e], rope.position[e + 1]) + reach_at(rope, fastest);
     const Vec3f middle(shape_point(near, 0.5 * (rope.position[e] + rope.position[e + 1])));
     if (!contains(grow(tight, float(radius + margin)), geometry::Bounds3f{middle, middle})) continue;
     RopeContact& contact = rope.edges[e].contact;
@@ -44,55 +47,116 @@ void RopeSolver::find_edges(Rope& rope, const RopeShape& near, int number, doubl
 
 void RopeSolver::place_edges(Rope& rope) {
   if (!rope.collide) return;
-  const float radius = float(rope.material.radius);
-  for (std::size_t e = 0; e < rope.edges.size(); ++e) {
-    RopeEdge& edge = rope.edges[e];
-    RopeContact& contact = edge.contact;
+  for (std::size_t e = 0; e < rope.edges.size(); ++e) (void)place_edge(rope, e, false);
+}
+
+bool RopeSolver::place_edge(Rope& rope, std::size_t e, bool solved) {
+  RopeEdge& edge = rope.edges[e];
+  RopeContact& contact = edge.contact;
+  const RopeHold before = contact.state;
+  if (!solved) {
     edge.point = RopeNode{};
-    if (contact.near < 0) continue;
-    const RopeHold before = contact.state;
     contact.state = RopeHold::none;
-    if (rope.broken[e]) continue;
-    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
-    const RopeBody& body = set.bodies_[std::size_t(contact.body)];
-    // In the shape's frame, now and where the ends drift to.
-    Vec3d now[2], then[2];
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Vec3d at = rope.position[e + k];
-      now[k] = shape_point(near, at);
-      then[k] = shape_point(near, at + h * (rope.velocity[e + k] - body.velocity_at(at)));
-    }
-    Vec3f normal;
-    bool good = true;
-    const auto separation = [&](Vec3d local) {
-      float out = 0;
-      good = good && nearest_plane(near.shape, Vec3f(local), radius, 1e3f, normal, out);
-      return double(out);
-    };
-    const double ends = math::min(separation(then[0]), separation(then[1]));
-    const double beyond = ends - 0.5 * distance(then[0], then[1]);
-    if (!good || beyond > math::max(distance(now[0], then[0]), distance(now[1], then[1]))) continue;
-    edge.share = nearest_share([&](double s) { return separation(lerp(then[0], then[1], s)); });
-    const Vec3d from = lerp(now[0], now[1], edge.share), to = lerp(then[0], then[1], edge.share);
-    contact.separation = separation(from);
-    const Vec3f side = normal;
-    double ahead = separation(to);
-    // Through what is thin it would go within the substep: it stays on the side where it is.
-    const bool through = dot(side, normal) < 0 && contact.separation > -double(radius) &&
-                         passes([&](double f) { return separation(lerp(from, to, f)); });
-    if (through) {
-      normal = side;
-      ahead = contact.separation + dot(to - from, Vec3d(side));
-    }
-    if (beyond > 0 && !through) continue;
-    const double depth = (before == RopeHold::none ? edge_depth : edge_kept) *
-                         math::max(rope.material.radius, edge_length * distance(then[0], then[1]));
-    if (!good || edge.share < 0.01 || edge.share > 0.99 || ends - ahead < depth) continue;
-    contact.state = before;
-    edge.point.normal = rotate(body.rotation, rotate(near.turn, Vec3d(normal)));
-    place_hold(contact, edge.point, lerp(rope.position[e], rope.position[e + 1], edge.share),
-               lerp(rope.velocity[e], rope.velocity[e + 1], edge.share), ahead, rope.material.radius);
   }
+  if (contact.near < 0 || rope.broken[e]) return false;
+  const double radius = rope.material.radius;
+  const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+  const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+  const std::vector<Vec3d>& velocity = solved ? rope.solution : rope.velocity;
+  // In the shape's frame, now and where the ends drift to.
+  RopePlace now, then;
+  double ends = 1e30;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec3d at = rope.position[e + k];
+    now.end[k] = shape_point(near, at);
+    then.end[k] = shape_point_after(near, at, velocity[e + k], solved);
+    ends = math::min(ends, nearest(near, {{then.end[k], then.end[k]}}, radius).separation);
+  }
+  const double width = distance(then.end[0], then.end[1]);
+  const double motion = math::max(distance(now.end[0], then.end[0]), distance(now.end[1], then.end[1]));
+  if (!solved) edge.nearest = ends - 0.5 * width - motion;
+  if (ends - 0.5 * width > motion) return false;
+  const RopeNearest last = nearest(near, then, radius);
+  if (!solved) edge.nearest = math::max(edge.nearest, last.separation - motion);
+  const RopeNearest meeting = meet(near, now, then, last, radius);
+  edge.share = meeting.share;
+  if (!solved) contact.separation = nearest(near, {{now.at(edge.share), now.at(edge.share)}}, radius).separation;
+  const double depth = (before == RopeHold::none ? edge_depth : edge_kept) * math::max(radius, edge_length * width);
+  if (edge.share < 0.01 || edge.share > 0.99 || ends - meeting.separation < depth) return false;
+  if (!solved) contact.state = before;
+  edge.point.normal = rotate(body.rotation, rotate(near.turn, Vec3d(meeting.normal)));
+  place_hold(contact, edge.point, lerp(rope.position[e], rope.position[e + 1], edge.share),
+             lerp(velocity[e], velocity[e + 1], edge.share), meeting.separation, radius, solved);
+  return true;
+}
+
+namespace {
+
+/// From the surface of a convex shape to its middle, where the side that is nearest turns over; 0: not told.
+double half_thickness(const geometry::Shape3& shape) {
+  using geometry::ShapeType3;
+  switch (shape.type) {
+    case ShapeType3::sphere:
+      return double(shape.sphere.radius);
+    case ShapeType3::capsule:
+      return double(shape.capsule.radius);
+    case ShapeType3::cylinder:
+      return double(math::min(shape.cylinder.radius, shape.cylinder.half_height) + shape.cylinder.rounding);
+    case ShapeType3::box: {
+      const Vec3f half = shape.box.half_extents;
+      return double(math::min(half.x, math::min(half.y, half.z)) + shape.box.radius);
+    }
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+/// The share of the substep's motion that leaves every segment on its side of the middle of what it lies on.
+double RopeSolver::free_share(const Rope& rope) const {
+  double share = 1;
+  const double radius = rope.material.radius;
+  for (std::size_t e = 0; e < rope.edges.size(); ++e) {
+    const RopeContact& contact = rope.edges[e].contact;
+    if (contact.near < 0 || rope.broken[e]) continue;
+    const RopeShape& near = set.shapes_[std::size_t(contact.near)];
+    const double half = half_thickness(near.shape);
+    if (half == 0) continue;
+    RopePlace now, then;
+    double motion = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      now.end[k] = shape_point(near, rope.position[e + k]);
+      then.end[k] = shape_point_after(near, rope.position[e + k], rope.solution[e + k], false);
+      motion = math::max(motion, distance(now.end[k], then.end[k]));
+    }
+    // Nearly at the middle, and so much nearer to it counts as there.
+    const double core = radius + half, limit = -deepest * core, close = 0.05 * core;
+    if (rope.edges[e].nearest - motion > limit) continue;
+    RopeNearest at = nearest(near, now, radius);
+    double gap = at.separation - limit;
+    if (gap > motion) continue;
+    if (gap < close) {
+      const RopeNearest last = nearest(near, then, radius);
+      if (last.separation > at.separation && dot(last.normal, at.normal) > 0) continue;
+      return 0;
+    }
+    double here = 0;
+    for (int k = 0; here + gap / motion < share; ++k) {
+      here += gap / motion;
+      gap = nearest(near, lerp(now, then, here), radius).separation - limit;
+      if (gap < close || k == free_steps) share = here;
+    }
+  }
+  return share;
+}
+
+/// What would go through something thin all the same goes as far as it may.
+void RopeSolver::hold_back(Rope& rope) const {
+  if (!rope.collide) return;
+  const double share = free_share(rope);
+  if (share == 1) return;
+  for (std::size_t i = 0; i < rope.position.size(); ++i) rope.position[i] -= ((1 - share) * h) * rope.solution[i];
 }
 
 void RopeSolver::add_edges(Rope& rope) const {
@@ -143,7 +207,7 @@ void RopeSolver::react_edges(Rope& rope, bool coupled) const {
     RopeEdge& edge = rope.edges[e];
     RopeNode& point = edge.point;
     if (point.hold == RopeHold::none) continue;
-    const Vec3d change = coupled ? change_at(point) : Vec3d{};
+    const Vec3d change = coupled ? change_at(point.body, point.arm) : Vec3d{};
     const Vec3d velocity = lerp(rope.solution[e], rope.solution[e + 1], edge.share);
     point.reaction = edge.stiff * (point.target + change - velocity) + point.grip;
     // The rows know the body as it was: what its change pushes more is this edge's, not the particles' own hold.

@@ -11,11 +11,21 @@ template <class Distance>
 double nearest_share(const Distance& distance) {
   return math::least_place(distance, 0, 1, 16);
 }
-/// Whether a way from 0 to 1 goes through a shape, by the distance from it.
-template <class Distance>
-bool passes(const Distance& distance) {
-  return distance(nearest_share(distance)) < 0;
+
+/// A segment's two ends, or a particle twice, in the frame of a shape.
+struct RopePlace {
+  Vec3d end[2];
+  Vec3d at(double share) const { return lerp(end[0], end[1], share); }
+};
+inline RopePlace lerp(const RopePlace& a, const RopePlace& b, double t) {
+  return {{math::lerp(a.end[0], b.end[0], t), math::lerp(a.end[1], b.end[1], t)}};
 }
+/// Where a segment is nearest to a shape.
+struct RopeNearest {
+  double share = 0.5;  ///< of the second end
+  Vec3f normal{};
+  double separation = 1e30;  ///< m
+};
 
 struct RopeSolver {
   RopeSet& set;
@@ -35,26 +45,42 @@ struct RopeSolver {
   /// The bodies' changes of velocity from all ropes' rows; `answers`: and what crossings answer to each other.
   void couple(bool answers);
   void commit_bodies();
-  Vec3d change_at(const RopeNode& node) const;  ///< of the velocity of what holds a particle, by the solve
+  Vec3d change_at(int body, Vec3d arm) const;  ///< of the velocity of what holds a particle, by the solve
   void move_bodies();
   void hand_over();
 
   // rope_contact.cpp
+  double reach_at(const Rope& rope, double speed) const;
   void find_contacts(Rope& rope);
+  bool strayed(const Rope& rope) const;                          ///< from where things near it were looked for
   Vec3d shape_point(const RopeShape& shape, Vec3d point) const;  ///< in the shape's frame
-  void place_contacts(Rope& rope);                               ///< at the start of a substep
-  bool update_holds(Rope& rope, int iteration);                  ///< true: something changed
-  void place_hold(RopeContact& contact, RopeNode& node, Vec3d position, Vec3d velocity, double ahead,
-                  double radius) const;
+  /// The same at the end of the substep, for a velocity; `solved`: with what the solve changes of the body's.
+  Vec3d shape_point_after(const RopeShape& shape, Vec3d point, Vec3d velocity, bool solved) const;
+  RopeNearest nearest(const RopeShape& shape, const RopePlace& place, double radius) const;
+  /// What is nearest of a motion within a substep where it ends (`last`), or where it would go into the shape;
+  /// `separation` is what the plane there leaves at the end.
+  RopeNearest meet(const RopeShape& shape, const RopePlace& now, const RopePlace& then, const RopeNearest& last,
+                   double radius) const;
+  void place_contacts(Rope& rope);  ///< at the start of a substep
+  void place_contact(Rope& rope, std::size_t i, bool solved);
+  /// Of what the solution takes deeper than it may, the planes where it is: true if there is any.
+  bool place_again(Rope& rope);
+  double depth_allowed(double separation) const;
+  bool update_holds(Rope& rope, int iteration);  ///< true: something changed
+  void place_hold(RopeContact& contact, RopeNode& node, Vec3d position, Vec3d velocity, double ahead, double radius,
+                  bool solved) const;
   bool update_hold(RopeContact& contact, RopeNode& node, Vec3d velocity, int iteration) const;
   void keep_contact(RopeContact& contact, const RopeNode& node, bool gone) const;
 
   // rope_edges.cpp
   void find_edges(Rope& rope, const RopeShape& near, int number, double friction, const geometry::Bounds3f& tight);
   void place_edges(Rope& rope);
+  bool place_edge(Rope& rope, std::size_t e, bool solved);
   void add_edges(Rope& rope) const;  ///< to the rows
   void react_edges(Rope& rope, bool coupled) const;
   Vec3d edge_answer(const Rope& rope, std::size_t edge, std::size_t t, int c) const;
+  double free_share(const Rope& rope) const;
+  void hold_back(Rope& rope) const;
   Vec3d edge_push(const Rope& rope, int node, int body, Vec3d velocity, Vec3d spin) const;
 
   // rope_crossings.cpp
@@ -73,14 +99,17 @@ struct RopeSolver {
   // rope_step.cpp
   int needed_substeps(const Rope& rope) const;
   void wind_winches(Rope& rope);
-  void prepare(Rope& rope);  ///< what the particles are held by, at the start of a step
-  void weigh(Rope& rope);    ///< winches turn; masses
+  void prepare(Rope& rope);       ///< what the particles are held by, at the start of a step
+  void find_touched(Rope& rope);  ///< the bodies that move, at it
+  void weigh(Rope& rope);         ///< winches turn; masses
   void forces(Rope& rope);
   void hold_grips(Rope& rope);
   void assemble(Rope& rope);
   void solve(Rope& rope);
   void react(Rope& rope, bool coupled);  ///< impulses on the particles that the solution asks for
   double change(Rope& rope);             ///< the greatest strain by which the last iteration was off, squared; tensions
+  void substep(double duration, int halvings);
+  void take_part();
   void advance(Rope& rope, int index);
 };
 

@@ -7,8 +7,11 @@ namespace carom::particles::detail {
 
 namespace {
 
-constexpr int most_iterations = 20;
-constexpr int turn_iterations = 7;   // in which segments still turn
+constexpr int most_iterations = 60;
+constexpr int settled = 10, last_placing = 36;  // when planes of contacts are looked at again
+constexpr double unsettled_strain = 0.1;        // of the last iteration: what was found is no solution
+constexpr int most_halvings = 4;
+constexpr int turn_iterations = 7;   // in which segments still turn by little
 constexpr int cross_iterations = 6;  // in which what ropes push on each other is still found anew
 constexpr int most_substeps = 256;
 constexpr double gap_rate = 0.4;  // share of a gap between a particle and its anchor that is closed in a step
@@ -45,7 +48,6 @@ int RopeSolver::needed_substeps(const Rope& rope) const {
 }
 
 void RopeSolver::prepare(Rope& rope) {
-  const int n = rope.count();
   rope.peak = 0;
   for (RopeGrip& grip : rope.grips) {
     const auto bias = [&](std::size_t node, Vec3d local) {
@@ -57,6 +59,10 @@ void RopeSolver::prepare(Rope& rope) {
     grip.bias = bias(node, grip.attachment.point);
     if (grip.attachment.clamped) grip.second_bias = bias(node == 0 ? 1 : node - 1, grip.second);
   }
+}
+
+void RopeSolver::find_touched(Rope& rope) {
+  const int n = rope.count();
   rope.touched.clear();
   const auto touch = [&](int body) {
     if (body < 0 || !set.bodies_[std::size_t(body)].moves) return;
@@ -266,6 +272,7 @@ void RopeSolver::advance(Rope& rope, int index) {
   const std::size_t n = rope.position.size();
   for (std::size_t i = 0; i < n; ++i) {
     rope.velocity[i] = rope.solution[i];
+    rope.room[i] -= h * length(rope.velocity[i]);
     rope.position[i] += h * rope.velocity[i];
     const RopeNode& node = rope.nodes[i];
     RopeContact& contact = rope.contacts[i];
@@ -303,6 +310,101 @@ void RopeSolver::advance(Rope& rope, int index) {
   }
 }
 
+/// Of a solution that is not one: as much as turns and stretches no segment by more than a quarter.
+void RopeSolver::take_part() {
+  double worst = 0;
+  for (const Rope& rope : set.ropes_)
+    for (std::size_t i = 0; i + 1 < rope.position.size(); ++i) {
+      if (rope.broken[i]) continue;
+      const Vec3d off = (rope.solution[i + 1] - rope.start[i + 1]) - (rope.solution[i] - rope.start[i]);
+      worst = math::max(worst, h * length(off) / rope.rest[i]);
+    }
+  const double share = worst > 0.25 ? 0.25 / worst : 1;
+  for (Rope& rope : set.ropes_) {
+    for (std::size_t i = 0; i < rope.position.size(); ++i) {
+      rope.solution[i] = lerp(rope.start[i], rope.solution[i], share);
+      rope.nodes[i].reaction *= share;
+    }
+    for (RopeEdge& edge : rope.edges) edge.point.reaction *= share;
+  }
+  for (double& change : set.right_) change *= share;
+}
+
+/// A share of the step. Of what does not settle, two of half its length.
+void RopeSolver::substep(double duration, int halvings) {
+  h = duration;
+  set.bodies_before_ = set.bodies_;
+  for (RopeBody& body : set.bodies_) {
+    if (!body.moves) continue;
+    const Vec3d weight = (h * body.mass) * body.gravity;
+    body.velocity += body.linear * weight;
+    body.spin += transpose(body.mixed) * weight;
+  }
+  for (Rope& rope : set.ropes_) {
+    rope.before[0] = rope.rest.front();
+    rope.before[1] = rope.rest.back();
+    weigh(rope);
+    forces(rope);
+    hold_grips(rope);
+    place_contacts(rope);
+    place_edges(rope);
+  }
+  place_crossings();
+  double unsettled = 0;
+  int settling = 0;  // iterations since planes were placed
+  // What pushes of other ropes leave over is not for this iteration to end.
+  const double rough = set.crossing_now_.empty() ? 1e-6 : 1e30;
+  for (int iteration = 0; iteration < most_iterations; ++iteration, ++settling) {
+    for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
+      Rope& rope = set.ropes_[r];
+      assemble(rope);
+      add_crossings(rope, int(r));
+      solve(rope);
+      react(rope, false);
+    }
+    const bool push = !set.crossing_now_.empty() && settling < cross_iterations;
+    couple(push);
+    bool again = push && push_crossings();
+    for (Rope& rope : set.ropes_) {
+      react(rope, true);
+      if (iteration + 1 == most_iterations) {
+        unsettled = math::max(unsettled, change(rope));
+        continue;
+      }
+      again |= update_holds(rope, settling);
+      const double off = change(rope);
+      again |= off > (settling < turn_iterations ? 2e-9 : rough);
+      // A guess turns no segment by more than about a third in one iteration.
+      const double share = (off > 0.1 ? math::sqrt(0.1 / off) : 1) * (settling > settled ? 0.5 : 1);
+      for (std::size_t i = 0; i < rope.position.size(); ++i)
+        rope.guess[i] = share == 1 ? rope.solution[i] : lerp(rope.guess[i], rope.solution[i], share);
+    }
+    if (iteration < last_placing && (!again || settling == settled)) {
+      bool placed = false;
+      for (Rope& rope : set.ropes_) placed |= place_again(rope);
+      again |= placed;
+      if (placed) settling = -1;
+    }
+    if (!again) break;
+  }
+  if (unsettled > math::square(unsettled_strain) && halvings > 0) {
+    set.bodies_ = set.bodies_before_;
+    for (Rope& rope : set.ropes_) {
+      rope.rest.front() = rope.before[0];
+      rope.rest.back() = rope.before[1];
+    }
+    substep(0.5 * duration, halvings - 1);
+    substep(0.5 * duration, halvings - 1);
+    return;
+  }
+  if (unsettled > math::square(unsettled_strain)) take_part();
+  commit_bodies();
+  keep_crossings();
+  for (Rope& rope : set.ropes_) hold_back(rope);
+  for (std::size_t r = 0; r < set.ropes_.size(); ++r) advance(set.ropes_[r], int(r));
+  move_bodies();
+}
+
 Status RopeSolver::run() {
   gravity = Vec3d(world.definition().gravity);
   set.breaks_.clear();
@@ -323,50 +425,21 @@ Status RopeSolver::run() {
   }
   find_crossings();
   find_mobility();
-  for (Rope& rope : set.ropes_) prepare(rope);
+  for (Rope& rope : set.ropes_) {
+    prepare(rope);
+    find_touched(rope);
+  }
   for (int s = 0; s < substeps; ++s) {
-    for (RopeBody& body : set.bodies_) {
-      if (!body.moves) continue;
-      const Vec3d weight = (h * body.mass) * body.gravity;
-      body.velocity += body.linear * weight;
-      body.spin += transpose(body.mixed) * weight;
-    }
+    h = dt / substeps;
     for (Rope& rope : set.ropes_) {
-      weigh(rope);
-      forces(rope);
-      hold_grips(rope);
-      place_contacts(rope);
-      place_edges(rope);
+      if (s == 0 || !strayed(rope)) continue;
+      const std::size_t known = set.bodies_.size();
+      find_contacts(rope);
+      for (std::size_t b = known; b < set.bodies_.size(); ++b)
+        set.bodies_[b].center += (s * h) * set.bodies_[b].velocity;
+      find_touched(rope);
     }
-    place_crossings();
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
-        Rope& rope = set.ropes_[r];
-        assemble(rope);
-        add_crossings(rope, int(r));
-        solve(rope);
-        react(rope, false);
-      }
-      const bool push = !set.crossing_now_.empty() && iteration < cross_iterations;
-      couple(push);
-      bool again = push && push_crossings();
-      for (Rope& rope : set.ropes_) {
-        react(rope, true);
-        if (iteration + 1 == most_iterations) continue;
-        again |= update_holds(rope, iteration);
-        const double off = change(rope);
-        again |= iteration < turn_iterations && off > 2e-9;
-        // A guess turns no segment by more than about a third in one iteration.
-        const double share = off > 0.1 ? math::sqrt(0.1 / off) : 1;
-        for (std::size_t i = 0; i < rope.position.size(); ++i)
-          rope.guess[i] = share == 1 ? rope.solution[i] : lerp(rope.guess[i], rope.solution[i], share);
-      }
-      if (!again) break;
-    }
-    commit_bodies();
-    keep_crossings();
-    for (std::size_t r = 0; r < set.ropes_.size(); ++r) advance(set.ropes_[r], int(r));
-    move_bodies();
+    substep(dt / substeps, most_halvings);
   }
   for (Rope& rope : set.ropes_)
     for (RopeGrip& grip : rope.grips) grip.force = grip.impulse / dt;
