@@ -35,7 +35,7 @@ bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
 void AimSolver::walk(double from, double to, const double* pace, Aims& aims) const {
   const double side = to > from ? 1 : -1;
   // Of the time: from step to step a shot's speed changes little more; a passing touch may be as short as the least.
-  const double longest_step = side > 0 ? 0.4 : 0.25, least_step = 4e-3;
+  const double longest_step = side > 0 ? 0.4 : 0.25;
   Guess guess = straight(from);
   Reach before;
   double foretold = 0;     // s, when the gap would close, by the look before
@@ -44,10 +44,12 @@ void AimSolver::walk(double from, double to, const double* pace, Aims& aims) con
     const double time = guess.time;
     const Reach at = reach_nearest(guess);
     if (at.known && before.known && (before.gap > 0) != (at.gap > 0) && between(before, at, aims)) return;
-    double step = (at.known ? least_step : 5 * least_step) * time;
+    // Longer the longer it takes, so that a target that stays beside the surface does not hold it up.
+    const double least_step = (at.known ? 4e-3 : 2e-2) * (1 + 0.01 * i);
+    double step = least_step * time;
     if (at.known) {
       const double ahead = -side * at.gap / at.rate, closes = time + side * ahead;
-      if (ahead > 0 && ahead < math::min((side > 0 ? .5 : .25) * time, 0.6 * refused) &&
+      if (ahead > 0 && ahead < math::min((side > 0 ? 0.5 : 0.25) * time, 0.6 * refused) &&
           math::abs(closes - foretold) < 0.3 * ahead) {
         if (soon(at, closes, aims)) return;
         refused = ahead;
@@ -60,7 +62,7 @@ void AimSolver::walk(double from, double to, const double* pace, Aims& aims) con
       for (int look = 1; look <= looks; ++look)
         if (time_of_look(look) >= time - far && time_of_look(look - 1) <= time + far)
           most = math::max(most, pace[look]);
-      step = math::clamp(0.8 * math::abs(at.gap) / (shots + most), step, far);
+      step = math::clamp(0.8 * math::abs(at.gap) / (shots + most), step, math::max(step, far));
     }
     if (time == to) return;
     before = at;
@@ -75,9 +77,9 @@ bool AimSolver::soon(const Reach& at, double time, Aims& aims) const {
   const Root root = refine(toward(at, time), 14, true);
   if (!root.found || math::abs(root.guess.time - time) > 0.3 * ahead + 1e-3 * from) return false;
   if ((root.slope < 0) != ((at.gap > 0) == (time > from))) return false;  // that is where it comes back
-  if (ahead > .05 * from) {
+  if (ahead > 0.05 * from) {
     const Reach halfway = reach_nearest(toward(at, 0.5 * (from + root.guess.time)));
-    if (!halfway.known || math::abs(halfway.gap - 0.5 * at.gap) > .1 * math::abs(at.gap)) return false;
+    if (!halfway.known || math::abs(halfway.gap - 0.5 * at.gap) > 0.1 * math::abs(at.gap)) return false;
   }
   keep(aims, root);
   return true;
