@@ -88,6 +88,18 @@ bool goes_through(const Fall& fall) {
   return false;
 }
 
+/// The number of a case turns the rope from 30° to 90° to the post and puts it off its middle by up to a quarter of a
+/// metre.
+Fall over(double post, double segment, const double (&load)[2], int number) {
+  const double turn = math::pi / 6 * (1 + number % 3), off = 0.25 * math::sin(2.4 * number);
+  return {.post = post,
+          .segment = segment,
+          .along = {math::sin(turn), 0, math::cos(turn)},
+          .middle = {off, post + 0.055, 0},
+          .velocity = {},
+          .loads = {load[0], load[1]}};
+}
+
 constexpr double posts[] = {0.02, 0.01, 0.005}, segments[] = {0.05, 0.025};
 constexpr double loads[][2] = {{0, 0}, {1, 1}, {100, 100}, {1, 0}, {100, 50}, {0, 100}, {3, 100}};
 
@@ -97,14 +109,8 @@ TEST(RopePosts, WhatFallsOnAThinPostHangsOverItOrSlidesOff) {
     for (const double segment : segments)
       for (const double height : {1.0, 2.5, 5.0})
         for (const auto& load : loads) {
-          // From 30° to 90° to the post, off its middle by up to a quarter of a metre.
-          const double turn = math::pi / 6 * (1 + count % 3), off = 0.25 * math::sin(2.4 * count);
-          const Fall fall{.post = post,
-                          .segment = segment,
-                          .along = {math::sin(turn), 0, math::cos(turn)},
-                          .middle = {off, post + 0.055, 0},
-                          .velocity = {0, -math::sqrt(2 * g * height), 0},
-                          .loads = {load[0], load[1]}};
+          Fall fall = over(post, segment, load, count);
+          fall.velocity.y = -math::sqrt(2 * g * height);
           ++count;
           if (!goes_through(fall)) continue;
           ++through;
@@ -140,15 +146,9 @@ TEST(RopePosts, WhatAThinPostMeetsIsTakenAlong) {
   for (const double post : posts)
     for (const double segment : segments)
       for (const auto& load : loads) {
-        const double turn = math::pi / 6 * (1 + count % 3), off = 0.25 * math::sin(2.4 * count);
-        const Fall fall{.post = post,
-                        .segment = segment,
-                        .along = {math::sin(turn), 0, math::cos(turn)},
-                        .middle = {off, post + 0.055, 0},
-                        .velocity = {},
-                        .loads = {load[0], load[1]},
-                        .lift = 1 + 1.5 * (count % 7),
-                        .seconds = 0.4};
+        Fall fall = over(post, segment, load, count);
+        fall.lift = 1 + 1.5 * (count % 7);
+        fall.seconds = 0.4;
         EXPECT_FALSE(goes_through(fall)) << "post " << post << " m, segments of " << segment << " m, number " << count;
         ++count;
       }

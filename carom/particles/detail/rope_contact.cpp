@@ -100,6 +100,16 @@ Vec3d RopeSolver::shape_point_after(const RopeShape& shape, Vec3d point, Vec3d v
   return shape_point(shape, point + h * drift);
 }
 
+RopePlace RopeSolver::edge_place(const Rope& rope, std::size_t e, const RopeShape& shape) const {
+  return {{shape_point(shape, rope.position[e]), shape_point(shape, rope.position[e + 1])}};
+}
+
+RopePlace RopeSolver::edge_place_after(const Rope& rope, std::size_t e, const RopeShape& shape,
+                                       const std::vector<Vec3d>& velocity, bool solved) const {
+  return {{shape_point_after(shape, rope.position[e], velocity[e], solved),
+           shape_point_after(shape, rope.position[e + 1], velocity[e + 1], solved)}};
+}
+
 RopeNearest RopeSolver::nearest(const RopeShape& shape, const RopePlace& place, double radius) const {
   RopeNearest found;
   const auto separation = [&](double share) {
@@ -114,7 +124,7 @@ RopeNearest RopeSolver::nearest(const RopeShape& shape, const RopePlace& place, 
 
 RopeNearest RopeSolver::meet(const RopeShape& shape, const RopePlace& now, const RopePlace& then,
                              const RopeNearest& last, double radius) const {
-  const double motion = math::max(distance(now.end[0], then.end[0]), distance(now.end[1], then.end[1]));
+  const double motion = detail::motion(now, then);
   const double room = meet_depth * radius;
   if (last.separation - motion > -room) return last;
   RopeNearest at = nearest(shape, now, radius);
@@ -216,11 +226,7 @@ bool RopeSolver::place_again(Rope& rope) {
     const RopeContact& contact = rope.edges[e].contact;
     if (contact.near < 0 || rope.broken[e] || (as_expected(e, contact) && as_expected(e + 1, contact))) continue;
     const RopeShape& near = set.shapes_[std::size_t(contact.near)];
-    RopePlace now, then;
-    for (std::size_t k = 0; k < 2; ++k) {
-      now.end[k] = shape_point(near, rope.position[e + k]);
-      then.end[k] = shape_point_after(near, rope.position[e + k], rope.solution[e + k], true);
-    }
+    const RopePlace now = edge_place(rope, e, near), then = edge_place_after(rope, e, near, rope.solution, true);
     if (too_deep(contact, now, then)) any |= place_edge(rope, e, true);
   }
   return any;

@@ -64,16 +64,10 @@ bool RopeSolver::place_edge(Rope& rope, std::size_t e, bool solved) {
   const RopeBody& body = set.bodies_[std::size_t(contact.body)];
   const std::vector<Vec3d>& velocity = solved ? rope.solution : rope.velocity;
   // In the shape's frame, now and where the ends drift to.
-  RopePlace now, then;
+  const RopePlace now = edge_place(rope, e, near), then = edge_place_after(rope, e, near, velocity, solved);
   double ends = 1e30;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const Vec3d at = rope.position[e + k];
-    now.end[k] = shape_point(near, at);
-    then.end[k] = shape_point_after(near, at, velocity[e + k], solved);
-    ends = math::min(ends, nearest(near, {{then.end[k], then.end[k]}}, radius).separation);
-  }
-  const double width = distance(then.end[0], then.end[1]);
-  const double motion = math::max(distance(now.end[0], then.end[0]), distance(now.end[1], then.end[1]));
+  for (const Vec3d& end : then.end) ends = math::min(ends, nearest(near, {{end, end}}, radius).separation);
+  const double width = distance(then.end[0], then.end[1]), motion = detail::motion(now, then);
   if (!solved) edge.nearest = ends - 0.5 * width - motion;
   if (ends - 0.5 * width > motion) return false;
   const RopeNearest last = nearest(near, then, radius);
@@ -123,13 +117,8 @@ double RopeSolver::free_share(const Rope& rope) const {
     const RopeShape& near = set.shapes_[std::size_t(contact.near)];
     const double half = half_thickness(near.shape);
     if (half == 0) continue;
-    RopePlace now, then;
-    double motion = 0;
-    for (std::size_t k = 0; k < 2; ++k) {
-      now.end[k] = shape_point(near, rope.position[e + k]);
-      then.end[k] = shape_point_after(near, rope.position[e + k], rope.solution[e + k], false);
-      motion = math::max(motion, distance(now.end[k], then.end[k]));
-    }
+    const RopePlace now = edge_place(rope, e, near), then = edge_place_after(rope, e, near, rope.solution, false);
+    const double motion = detail::motion(now, then);
     // Nearly at the middle, and so much nearer to it counts as there.
     const double core = radius + half, limit = -deepest * core, close = 0.05 * core;
     if (rope.edges[e].nearest - motion > limit) continue;

@@ -20,6 +20,10 @@ struct RopePlace {
 inline RopePlace lerp(const RopePlace& a, const RopePlace& b, double t) {
   return {{math::lerp(a.end[0], b.end[0], t), math::lerp(a.end[1], b.end[1], t)}};
 }
+/// m, that neither end goes farther than.
+inline double motion(const RopePlace& from, const RopePlace& to) {
+  return math::max(distance(from.end[0], to.end[0]), distance(from.end[1], to.end[1]));
+}
 /// Where a segment is nearest to a shape.
 struct RopeNearest {
   double share = 0.5;  ///< of the second end
@@ -56,6 +60,10 @@ struct RopeSolver {
   Vec3d shape_point(const RopeShape& shape, Vec3d point) const;  ///< in the shape's frame
   /// The same at the end of the substep, for a velocity; `solved`: with what the solve changes of the body's.
   Vec3d shape_point_after(const RopeShape& shape, Vec3d point, Vec3d velocity, bool solved) const;
+  /// A segment in the shape's frame now; and where its ends' velocities take it.
+  RopePlace edge_place(const Rope& rope, std::size_t e, const RopeShape& shape) const;
+  RopePlace edge_place_after(const Rope& rope, std::size_t e, const RopeShape& shape,
+                             const std::vector<Vec3d>& velocity, bool solved) const;
   RopeNearest nearest(const RopeShape& shape, const RopePlace& place, double radius) const;
   /// What is nearest of a motion within a substep where it ends (`last`), or where it would go into the shape;
   /// `separation` is what the plane there leaves at the end.
