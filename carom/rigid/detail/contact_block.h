@@ -149,7 +149,7 @@ struct ContactKernels {
   /// How `count` pairs have moved, at most as many as the width. Null in space.
   KnownApart (*pair_motions)(PairMotions& pairs, int count, const MovingBodies& bodies, float dt) = nullptr;
   /// Fills `block` and `raw` from the records of the manifolds in `list`; lanes without one are like the first, but
-  /// move nobody. Null where stage_contacts.cpp does this (3D).
+  /// move nobody.
   GatheredLanes (*gather)(const ContactSources<D>& from, const std::int32_t* list, int lanes, void* block,
                           void* raw) = nullptr;
   /// Rolling resistance and restitution of a prepared block. Bits by lane: may bounce in this step. Not for worlds

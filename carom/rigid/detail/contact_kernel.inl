@@ -149,6 +149,7 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 
 #include "carom/rigid/detail/box_kernel.inl"
 #include "carom/rigid/detail/contact_gather2.inl"
+#include "carom/rigid/detail/contact_gather3.inl"
 #include "carom/rigid/detail/contact_prepare2.inl"
 #include "carom/rigid/detail/contact_prepare3.inl"
 #include "carom/rigid/detail/contact_watch2.inl"
@@ -206,6 +207,7 @@ ContactKernels<Dim3> kernels(Dim3) {
   k.width = W;
   k.new_meetings = new_meetings<Dim3, W>;
   k.nothing_new = nothing_new3<W>;
+  k.gather = gather3<W>;
   k.prepare = prepare3<W>;
   k.strikes = strikes<Dim3, W>;
   k.warm_start = warm_start3<W>;

@@ -6,8 +6,8 @@ namespace {
 
 template <class D, int W>
 void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const typename D::Vector& center,
-               bool at_origin, typename ContactRaw<D, W>::Placed& to, int lane) {
-  const typename D::Transform local = at_origin ? typename D::Transform{} : world.shapes.at(shape).local;
+               typename ContactRaw<D, W>::Placed& to, int lane) {
+  const typename D::Transform& local = world.shapes.at(shape).local;
   put(to.p, lane, local.p - center);
   put(to.q, lane, local.q);
 }
@@ -36,94 +36,11 @@ ContactSources<D> sources_of(const StepContext<D>& context) {
   return s;
 }
 
-/// Copies what the records hold to a lane; what follows from it the kernel computes for all lanes at once. Returns
-/// whether it is so deep that it is pushed out with the push speed.
-template <class D, int W>
-bool gather_lane(const StepContext<D>& context, std::int32_t index, ContactBlock<D, W>& block, ContactRaw<D, W>& raw,
-                 int lane) {
-  using V = typename D::Vector;
-  const WorldImplementation<D>& world = context.world;
-  const ManifoldRecord<D>& m = world.contacts.manifold(index);
-  const ContactRecord<D>& c = world.contacts.at(m.contact);
-  const std::int32_t a = c.body[0], b = c.body[1];
-  const BodyMotion<D>&ma = world.bodies.motion[std::size_t(a)], &mb = world.bodies.motion[std::size_t(b)];
-  const bool both = (c.flags & contact_dynamic) != 0;
-  const bool dynamic_a = both || world.bodies.is_dynamic(a), dynamic_b = both || world.bodies.is_dynamic(b);
-  const bool at_origin = (c.flags & contact_at_origin) != 0;
-  put(raw.rotation_a, lane, world.bodies.pose[std::size_t(a)].rotation);
-  put(raw.rotation_b, lane, world.bodies.pose[std::size_t(b)].rotation);
-  put_shape<D, W>(world, c.shape[0], ma.local_center, at_origin, raw.shape_a, lane);
-  put_shape<D, W>(world, c.shape[1], mb.local_center, at_origin, raw.shape_b, lane);
-  put(raw.base.p, lane, c.base.p);
-  put(raw.base.q, lane, c.base.q);
-  raw.recycled[lane] = (c.flags & contact_recycled) != 0 ? 1 : 0;
-  put(raw.anchor_a, lane, m.anchor_a);
-  put(raw.anchor_b, lane, m.anchor_b);
-  const bool slides = m.tangent_speed != 0 || (c.flags & contact_round) != 0;
-  raw.anchor_state[lane] = slides ? 0 : 1 + float(m.anchor);
-  put(raw.friction_impulse, lane, m.impulses.friction);
-  raw.squeezed[lane] = 1 - min(load_share(ma), load_share(mb));
-  raw.tangent_speed[lane] = m.tangent_speed;
-  // Radius of the patch for the twist over the mean distance of its points, under uniform pressure: a disc turns on 2/3
-  // of its radius, rectangles from square to thin line on .54 … .5 of the distance of their corners.
-  raw.patch_factor[lane] = (c.flags & contact_on_disc) != 0 ? 2.0f / 3.0f : 0.53f;
-  // What a single point's disc turns on (prepare_friction3), unless a resistance holds against spin. Of spinning
-  // resistance what rolling resistance does not do already.
-  raw.point_factor[lane] = m.rolling_lever > 0 || m.spinning_lever > 0 ? 0 : 0.589f;
-  const float spinning = m.spinning_lever - m.rolling_lever;
-  raw.spin_radius[lane] = spinning > 0 && m.friction > 0 ? spinning / m.friction : 0;
-
-  block.read_a[lane] = a;
-  block.read_b[lane] = b;
-  block.write_a[lane] = dynamic_a ? a : none;
-  block.write_b[lane] = dynamic_b ? b : none;
-  put(block.normal, lane, m.manifold.normal);
-  block.inverse_mass_a[lane] = ma.inverse_mass * load_share(ma);
-  block.inverse_mass_b[lane] = mb.inverse_mass * load_share(mb);
-  put(block.inverse_inertia_a, lane, ma.world_inverse_inertia * load_share(ma));
-  put(block.inverse_inertia_b, lane, mb.world_inverse_inertia * load_share(mb));
-  const Softness& soft = dynamic_a && dynamic_b ? context.contact_softness : context.fixed_contact_softness;
-  block.bias_rate[lane] = soft.bias_rate;
-  block.mass_scale[lane] = soft.mass_scale;
-  block.impulse_scale[lane] = soft.impulse_scale;
-  put(block.center_offset, lane, V(ma.center - mb.center));
-  float deepest = 0;
-  for (int i = 0; i < D::max_points; ++i) {
-    auto& point = block.point[i];
-    const bool exists = i < m.manifold.count;
-    if (exists) deepest = min(deepest, m.manifold.points[i].separation);
-    put(point.r_a, lane, exists ? m.manifold.points[i].point : V{});
-    point.separation[lane] = exists ? m.manifold.points[i].separation : 0;
-    point.normal_mass[lane] = exists ? 1 : 0;
-    // An impulse on its way to nothing is nothing: no denormals, no division by them.
-    point.impulse[lane] = exists && m.impulses.normal[i] > 1e-12f ? m.impulses.normal[i] : 0;
-    point.total[lane] = 0;
-  }
-  block.friction[lane] = m.friction;
-  block.settles[lane] = 0;
-  block.struck[lane] = 0;
-  block.again[lane] = 0;
-  block.tangent_total[0][lane] = block.tangent_total[1][lane] = 0;
-  block.twist_impulse[lane] = m.impulses.twist;
-  return deepest * soft.bias_rate < -context.push_speed;
-}
-
 template <class Block>
 void zero_lane(Block& block, int width, int lane) {
   for (std::size_t i = 0; i < sizeof(Block) / 4; i += std::size_t(width))
     reinterpret_cast<float*>(&block)[i + std::size_t(lane)] = 0;
 }
-/// A lane without a contact: no masses, and the bodies of the block's first lane to read from.
-template <class D, int W>
-void clear_lane(ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, int lane) {
-  zero_lane(block, W, lane);
-  zero_lane(raw, W, lane);
-  if (extra != nullptr) zero_lane(*extra, W, lane);
-  block.read_a[lane] = block.read_a[0];
-  block.read_b[lane] = block.read_b[0];
-  block.write_a[lane] = block.write_b[lane] = none;
-}
-
 /// Puts the manifold of a pair that will meet in this step there where it does. False: as it is. `across`: foresee.
 template <class D>
 bool put_where_it_meets(const StepContext<D>& context, std::int32_t index, typename D::Vector& across) {
@@ -187,40 +104,28 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
                   ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, std::uint8_t* marks) {
   const int lanes = int(list.size());
   typename D::Vector across[W];
-  std::uint32_t meets = 0, turns = 0, pushed = 0;  // bits by lane
+  std::uint32_t meets = 0;  // bits by lane
   for (int lane = 0; lane < lanes; ++lane) {
     const std::int32_t index = list[std::size_t(lane)];
     const ContactRecord<D>& c = sources.contacts[sources.manifolds[index].contact];
-    if constexpr (D::dimension == 3)
-      turns |= std::uint32_t(turns_in_step(context.world, c, sources.manifolds[index], context.dt)) << lane;
     if (may_foresee(c)) meets |= std::uint32_t(put_where_it_meets(context, index, across[lane])) << lane;
   }
-  if constexpr (D::dimension == 2) {
-    const WorldImplementation<D>& world = context.world;
-    const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
-    turns = found.turns;
-    put_marks<W>(found, lanes, marks);
-    for (std::uint32_t left = found.placed & lane_bits(lanes); left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);
-      put_shape<D, W>(world, c.shape[0], world.bodies.motion[std::size_t(c.body[0])].local_center, false, raw.shape_a,
-                      lane);
-      put_shape<D, W>(world, c.shape[1], world.bodies.motion[std::size_t(c.body[1])].local_center, false, raw.shape_b,
-                      lane);
-    }
-    pushed = found.pushed & lane_bits(lanes);
-    if (extra != nullptr)
-      for (int lane = lanes; lane < W; ++lane) zero_lane(*extra, W, lane);
-  } else {
-    for (int lane = 0; lane < lanes; ++lane)
-      pushed |= std::uint32_t(gather_lane(context, list[std::size_t(lane)], block, raw, lane)) << lane;
-    for (int lane = lanes; lane < W; ++lane) clear_lane(block, raw, extra, lane);
+  const WorldImplementation<D>& world = context.world;
+  const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
+  if constexpr (D::dimension == 2) put_marks<W>(found, lanes, marks);
+  for (std::uint32_t left = found.placed & lane_bits(lanes); left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);
+    put_shape<D, W>(world, c.shape[0], world.bodies.motion[std::size_t(c.body[0])].local_center, raw.shape_a, lane);
+    put_shape<D, W>(world, c.shape[1], world.bodies.motion[std::size_t(c.body[1])].local_center, raw.shape_b, lane);
   }
+  if (extra != nullptr)
+    for (int lane = lanes; lane < W; ++lane) zero_lane(*extra, W, lane);
+  std::uint32_t pushed = found.pushed & lane_bits(lanes), turns = found.turns & ~meets;
   for (; pushed != 0; pushed &= pushed - 1) {
     const int lane = std::countr_zero(pushed);
     if (!parts_in_flight(context, block.read_a[lane], block.read_b[lane])) marks[lane] |= mark_pushed;
   }
-  turns &= ~meets;
   for (; meets != 0; meets &= meets - 1) {
     const int lane = std::countr_zero(meets);
     put(block.center_offset, lane, get(block.center_offset, lane) - across[lane]);

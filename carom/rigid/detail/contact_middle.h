@@ -29,27 +29,6 @@ inline Vec3f turned_in(const Quatf& frame, const Quatf& turn, const Vec3f& v) {
   return inverse_rotate(frame, rotate(turn, rotate(frame, v)));
 }
 
-/// Does it carry a load, and do the bodies move past each other by as much as it takes? By the velocities that they
-/// have now. In the plane lanes tell (turning2).
-inline bool turns_in_step(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
-                          const ManifoldRecord<Dim3>& m, float dt) {
-  if (!c.rolls || (c.flags & contact_many) != 0) return false;
-  bool loaded = false;
-  for (int i = 0; i < m.manifold.count; ++i) loaded = loaded || m.impulses.normal[i] > 0;
-  if (!loaded) return false;
-  const float still = still_way(world, dt);
-  if (!(still > 0)) return false;  // without gravity nothing rocks, and arms of the start are those of most blows
-  const float half = 0.5f * dt, least = max(least_middle_way * c.inner, 0.5f * still);
-  const SolverBody<Dim3>& sa = world.bodies.solver[std::size_t(c.body[0])];
-  const SolverBody<Dim3>& sb = world.bodies.solver[std::size_t(c.body[1])];
-  const Vec3f between(world.bodies.motion[std::size_t(c.body[1])].center -
-                      world.bodies.motion[std::size_t(c.body[0])].center);
-  const Vec3f seen = sb.linear_velocity - sa.linear_velocity - cross(sa.angular_velocity, between);
-  const float turned = math::length(sb.angular_velocity - sa.angular_velocity) * c.extent;
-  const float moved = half * half * (math::length_squared(seen) + turned * turned), most = most_middle_way * c.extent;
-  return moved > least * least && moved < most * most;
-}
-
 /// Where the shapes of a contact will be, by the velocities that their bodies have now. False for a manifold of an
 /// earlier step, which is kept because little has changed.
 template <class D>
