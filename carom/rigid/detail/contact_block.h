@@ -156,7 +156,7 @@ struct ContactKernels {
   /// where bodies have clocks of their own.
   std::uint32_t (*approach)(const ContactSources<D>& from, const std::int32_t* list, int lanes, const void* block,
                             void* extra) = nullptr;
-  /// Which lanes of a prepared block close at `least` m/s or more. Bits by lane. Null in space.
+  /// Which lanes of a prepared block close at `least` m/s or more. Bits by lane.
   std::uint32_t (*closing)(const ContactSources<D>& from, int lanes, const void* block, float least) = nullptr;
   /// Which lanes of a prepared block meet in this step from so far off that a blow does not act where the block has it.
   /// Bits by lane.

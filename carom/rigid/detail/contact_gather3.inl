@@ -1,4 +1,5 @@
-// From the records of contacts and bodies to lanes, in space: as contact_gather2.inl, part of contact_kernel.inl.
+// From the records of contacts and bodies to lanes and back, in space: as contact_gather2.inl, part of
+// contact_kernel.inl.
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
@@ -15,7 +16,8 @@ struct ManifoldRows3 {  // what a row starts with
 };
 struct BodyRows3 {
   using Motion = BodyMotion<Dim3>;
-  static constexpr int center = offsetof(Motion, local_center), rotation = offsetof(Dim3::Pose, rotation);
+  static constexpr int center = offsetof(Motion, local_center), gravity_scale = offsetof(Motion, gravity_scale),
+                       rotation = offsetof(Dim3::Pose, rotation);
   static_assert(offsetof(Motion, inverse_mass) == center + 12 &&
                 offsetof(Motion, world_inverse_inertia) == center + 16 && offsetof(Motion, force) == center + 52);
 };
@@ -185,13 +187,163 @@ GatheredLanes gather3(const ContactSources<Dim3>& from, const std::int32_t* list
   F::zero().store(c.struck);
   I::zero().store(c.again);
   GatheredLanes result;
+  const I anchored = I::load(anchor);
+  result.anchored = bitmask(anchored != I::splat(int(Anchor::none)));
+  result.open = bitmask(anchored == I::splat(int(Anchor::settles)));
   WideMask<W> loaded;
-  result.pushed = gather_points3<W>(from, lane, c, raw, I::load(anchor), flag, loaded);
+  result.pushed = gather_points3<W>(from, lane, c, raw, anchored, flag, loaded);
   result.placed = bitmask(!has(contact_at_origin));
   // Without gravity nothing rocks, and arms of the step's start are those of most blows.
   rolls &= bitmask(loaded) & ((1u << lanes) - 1);
   if (rolls != 0 && from.still_way > 0) result.turns = rolls & turning3<W>(from, lane, c);
   return result;
+}
+
+/// m/s², of bodies without a clock of their own.
+template <int W>
+CAROM_SIMD_INLINE WideVec3<W> acceleration3(const ContactSources<Dim3>& from, const std::int32_t (&body)[W],
+                                            const std::int32_t (&moved)[W]) {
+  using F = WideFloat<W>;
+  LaneRecords2 lane[W];
+  for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + body[i]);
+  F row[16], scale[4];
+  gather_from<&LaneRecords2::motion_a, BodyRows3::center>(lane, row);
+  gather_from<&LaneRecords2::motion_a, BodyRows3::gravity_scale>(lane, scale);
+  const auto moves = WideInt<W>::load(moved) > WideInt<W>::splat(-1);
+  const auto along = [&](float gravity, F force) __attribute__((always_inline)) {
+    return keep(moves, F::splat(gravity) * scale[0] + force * row[3]);
+  };
+  return {along(from.gravity.x, row[13]), along(from.gravity.y, row[14]), along(from.gravity.z, row[15])};
+}
+
+/// m/s, of B's point against A's along the normal.
+template <int W>
+struct Parting3 {
+  WideVec3<W> n, offset, va, wa, vb, wb;
+  Parting3(const ContactSources<Dim3>& from, const ContactBlock<Dim3, W>& c)
+      : n(load3<W>(c.normal)), offset(load3<W>(c.center_offset)) {
+    WideFloat<W> a[8], b[8];
+    gather<W>(from.bodies, c.read_a, 0, a);
+    gather<W>(from.bodies, c.read_b, 0, b);
+    va = {a[0], a[1], a[2]}, wa = {a[4], a[5], a[6]};
+    vb = {b[0], b[1], b[2]}, wb = {b[4], b[5], b[6]};
+  }
+  CAROM_SIMD_INLINE WideFloat<W> at(const WideVec3<W>& ra) const {
+    return dot(n, subtract(subtract(add(vb, cross(wb, add(ra, offset))), va), cross(wa, ra)));
+  }
+};
+
+template <int W>
+std::uint32_t approach3(const ContactSources<Dim3>& from, const std::int32_t* list, int lanes, const void* block,
+                        void* extra) {
+  using F = WideFloat<W>;
+  const ContactBlock<Dim3, W>& c = *static_cast<const ContactBlock<Dim3, W>*>(block);
+  ContactExtra<Dim3, W>& e = *static_cast<ContactExtra<Dim3, W>*>(extra);
+  const F zero = F::zero();
+  LaneRecords2 lane[W];
+  for (int i = 0; i < W; ++i)
+    lane[i].manifold = reinterpret_cast<const char*>(from.manifolds + list[i < lanes ? i : 0]);
+  F head[8], old[4];
+  gather_from<&LaneRecords2::manifold, ManifoldRows3::friction>(lane, head);
+  gather_from<&LaneRecords2::manifold, ManifoldRows3::rolling>(lane, old);
+  const F restitution = head[1], lever = head[2];
+  const auto rolls = lever > zero, bouncy = restitution > zero;
+  lever.store(e.rolling_lever);
+  for (int i = 0; i < 6; ++i)
+    (F::load(c.inverse_inertia_a[i]) + F::load(c.inverse_inertia_b[i])).store(e.rolling_response[i]);
+  for (int i = 0; i < 3; ++i) keep(rolls, old[i]).store(e.rolling_impulse[i]);
+  WideInt<W>::zero().store(e.struck);
+  zero.store(e.closing_acceleration);
+  for (auto& speed : e.bounce_speed) zero.store(speed);
+  if (!any(bouncy)) return 0;
+
+  const WideVec3<W> acceleration =
+      subtract(acceleration3<W>(from, c.read_a, c.write_a), acceleration3<W>(from, c.read_b, c.write_b));
+  const Parting3<W> parting(from, c);
+  const F closing = keep(bouncy, max(dot(parting.n, acceleration), zero));
+  closing.store(e.closing_acceleration);
+  WideMask<W> bounces = WideMask<W>::none();
+  for (int i = 0; i < 4; ++i) {
+    const F vn = parting.at(load3<W>(c.point[i].r_a));
+    // The speed at the surface: v² + 2 a s, because the body still falls through the gap.
+    const F impact = sqrt(vn * vn + F::splat(2) * closing * max(F::load(c.point[i].separation), zero));
+    const auto strikes =
+        bouncy & (bits(head[7]) > WideInt<W>::splat(i)) & (vn < zero) & (impact > F::splat(from.restitution_threshold));
+    keep(strikes, restitution * impact).store(e.bounce_speed[i]);
+    bounces = bounces | strikes;
+  }
+  return bitmask(bounces);
+}
+
+template <int W>
+std::uint32_t closing3(const ContactSources<Dim3>& from, int lanes, const void* block, float least) {
+  using F = WideFloat<W>;
+  const ContactBlock<Dim3, W>& c = *static_cast<const ContactBlock<Dim3, W>*>(block);
+  const Parting3<W> parting(from, c);
+  WideMask<W> fast = WideMask<W>::none();
+  for (int i = 0; i < 4; ++i) {
+    const auto exists = F::load(c.point[i].normal_mass) > F::zero();
+    fast = fast | (exists & (parting.at(load3<W>(c.point[i].r_a)) < F::splat(-least)));
+  }
+  return bitmask(fast) & ((1u << lanes) - 1);
+}
+
+/// Adds the load of each lane to its bodies, as store_load2.
+template <int W>
+CAROM_SIMD_INLINE void store_load3(const ContactSources<Dim3>& to, const ContactBlock<Dim3, W>& c, WideFloat<W> load) {
+  using F = WideFloat<W>;
+  const F zero = F::zero();
+  const auto loaded = load > zero;
+  if (!any(loaded)) return;
+  const WideVec3<W> n = load3<W>(c.normal);
+  const WideVec3<W> p = {keep(loaded, n.x * load), keep(loaded, n.y * load), keep(loaded, n.z * load)};
+  F va[4], vb[4], a[4], b[4];
+  gather<W>(to.bodies, c.read_a, 0, va);
+  gather<W>(to.bodies, c.read_b, 0, vb);
+  // What is being squashed closes; what is at rest neither slides nor parts.
+  const WideVec3<W> relative = {vb[0] - va[0], vb[1] - va[1], vb[2] - va[2]};
+  const WideVec3<W> slip = subtract(relative, multiply(n, min(dot(n, relative), zero)));
+  const auto restless = dot(slip, slip) > F::splat(to.rest_speed_squared);
+  const F size = keep(loaded, select(restless, F::splat(to.restless_load), load));
+  gather_rows<4, W>(to.loads, c.read_a, a);
+  gather_rows<4, W>(to.loads, c.read_b, b);
+  const F sum_a[4] = {a[0] - p.x, a[1] - p.y, a[2] - p.z, a[3] + size},
+          sum_b[4] = {b[0] + p.x, b[1] + p.y, b[2] + p.z, b[3] + size};
+  scatter_rows<4, 4, W>(to.loads, c.write_a, sum_a);
+  scatter_rows<4, 4, W>(to.loads, c.write_b, sum_b);
+}
+
+template <int W>
+std::uint32_t store3(const ContactSources<Dim3>& to, const std::int32_t* list, int lanes, const void* block) {
+  using F = WideFloat<W>;
+  using Record = ManifoldRecord<Dim3>;
+  const ContactBlock<Dim3, W>& c = *static_cast<const ContactBlock<Dim3, W>*>(block);
+  std::int32_t index[W];
+  for (int i = 0; i < W; ++i) index[i] = i < lanes ? list[i] : none;
+  F load = F::zero(), impulses[8];
+  for (int i = 0; i < 4; ++i) {
+    impulses[i] = F::load(c.point[i].impulse);
+    impulses[4 + i] = F::load(c.point[i].total);
+    load += impulses[i];
+  }
+  const WideVec3<W> n = load3<W>(c.normal), t = load3<W>(c.tangent), u = cross(n, t);
+  const auto along = [&](const float(&size)[2][W]) __attribute__((always_inline)) {
+    return add(multiply(t, F::load(size[0])), multiply(u, F::load(size[1])));
+  };
+  const WideVec3<W> friction = along(c.tangent_impulse), total = along(c.tangent_total);
+  constexpr int stride = sizeof(Record) / 4, first = offsetof(Record, impulses) / 4,
+                sliding = offsetof(Record, impulses.friction) / 4;
+  static_assert(offsetof(Record, impulses.total) == 4 * first + 16 &&
+                offsetof(Record, impulses.friction_total) == 4 * sliding + 12);
+  float* records = reinterpret_cast<float*>(to.manifolds);
+  const F both[4] = {friction.x, friction.y, friction.z, total.x}, rest[4] = {friction.z, total.x, total.y, total.z};
+  scatter_rows<stride, 8, W>(records + first, index, impulses);
+  scatter_rows<stride, 4, W>(records + sliding, index, both);
+  scatter_rows<stride, 4, W>(records + sliding + 2, index, rest);
+  for (int i = 0; i < lanes; ++i) to.manifolds[list[i]].impulses.twist = c.twist_impulse[i];
+  store_load3<W>(to, c, load);
+  const F limit = F::splat(0.999f) * F::load(c.friction) * load;
+  return bitmask(dot(friction, friction) >= limit * limit);
 }
 
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -209,6 +209,9 @@ ContactKernels<Dim3> kernels(Dim3) {
   k.nothing_new = nothing_new3<W>;
   k.gather = gather3<W>;
   k.prepare = prepare3<W>;
+  k.approach = approach3<W>;
+  k.closing = closing3<W>;
+  k.store = store3<W>;
   k.strikes = strikes<Dim3, W>;
   k.warm_start = warm_start3<W>;
   k.solve = solve3<W>;

@@ -112,7 +112,7 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   }
   const WorldImplementation<D>& world = context.world;
   const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
-  if constexpr (D::dimension == 2) put_marks<W>(found, lanes, marks);
+  put_marks<W>(found, lanes, marks);
   for (std::uint32_t left = found.placed & lane_bits(lanes); left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);

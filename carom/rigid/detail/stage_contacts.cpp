@@ -111,7 +111,7 @@ bool prepare_blocks(StepContext<D>& context) {
   const ContactSources<D> sources = sources_of(context);
   const bool any_special = !world.shapes.extras.empty(), any_hits = world.hit_event_shapes > 0;
   // Where nothing rare is asked for, lanes find by themselves how their contacts roll and bounce, and who may hit.
-  const bool by_kernel = world.kernels.approach != nullptr && !any_special && world.bodies.time_scale.empty();
+  const bool by_kernel = !any_special && world.bodies.time_scale.empty();
   const bool may_wait = D::dimension == 2 && !any_special;
   std::atomic<bool> any_strikes = false;
   for_blocks<D, W>(context, Overflow::at_once,
@@ -297,9 +297,10 @@ void store_blocks(StepContext<D>& context) {
                        const std::size_t i = first + std::size_t(lane);
                        if (i + 12 < manifolds.size()) {
                          const char* record = reinterpret_cast<const char*>(sources.manifolds + manifolds[i + 12]);
-                         // In the plane the impulses lie in the second line alone; few anchors are asked for.
-                         const bool whole = D::dimension == 3 || (marks[lane + 12] & (mark_anew | mark_open)) != 0;
-                         for (std::size_t k = whole ? 0 : 64; k < ManifoldRecord<D>::hot_bytes; k += 64)
+                         // Of most the impulses alone are written; few anchors are asked for.
+                         const bool whole = (marks[lane + 12] & (mark_anew | mark_open)) != 0;
+                         const std::size_t end = ManifoldRecord<D>::hot_bytes;
+                         for (std::size_t k = whole ? 0 : offsetof(ManifoldRecord<D>, impulses); k < end; k += 64)
                            __builtin_prefetch(record + k, 1);
                        }
                      }
