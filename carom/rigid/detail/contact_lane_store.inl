@@ -93,15 +93,19 @@ void store_block(StepContext<Dim2>& context, const ContactSources<Dim2>& sources
                  const ContactBlock<Dim2, W>& block, const ContactExtra<Dim2, W>* extra, const std::uint8_t* marks) {
   const int lanes = int(list.size());
   const std::uint32_t at_limit = context.world.kernels.store(sources, list.data(), lanes, &block);
-  for (std::uint32_t left = at_limit; left != 0; left &= left - 1)
-    if (const int lane = std::countr_zero(left); lane < lanes && (marks[lane] & mark_anchored) != 0)
-      __builtin_prefetch(sources.manifolds + list[std::size_t(lane)], 1);
-  for (int lane = 0; lane < lanes; ++lane) {
+  const std::uint32_t limited = at_limit & lanes_with<W>(marks, mark_anchored) & lane_bits(lanes);
+  for (std::uint32_t left = limited; left != 0; left &= left - 1)
+    __builtin_prefetch(sources.manifolds + list[std::size_t(std::countr_zero(left))], 1);
+  if (extra != nullptr)
+    for (int lane = 0; lane < lanes; ++lane)
+      context.world.contacts.manifold(list[std::size_t(lane)]).impulses.rolling = extra->rolling_impulse[0][lane];
+  // Most keep their anchors: the front of their records is let be.
+  const std::uint32_t left_open =
+      (lanes_with<W>(marks, mark_anew) | lanes_with<W>(marks, mark_open)) & lane_bits(lanes);
+  for (std::uint32_t left = limited | left_open; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
     ManifoldRecord<Dim2>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
-    if (extra != nullptr) m.impulses.rolling = extra->rolling_impulse[0][lane];
     const bool limit = (at_limit >> lane & 1u) != 0, anew = (marks[lane] & mark_anew) != 0;
-    const bool open = (marks[lane] & mark_open) != 0, anchored = (marks[lane] & mark_anchored) != 0;
-    if (!anew && !open && !(limit && anchored)) continue;  // most keep theirs: the front of the record is let be
     const float load = block.point[0].impulse[lane] + block.point[1].impulse[lane];
     if (anew && !(load > 0)) continue;
     if (anew) {
