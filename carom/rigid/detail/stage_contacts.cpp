@@ -20,19 +20,21 @@ constexpr int block_grain = 8;
 
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
-/// of the one before it waits. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
+/// of the one before it waits. In the plane bodies are small and stay in the second cache: to call for them takes
+/// longer than they do. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
 template <class D>
 CAROM_SIMD_INLINE void prefetch_manifold(const ContactSources<D>& from, const ShapeRecord<D>* shapes,
                                          std::span<const std::int32_t> list, std::size_t i, bool velocities) {
   constexpr std::size_t manifold_lanes = 96, contact_lanes = 40, body_lanes = 18;
   if (i + body_lanes >= list.size()) return;
   const ContactRecord<D>& c = from.contacts[from.manifolds[list[i + body_lanes]].contact];
-  for (const std::int32_t body : c.body) {
-    prefetch_lines(from.motion + body, sizeof(BodyMotion<D>));
-    __builtin_prefetch(from.pose + body);
-    if (velocities || c.rolls) __builtin_prefetch(from.bodies + body);
-    if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(from.record + body);
-  }
+  if constexpr (D::dimension == 3)
+    for (const std::int32_t body : c.body) {
+      prefetch_lines(from.motion + body, sizeof(BodyMotion<D>));
+      __builtin_prefetch(from.pose + body);
+      if (velocities || c.rolls) __builtin_prefetch(from.bodies + body);
+      if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(from.record + body);
+    }
   if (D::dimension == 2 && c.rolls) {  // what put_middle asks for
     __builtin_prefetch(reinterpret_cast<const char*>(&c) + 64);
     prefetch_shapes(shapes, c);
