@@ -210,6 +210,21 @@ bool sweep_dynamic(WorldImplementation<Dim3>& world, bool& still_too) {
   return true;
 }
 
+/// What a strip tells of becomes pairs.
+struct MeetingsInStrip {
+  WorldImplementation<Dim2>& world;
+  std::vector<FoundPair>& found;
+  int strip = 0;
+
+  static void tell(void* whom, std::int32_t i, std::int32_t first, std::uint32_t which) {
+    MeetingsInStrip& m = *static_cast<MeetingsInStrip*>(whom);
+    const BoxStrips& strips = m.world.scratch.strips;
+    for (; which != 0; which &= which - 1)
+      if (const std::int32_t k = first + std::countr_zero(which); strips.is_of(m.strip, i, k))
+        consider_pair(m.world, std::int32_t(strips.item(i)), std::int32_t(strips.item(k)), m.found);
+  }
+};
+
 /// In the plane: all boxes against each other in strips, of now and of before. False where trees are faster.
 bool sweep_strips(WorldImplementation<Dim3>&) { return false; }
 bool sweep_strips(WorldImplementation<Dim2>& world) {
@@ -217,7 +232,7 @@ bool sweep_strips(WorldImplementation<Dim2>& world) {
   StepScratch<Dim2>& scratch = world.scratch;
   const auto& trees = world.shapes.trees;
   const std::size_t dynamic = std::size_t(trees[tree_dynamic].size()),
-                    still = std::size_t(trees[tree_fixed].size() + trees[tree_kinematic].size());
+                    still = std::size_t(trees[tree_fixed].size()) + std::size_t(trees[tree_kinematic].size());
   // A caller's filter may change its mind about what met before.
   if (world.contact_filter || 3 * scratch.moved.size() < dynamic + still || dynamic < 64) return false;
   const Bounds whole = trees[tree_dynamic].root_bounds();
@@ -231,20 +246,9 @@ bool sweep_strips(WorldImplementation<Dim2>& world) {
   if (!strips.sort()) return false;
   const StripRows rows = strips.rows();
   world.scheduler->parallel_for(strips.strip_count(), 2, [&](int begin, int end, int worker) {
-    struct Finder {
-      WorldImplementation<Dim2>& world;
-      std::vector<FoundPair>& found;
-      int strip;
-      static void tell(void* whom, std::int32_t i, std::int32_t first, std::uint32_t which) {
-        Finder& f = *static_cast<Finder*>(whom);
-        const BoxStrips& strips = f.world.scratch.strips;
-        for (; which != 0; which &= which - 1)
-          if (const std::int32_t k = first + std::countr_zero(which); strips.is_of(f.strip, i, k))
-            consider_pair(f.world, std::int32_t(strips.item(i)), std::int32_t(strips.item(k)), f.found);
-      }
-    } finder{world, scratch.found_pairs[std::size_t(worker)], 0};
+    MeetingsInStrip finder{world, scratch.found_pairs[std::size_t(worker)], 0};
     for (finder.strip = begin; finder.strip < end; ++finder.strip)
-      world.kernels.sweep(rows, strips.strip_begin(finder.strip), strips.strip_end(finder.strip), Finder::tell,
+      world.kernels.sweep(rows, strips.strip_begin(finder.strip), strips.strip_end(finder.strip), MeetingsInStrip::tell,
                           &finder);
   });
   return true;
