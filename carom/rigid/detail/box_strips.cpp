@@ -89,7 +89,7 @@ bool BoxStrips::sort() {
   const std::uint64_t most = 256 * std::uint64_t(count);
   if (compared > most * std::uint64_t(count)) return false;
   for (int s = 0; s < strips; ++s)
-    for (int k = 0; k < padding; ++k) row_[0][std::size_t(at[s] + k)] = 1e30f;
+    for (int k = 0; k < padding; ++k) row_[0][std::size_t(at[s]) + std::size_t(k)] = 1e30f;
   return true;
 }
 
