@@ -27,4 +27,24 @@ void new_meetings(const BoxGroup<D>& group, int members, int others, std::uint64
   }
 }
 
+template <int W>
+void sweep(const StripRows& rows, std::int32_t begin, std::int32_t end, TellMeetings tell, void* whom) {
+  using F = WideFloat<W>;
+  for (std::int32_t i = begin; i + 1 < end; ++i) {
+    const F low[2] = {F::splat(rows.low[0][i]), F::splat(rows.low[1][i])},
+            high[2] = {F::splat(rows.high[0][i]), F::splat(rows.high[1][i])},
+            old_low[2] = {F::splat(rows.old_low[0][i]), F::splat(rows.old_low[1][i])},
+            old_high[2] = {F::splat(rows.old_high[0][i]), F::splat(rows.old_high[1][i])};
+    const std::uint16_t last = rows.last[i];
+    for (std::int32_t k = i + 1; k < end && rows.key[k] <= last; k += W) {
+      const auto load = [&](const float* row) __attribute__((always_inline)) { return F::load(row + k); };
+      const auto meets = (load(rows.low[0]) <= high[0]) & (load(rows.high[0]) >= low[0]) &
+                         (load(rows.low[1]) <= high[1]) & (load(rows.high[1]) >= low[1]);
+      const auto met = (load(rows.old_low[0]) <= old_high[0]) & (load(rows.old_high[0]) >= old_low[0]) &
+                       (load(rows.old_low[1]) <= old_high[1]) & (load(rows.old_high[1]) >= old_low[1]);
+      if (const std::uint32_t news = bitmask(meets & !met); news != 0) tell(whom, i, k, news);
+    }
+  }
+}
+
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "carom/rigid/detail/box_lanes.h"
+#include "carom/rigid/detail/box_strips.h"
 #include "carom/rigid/detail/contact_watch.h"
 #include "carom/rigid/detail/pair_motions.h"
 #include "carom/rigid/detail/step_context.h"
@@ -143,6 +144,8 @@ struct ContactKernels {
   int width = 4;
   /// Which of the others (a multiple of 16) each member of a group meets now, but did not before: bits by place.
   void (*new_meetings)(const BoxGroup<D>& group, int members, int others, std::uint64_t* news) = nullptr;
+  /// Tells which boxes at places [begin, end) of a strip meet that did not before. Null in space.
+  void (*sweep)(const StripRows& rows, std::int32_t begin, std::int32_t end, TellMeetings tell, void* whom) = nullptr;
   /// Which of `count` watches in a row, at most the width, tell that nothing is new. Bits by lane.
   std::uint32_t (*nothing_new)(const ContactWatch<D>* watches, int count, const typename D::Pose* poses,
                                const BodySweep<D>* sweeps, float dt) = nullptr;

@@ -4,13 +4,13 @@
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
 /// Where the records of a lane are. Pointers of one kind side by side would tempt gcc to compute them in vectors.
-struct LaneRecords2 {
+struct LaneRecords {
   const char *manifold, *contact, *motion_a, *motion_b, *pose_a, *pose_b;
 };
 
 /// Columns of the floats at `Offset` bytes from the begin of W records.
-template <const char* LaneRecords2::* Record, int Offset, int Columns, int W>
-CAROM_SIMD_INLINE void gather_from(const LaneRecords2 (&lanes)[W], WideFloat<W> (&columns)[Columns]) {
+template <const char* LaneRecords::* Record, int Offset, int Columns, int W>
+CAROM_SIMD_INLINE void gather_from(const LaneRecords (&lanes)[W], WideFloat<W> (&columns)[Columns]) {
   const float* rows[W];
   simd_detail::unrolled<W>([&](auto lane) __attribute__((always_inline)) {
     constexpr int i = decltype(lane)::value;
@@ -40,8 +40,8 @@ struct BodyRows2 {
 };
 
 /// One side of W contacts: its bodies' centres in their frames, masses and rotations.
-template <const char* LaneRecords2::* Motion, const char* LaneRecords2::* Pose, int W>
-CAROM_SIMD_INLINE void gather_side2(const LaneRecords2 (&lanes)[W], const float (&share)[W], float (&rotation)[2][W],
+template <const char* LaneRecords::* Motion, const char* LaneRecords::* Pose, int W>
+CAROM_SIMD_INLINE void gather_side2(const LaneRecords (&lanes)[W], const float (&share)[W], float (&rotation)[2][W],
                                     typename ContactRaw<Dim2, W>::Placed& shape, float (&inverse_mass)[W],
                                     float (&inverse_inertia)[W]) {
   using F = WideFloat<W>;
@@ -60,16 +60,16 @@ CAROM_SIMD_INLINE void gather_side2(const LaneRecords2 (&lanes)[W], const float 
 }
 
 template <int W>
-CAROM_SIMD_INLINE std::uint32_t gather_points2(const ContactSources<Dim2>& from, const LaneRecords2 (&lanes)[W],
+CAROM_SIMD_INLINE std::uint32_t gather_points2(const ContactSources<Dim2>& from, const LaneRecords (&lanes)[W],
                                                ContactBlock<Dim2, W>& c, ContactRaw<Dim2, W>& raw,
                                                const std::int32_t (&anchor)[W], WideMask<W> round) {
   using F = WideFloat<W>;
   const F zero = F::zero(), one = F::splat(1);
   F head[8], points[8], impulses[8], anchors[4];
-  gather_from<&LaneRecords2::manifold, ManifoldRows2::friction>(lanes, head);
-  gather_from<&LaneRecords2::manifold, ManifoldRows2::points>(lanes, points);
-  gather_from<&LaneRecords2::manifold, ManifoldRows2::impulses>(lanes, impulses);
-  gather_from<&LaneRecords2::manifold, ManifoldRows2::anchors>(lanes, anchors);
+  gather_from<&LaneRecords::manifold, ManifoldRows2::friction>(lanes, head);
+  gather_from<&LaneRecords::manifold, ManifoldRows2::points>(lanes, points);
+  gather_from<&LaneRecords::manifold, ManifoldRows2::impulses>(lanes, impulses);
+  gather_from<&LaneRecords::manifold, ManifoldRows2::anchors>(lanes, anchors);
   head[0].store(c.friction);
   head[3].store(raw.tangent_speed);
   head[4].store(c.normal[0]);
@@ -103,11 +103,11 @@ CAROM_SIMD_INLINE std::uint32_t gather_points2(const ContactSources<Dim2>& from,
 /// Which of those that roll touch in one point, carry a load and have bodies that move past each other by as much as it
 /// takes (turns_in_step). What lies on two points has no rim to roll on.
 template <int W>
-CAROM_SIMD_INLINE std::uint32_t turning2(const ContactSources<Dim2>& from, const LaneRecords2 (&lanes)[W],
+CAROM_SIMD_INLINE std::uint32_t turning2(const ContactSources<Dim2>& from, const LaneRecords (&lanes)[W],
                                          const ContactBlock<Dim2, W>& c) {
   using F = WideFloat<W>;
   F extent[4], va[4], vb[4];  // of the first: extent, inner
-  gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim2>, extent))>(lanes, extent);
+  gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim2>, extent))>(lanes, extent);
   gather<W>(from.bodies, c.read_a, 0, va);
   gather<W>(from.bodies, c.read_b, 0, vb);
   const WideVec2<W> offset = load2<W>(c.center_offset);  // from B's centre to A's
@@ -127,7 +127,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
   using I = WideInt<W>;
   ContactBlock<Dim2, W>& c = *static_cast<ContactBlock<Dim2, W>*>(block);
   ContactRaw<Dim2, W>& raw = *static_cast<ContactRaw<Dim2, W>*>(out);
-  LaneRecords2 lane[W];
+  LaneRecords lane[W];
   std::int32_t flags[W], anchor[W];
   std::uint32_t waits = 0, rolls = 0;
   float share_a[W], share_b[W];
@@ -157,14 +157,14 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
     c.write_a[i] = i < lanes && (both || from.record[a].type == BodyType::dynamic) ? a : none;
     c.write_b[i] = i < lanes && (both || from.record[b].type == BodyType::dynamic) ? b : none;
   }
-  gather_side2<&LaneRecords2::motion_a, &LaneRecords2::pose_a>(lane, share_a, raw.rotation_a, raw.shape_a,
-                                                               c.inverse_mass_a, c.inverse_inertia_a);
-  gather_side2<&LaneRecords2::motion_b, &LaneRecords2::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
-                                                               c.inverse_mass_b, c.inverse_inertia_b);
+  gather_side2<&LaneRecords::motion_a, &LaneRecords::pose_a>(lane, share_a, raw.rotation_a, raw.shape_a,
+                                                             c.inverse_mass_a, c.inverse_inertia_a);
+  gather_side2<&LaneRecords::motion_b, &LaneRecords::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
+                                                             c.inverse_mass_b, c.inverse_inertia_b);
   const F share = min(F::load(share_a), F::load(share_b));
   (F::splat(1) - share).store(raw.squeezed);
   F base[4];
-  gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim2>, base))>(lane, base);
+  gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim2>, base))>(lane, base);
   for (int i = 0; i < 2; ++i) {
     base[i].store(raw.base.p[i]);
     base[2 + i].store(raw.base.q[i]);
@@ -204,12 +204,12 @@ template <int W>
 CAROM_SIMD_INLINE WideVec2<W> acceleration2(const ContactSources<Dim2>& from, const std::int32_t (&body)[W],
                                             const std::int32_t (&moved)[W]) {
   using F = WideFloat<W>;
-  LaneRecords2 lane[W];
+  LaneRecords lane[W];
   for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + body[i]);
   F center[4], force[4], scale[4];
-  gather_from<&LaneRecords2::motion_a, BodyRows2::center>(lane, center);
-  gather_from<&LaneRecords2::motion_a, BodyRows2::force>(lane, force);
-  gather_from<&LaneRecords2::motion_a, BodyRows2::gravity_scale>(lane, scale);
+  gather_from<&LaneRecords::motion_a, BodyRows2::center>(lane, center);
+  gather_from<&LaneRecords::motion_a, BodyRows2::force>(lane, force);
+  gather_from<&LaneRecords::motion_a, BodyRows2::gravity_scale>(lane, scale);
   const auto moves = WideInt<W>::load(moved) > WideInt<W>::splat(-1);
   return {keep(moves, F::splat(from.gravity.x) * scale[0] + force[0] * center[2]),
           keep(moves, F::splat(from.gravity.y) * scale[0] + force[1] * center[2])};
@@ -229,12 +229,12 @@ std::uint32_t approach2(const ContactSources<Dim2>& from, const std::int32_t* li
   const ContactBlock<Dim2, W>& c = *static_cast<const ContactBlock<Dim2, W>*>(block);
   ContactExtra<Dim2, W>& e = *static_cast<ContactExtra<Dim2, W>*>(extra);
   const F zero = F::zero(), one = F::splat(1);
-  LaneRecords2 lane[W];
+  LaneRecords lane[W];
   for (int i = 0; i < W; ++i)
     lane[i].manifold = reinterpret_cast<const char*>(from.manifolds + list[i < lanes ? i : 0]);
   F head[8], old[4];
-  gather_from<&LaneRecords2::manifold, ManifoldRows2::friction>(lane, head);
-  gather_from<&LaneRecords2::manifold, ManifoldRows2::rolling - 8>(lane, old);
+  gather_from<&LaneRecords::manifold, ManifoldRows2::friction>(lane, head);
+  gather_from<&LaneRecords::manifold, ManifoldRows2::rolling - 8>(lane, old);
   const auto rolls = head[2] > zero, bouncy = head[1] > zero;
   head[2].store(e.rolling_lever);
   inverse_or_zero(keep(rolls, one), F::load(c.inverse_inertia_a) + F::load(c.inverse_inertia_b))

@@ -23,8 +23,8 @@ struct BodyRows3 {
 };
 
 /// One side of W contacts: its bodies' centres in their frames, masses and rotations.
-template <const char* LaneRecords2::* Motion, const char* LaneRecords2::* Pose, int W>
-CAROM_SIMD_INLINE void gather_side3(const LaneRecords2 (&lanes)[W], const float (&share)[W], float (&rotation)[4][W],
+template <const char* LaneRecords::* Motion, const char* LaneRecords::* Pose, int W>
+CAROM_SIMD_INLINE void gather_side3(const LaneRecords (&lanes)[W], const float (&share)[W], float (&rotation)[4][W],
                                     typename ContactRaw<Dim3, W>::Placed& shape, float (&inverse_mass)[W],
                                     float (&inverse_inertia)[6][W]) {
   using F = WideFloat<W>;
@@ -44,22 +44,22 @@ CAROM_SIMD_INLINE void gather_side3(const LaneRecords2 (&lanes)[W], const float 
 
 /// Returns which of them are so deep that they are pushed out with the push speed. `loaded`: those that bear a load.
 template <int W>
-CAROM_SIMD_INLINE std::uint32_t gather_points3(const ContactSources<Dim3>& from, const LaneRecords2 (&lanes)[W],
+CAROM_SIMD_INLINE std::uint32_t gather_points3(const ContactSources<Dim3>& from, const LaneRecords (&lanes)[W],
                                                ContactBlock<Dim3, W>& c, ContactRaw<Dim3, W>& raw, WideInt<W> anchor,
                                                WideInt<W> flags, WideMask<W>& loaded) {
   using F = WideFloat<W>;
   const F zero = F::zero(), one = F::splat(1);
   F head[8], anchors[12], sliding[4], rolling[4], last[4], points[4][4];
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::friction>(lanes, head);
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::anchors>(lanes, anchors);  // and the normal impulses
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::sliding>(lanes, sliding);
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::rolling>(lanes, rolling);
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::last>(lanes, last);
+  gather_from<&LaneRecords::manifold, ManifoldRows3::friction>(lanes, head);
+  gather_from<&LaneRecords::manifold, ManifoldRows3::anchors>(lanes, anchors);  // and the normal impulses
+  gather_from<&LaneRecords::manifold, ManifoldRows3::sliding>(lanes, sliding);
+  gather_from<&LaneRecords::manifold, ManifoldRows3::rolling>(lanes, rolling);
+  gather_from<&LaneRecords::manifold, ManifoldRows3::last>(lanes, last);
   constexpr int points_at = ManifoldRows3::points, size = sizeof(ManifoldRows3::Point);
-  gather_from<&LaneRecords2::manifold, points_at>(lanes, points[0]);
-  gather_from<&LaneRecords2::manifold, points_at + size>(lanes, points[1]);
-  gather_from<&LaneRecords2::manifold, points_at + 2 * size>(lanes, points[2]);
-  gather_from<&LaneRecords2::manifold, points_at + 3 * size>(lanes, points[3]);
+  gather_from<&LaneRecords::manifold, points_at>(lanes, points[0]);
+  gather_from<&LaneRecords::manifold, points_at + size>(lanes, points[1]);
+  gather_from<&LaneRecords::manifold, points_at + 2 * size>(lanes, points[2]);
+  gather_from<&LaneRecords::manifold, points_at + 3 * size>(lanes, points[3]);
   const WideInt<W> count = bits(head[7]);
   F deepest = zero;
   loaded = WideMask<W>::none();
@@ -105,11 +105,11 @@ CAROM_SIMD_INLINE std::uint32_t gather_points3(const ContactSources<Dim3>& from,
 
 /// Which of those that roll and carry a load have bodies that move past each other by as much as it takes.
 template <int W>
-CAROM_SIMD_INLINE std::uint32_t turning3(const ContactSources<Dim3>& from, const LaneRecords2 (&lanes)[W],
+CAROM_SIMD_INLINE std::uint32_t turning3(const ContactSources<Dim3>& from, const LaneRecords (&lanes)[W],
                                          const ContactBlock<Dim3, W>& c) {
   using F = WideFloat<W>;
   F extent[4], va[8], vb[8];  // of the first: extent, inner
-  gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim3>, extent))>(lanes, extent);
+  gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim3>, extent))>(lanes, extent);
   gather<W>(from.bodies, c.read_a, 0, va);
   gather<W>(from.bodies, c.read_b, 0, vb);
   const WideVec3<W> between = multiply(load3<W>(c.center_offset), F::splat(-1));
@@ -129,7 +129,7 @@ GatheredLanes gather3(const ContactSources<Dim3>& from, const std::int32_t* list
   using I = WideInt<W>;
   ContactBlock<Dim3, W>& c = *static_cast<ContactBlock<Dim3, W>*>(block);
   ContactRaw<Dim3, W>& raw = *static_cast<ContactRaw<Dim3, W>*>(out);
-  LaneRecords2 lane[W];
+  LaneRecords lane[W];
   std::int32_t flags[W], anchor[W];
   std::uint32_t rolls = 0;
   float share_a[W], share_b[W];
@@ -159,13 +159,13 @@ GatheredLanes gather3(const ContactSources<Dim3>& from, const std::int32_t* list
     c.write_a[i] = i < lanes && (both || from.record[a].type == BodyType::dynamic) ? a : none;
     c.write_b[i] = i < lanes && (both || from.record[b].type == BodyType::dynamic) ? b : none;
   }
-  gather_side3<&LaneRecords2::motion_a, &LaneRecords2::pose_a>(lane, share_a, raw.rotation_a, raw.shape_a,
-                                                               c.inverse_mass_a, c.inverse_inertia_a);
-  gather_side3<&LaneRecords2::motion_b, &LaneRecords2::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
-                                                               c.inverse_mass_b, c.inverse_inertia_b);
+  gather_side3<&LaneRecords::motion_a, &LaneRecords::pose_a>(lane, share_a, raw.rotation_a, raw.shape_a,
+                                                             c.inverse_mass_a, c.inverse_inertia_a);
+  gather_side3<&LaneRecords::motion_b, &LaneRecords::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
+                                                             c.inverse_mass_b, c.inverse_inertia_b);
   (F::splat(1) - min(F::load(share_a), F::load(share_b))).store(raw.squeezed);
   F base[8];
-  gather_from<&LaneRecords2::contact, int(offsetof(ContactRecord<Dim3>, base))>(lane, base);
+  gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim3>, base))>(lane, base);
   for (int i = 0; i < 3; ++i) base[i].store(raw.base.p[i]);
   for (int i = 0; i < 4; ++i) base[3 + i].store(raw.base.q[i]);
   const float* rows[W];
@@ -204,11 +204,11 @@ template <int W>
 CAROM_SIMD_INLINE WideVec3<W> acceleration3(const ContactSources<Dim3>& from, const std::int32_t (&body)[W],
                                             const std::int32_t (&moved)[W]) {
   using F = WideFloat<W>;
-  LaneRecords2 lane[W];
+  LaneRecords lane[W];
   for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + body[i]);
   F row[16], scale[4];
-  gather_from<&LaneRecords2::motion_a, BodyRows3::center>(lane, row);
-  gather_from<&LaneRecords2::motion_a, BodyRows3::gravity_scale>(lane, scale);
+  gather_from<&LaneRecords::motion_a, BodyRows3::center>(lane, row);
+  gather_from<&LaneRecords::motion_a, BodyRows3::gravity_scale>(lane, scale);
   const auto moves = WideInt<W>::load(moved) > WideInt<W>::splat(-1);
   const auto along = [&](float gravity, F force) __attribute__((always_inline)) {
     return keep(moves, F::splat(gravity) * scale[0] + force * row[3]);
@@ -240,12 +240,12 @@ std::uint32_t approach3(const ContactSources<Dim3>& from, const std::int32_t* li
   const ContactBlock<Dim3, W>& c = *static_cast<const ContactBlock<Dim3, W>*>(block);
   ContactExtra<Dim3, W>& e = *static_cast<ContactExtra<Dim3, W>*>(extra);
   const F zero = F::zero();
-  LaneRecords2 lane[W];
+  LaneRecords lane[W];
   for (int i = 0; i < W; ++i)
     lane[i].manifold = reinterpret_cast<const char*>(from.manifolds + list[i < lanes ? i : 0]);
   F head[8], old[4];
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::friction>(lane, head);
-  gather_from<&LaneRecords2::manifold, ManifoldRows3::rolling>(lane, old);
+  gather_from<&LaneRecords::manifold, ManifoldRows3::friction>(lane, head);
+  gather_from<&LaneRecords::manifold, ManifoldRows3::rolling>(lane, old);
   const F restitution = head[1], lever = head[2];
   const auto rolls = lever > zero, bouncy = restitution > zero;
   lever.store(e.rolling_lever);

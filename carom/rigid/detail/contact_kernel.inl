@@ -185,6 +185,7 @@ ContactKernels<Dim2> kernels(Dim2) {
   ContactKernels<Dim2> k;
   k.width = W;
   k.new_meetings = new_meetings<Dim2, W>;
+  k.sweep = sweep<W>;
   k.nothing_new = nothing_new2<W>;
   k.pair_motions = pair_motions2<W>;
   k.gather = gather2<W>;

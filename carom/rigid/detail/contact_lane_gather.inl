@@ -82,6 +82,18 @@ inline std::uint64_t bytes_of(std::uint32_t bits, std::uint8_t mark) {
   const std::uint64_t set = (bits & 0xff) * 0x0101010101010101u & 0x8040201008040201u;  // bit i in byte i
   return ((set + 0x7f7f7f7f7f7f7f7fu) >> 7 & 0x0101010101010101u) * mark;
 }
+/// The other way round, for a mark of one bit: which of W lanes have it. Reads whole words.
+template <int W>
+std::uint32_t lanes_with(const std::uint8_t* marks, std::uint8_t mark) {
+  std::uint32_t bits = 0;
+  for (int k = 0; k < W; k += 8) {
+    std::uint64_t bytes;
+    __builtin_memcpy(&bytes, marks + k, 8);
+    const std::uint64_t set = bytes >> std::countr_zero(mark) & 0x0101010101010101u;  // bit i of the bits in byte i
+    bits |= std::uint32_t(set * 0x0102040810204080u >> 56) << k;
+  }
+  return bits;
+}
 /// The marks of a block's lanes, of which none has any yet. Whole blocks write them by words: lane by lane this is a
 /// twelfth of the time of preparing.
 template <int W>

@@ -52,15 +52,19 @@ void store_block(StepContext<D>& context, const ContactSources<D>& sources, std:
                  const ContactBlock<D, W>& block, const ContactExtra<D, W>* extra, const std::uint8_t* marks) {
   const int lanes = int(list.size());
   const std::uint32_t at_limit = context.world.kernels.store(sources, list.data(), lanes, &block);
-  for (std::uint32_t left = at_limit; left != 0; left &= left - 1)
-    if (const int lane = std::countr_zero(left); lane < lanes && (marks[lane] & mark_anchored) != 0)
-      __builtin_prefetch(sources.manifolds + list[std::size_t(lane)], 1);
-  for (int lane = 0; lane < lanes; ++lane) {
+  const std::uint32_t limited = at_limit & lanes_with<W>(marks, mark_anchored) & lane_bits(lanes);
+  for (std::uint32_t left = limited; left != 0; left &= left - 1)
+    __builtin_prefetch(sources.manifolds + list[std::size_t(std::countr_zero(left))], 1);
+  if (extra != nullptr)
+    for (int lane = 0; lane < lanes; ++lane)
+      put_rolling(*extra, lane, context.world.contacts.manifold(list[std::size_t(lane)]).impulses.rolling);
+  // Most keep their anchors: the front of their records is let be.
+  const std::uint32_t left_open =
+      (lanes_with<W>(marks, mark_anew) | lanes_with<W>(marks, mark_open)) & lane_bits(lanes);
+  for (std::uint32_t left = limited | left_open; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
     ManifoldRecord<D>& m = context.world.contacts.manifold(list[std::size_t(lane)]);
-    if (extra != nullptr) put_rolling(*extra, lane, m.impulses.rolling);
     const bool limit = (at_limit >> lane & 1u) != 0, anew = (marks[lane] & mark_anew) != 0;
-    const bool open = (marks[lane] & mark_open) != 0, anchored = (marks[lane] & mark_anchored) != 0;
-    if (!anew && !open && !(limit && anchored)) continue;  // most keep theirs: the front of the record is let be
     float load = 0;
     for (const auto& point : block.point) load += point.impulse[lane];
     if (anew && !(load > 0)) continue;

@@ -439,6 +439,7 @@ void deactivate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   template void update_contact_flags<D>(WorldImplementation<D>&, std::int32_t);                              \
   template void set_manifold_material<D>(WorldImplementation<D>&, std::int32_t, float, float, float);        \
   template void mix_materials<D>(WorldImplementation<D>&, std::int32_t);                                     \
+  template float friction_of<D>(const WorldImplementation<D>&, const ManifoldRecord<D>&, const PairRule&);   \
   template void add_manifold<D>(WorldImplementation<D>&, std::int32_t, const D::Manifold&, std::uint32_t);   \
   template void enter_graph_in_order<D>(WorldImplementation<D>&);                                            \
   template void remove_manifold<D>(WorldImplementation<D>&, std::int32_t);                                   \

@@ -210,6 +210,50 @@ bool sweep_dynamic(WorldImplementation<Dim3>& world, bool& still_too) {
   return true;
 }
 
+/// What a strip tells of becomes pairs.
+struct MeetingsInStrip {
+  WorldImplementation<Dim2>& world;
+  std::vector<FoundPair>& found;
+  int strip = 0;
+
+  static void tell(void* whom, std::int32_t i, std::int32_t first, std::uint32_t which) {
+    MeetingsInStrip& m = *static_cast<MeetingsInStrip*>(whom);
+    const BoxStrips& strips = m.world.scratch.strips;
+    for (; which != 0; which &= which - 1)
+      if (const std::int32_t k = first + std::countr_zero(which); strips.is_of(m.strip, i, k))
+        consider_pair(m.world, std::int32_t(strips.item(i)), std::int32_t(strips.item(k)), m.found);
+  }
+};
+
+/// In the plane: all boxes against each other in strips, of now and of before. False where trees are faster.
+bool sweep_strips(WorldImplementation<Dim3>&) { return false; }
+bool sweep_strips(WorldImplementation<Dim2>& world) {
+  using Bounds = geometry::Bounds2d;
+  StepScratch<Dim2>& scratch = world.scratch;
+  const auto& trees = world.shapes.trees;
+  const std::size_t dynamic = std::size_t(trees[tree_dynamic].size()),
+                    still = std::size_t(trees[tree_fixed].size()) + std::size_t(trees[tree_kinematic].size());
+  // A caller's filter may change its mind about what met before.
+  if (world.contact_filter || 3 * scratch.moved.size() < dynamic + still || dynamic < 64) return false;
+  const Bounds whole = trees[tree_dynamic].root_bounds();
+  BoxStrips& strips = scratch.strips;
+  if (!strips.begin(whole, dynamic + still)) return false;
+  for (const auto& tree : trees)
+    tree.each_leaf([&](std::uint32_t item, const Bounds& box) {
+      const std::int32_t place = scratch.moved_place[item];
+      if (overlaps(box, whole)) strips.add(item, box, place >= 0 ? scratch.old_bounds[std::size_t(place)] : box);
+    });
+  if (!strips.sort()) return false;
+  const StripRows rows = strips.rows();
+  world.scheduler->parallel_for(strips.strip_count(), 2, [&](int begin, int end, int worker) {
+    MeetingsInStrip finder{world, scratch.found_pairs[std::size_t(worker)], 0};
+    for (finder.strip = begin; finder.strip < end; ++finder.strip)
+      world.kernels.sweep(rows, strips.strip_begin(finder.strip), strips.strip_end(finder.strip), MeetingsInStrip::tell,
+                          &finder);
+  });
+  return true;
+}
+
 /// Calls for the memory that the contact of a pair will need, so many contacts before it is made. Inlined always, as
 /// prefetch_lines.
 template <class D>
@@ -241,10 +285,12 @@ void find_pairs(WorldImplementation<D>& world) {
   for (std::size_t k = 0; k < scratch.moved.size(); ++k)
     scratch.moved_place[std::size_t(scratch.moved[k])] = std::int32_t(k);
   // Where much of the tree moved, neighbours look together.
-  const bool grouped = 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
+  const bool in_strips = sweep_strips(world);
+  const bool grouped = !in_strips && 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
   bool still_too = false;
   const bool swept = grouped && sweep_dynamic(world, still_too);
-  world.scheduler->parallel_for(int(scratch.moved.size()), pair_grain, [&](int begin, int end, int worker) {
+  const int one_by_one = in_strips ? 0 : int(scratch.moved.size());
+  world.scheduler->parallel_for(one_by_one, pair_grain, [&](int begin, int end, int worker) {
     for (int i = begin; i < end; ++i) {
       const bool dynamic = world.shapes.at(scratch.moved[std::size_t(i)]).tree == tree_dynamic;
       if (!grouped || (swept && !still_too) || !dynamic)

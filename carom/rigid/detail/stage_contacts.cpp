@@ -20,19 +20,21 @@ constexpr int block_grain = 8;
 
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
-/// of the one before it waits. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
+/// of the one before it waits. In the plane bodies are small and stay in the second cache: to call for them takes
+/// longer than they do. Inlined always: to gcc a function that only pre-loads has no effect, and calls of it go.
 template <class D>
 CAROM_SIMD_INLINE void prefetch_manifold(const ContactSources<D>& from, const ShapeRecord<D>* shapes,
                                          std::span<const std::int32_t> list, std::size_t i, bool velocities) {
   constexpr std::size_t manifold_lanes = 96, contact_lanes = 40, body_lanes = 18;
   if (i + body_lanes >= list.size()) return;
   const ContactRecord<D>& c = from.contacts[from.manifolds[list[i + body_lanes]].contact];
-  for (const std::int32_t body : c.body) {
-    prefetch_lines(from.motion + body, sizeof(BodyMotion<D>));
-    __builtin_prefetch(from.pose + body);
-    if (velocities || c.rolls) __builtin_prefetch(from.bodies + body);
-    if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(from.record + body);
-  }
+  if constexpr (D::dimension == 3)
+    for (const std::int32_t body : c.body) {
+      prefetch_lines(from.motion + body, sizeof(BodyMotion<D>));
+      __builtin_prefetch(from.pose + body);
+      if (velocities || c.rolls) __builtin_prefetch(from.bodies + body);
+      if ((c.flags & contact_dynamic) == 0) __builtin_prefetch(from.record + body);
+    }
   if (D::dimension == 2 && c.rolls) {  // what put_middle asks for
     __builtin_prefetch(reinterpret_cast<const char*>(&c) + 64);
     prefetch_shapes(shapes, c);
@@ -245,22 +247,28 @@ void find_again(StepContext<D>& context, bool any_strikes) {
           mark |= mark_again;
         });
   } else {
-    for_blocks<D, W>(
-        context, Overflow::at_once,
-        [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block, ContactExtra<D, W>*,
-            std::uint8_t* marks) {
-          for (int lane = 0; lane < lanes; ++lane) {
-            float nearest = block.point[0].separation[lane];
-            for (const auto& point : block.point) nearest = min(nearest, point.separation[lane]);
-            const bool may_sleep = any_asleep && nearest >= 0;
-            const auto again = [&](std::int32_t body) {
-              if (body == none) return 0;
-              return may_sleep && !world.bodies.is_awake(body) ? 1 : int(world.scratch.again[std::size_t(body)]);
-            };
-            block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
-            if (block.again[lane] != 0) marks[lane] |= mark_again;
-          }
-        });
+    // Who is awake is told beside, for as long: records of bodies lie too far apart to be asked by every contact.
+    constexpr std::uint8_t awake = 2;
+    std::uint8_t* const of = world.scratch.again.data();
+    if (any_asleep)
+      for (const std::int32_t body : world.bodies.awake) of[body] |= awake;
+    for_blocks<D, W>(context, Overflow::at_once,
+                     [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
+                         ContactExtra<D, W>*, std::uint8_t* marks) {
+                       for (int lane = 0; lane < lanes; ++lane) {
+                         bool may_sleep = any_asleep;
+                         if (any_asleep)
+                           for (const auto& point : block.point) may_sleep = may_sleep && point.separation[lane] >= 0;
+                         const auto again = [&](std::int32_t body) {
+                           if (body < 0) return 0;
+                           return may_sleep && (of[body] & awake) == 0 ? 1 : of[body] & 1;
+                         };
+                         block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
+                         if (block.again[lane] != 0) marks[lane] |= mark_again;
+                       }
+                     });
+    if (any_asleep)
+      for (const std::int32_t body : world.bodies.awake) of[body] &= 1;
   }
   for (int color = 0; color <= overflow_color; ++color)
     for_marked(world, color, mark_again, [&](std::int32_t) { world.scratch.blocks[color].again = true; });

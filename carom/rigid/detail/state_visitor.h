@@ -125,7 +125,7 @@ void visit_graph(Graph& graph, Visit& visit) {
 template <class Scratch, class Visit>
 void visit_scratch(Scratch& scratch, Visit& visit) {
   auto& [blocks, loads, again, hits, flights, impacts, impact_queue, solver_stages, solver_loops, sweeps, sweeping,
-         watches, old_bounds, moved_place, moved, sweep, outgrown, outgrown_places, new_bounds, found_pairs,
+         watches, old_bounds, moved_place, moved, sweep, strips, outgrown, outgrown_places, new_bounds, found_pairs,
          met_sensors, pairs, found_bullet_pairs, found_strays, strays, driven, bullet_pairs, bullet_meetings,
          pair_meetings, first_bullet_pair, swept, fast, driven_over, broken, body_changes, contact_changes,
          found_manifolds, manifolds, island_parent, island_list, island_bodies, island_ends, doomed_contacts,
@@ -148,6 +148,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(moved_place);
   visit.state(moved);
   sweep.visit_lists([&](auto& list) { visit.scratch(list); });
+  strips.visit_lists([&](auto& list) { visit.scratch(list); });
   visit.scratch(outgrown);
   visit.scratch(outgrown_places);
   visit.scratch(new_bounds);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "carom/rigid/detail/box_strips.h"
 #include "carom/rigid/detail/box_sweep.h"
 #include "carom/rigid/detail/constraint_graph.h"
 #include "carom/rigid/detail/contact_watch.h"
@@ -135,6 +136,7 @@ struct StepScratch {
   std::vector<std::int32_t> moved_place;            ///< by slot of the shape: place in old_bounds, or −1
   std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
   BoxSweep sweep;                                   ///< of what flies, where it is sparse
+  BoxStrips strips;                                 ///< in the plane of all, where much moved
   std::vector<std::int32_t> outgrown;               ///< shapes that left their fat bounds,
   std::vector<std::int32_t> outgrown_places;        ///< their places in `moved`, or none: they were there before,
   std::vector<typename D::Bounds> new_bounds;       ///< and what these become

@@ -1,0 +1,79 @@
+// Which of many boxes of the plane meet that did not meet before, where much of them moved: in strips along one axis,
+// sorted along the other, as many at a time as there are lanes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "carom/geometry/bounds.h"
+
+namespace carom::rigid::detail {
+
+/// Boxes in the order of their strips, for kernels: plain data.
+struct StripRows {
+  const float *low[2], *high[2], *old_low[2], *old_high[2];  ///< m; the first axis is that of the sweep
+  const std::uint16_t *key, *last;                           ///< bins in which a box begins and ends along that
+};
+/// Tells that the box at place i meets those at places first, first + 1, … whose bits are set, and did not before.
+using TellMeetings = void (*)(void* whom, std::int32_t i, std::int32_t first, std::uint32_t which);
+
+class BoxStrips {
+ public:
+  /// Forgets all boxes. Those to come reach into `whole`, and lie on a grid of 2⁻¹⁰ m. False where floats do not hold
+  /// them exactly.
+  bool begin(const geometry::Bounds2d& whole, std::size_t count);
+  /// A box of now and what it was when pairs were last looked for: of what lies far off, that it met none here.
+  void add(std::uint32_t item, const geometry::Bounds2d& box, const geometry::Bounds2d& old);
+  /// Puts them in order. False where they crowd so that a tree is faster.
+  bool sort();
+
+  int strip_count() const { return int(first_.size()) - 1; }
+  std::int32_t strip_begin(int strip) const { return first_[std::size_t(strip)]; }
+  std::int32_t strip_end(int strip) const { return first_[std::size_t(strip) + 1] - padding; }
+  StripRows rows() const;
+  std::uint32_t item(std::int32_t place) const { return item_[std::size_t(place)]; }
+  /// A pair that meets in several strips is that of one of them.
+  bool is_of(int strip, std::int32_t i, std::int32_t k) const {
+    const float a = row_[1][std::size_t(i)], b = row_[1][std::size_t(k)];
+    return strip_of(a < b ? b : a) == strip;
+  }
+  /// Calls visit(vector) for all that it holds between steps, of no meaning then.
+  template <class Visit>
+  void visit_lists(Visit&& visit) {
+    each_list(*this, visit);
+  }
+  template <class Visit>
+  void visit_lists(Visit&& visit) const {
+    each_list(*this, visit);
+  }
+
+ private:
+  template <class Self, class Visit>
+  static void each_list(Self& self, Visit& visit) {
+    visit(self.boxes_), visit(self.order_), visit(self.first_), visit(self.item_), visit(self.key_), visit(self.last_);
+    for (auto& row : self.row_) visit(row);
+  }
+  struct Box {
+    float side[8];  ///< m: low, high, old low, old high, x and y of each
+    std::uint32_t item;
+    std::uint16_t key, last;  ///< bins
+    std::uint16_t first_strip, last_strip;
+  };
+  static constexpr int most_strips = 128, bins = 1024;
+  static constexpr int padding = 16;  ///< places after each strip that meet none, for the widest lanes
+
+  int bin_of(float x) const { return clamped(int(x * bins_per_metre_), bins); }
+  int strip_of(float y) const { return clamped(int(y * strips_per_metre_), strip_count()); }
+  static int clamped(int i, int end) { return i < 0 ? 0 : i < end ? i : end - 1; }
+
+  std::vector<Box> boxes_;
+  std::vector<std::uint32_t> order_;  ///< of boxes along the axis of the sweep
+  std::vector<std::int32_t> first_;   ///< of each strip, and the end
+  std::vector<float> row_[8];         ///< by place in the strips, as Box::side, the axis of the sweep before the other
+  std::vector<std::uint32_t> item_;
+  std::vector<std::uint16_t> key_, last_;
+  math::Vec2d origin_{}, extent_{}, sum_{};  ///< m; sum_: of the sizes of all boxes
+  float bins_per_metre_ = 0, strips_per_metre_ = 0;
+};
+
+}  // namespace carom::rigid::detail
