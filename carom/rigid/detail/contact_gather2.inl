@@ -1,23 +1,6 @@
-// From the records of contacts and bodies to lanes and back, in the plane: part of contact_kernel.inl. Records are rows
-// of four floats, which are transposed as many at a time as there are lanes.
+// From the records of contacts and bodies to lanes and back, in the plane: part of contact_kernel.inl.
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
-
-/// Where the records of a lane are. Pointers of one kind side by side would tempt gcc to compute them in vectors.
-struct LaneRecords {
-  const char *manifold, *contact, *motion_a, *motion_b, *pose_a, *pose_b;
-};
-
-/// Columns of the floats at `Offset` bytes from the begin of W records.
-template <const char* LaneRecords::* Record, int Offset, int Columns, int W>
-CAROM_SIMD_INLINE void gather_from(const LaneRecords (&lanes)[W], WideFloat<W> (&columns)[Columns]) {
-  const float* rows[W];
-  simd_detail::unrolled<W>([&](auto lane) __attribute__((always_inline)) {
-    constexpr int i = decltype(lane)::value;
-    rows[i] = reinterpret_cast<const float*>(lanes[i].*Record + Offset);
-  });
-  gather_rows<Columns, W>(rows, columns);
-}
 
 struct ManifoldRows2 {  // what a row starts with
   using Record = ManifoldRecord<Dim2>;
@@ -124,78 +107,25 @@ CAROM_SIMD_INLINE std::uint32_t turning2(const ContactSources<Dim2>& from, const
 template <int W>
 GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list, int lanes, void* block, void* out) {
   using F = WideFloat<W>;
-  using I = WideInt<W>;
   ContactBlock<Dim2, W>& c = *static_cast<ContactBlock<Dim2, W>*>(block);
   ContactRaw<Dim2, W>& raw = *static_cast<ContactRaw<Dim2, W>*>(out);
-  LaneRecords lane[W];
-  std::int32_t flags[W], anchor[W];
-  std::uint32_t waits = 0, rolls = 0;
-  float share_a[W], share_b[W];
-  alignas(16) float offset[W][4];
-  for (int i = 0; i < W; ++i) {
-    const ManifoldRecord<Dim2>& m = from.manifolds[list[i < lanes ? i : 0]];
-    const ContactRecord<Dim2>& k = from.contacts[m.contact];
-    const std::int32_t a = k.body[0], b = k.body[1];
-    const BodyMotion<Dim2>&ma = from.motion[a], &mb = from.motion[b];
-    lane[i].manifold = reinterpret_cast<const char*>(&m);
-    lane[i].contact = reinterpret_cast<const char*>(&k);
-    lane[i].motion_a = reinterpret_cast<const char*>(&ma);
-    lane[i].motion_b = reinterpret_cast<const char*>(&mb);
-    lane[i].pose_a = reinterpret_cast<const char*>(from.pose + a);
-    lane[i].pose_b = reinterpret_cast<const char*>(from.pose + b);
-    share_a[i] = from.load_shares[ma.load_level];
-    share_b[i] = from.load_shares[mb.load_level];
-    offset[i][0] = float(ma.center.x - mb.center.x);
-    offset[i][1] = float(ma.center.y - mb.center.y);
-    flags[i] = k.flags;
-    anchor[i] = std::int32_t(m.anchor);
-    waits |= std::uint32_t(m.waits) << i;
-    rolls |= std::uint32_t(k.rolls) << i;
-    const bool both = (k.flags & contact_dynamic) != 0;
-    c.read_a[i] = a;
-    c.read_b[i] = b;
-    c.write_a[i] = i < lanes && (both || from.record[a].type == BodyType::dynamic) ? a : none;
-    c.write_b[i] = i < lanes && (both || from.record[b].type == BodyType::dynamic) ? b : none;
-  }
-  gather_side2<&LaneRecords::motion_a, &LaneRecords::pose_a>(lane, share_a, raw.rotation_a, raw.shape_a,
+  const GatheredRecords<Dim2, W> records(from, list, lanes, c);
+  const LaneRecords(&lane)[W] = records.lane;
+  gather_side2<&LaneRecords::motion_a, &LaneRecords::pose_a>(lane, records.share_a, raw.rotation_a, raw.shape_a,
                                                              c.inverse_mass_a, c.inverse_inertia_a);
-  gather_side2<&LaneRecords::motion_b, &LaneRecords::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
+  gather_side2<&LaneRecords::motion_b, &LaneRecords::pose_b>(lane, records.share_b, raw.rotation_b, raw.shape_b,
                                                              c.inverse_mass_b, c.inverse_inertia_b);
-  const F share = min(F::load(share_a), F::load(share_b));
-  (F::splat(1) - share).store(raw.squeezed);
   F base[4];
   gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim2>, base))>(lane, base);
   for (int i = 0; i < 2; ++i) {
     base[i].store(raw.base.p[i]);
     base[2 + i].store(raw.base.q[i]);
   }
-  const float* rows[W];
-  for (int i = 0; i < W; ++i) rows[i] = offset[i];
-  F between[4];
-  gather_rows<4, W>(rows, between);
-  between[0].store(c.center_offset[0]);
-  between[1].store(c.center_offset[1]);
-  const I flag = I::load(flags);
-  const auto has = [&](int bit) __attribute__((always_inline)) { return (flag & I::splat(bit)) != I::zero(); };
-  keep(has(contact_recycled), F::splat(1)).store(raw.recycled);
-  const auto firm = (I::load(c.write_a) < I::zero()) | (I::load(c.write_b) < I::zero());
-  const Softness &soft = from.contact_softness, &hard = from.fixed_contact_softness;
-  select(firm, F::splat(hard.bias_rate), F::splat(soft.bias_rate)).store(c.bias_rate);
-  select(firm, F::splat(hard.mass_scale), F::splat(soft.mass_scale)).store(c.mass_scale);
-  select(firm, F::splat(hard.impulse_scale), F::splat(soft.impulse_scale)).store(c.impulse_scale);
   F::zero().store(c.tangent_total);
-  F::zero().store(c.settles);
-  F::zero().store(c.struck);
-  I::zero().store(c.again);
-  GatheredLanes result;
-  const I anchored = I::load(anchor);
-  result.anchored = bitmask(anchored != I::splat(int(Anchor::none)));
-  result.open = waits | bitmask(anchored == I::splat(int(Anchor::settles)));
-  result.pushed = gather_points2<W>(from, lane, c, raw, anchor, has(contact_round));
-  result.placed = bitmask(!has(contact_at_origin));
+  GatheredLanes result = records.begin(from, c, raw);
+  result.pushed = gather_points2<W>(from, lane, c, raw, records.anchor, records.has(contact_round));
   // Without gravity nothing rocks, and arms of the step's start are those of most blows.
-  rolls &= (1u << lanes) - 1;
-  if (rolls != 0 && from.still_way > 0) result.turns = rolls & turning2<W>(from, lane, c) & ~bitmask(has(contact_many));
+  if (records.rolls != 0 && from.still_way > 0) result.turns = records.rolls & turning2<W>(from, lane, c);
   return result;
 }
 

@@ -1,5 +1,4 @@
-// From the records of contacts and bodies to lanes and back, in space: as contact_gather2.inl, part of
-// contact_kernel.inl.
+// From the records of contacts and bodies to lanes and back, in space: part of contact_kernel.inl.
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
@@ -126,75 +125,25 @@ CAROM_SIMD_INLINE std::uint32_t turning3(const ContactSources<Dim3>& from, const
 template <int W>
 GatheredLanes gather3(const ContactSources<Dim3>& from, const std::int32_t* list, int lanes, void* block, void* out) {
   using F = WideFloat<W>;
-  using I = WideInt<W>;
   ContactBlock<Dim3, W>& c = *static_cast<ContactBlock<Dim3, W>*>(block);
   ContactRaw<Dim3, W>& raw = *static_cast<ContactRaw<Dim3, W>*>(out);
-  LaneRecords lane[W];
-  std::int32_t flags[W], anchor[W];
-  std::uint32_t rolls = 0;
-  float share_a[W], share_b[W];
-  alignas(16) float offset[W][4];
-  for (int i = 0; i < W; ++i) {
-    const ManifoldRecord<Dim3>& m = from.manifolds[list[i < lanes ? i : 0]];
-    const ContactRecord<Dim3>& k = from.contacts[m.contact];
-    const std::int32_t a = k.body[0], b = k.body[1];
-    const BodyMotion<Dim3>&ma = from.motion[a], &mb = from.motion[b];
-    lane[i].manifold = reinterpret_cast<const char*>(&m);
-    lane[i].contact = reinterpret_cast<const char*>(&k);
-    lane[i].motion_a = reinterpret_cast<const char*>(&ma);
-    lane[i].motion_b = reinterpret_cast<const char*>(&mb);
-    lane[i].pose_a = reinterpret_cast<const char*>(from.pose + a);
-    lane[i].pose_b = reinterpret_cast<const char*>(from.pose + b);
-    share_a[i] = from.load_shares[ma.load_level];
-    share_b[i] = from.load_shares[mb.load_level];
-    offset[i][0] = float(ma.center.x - mb.center.x);
-    offset[i][1] = float(ma.center.y - mb.center.y);
-    offset[i][2] = float(ma.center.z - mb.center.z);
-    flags[i] = k.flags;
-    anchor[i] = std::int32_t(m.anchor);
-    rolls |= std::uint32_t(k.rolls && (k.flags & contact_many) == 0) << i;
-    const bool both = (k.flags & contact_dynamic) != 0;
-    c.read_a[i] = a;
-    c.read_b[i] = b;
-    c.write_a[i] = i < lanes && (both || from.record[a].type == BodyType::dynamic) ? a : none;
-    c.write_b[i] = i < lanes && (both || from.record[b].type == BodyType::dynamic) ? b : none;
-  }
-  gather_side3<&LaneRecords::motion_a, &LaneRecords::pose_a>(lane, share_a, raw.rotation_a, raw.shape_a,
+  const GatheredRecords<Dim3, W> records(from, list, lanes, c);
+  const LaneRecords(&lane)[W] = records.lane;
+  gather_side3<&LaneRecords::motion_a, &LaneRecords::pose_a>(lane, records.share_a, raw.rotation_a, raw.shape_a,
                                                              c.inverse_mass_a, c.inverse_inertia_a);
-  gather_side3<&LaneRecords::motion_b, &LaneRecords::pose_b>(lane, share_b, raw.rotation_b, raw.shape_b,
+  gather_side3<&LaneRecords::motion_b, &LaneRecords::pose_b>(lane, records.share_b, raw.rotation_b, raw.shape_b,
                                                              c.inverse_mass_b, c.inverse_inertia_b);
-  (F::splat(1) - min(F::load(share_a), F::load(share_b))).store(raw.squeezed);
   F base[8];
   gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim3>, base))>(lane, base);
   for (int i = 0; i < 3; ++i) base[i].store(raw.base.p[i]);
   for (int i = 0; i < 4; ++i) base[3 + i].store(raw.base.q[i]);
-  const float* rows[W];
-  for (int i = 0; i < W; ++i) rows[i] = offset[i];
-  F between[4];
-  gather_rows<4, W>(rows, between);
-  for (int i = 0; i < 3; ++i) between[i].store(c.center_offset[i]);
-  const I flag = I::load(flags);
-  const auto has = [&](int bit) __attribute__((always_inline)) { return (flag & I::splat(bit)) != I::zero(); };
-  keep(has(contact_recycled), F::splat(1)).store(raw.recycled);
-  const auto firm = (I::load(c.write_a) < I::zero()) | (I::load(c.write_b) < I::zero());
-  const Softness &soft = from.contact_softness, &hard = from.fixed_contact_softness;
-  select(firm, F::splat(hard.bias_rate), F::splat(soft.bias_rate)).store(c.bias_rate);
-  select(firm, F::splat(hard.mass_scale), F::splat(soft.mass_scale)).store(c.mass_scale);
-  select(firm, F::splat(hard.impulse_scale), F::splat(soft.impulse_scale)).store(c.impulse_scale);
-  F::zero().store(c.tangent_total[0]);
-  F::zero().store(c.tangent_total[1]);
-  F::zero().store(c.settles);
-  F::zero().store(c.struck);
-  I::zero().store(c.again);
-  GatheredLanes result;
-  const I anchored = I::load(anchor);
-  result.anchored = bitmask(anchored != I::splat(int(Anchor::none)));
-  result.open = bitmask(anchored == I::splat(int(Anchor::settles)));
+  for (auto& total : c.tangent_total) F::zero().store(total);
+  GatheredLanes result = records.begin(from, c, raw);
   WideMask<W> loaded;
-  result.pushed = gather_points3<W>(from, lane, c, raw, anchored, flag, loaded);
-  result.placed = bitmask(!has(contact_at_origin));
+  result.pushed =
+      gather_points3<W>(from, lane, c, raw, WideInt<W>::load(records.anchor), WideInt<W>::load(records.flags), loaded);
   // Without gravity nothing rocks, and arms of the step's start are those of most blows.
-  rolls &= bitmask(loaded) & ((1u << lanes) - 1);
+  const std::uint32_t rolls = records.rolls & bitmask(loaded);
   if (rolls != 0 && from.still_way > 0) result.turns = rolls & turning3<W>(from, lane, c);
   return result;
 }

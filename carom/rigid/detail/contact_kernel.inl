@@ -148,6 +148,7 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 }  // namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE
 
 #include "carom/rigid/detail/box_kernel.inl"
+#include "carom/rigid/detail/contact_gather.inl"
 #include "carom/rigid/detail/contact_gather2.inl"
 #include "carom/rigid/detail/contact_gather3.inl"
 #include "carom/rigid/detail/contact_prepare2.inl"
