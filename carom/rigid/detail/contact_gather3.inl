@@ -285,6 +285,7 @@ std::uint32_t store3(const ContactSources<Dim3>& to, const std::int32_t* list, i
   static_assert(offsetof(Record, impulses.total) == 4 * first + 16 &&
                 offsetof(Record, impulses.friction_total) == 4 * sliding + 12);
   float* records = reinterpret_cast<float*>(to.manifolds);
+  // The six floats of friction are two rows of four that overlap.
   const F both[4] = {friction.x, friction.y, friction.z, total.x}, rest[4] = {friction.z, total.x, total.y, total.z};
   scatter_rows<stride, 8, W>(records + first, index, impulses);
   scatter_rows<stride, 4, W>(records + sliding, index, both);
