@@ -1,11 +1,6 @@
 #include "carom/rigid/detail/box_strips.h"
 
-#include <algorithm>
-
 namespace carom::rigid::detail {
-namespace {
-constexpr double exact = 8e3;  // m: multiples of 2⁻¹⁰ m are exact in floats up to 16 km
-}  // namespace
 
 bool BoxStrips::begin(const geometry::Bounds2d& whole, std::size_t count) {
   boxes_.clear();
@@ -31,15 +26,7 @@ bool BoxStrips::sort() {
   const std::size_t count = boxes_.size();
   // Along the axis along which boxes overlap least.
   const int along = sum_.y / (extent_.y + 1e-9) < sum_.x / (extent_.x + 1e-9) ? 1 : 0, across = 1 - along;
-  bins_per_metre_ = float(bins) / (float(extent_[along]) + 1e-6f);
-  // Strips three boxes wide.
-  const double width = 3 * sum_[across] / double(count) + 1e-3;
-  const int strips = math::clamp(int(extent_[across] / width), 1, most_strips);
-  first_.reserve(most_strips + 1);  // the number of strips goes up and down from step to step
-  first_.assign(std::size_t(strips) + 1, 0);
-  strips_per_metre_ = float(strips) / (float(extent_[across]) + 1e-6f);
-
-  // Bins rise with the coordinate, so that what begins in a later one than that in which a box ends does not meet it.
+  measure(extent_[along], extent_[across], 3 * sum_[across] / double(count));  // three boxes wide
   std::uint32_t place[bins] = {};
   for (Box& box : boxes_) {
     box.key = std::uint16_t(bin_of(box.side[along])), box.last = std::uint16_t(bin_of(box.side[2 + along]));
@@ -48,28 +35,12 @@ bool BoxStrips::sort() {
     box.last_strip = std::uint16_t(strip_of(box.side[2 + across]));
     for (int s = box.first_strip; s <= box.last_strip; ++s) ++first_[std::size_t(s) + 1];
   }
-  std::uint32_t before = 0;
-  for (std::uint32_t& p : place) {
-    const std::uint32_t here = p;
-    p = before;
-    before += here;
-  }
-  order_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) order_[place[boxes_[i].key]++] = std::uint32_t(i);
-
+  order_by_bins(boxes_, place);
   std::int32_t at[most_strips];
   std::uint64_t in_strip[most_strips];
-  std::size_t total = 0;
-  for (int s = 0; s < strips; ++s) {
-    const std::size_t here = std::size_t(first_[std::size_t(s) + 1]);
-    at[s] = first_[std::size_t(s)] = std::int32_t(total), in_strip[s] = here;
-    total += here + padding;
-  }
-  first_[std::size_t(strips)] = std::int32_t(total);
-  const std::size_t room = 2 * count + padding * most_strips;
-  if (total > room) return false;
+  const std::size_t room = lay_out(count, padding, at, in_strip);
+  if (room == 0) return false;
   for (std::vector<float>& row : row_) row.resize(room);
-  item_.resize(room), key_.resize(room), last_.resize(room);
   float* row[8];
   int side[8];  // of a box, for each row
   for (int i = 0; i < 8; ++i) row[i] = row_[i].data(), side[i] = i / 2 * 2 + (i % 2 == 0 ? along : across);
@@ -88,7 +59,7 @@ bool BoxStrips::sort() {
   }
   const std::uint64_t most = 256 * std::uint64_t(count);
   if (compared > most * std::uint64_t(count)) return false;
-  for (int s = 0; s < strips; ++s)
+  for (int s = 0; s < strip_count(); ++s)
     for (int k = 0; k < padding; ++k) row_[0][std::size_t(at[s]) + std::size_t(k)] = 1e30f;
   return true;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/geometry/bounds.h"
+#include "carom/rigid/detail/strip_order.h"
 
 namespace carom::rigid::detail {
 
@@ -17,7 +18,7 @@ struct StripRows {
 /// Tells that the box at place i meets those at places first, first + 1, … whose bits are set, and did not before.
 using TellMeetings = void (*)(void* whom, std::int32_t i, std::int32_t first, std::uint32_t which);
 
-class BoxStrips {
+class BoxStrips : public StripOrder {
  public:
   /// Forgets all boxes. Those to come reach into `whole`, and lie on a grid of 2⁻¹⁰ m. False where floats do not hold
   /// them exactly.
@@ -27,7 +28,6 @@ class BoxStrips {
   /// Puts them in order. False where they crowd so that a tree is faster.
   bool sort();
 
-  int strip_count() const { return int(first_.size()) - 1; }
   std::int32_t strip_begin(int strip) const { return first_[std::size_t(strip)]; }
   std::int32_t strip_end(int strip) const { return first_[std::size_t(strip) + 1] - padding; }
   StripRows rows() const;
@@ -38,42 +38,25 @@ class BoxStrips {
     return strip_of(a < b ? b : a) == strip;
   }
   /// Calls visit(vector) for all that it holds between steps, of no meaning then.
-  template <class Visit>
-  void visit_lists(Visit&& visit) {
-    each_list(*this, visit);
-  }
-  template <class Visit>
-  void visit_lists(Visit&& visit) const {
-    each_list(*this, visit);
+  template <class Self, class Visit>
+  static void visit_lists(Self& self, Visit&& visit) {
+    visit(self.boxes_);
+    visit_order(self, visit);
+    for (auto& row : self.row_) visit(row);
   }
 
  private:
-  template <class Self, class Visit>
-  static void each_list(Self& self, Visit& visit) {
-    visit(self.boxes_), visit(self.order_), visit(self.first_), visit(self.item_), visit(self.key_), visit(self.last_);
-    for (auto& row : self.row_) visit(row);
-  }
   struct Box {
     float side[8];  ///< m: low, high, old low, old high, x and y of each
     std::uint32_t item;
     std::uint16_t key, last;  ///< bins
     std::uint16_t first_strip, last_strip;
   };
-  static constexpr int most_strips = 128, bins = 1024;
   static constexpr int padding = 16;  ///< places after each strip that meet none, for the widest lanes
 
-  int bin_of(float x) const { return clamped(int(x * bins_per_metre_), bins); }
-  int strip_of(float y) const { return clamped(int(y * strips_per_metre_), strip_count()); }
-  static int clamped(int i, int end) { return i < 0 ? 0 : i < end ? i : end - 1; }
-
   std::vector<Box> boxes_;
-  std::vector<std::uint32_t> order_;  ///< of boxes along the axis of the sweep
-  std::vector<std::int32_t> first_;   ///< of each strip, and the end
-  std::vector<float> row_[8];         ///< by place in the strips, as Box::side, the axis of the sweep before the other
-  std::vector<std::uint32_t> item_;
-  std::vector<std::uint16_t> key_, last_;
+  std::vector<float> row_[8];  ///< by place in the strips, as Box::side, the axis of the sweep before the other
   math::Vec2d origin_{}, extent_{}, sum_{};  ///< m; sum_: of the sizes of all boxes
-  float bins_per_metre_ = 0, strips_per_metre_ = 0;
 };
 
 }  // namespace carom::rigid::detail

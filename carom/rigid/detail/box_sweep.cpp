@@ -9,7 +9,6 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   const std::size_t count = std::size_t(tree.size());
   const geometry::Bounds3d whole = tree.root_bounds();
   const math::Vec3d extent = whole.high - whole.low;
-  constexpr double exact = 8e3;  // m: multiples of 2⁻¹⁰ m are exact in floats up to 16 km
   if (count < 64 || !(extent.x < exact && extent.y < exact && extent.z < exact)) return false;
   boxes_.clear();
   boxes_.reserve(count);
@@ -27,9 +26,7 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   if (share(axes[2]) < share(axes[1])) std::swap(axes[1], axes[2]);
   if (share(axes[1]) < share(axes[0])) std::swap(axes[0], axes[1]);
 
-  // Sorted by bins along the first axis. Bins rise with the coordinate, so that what begins in a later one than that
-  // in which a box ends does not meet it.
-  bins_per_metre_ = float(bins) / (float(extent[axes[0]]) + 1e-6f);
+  measure(extent[axes[0]], extent[axes[1]], 3 * sum[axes[1]] / double(count));  // three boxes wide
   std::uint32_t place[bins] = {};
   longest_ = 0;
   for (Box& box : boxes_) {
@@ -37,38 +34,15 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
     longest_ = math::max(longest_, box.last - box.key);
     ++place[box.key];
   }
-  std::uint32_t before = 0;
-  for (std::uint32_t& p : place) {
-    const std::uint32_t here = p;
-    p = before;
-    before += here;
-  }
-  order_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) order_[place[boxes_[i].key]++] = std::uint32_t(i);
-
-  // Strips three boxes wide.
-  const double width = 3 * sum[axes[1]] / double(count) + 1e-3;
-  const int strips = math::clamp(int(extent[axes[1]] / width), 1, most_strips);
-  first_.reserve(most_strips + 1);  // the number of strips goes up and down from step to step
-  first_.assign(std::size_t(strips) + 1, 0);
-  strips_per_metre_ = float(strips) / (float(extent[axes[1]]) + 1e-6f);
+  order_by_bins(boxes_, place);
   for (const Box& box : boxes_)
     for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s)
       ++first_[std::size_t(s) + 1];
   std::int32_t at[most_strips];
   std::uint64_t in_strip[most_strips];
-  std::size_t total = 0;
-  for (int s = 0; s < strips; ++s) {
-    const std::size_t here = std::size_t(first_[std::size_t(s) + 1]);
-    at[s] = std::int32_t(total), in_strip[s] = here;
-    first_[std::size_t(s)] = at[s];
-    total += here + padding;
-  }
-  first_[std::size_t(strips)] = std::int32_t(total);
-  if (total > 2 * count + padding * most_strips) return false;
-  const std::size_t room = 2 * count + padding * most_strips;
+  const std::size_t room = lay_out(count, padding, at, in_strip);
+  if (room == 0) return false;
   for (int k = 0; k < 3; ++k) low_[k].resize(room), high_[k].resize(room);
-  item_.resize(room), key_.resize(room), last_.resize(room);
   std::uint64_t compared = 0;  // times their number: with what begins before a box ends, as far as it is in its strips
   for (std::size_t k = 0; k < count; ++k) {
     const Box& box = boxes_[order_[k]];
@@ -85,7 +59,7 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   }
   const std::uint64_t most = 64 * std::uint64_t(count);
   if (compared > most * std::uint64_t(count)) return false;  // where boxes crowd, the tree is faster
-  for (int s = 0; s < strips; ++s)
+  for (int s = 0; s < strip_count(); ++s)
     for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(at[s]) + k] = 1e30f;
   version_ = tree.version();
   return true;

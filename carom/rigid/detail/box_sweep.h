@@ -8,15 +8,15 @@
 
 #include "carom/geometry/dynamic_tree.h"
 #include "carom/math/simd.h"
+#include "carom/rigid/detail/strip_order.h"
 
 namespace carom::rigid::detail {
 
-class BoxSweep {
+class BoxSweep : public StripOrder {
  public:
   /// Takes the leaves of a tree, whose boxes lie on a grid of 2⁻¹⁰ m. False where it would take longer than the tree,
   /// or floats do not hold the boxes exactly.
   bool take(const geometry::DynamicTree3& tree);
-  int strip_count() const { return int(first_.size()) - 1; }
   /// Calls visit(item, item) for those that meet in a strip, each pair in one strip only.
   template <class Visit>
   void visit_strip(int strip, Visit&& visit) const {
@@ -54,22 +54,15 @@ class BoxSweep {
     for (int strip = range.first_strip; strip <= range.last_strip; ++strip) query_strip(strip, range, visit);
   }
   /// Calls visit(vector) for all that it holds between steps, of no meaning then.
-  template <class Visit>
-  void visit_lists(Visit&& visit) {
-    each_list(*this, visit);
-  }
-  template <class Visit>
-  void visit_lists(Visit&& visit) const {
-    each_list(*this, visit);
-  }
-
- private:
   template <class Self, class Visit>
-  static void each_list(Self& self, Visit& visit) {
-    visit(self.boxes_), visit(self.order_), visit(self.first_), visit(self.item_), visit(self.key_), visit(self.last_);
+  static void visit_lists(Self& self, Visit&& visit) {
+    visit(self.boxes_);
+    visit_order(self, visit);
     for (auto& list : self.low_) visit(list);
     for (auto& list : self.high_) visit(list);
   }
+
+ private:
   struct Box {
     float low[3], high[3];
     std::uint32_t item;
@@ -115,24 +108,15 @@ class BoxSweep {
       }
     }
   }
-  static constexpr int most_strips = 128, bins = 1024;
   static constexpr std::size_t padding = 4;  ///< boxes that meet none, after each strip
 
-  int bin_of(float x) const { return math::clamp(int(x * bins_per_metre_), 0, bins - 1); }
-  int strip_of(float y) const { return math::clamp(int(y * strips_per_metre_), 0, strip_count() - 1); }
-
   std::vector<Box> boxes_;
-  std::vector<std::uint32_t> order_;  ///< of boxes along the axis of the sweep
-  std::vector<std::int32_t> first_;   ///< of each strip, and the end
   // By place in the strips; axes in the order sweep, strips, the other.
   std::vector<float> low_[3], high_[3];
-  std::vector<std::uint32_t> item_;
-  std::vector<std::uint16_t> key_, last_;  ///< bins in which a box begins and ends along the sweep
-  math::Vec3d origin_{}, extent_{};        ///< m, of all boxes
-  int axes_[3] = {0, 1, 2};                ///< in the order sweep, strips, the other
-  int longest_ = 0;                        ///< bins from where a box begins to where it ends, at most
-  float bins_per_metre_ = 0, strips_per_metre_ = 0;
-  std::uint64_t version_ = 0;  ///< of the tree
+  math::Vec3d origin_{}, extent_{};  ///< m, of all boxes
+  int axes_[3] = {0, 1, 2};          ///< in the order sweep, strips, the other
+  int longest_ = 0;                  ///< bins from where a box begins to where it ends, at most
+  std::uint64_t version_ = 0;        ///< of the tree
 };
 
 }  // namespace carom::rigid::detail

@@ -147,8 +147,8 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(old_bounds);
   visit.scratch(moved_place);
   visit.state(moved);
-  sweep.visit_lists([&](auto& list) { visit.scratch(list); });
-  strips.visit_lists([&](auto& list) { visit.scratch(list); });
+  BoxSweep::visit_lists(sweep, [&](auto& list) { visit.scratch(list); });
+  BoxStrips::visit_lists(strips, [&](auto& list) { visit.scratch(list); });
   visit.scratch(outgrown);
   visit.scratch(outgrown_places);
   visit.scratch(new_bounds);
