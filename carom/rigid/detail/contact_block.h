@@ -149,8 +149,8 @@ struct ContactKernels {
   /// Which of `count` watches in a row, at most the width, tell that nothing is new. Bits by lane.
   std::uint32_t (*nothing_new)(const ContactWatch<D>* watches, int count, const typename D::Pose* poses,
                                const BodySweep<D>* sweeps, float dt) = nullptr;
-  /// How `count` pairs have moved, at most as many as the width. Null in space.
-  KnownApart (*pair_motions)(PairMotions& pairs, int count, const MovingBodies& bodies, float dt) = nullptr;
+  /// How `count` pairs have moved, at most as many as the width.
+  KnownApart (*pair_motions)(PairMotions<D>& pairs, int count, const MovingBodies<D>& bodies, float dt) = nullptr;
   /// Fills `block` and `raw` from the records of the manifolds in `list`; lanes without one are like the first, but
   /// move nobody.
   GatheredLanes (*gather)(const ContactSources<D>& from, const std::int32_t* list, int lanes, void* block,

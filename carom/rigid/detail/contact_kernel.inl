@@ -83,6 +83,15 @@ CAROM_SIMD_INLINE WideVec3<W> multiply(const WideSymmetric<W>& m, const WideVec3
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> length(const WideVec2<W>& a) {
+  return sqrt(dot(a, a));
+}
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> length(const WideVec3<W>& a) {
+  return sqrt(dot(a, a));
+}
+
 /// What the code of both dimensions calls them: turns and inertias of the plane are numbers.
 template <int W>
 CAROM_SIMD_INLINE WideVec2<W> load_vector(const float (&p)[2][W]) {
@@ -155,7 +164,7 @@ CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int
 #include "carom/rigid/detail/contact_prepare3.inl"
 #include "carom/rigid/detail/contact_watch2.inl"
 #include "carom/rigid/detail/contact_watch3.inl"
-#include "carom/rigid/detail/pair_motions2.inl"
+#include "carom/rigid/detail/pair_motions.inl"
 // The passes use what the preparation left.
 #include "carom/rigid/detail/contact_blow.inl"
 #include "carom/rigid/detail/contact_kernel2.inl"
@@ -188,7 +197,7 @@ ContactKernels<Dim2> kernels(Dim2) {
   k.new_meetings = new_meetings<Dim2, W>;
   k.sweep = sweep<W>;
   k.nothing_new = nothing_new2<W>;
-  k.pair_motions = pair_motions2<W>;
+  k.pair_motions = pair_motions<Dim2, W>;
   k.gather = gather2<W>;
   k.prepare = prepare2<W>;
   k.approach = approach2<W>;
@@ -209,6 +218,7 @@ ContactKernels<Dim3> kernels(Dim3) {
   k.width = W;
   k.new_meetings = new_meetings<Dim3, W>;
   k.nothing_new = nothing_new3<W>;
+  k.pair_motions = pair_motions<Dim3, W>;
   k.gather = gather3<W>;
   k.prepare = prepare3<W>;
   k.approach = approach3<W>;

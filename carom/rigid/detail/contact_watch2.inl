@@ -4,11 +4,6 @@
 
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
-template <int W>
-CAROM_SIMD_INLINE WideFloat<W> length2(const WideVec2<W>& a) {
-  return sqrt(dot(a, a));
-}
-
 /// Bits by lane; lanes from `count` on are none.
 template <int W>
 std::uint32_t nothing_new2(const ContactWatch<Dim2>* watches, int count, const Dim2::Pose* poses,
@@ -48,9 +43,9 @@ std::uint32_t nothing_new2(const ContactWatch<Dim2>* watches, int count, const D
   const WideVec2<W> way = subtract(add(rotate(conjugate(a), WideVec2<W>{d[0], d[1]}), rotate(now, middle)),
                                    add(WideVec2<W>{w[0], w[1]}, rotate(base, middle)));
   const F gap = w[9], most_way = w[10], cap = w[11];
-  const F turn = length2<W>({now.c - base.c, now.s - base.s}) * w[8], along = dot(normal, way);
+  const F turn = length(WideVec2<W>{now.c - base.c, now.s - base.s}) * w[8], along = dot(normal, way);
   const auto looked_at = WideInt<W>::load(body) > WideInt<W>::splat(-1), recycled = cap < zero;
-  const F across = length2<W>({way.x - along * normal.x, way.y - along * normal.y});
+  const F across = length(WideVec2<W>{way.x - along * normal.x, way.y - along * normal.y});
   const auto stays = recycled & (gap + along < zero) & (gap + along > cap) & (across + turn < most_way);
   if (!any(looked_at & !recycled)) return bitmask(looked_at & stays);
 
@@ -58,9 +53,9 @@ std::uint32_t nothing_new2(const ContactWatch<Dim2>* watches, int count, const D
   gather_rows<4, W>(sweep_a, sa);
   gather_rows<4, W>(sweep_b, sb);
   const WideVec2<W> closing = {sa[0] - sb[0], sa[1] - sb[1]};
-  const F turning = min(sa[2] + sb[2], F::splat(most_turning * dt)), moved = length2<W>(way) + turn;
+  const F turning = min(sa[2] + sb[2], F::splat(most_turning * dt)), moved = length(way) + turn;
   const auto anyhow = most_way == zero;
-  const F ahead = select(anyhow, length2<W>(closing), max(dot(rotate(a, normal), closing), zero - turning)) + turning;
+  const F ahead = select(anyhow, length(closing), max(dot(rotate(a, normal), closing), zero - turning)) + turning;
   const auto far = select(anyhow, moved, turn - along) + min(ahead, cap) < gap;
   const auto keeps = (!recycled) & far & (anyhow | (moved < most_way));
   return bitmask(looked_at & (stays | keeps));

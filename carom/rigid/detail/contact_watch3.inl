@@ -4,10 +4,6 @@
 namespace carom::rigid::detail::CAROM_CONTACT_NAMESPACE {
 
 template <int W>
-CAROM_SIMD_INLINE WideFloat<W> length3(const WideVec3<W>& a) {
-  return sqrt(dot(a, a));
-}
-template <int W>
 CAROM_SIMD_INLINE WideVec3<W> rotate(const WideQuat<W>& q, const WideVec3<W>& v) {
   const WideVec3<W> u = {q.x, q.y, q.z}, half = cross(u, v), t = add(half, half);
   return add(add(v, multiply(t, q.w)), cross(u, t));
@@ -56,10 +52,10 @@ std::uint32_t nothing_new3(const ContactWatch<Dim3>* watches, int count, const D
                                    add(WideVec3<W>{w[2], w[3], w[4]}, rotate(base, middle)));
   const F gap = w[16], most_way = w[17], cap = w[18];
   const WideQuat<W> turned = multiply(conjugate(base), now);
-  const F chord = F::splat(2) * length3<W>({turned.x, turned.y, turned.z}), turn = chord * w[15];
+  const F chord = F::splat(2) * length(WideVec3<W>{turned.x, turned.y, turned.z}), turn = chord * w[15];
   const F along = dot(normal, way);
   const auto recycled = cap < zero;
-  const F across = length3<W>(subtract(way, multiply(normal, along)));
+  const F across = length(subtract(way, multiply(normal, along)));
   const auto stays = recycled & (gap + along < zero) & (gap + along > cap) & (across + turn < most_way);
   if (!any(looked_at & !recycled)) return bitmask(looked_at & stays);
 
@@ -67,9 +63,9 @@ std::uint32_t nothing_new3(const ContactWatch<Dim3>* watches, int count, const D
   gather_rows<4, W>(sweep_a, sa);
   gather_rows<4, W>(sweep_b, sb);
   const WideVec3<W> closing = {sa[0] - sb[0], sa[1] - sb[1], sa[2] - sb[2]};
-  const F turning = min(sa[3] + sb[3], F::splat(most_turning * dt)), moved = length3<W>(way) + turn;
+  const F turning = min(sa[3] + sb[3], F::splat(most_turning * dt)), moved = length(way) + turn;
   const auto anyhow = most_way == zero;
-  const F ahead = select(anyhow, length3<W>(closing), max(dot(rotate(a, normal), closing), zero - turning)) + turning;
+  const F ahead = select(anyhow, length(closing), max(dot(rotate(a, normal), closing), zero - turning)) + turning;
   const auto far = select(anyhow, moved, turn - along) + min(ahead, cap) < gap;
   const auto keeps = (!recycled) & far & (anyhow | (moved < most_way));
   return bitmask(looked_at & (stays | keeps));

@@ -48,7 +48,7 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
 
 /// Nearer than the margin, or so near that they may meet in this step?
 template <class D>
-bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, ShapeSweep<D>& sweep,
+bool of_interest(const WorldImplementation<D>& world, const ContactRecord<D>& c, const BodySweep<D>& sweep,
                  const typename D::Manifold& m, float separation) {
   if (separation <= c.margin()) return true;
   if (separation > c.margin() + look_ahead(world, c, sweep, m.normal)) return false;
@@ -70,8 +70,8 @@ void go_on_apart(ContactRecord<D>& c, const ShapeRecord<D>& a, const ShapeRecord
 /// Two convex shapes, or a plane: one manifold at most, which was found within `reach` (m).
 template <class D>
 std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
-                           const ShapeRecord<D>& b, float reach, ShapeSweep<D>& sweep, const typename D::Manifold& m,
-                           std::vector<FoundManifold<D>>& list) {
+                           const ShapeRecord<D>& b, float reach, const BodySweep<D>& sweep,
+                           const typename D::Manifold& m, std::vector<FoundManifold<D>>& list) {
   c.gap = reach;
   c.axis = {};
   if (m.count == 0) {
@@ -105,7 +105,7 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
 /// One of the shapes has many parts.
 template <class D>
 std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
-                         const ShapeRecord<D>& b, float reach, ShapeSweep<D>& sweep,
+                         const ShapeRecord<D>& b, float reach, const BodySweep<D>& sweep,
                          std::vector<FoundManifold<D>>& list) {
   ContactStore<D>& store = world.contacts;
   Found<D> found;
@@ -210,38 +210,11 @@ std::uint8_t pass_by(const WorldImplementation<D>& world, ContactRecord<D>& c, c
 template <class D>
 struct Looking {
   std::int32_t awake_index = none;
-  float reach = 0;  ///< m
-  ShapeSweep<D> sweep;
+  float reach = 0;       ///< m
+  BodySweep<D> sweep{};  ///< of B's shape, where bodies turn far
 };
 
-/// Looks whether a contact needs new manifolds, of its shapes at `base`. False: `change` tells all.
-template <class D>
-bool needs_manifolds(WorldImplementation<D>& world, Looking<D>& look, std::uint8_t& change) {
-  const std::int32_t awake_index = look.awake_index;
-  ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(awake_index)]);
-  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  world.scratch.watches[std::size_t(awake_index)].body[0] = none;  // an old one knows nothing of what changes now
-  // What is known and stays comes first, as watches ask for nothing else; of what is not known, this saves all the
-  // rest.
-  const bool known = (c.flags & contact_known) != 0, sensor = (c.flags & contact_sensor) != 0;
-  if (!known && !sensor && goes_past(world, c, a, b)) return change = pass_by(world, c, a, b), false;
-  typename D::Transform b_in_a;
-  if (c.flags & contact_at_origin)
-    b_in_a = relative(world.bodies.pose[std::size_t(c.body[0])], world.bodies.pose[std::size_t(c.body[1])]);
-  else
-    b_in_a = relative(shape_pose(world, a), shape_pose(world, b));
-  if (sensor) return change = update_sensor(world, c, a, b, b_in_a), false;
-
-  const float ahead = look_ahead(world, c, look.sweep);
-  if (stays(world, c, b_in_a, ahead, look.sweep, change)) return false;
-  if (known && goes_past(world, c, a, b)) return change = pass_by(world, c, a, b), false;
-  c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
-  c.base = b_in_a;
-  look.reach = 2 * c.margin() + ahead;
-  return true;
-}
-
-/// Computes them. As needs_manifolds, writes only to the contact, its manifolds and the worker's list.
+/// Computes manifolds, of the shapes at `base`. Writes only to the contact, its manifolds and the worker's list.
 template <class D>
 std::uint8_t find_manifolds(WorldImplementation<D>& world, Looking<D>& look, std::vector<FoundManifold<D>>& list) {
   ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(look.awake_index)]);
@@ -256,6 +229,8 @@ std::uint8_t find_manifolds(WorldImplementation<D>& world, Looking<D>& look, std
 template <class D>
 struct LaneQueues {
   explicit LaneQueues(int) {}
+  bool take(WorldImplementation<D>&, const Looking<D>&, std::vector<FoundManifold<D>>&) { return false; }
+  void run_all(WorldImplementation<D>&, std::vector<FoundManifold<D>>&) {}
 };
 template <>
 class LaneQueues<Dim2> {
@@ -313,66 +288,97 @@ class LaneQueues<Dim2> {
   Queue queues_[geometry::detail::lane_kinds];
 };
 
-/// Recomputes one contact.
-template <class D>
-void update_contact(WorldImplementation<D>& world, std::int32_t awake_index, std::vector<FoundManifold<D>>& list) {
-  Looking<D> look;
-  look.awake_index = awake_index;
-  std::uint8_t change = 0;
-  if (needs_manifolds(world, look, change)) change = find_manifolds(world, look, list);
-  world.scratch.contact_changes[std::size_t(awake_index)] = change;
+/// What lanes are to know of B's shape.
+inline void tell_shape(PairMotions<Dim2>& pairs, int lane, const ContactRecord<Dim2>& c, const ShapeRecord<Dim2>& b) {
+  const Vec2f middle = ball_about(b).middle;
+  pairs.middle[0][lane] = middle.x, pairs.middle[1][lane] = middle.y;
+  pairs.extent[lane] = extent_of(c, b);
+}
+inline void tell_shape(PairMotions<Dim3>& pairs, int lane, const ContactRecord<Dim3>& c, const ShapeRecord<Dim3>& b) {
+  const bool is_hull = b.geometry.type == geometry::ShapeType3::hull;
+  const bool is_long = is_hull && c.extent >= 2 * b.inner_extent;
+  constexpr float no_box = PairMotions<Dim3>::no_box;
+  const Vec3f middle = is_hull ? b.geometry.hull->bounds.center() : Vec3f{};
+  const Vec3f box = is_long ? b.geometry.hull->bounds.extents() : Vec3f{no_box, no_box, no_box};
+  for (int k = 0; k < 3; ++k) pairs.middle[k][lane] = middle[k], pairs.box[k][lane] = box[k];
+  pairs.rounding[lane] = is_long ? b.geometry.hull->radius : 0;
 }
 
-/// Recomputes contacts of the plane, at most as many as there are lanes: how they have moved is found side by side, but
-/// for sensors and what has many parts.
-inline void update_lanes(WorldImplementation<Dim2>& world, std::span<const std::int32_t> due, PairMotions& pairs,
-                         LaneQueues<Dim2>& queues, std::vector<FoundManifold<Dim2>>& list) {
-  std::int32_t awake_index[PairMotions::capacity];
-  int count = 0;
-  for (const std::int32_t i : due) {
-    const ContactRecord<Dim2>& c = world.contacts.at(world.contacts.awake[std::size_t(i)]);
-    if ((c.flags & (contact_sensor | contact_many)) != 0) {
-      update_contact(world, i, list);
-      continue;
-    }
-    awake_index[count] = i;
-    pairs.contact[count] = &c;
-    for (int side = 0; side < 2; ++side) pairs.local[side][count] = &world.shapes.at(c.shape[side]).local;
-    const ShapeRecord<Dim2>& b = world.shapes.at(c.shape[1]);
-    const Vec2f middle = ball_about(b).middle;
-    pairs.middle[0][count] = middle.x, pairs.middle[1][count] = middle.y;
-    pairs.extent[count] = Moved<Dim2>(c, b).extent;
-    ++count;
+/// What is looked at of a sensor's pair, and of one that flies past. False: it is any other.
+template <class D>
+bool update_alone(WorldImplementation<D>& world, ContactRecord<D>& c, std::uint8_t& change) {
+  const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
+  if ((c.flags & contact_sensor) != 0)
+    return change = update_sensor(world, c, a, b, relative(shape_pose(world, a), shape_pose(world, b))), true;
+  // Of what is not known this saves all the rest.
+  if ((c.flags & contact_known) == 0 && goes_past(world, c, a, b)) return change = pass_by(world, c, a, b), true;
+  return false;
+}
+
+/// Recomputes contacts: how they have moved is found side by side, as many at a time as there are lanes.
+template <class D>
+class PairUpdates {
+ public:
+  PairUpdates(WorldImplementation<D>& world, std::vector<FoundManifold<D>>& list)
+      : world_(world), list_(list), queues_(world.kernels.width) {}
+
+  void add(std::int32_t awake_index) {
+    ContactRecord<D>& c = contact(awake_index);
+    world_.scratch.watches[std::size_t(awake_index)].body[0] = none;  // an old one knows nothing of what changes now
+    if (update_alone(world_, c, world_.scratch.contact_changes[std::size_t(awake_index)])) return;
+    awake_index_[count_] = awake_index;
+    pairs_.contact[count_] = &c;
+    for (int side = 0; side < 2; ++side) pairs_.local[side][count_] = &world_.shapes.at(c.shape[side]).local;
+    tell_shape(pairs_, count_, c, world_.shapes.at(c.shape[1]));
+    if (++count_ == world_.kernels.width) run();
   }
-  if (count == 0) return;
-  const KnownApart apart = world.kernels.pair_motions(
-      pairs, count,
-      {world.bodies.pose.data(), world.scratch.sweeps.data(), world.bodies.solver.data(), world.bodies.motion.data()},
-      world.last_dt);
-  for (int lane = 0; lane < count; ++lane) {
-    const std::size_t i = std::size_t(awake_index[lane]);
-    ContactRecord<Dim2>& c = world.contacts.at(world.contacts.awake[i]);
-    world.scratch.watches[i].body[0] = none;  // as needs_manifolds
-    Transform2f now;
-    __builtin_memcpy(&now, pairs.b_in_a[lane], sizeof now);
-    const Moved<Dim2> moved({pairs.way[0][lane], pairs.way[1][lane]}, pairs.turn[lane], pairs.extent[lane]);
-    std::uint8_t& change = world.scratch.contact_changes[i];
-    if ((apart.stays >> lane & 1u) != 0) {
-      watch_apart(world, c, now, moved);
-      continue;
+  void finish() {
+    if (count_ > 0) run();
+    queues_.run_all(world_, list_);
+  }
+
+ private:
+  ContactRecord<D>& contact(std::int32_t awake_index) const {
+    return world_.contacts.at(world_.contacts.awake[std::size_t(awake_index)]);
+  }
+  void run() {
+    const KnownApart apart = world_.kernels.pair_motions(pairs_, count_,
+                                                         {world_.bodies.pose.data(), world_.scratch.sweeps.data(),
+                                                          world_.bodies.solver.data(), world_.bodies.motion.data()},
+                                                         world_.last_dt);
+    for (int lane = 0; lane < count_; ++lane) update(lane, apart);
+    count_ = 0;
+  }
+  void update(int lane, const KnownApart& apart) {
+    ContactRecord<D>& c = contact(awake_index_[lane]);
+    typename D::Transform now;
+    __builtin_memcpy(&now, pairs_.b_in_a[lane], sizeof now);
+    Moved<D> moved{.turn = pairs_.turn[lane], .extent = pairs_.extent[lane]};
+    for (int k = 0; k < D::dimension; ++k) moved.way[k] = pairs_.way[k][lane];
+    std::uint8_t& change = world_.scratch.contact_changes[std::size_t(awake_index_[lane])];
+    if ((apart.stays >> lane & 1u) != 0) return watch_apart(world_, c, now, moved);
+    if ((apart.slides >> lane & 1u) != 0 && slide_on(world_, c, moved, now)) return;
+    if (c.first_manifold != none && may_stay(c) && recycle(world_, c, moved, now, change)) return;
+    const ShapeRecord<D>&a = world_.shapes.at(c.shape[0]), &b = world_.shapes.at(c.shape[1]);
+    if ((c.flags & contact_known) != 0 && goes_past(world_, c, a, b)) {
+      change = pass_by(world_, c, a, b);
+      return;
     }
-    if ((apart.slides >> lane & 1u) != 0 && slide_on(world, c, moved, now)) continue;
-    if (c.first_manifold != none && may_stay(c) && recycle(world, c, moved, now, change)) continue;
     c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
     c.base = now;
-    Looking<Dim2> look;
-    look.awake_index = awake_index[lane];
-    look.reach = 2 * c.margin() + pairs.ahead[lane];
-    if (pairs.swept)
-      look.sweep = {{{pairs.sweep_way[0][lane], pairs.sweep_way[1][lane]}, pairs.sweep_turn[lane]}, true};
-    if (!queues.take(world, look, list)) change = find_manifolds(world, look, list);
+    Looking<D> look{.awake_index = awake_index_[lane], .reach = 2 * c.margin() + pairs_.ahead[lane]};
+    for (int k = 0; k < D::dimension; ++k) look.sweep.way[k] = pairs_.sweep_way[k][lane];
+    look.sweep.turning = pairs_.sweep_turn[lane];
+    if (!queues_.take(world_, look, list_)) change = find_manifolds(world_, look, list_);
   }
-}
+
+  WorldImplementation<D>& world_;
+  std::vector<FoundManifold<D>>& list_;
+  LaneQueues<D> queues_;
+  PairMotions<D> pairs_{};
+  std::int32_t awake_index_[PairMotions<D>::capacity];
+  int count_ = 0;
+};
 
 }  // namespace
 }  // namespace carom::rigid::detail

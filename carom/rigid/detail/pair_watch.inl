@@ -73,7 +73,7 @@ void watch_apart(WorldImplementation<D>& world, const ContactRecord<D>& c, const
   w.cap = (c.flags & contact_bouncy) != 0 ? 3.4e38f : 0.5f * c.inner;
   w.most_way = 0;
   if (c.axis == typename D::Vector{}) return;
-  w.most_way = longest_slide(c) - moved.most() - rounding_of(w);
+  w.most_way = longest_slide<D> * c.inner - moved.most() - rounding_of(w);
   if (!(w.most_way > 0)) w.body[0] = none;
 }
 /// What touches is watched until it parts; in the plane, what does not until it comes near or bears a load
@@ -101,7 +101,7 @@ bool slide_on(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>
   if (!overlaps(world.shapes.trees[a.tree].bounds(a.leaf), world.shapes.trees[b.tree].bounds(b.leaf))) return false;
   c.gap = coarse(gap_along(c, moved));
   c.base = now;
-  watch_apart(world, c, now, Moved<D>(c, b));
+  watch_apart(world, c, now, Moved<D>{.extent = extent_of(c, b)});
   return true;
 }
 /// Contact recycling, after Box2D 3.1 and Box3D: while a pair hardly moves, its manifolds are kept and only their
@@ -126,22 +126,6 @@ template <class D>
 bool may_stay(const ContactRecord<D>& c) {
   return (c.flags & contact_known) != 0 && (c.first_manifold == none || (c.flags & contact_round) == 0);
 }
-/// Is all that is known of a contact still true, now that B is there seen from A? Then only its flags follow. In the
-/// plane lanes tell of most that are apart (pair_motions2.inl).
-template <class D>
-bool stays(WorldImplementation<D>& world, ContactRecord<D>& c, const typename D::Transform& now, float ahead,
-           ShapeSweep<D>& sweep, std::uint8_t& change) {
-  if (!may_stay(c)) return false;
-  const Moved<D> moved(c, world.shapes.at(c.shape[1]), now);
-  if (c.first_manifold != none) return recycle(world, c, moved, now, change);
-  const bool has_axis = !(c.axis == typename D::Vector{});
-  const float near = has_axis ? look_ahead(world, c, sweep, c.axis) : ahead;
-  if (has_axis && moved.most() >= longest_slide(c))
-    return near < gap_along(c, moved) - c.margin() && slide_on(world, c, moved, now);
-  if (!(near < slack_of(c, moved))) return false;
-  watch_apart(world, c, now, moved);
-  return true;
-}
 
 /// A contact whose shapes were found to be `c.gap` apart.
 template <class D>
@@ -154,7 +138,7 @@ std::uint8_t part(WorldImplementation<D>& world, ContactRecord<D>& c, const Shap
   else if (c.first_manifold != none)
     change = change_empty;
   else
-    watch_apart(world, c, c.base, Moved<D>(c, b));
+    watch_apart(world, c, c.base, Moved<D>{.extent = extent_of(c, b)});
   return std::uint8_t(change | touch_change(c, c.gap, false));
 }
 

@@ -140,9 +140,7 @@ void update_contacts(WorldImplementation<D>& world) {
   measure_sweeps(world);
   world.scheduler->parallel_for(int(count), worker_grain<D>, [&](int begin, int end, int worker) {
     std::int32_t due[contact_grain];
-    LaneQueues<D> queues(world.kernels.width);
-    [[maybe_unused]] PairMotions motions{};
-    std::vector<FoundManifold<D>>& list = scratch.found_manifolds[std::size_t(worker)];
+    PairUpdates<D> updates(world, scratch.found_manifolds[std::size_t(worker)]);
     const int width = world.kernels.width;
     // Found once: to the compiler, whatever is written might move them.
     const ContactWatch<D>* const watches = scratch.watches.data();
@@ -192,23 +190,14 @@ void update_contacts(WorldImplementation<D>& world) {
         for (const std::int32_t s : soon.shape)
           __builtin_prefetch(&world.shapes.trees[shapes[s].tree].bounds(shapes[s].leaf));
       };
-      if constexpr (D::dimension == 2) {
-        for (int k = 0; k < min(width, number); ++k) look_at_soon(k);
-        for (int first = 0; first < number; first += width) {
-          const int next = min(first + width, number);
-          for (int k = next; k < min(next + width, number); ++k) look_at_soon(k);
-          for (int k = first; k < next; ++k) bounds_soon(k);
-          update_lanes(world, {due + first, due + next}, motions, queues, list);
-        }
-      } else {
-        for (int k = 0; k < min(6, number); ++k) look_at_soon(k);
-        for (int k = 0; k < number; ++k) {
-          if (k + 6 < number) look_at_soon(k + 6);
-          update_contact(world, due[k], list);
-        }
+      for (int k = 0; k < min(width, number); ++k) look_at_soon(k);
+      for (int k = 0; k < number; ++k) {
+        if (k + width < number) look_at_soon(k + width);
+        bounds_soon(k);
+        updates.add(due[k]);
       }
     }
-    if constexpr (D::dimension == 2) queues.run_all(world, list);
+    updates.finish();
   });
   level_room(scratch.found_manifolds);
   scratch.manifolds.clear();
