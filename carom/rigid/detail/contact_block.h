@@ -21,18 +21,19 @@ inline constexpr float most_middle_way = 0.03f;   ///< of `extent`
 inline constexpr float block_struck = 1, block_pushed = 2;
 
 /// Masses in 1/kg and 1/(kg·m²); r are vectors from the centres of mass to the contact, world axes at the step's start.
-/// One softness class bit per lane would do, but three floats keep the loop free of branches.
+/// Passes over many blocks wait for memory: what follows from other rows is not stored.
 template <class D, int W>
 struct ContactBlock;
+
+/// The slot of a block's body, whoever it is.
+inline std::int32_t slot_of(std::int32_t body) { return body ^ (body >> 31); }
 
 template <int W>
 struct alignas(64) ContactBlock<Dim2, W> {
   static constexpr int points = 2;
-  std::int32_t read_a[W], read_b[W];    ///< body slots
-  std::int32_t write_a[W], write_b[W];  ///< the same, or −1 for bodies that impulses do not move
+  std::int32_t body_a[W], body_b[W];  ///< slots; of a body that impulses do not move −1 − its slot
   float normal[2][W];
   float inverse_mass_a[W], inverse_mass_b[W], inverse_inertia_a[W], inverse_inertia_b[W];
-  float bias_rate[W], mass_scale[W], impulse_scale[W];
   float center_offset[2][W];  ///< r_B = r_A + this, for every point of the manifold
   struct Point {
     float r_a[2][W];
@@ -52,12 +53,10 @@ struct alignas(64) ContactBlock<Dim2, W> {
 template <int W>
 struct alignas(64) ContactBlock<Dim3, W> {
   static constexpr int points = 4;
-  std::int32_t read_a[W], read_b[W];
-  std::int32_t write_a[W], write_b[W];
+  std::int32_t body_a[W], body_b[W];
   float normal[3][W], tangent[3][W];  ///< the second tangent is normal × tangent
   float inverse_mass_a[W], inverse_mass_b[W];
   float inverse_inertia_a[6][W], inverse_inertia_b[6][W];  ///< xx, yy, zz, xy, xz, yz, world axes
-  float bias_rate[W], mass_scale[W], impulse_scale[W];
   float center_offset[3][W];
   struct Point {
     float r_a[3][W];
@@ -119,7 +118,7 @@ struct ContactSources {
   const SolverBody<D>* bodies = nullptr;
   const float* load_shares = nullptr;  ///< by level
   float* loads = nullptr;              ///< BodyLoad<D> by slot of the body
-  Softness contact_softness, fixed_contact_softness;
+  ContactSoftness softness;
   typename D::Vector gravity{};     ///< m/s²
   float restitution_threshold = 0;  ///< m/s
   float push_speed = 0;             ///< m/s
@@ -173,7 +172,7 @@ struct ContactKernels {
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end, bool again) = nullptr;
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
-                int order) = nullptr;
+                const ContactSoftness& softness, int order) = nullptr;
   /// counted: 1 where the impulses are those of the substep, 0 where another relaxing pass follows; then only lanes
   /// that settle take part.
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h,

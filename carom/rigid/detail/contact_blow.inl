@@ -131,15 +131,15 @@ template <int W>
 struct BlowRow {
   WideFloat<W> bias, yield;
 };
-template <int W, bool UseBias, class Block>
-CAROM_SIMD_INLINE BlowRow<W> blow_row(const Block& c, WideFloat<W> s, WideFloat<W> mobility, WideFloat<W> inverse_h,
-                                      WideFloat<W> push_speed) {
+template <int W, bool UseBias>
+CAROM_SIMD_INLINE BlowRow<W> blow_row(const WideSoftness<W>& soft, WideFloat<W> s, WideFloat<W> mobility,
+                                      WideFloat<W> inverse_h, WideFloat<W> push_speed) {
   using F = WideFloat<W>;
   const F zero = F::splat(0);
   const auto apart = s > zero;
   if constexpr (!UseBias) return {keep(apart, s * inverse_h), zero};
-  return {select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed)),
-          select(apart, zero, mobility * F::load(c.impulse_scale) / F::load(c.mass_scale))};
+  return {select(apart, s * inverse_h, max(soft.bias_rate * s, zero - push_speed)),
+          select(apart, zero, mobility * soft.impulse_scale / soft.mass_scale)};
 }
 
 template <class Velocity>
@@ -150,7 +150,7 @@ struct VelocityPair {
 template <int W, bool UseBias, class D, class Velocity>
 [[gnu::noinline]] VelocityPair<Velocity> share_blow(const SolverBody<D>* bodies, ContactBlock<D, W>& c, Velocity a,
                                                     Velocity b, WideMask<W> struck, float inverse_h, float push_speed,
-                                                    float counted) {
+                                                    const WideSoftness<W>& soft, float counted) {
   using F = WideFloat<W>;
   constexpr int points = std::extent_v<decltype(c.point)>;
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -158,8 +158,8 @@ template <int W, bool UseBias, class D, class Velocity>
   const auto n = load_vector(c.normal), offset = load_vector(c.center_offset);
   const auto offset_turn = cross(offset, n);
   F pa[4 * (D::dimension - 1)], pb[4 * (D::dimension - 1)];
-  gather<W>(bodies, c.read_a, D::dimension == 2 ? 4 : 8, pa);
-  gather<W>(bodies, c.read_b, D::dimension == 2 ? 4 : 8, pb);
+  gather<W>(bodies, Slots<W>(c.body_a).of, D::dimension == 2 ? 4 : 8, pa);
+  gather<W>(bodies, Slots<W>(c.body_b).of, D::dimension == 2 ? 4 : 8, pb);
   F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
   if constexpr (D::dimension == 3) shift = shift + n.z * (pb[2] - pa[2]);
   const auto na = turned_back_change(pa, n), nb = turned_back_change(pb, n);
@@ -172,7 +172,7 @@ template <int W, bool UseBias, class D, class Velocity>
     turn_a[i] = cross(ra, n), turn_b[i] = add(turn_a[i], offset_turn);
     const auto ita = multiply(ia, turn_a[i]), itb = multiply(ib, turn_b[i]);
     for (int j = 0; j <= i; ++j) rows.k[i][j] = ma + mb + dot(ita, turn_a[j]) + dot(itb, turn_b[j]);
-    const BlowRow<W> row = blow_row<W, UseBias>(c, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
+    const BlowRow<W> row = blow_row<W, UseBias>(soft, s, rows.k[i][i], F::splat(inverse_h), F::splat(push_speed));
     rows.velocity[i] = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b[i]) - dot(a.w, turn_a[i]) + row.bias;
     rows.yield[i] = row.yield;
     rows.impulse[i] = F::load(point.impulse);

@@ -49,10 +49,8 @@ struct GatheredRecords {
       waits |= std::uint32_t(m.waits) << i;
       rolls |= std::uint32_t(k.rolls && (k.flags & contact_many) == 0) << i;
       const bool both = (k.flags & contact_dynamic) != 0;
-      c.read_a[i] = a;
-      c.read_b[i] = b;
-      c.write_a[i] = i < lanes && (both || from.record[a].type == BodyType::dynamic) ? a : none;
-      c.write_b[i] = i < lanes && (both || from.record[b].type == BodyType::dynamic) ? b : none;
+      c.body_a[i] = i < lanes && (both || from.record[a].type == BodyType::dynamic) ? a : ~a;
+      c.body_b[i] = i < lanes && (both || from.record[b].type == BodyType::dynamic) ? b : ~b;
     }
     rolls &= (1u << lanes) - 1;
   }
@@ -71,11 +69,6 @@ struct GatheredRecords {
     for (int axis = 0; axis < D::dimension; ++axis) between[axis].store(c.center_offset[axis]);
     (F::splat(1) - min(F::load(share_a), F::load(share_b))).store(raw.squeezed);
     keep(has(contact_recycled), F::splat(1)).store(raw.recycled);
-    const auto firm = (I::load(c.write_a) < I::zero()) | (I::load(c.write_b) < I::zero());
-    const Softness &soft = from.contact_softness, &hard = from.fixed_contact_softness;
-    select(firm, F::splat(hard.bias_rate), F::splat(soft.bias_rate)).store(c.bias_rate);
-    select(firm, F::splat(hard.mass_scale), F::splat(soft.mass_scale)).store(c.mass_scale);
-    select(firm, F::splat(hard.impulse_scale), F::splat(soft.impulse_scale)).store(c.impulse_scale);
     F::zero().store(c.settles);
     F::zero().store(c.struck);
     I::zero().store(c.again);

@@ -80,7 +80,7 @@ CAROM_SIMD_INLINE std::uint32_t gather_points2(const ContactSources<Dim2>& from,
   }
   const auto slides = round | (head[3] != zero);
   select(slides, zero, one + to_float(WideInt<W>::load(anchor))).store(raw.anchor_state);
-  return bitmask(deepest * F::load(c.bias_rate) < F::splat(-from.push_speed));
+  return bitmask(deepest * WideSoftness<W>(from.softness, c).bias_rate < F::splat(-from.push_speed));
 }
 
 /// Which of those that roll touch in one point, carry a load and have bodies that move past each other by as much as it
@@ -91,8 +91,8 @@ CAROM_SIMD_INLINE std::uint32_t turning2(const ContactSources<Dim2>& from, const
   using F = WideFloat<W>;
   F extent[4], va[4], vb[4];  // of the first: extent, inner
   gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim2>, extent))>(lanes, extent);
-  gather<W>(from.bodies, c.read_a, 0, va);
-  gather<W>(from.bodies, c.read_b, 0, vb);
+  gather<W>(from.bodies, Slots<W>(c.body_a).of, 0, va);
+  gather<W>(from.bodies, Slots<W>(c.body_b).of, 0, vb);
   const WideVec2<W> offset = load2<W>(c.center_offset);  // from B's centre to A's
   const WideVec2<W> seen = {vb[0] - va[0] - va[2] * offset.y, vb[1] - va[1] + va[2] * offset.x};
   const F turned = (vb[2] - va[2]) * extent[0], half = F::splat(from.half_step);
@@ -131,16 +131,15 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
 
 /// m/s², of bodies without a clock of their own.
 template <int W>
-CAROM_SIMD_INLINE WideVec2<W> acceleration2(const ContactSources<Dim2>& from, const std::int32_t (&body)[W],
-                                            const std::int32_t (&moved)[W]) {
+CAROM_SIMD_INLINE WideVec2<W> acceleration2(const ContactSources<Dim2>& from, const std::int32_t (&body)[W]) {
   using F = WideFloat<W>;
   LaneRecords lane[W];
-  for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + body[i]);
+  for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + slot_of(body[i]));
   F center[4], force[4], scale[4];
   gather_from<&LaneRecords::motion_a, BodyRows2::center>(lane, center);
   gather_from<&LaneRecords::motion_a, BodyRows2::force>(lane, force);
   gather_from<&LaneRecords::motion_a, BodyRows2::gravity_scale>(lane, scale);
-  const auto moves = WideInt<W>::load(moved) > WideInt<W>::splat(-1);
+  const auto moves = WideInt<W>::load(body) > WideInt<W>::splat(-1);
   return {keep(moves, F::splat(from.gravity.x) * scale[0] + force[0] * center[2]),
           keep(moves, F::splat(from.gravity.y) * scale[0] + force[1] * center[2])};
 }
@@ -176,13 +175,12 @@ std::uint32_t approach2(const ContactSources<Dim2>& from, const std::int32_t* li
   if (!any(bouncy)) return 0;
 
   const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
-  const WideVec2<W> acceleration =
-      subtract(acceleration2<W>(from, c.read_a, c.write_a), acceleration2<W>(from, c.read_b, c.write_b));
+  const WideVec2<W> acceleration = subtract(acceleration2<W>(from, c.body_a), acceleration2<W>(from, c.body_b));
   const F closing = keep(bouncy, max(dot(n, acceleration), zero));
   closing.store(e.closing_acceleration);
   F va[4], vb[4];
-  gather<W>(from.bodies, c.read_a, 0, va);
-  gather<W>(from.bodies, c.read_b, 0, vb);
+  gather<W>(from.bodies, Slots<W>(c.body_a).of, 0, va);
+  gather<W>(from.bodies, Slots<W>(c.body_b).of, 0, vb);
   WideMask<W> bounces = WideMask<W>::none();
   for (int i = 0; i < 2; ++i) {
     const WideVec2<W> ra = load2<W>(c.point[i].r_a), rb = add(ra, offset);
@@ -203,8 +201,8 @@ std::uint32_t closing2(const ContactSources<Dim2>& from, int lanes, const void* 
   const ContactBlock<Dim2, W>& c = *static_cast<const ContactBlock<Dim2, W>*>(block);
   const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
   F va[4], vb[4];
-  gather<W>(from.bodies, c.read_a, 0, va);
-  gather<W>(from.bodies, c.read_b, 0, vb);
+  gather<W>(from.bodies, Slots<W>(c.body_a).of, 0, va);
+  gather<W>(from.bodies, Slots<W>(c.body_b).of, 0, vb);
   WideMask<W> fast = WideMask<W>::none();
   for (int i = 0; i < 2; ++i) {
     const WideVec2<W> ra = load2<W>(c.point[i].r_a), rb = add(ra, offset);
@@ -225,20 +223,21 @@ CAROM_SIMD_INLINE void store_load2(const ContactSources<Dim2>& to, const Contact
   const WideVec2<W> n = load2<W>(c.normal);
   const WideVec2<W> p = {keep(loaded, n.x * load), keep(loaded, n.y * load)};
   F va[4], vb[4], a[4], b[4];
-  gather<W>(to.bodies, c.read_a, 0, va);
-  gather<W>(to.bodies, c.read_b, 0, vb);
+  const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+  gather<W>(to.bodies, slots_a.of, 0, va);
+  gather<W>(to.bodies, slots_b.of, 0, vb);
   // What is being squashed closes; what is at rest neither slides nor parts.
   WideVec2<W> slip = {vb[0] - va[0], vb[1] - va[1]};
   const F closing = min(dot(n, slip), zero);
   slip = {slip.x - n.x * closing, slip.y - n.y * closing};
   const auto restless = dot(slip, slip) > F::splat(to.rest_speed_squared);
   const F size = keep(loaded, select(restless, F::splat(to.restless_load), load));
-  gather_rows<4, W>(to.loads, c.read_a, a);
-  gather_rows<4, W>(to.loads, c.read_b, b);
+  gather_rows<4, W>(to.loads, slots_a.of, a);
+  gather_rows<4, W>(to.loads, slots_b.of, b);
   const F sum_a[4] = {a[0] - p.x, a[1] - p.y, a[2] + size, a[3]},
           sum_b[4] = {b[0] + p.x, b[1] + p.y, b[2] + size, b[3]};
-  scatter_rows<4, 4, W>(to.loads, c.write_a, sum_a);
-  scatter_rows<4, 4, W>(to.loads, c.write_b, sum_b);
+  scatter_rows<4, 4, W>(to.loads, c.body_a, sum_a);
+  scatter_rows<4, 4, W>(to.loads, c.body_b, sum_b);
 }
 
 template <int W>

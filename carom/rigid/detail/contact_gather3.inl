@@ -99,7 +99,7 @@ CAROM_SIMD_INLINE std::uint32_t gather_points3(const ContactSources<Dim3>& from,
   const F spinning = spinning_lever - rolling_lever;
   const auto rubs = friction > zero;
   keep((spinning > zero) & rubs, spinning / select(rubs, friction, one)).store(raw.spin_radius);
-  return bitmask(deepest * F::load(c.bias_rate) < F::splat(-from.push_speed));
+  return bitmask(deepest * WideSoftness<W>(from.softness, c).bias_rate < F::splat(-from.push_speed));
 }
 
 /// Which of those that roll and carry a load have bodies that move past each other by as much as it takes.
@@ -109,8 +109,8 @@ CAROM_SIMD_INLINE std::uint32_t turning3(const ContactSources<Dim3>& from, const
   using F = WideFloat<W>;
   F extent[4], va[8], vb[8];  // of the first: extent, inner
   gather_from<&LaneRecords::contact, int(offsetof(ContactRecord<Dim3>, extent))>(lanes, extent);
-  gather<W>(from.bodies, c.read_a, 0, va);
-  gather<W>(from.bodies, c.read_b, 0, vb);
+  gather<W>(from.bodies, Slots<W>(c.body_a).of, 0, va);
+  gather<W>(from.bodies, Slots<W>(c.body_b).of, 0, vb);
   const WideVec3<W> between = multiply(load3<W>(c.center_offset), F::splat(-1));
   const WideVec3<W> wa = {va[4], va[5], va[6]}, wb = {vb[4], vb[5], vb[6]};
   const WideVec3<W> relative = {vb[0] - va[0], vb[1] - va[1], vb[2] - va[2]};
@@ -150,15 +150,14 @@ GatheredLanes gather3(const ContactSources<Dim3>& from, const std::int32_t* list
 
 /// m/s², of bodies without a clock of their own.
 template <int W>
-CAROM_SIMD_INLINE WideVec3<W> acceleration3(const ContactSources<Dim3>& from, const std::int32_t (&body)[W],
-                                            const std::int32_t (&moved)[W]) {
+CAROM_SIMD_INLINE WideVec3<W> acceleration3(const ContactSources<Dim3>& from, const std::int32_t (&body)[W]) {
   using F = WideFloat<W>;
   LaneRecords lane[W];
-  for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + body[i]);
+  for (int i = 0; i < W; ++i) lane[i].motion_a = reinterpret_cast<const char*>(from.motion + slot_of(body[i]));
   F row[16], scale[4];
   gather_from<&LaneRecords::motion_a, BodyRows3::center>(lane, row);
   gather_from<&LaneRecords::motion_a, BodyRows3::gravity_scale>(lane, scale);
-  const auto moves = WideInt<W>::load(moved) > WideInt<W>::splat(-1);
+  const auto moves = WideInt<W>::load(body) > WideInt<W>::splat(-1);
   const auto along = [&](float gravity, F force) __attribute__((always_inline)) {
     return keep(moves, F::splat(gravity) * scale[0] + force * row[3]);
   };
@@ -172,8 +171,8 @@ struct Parting3 {
   Parting3(const ContactSources<Dim3>& from, const ContactBlock<Dim3, W>& c)
       : n(load3<W>(c.normal)), offset(load3<W>(c.center_offset)) {
     WideFloat<W> a[8], b[8];
-    gather<W>(from.bodies, c.read_a, 0, a);
-    gather<W>(from.bodies, c.read_b, 0, b);
+    gather<W>(from.bodies, Slots<W>(c.body_a).of, 0, a);
+    gather<W>(from.bodies, Slots<W>(c.body_b).of, 0, b);
     va = {a[0], a[1], a[2]}, wa = {a[4], a[5], a[6]};
     vb = {b[0], b[1], b[2]}, wb = {b[4], b[5], b[6]};
   }
@@ -206,8 +205,7 @@ std::uint32_t approach3(const ContactSources<Dim3>& from, const std::int32_t* li
   for (auto& speed : e.bounce_speed) zero.store(speed);
   if (!any(bouncy)) return 0;
 
-  const WideVec3<W> acceleration =
-      subtract(acceleration3<W>(from, c.read_a, c.write_a), acceleration3<W>(from, c.read_b, c.write_b));
+  const WideVec3<W> acceleration = subtract(acceleration3<W>(from, c.body_a), acceleration3<W>(from, c.body_b));
   const Parting3<W> parting(from, c);
   const F closing = keep(bouncy, max(dot(parting.n, acceleration), zero));
   closing.store(e.closing_acceleration);
@@ -247,19 +245,20 @@ CAROM_SIMD_INLINE void store_load3(const ContactSources<Dim3>& to, const Contact
   const WideVec3<W> n = load3<W>(c.normal);
   const WideVec3<W> p = {keep(loaded, n.x * load), keep(loaded, n.y * load), keep(loaded, n.z * load)};
   F va[4], vb[4], a[4], b[4];
-  gather<W>(to.bodies, c.read_a, 0, va);
-  gather<W>(to.bodies, c.read_b, 0, vb);
+  const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+  gather<W>(to.bodies, slots_a.of, 0, va);
+  gather<W>(to.bodies, slots_b.of, 0, vb);
   // What is being squashed closes; what is at rest neither slides nor parts.
   const WideVec3<W> relative = {vb[0] - va[0], vb[1] - va[1], vb[2] - va[2]};
   const WideVec3<W> slip = subtract(relative, multiply(n, min(dot(n, relative), zero)));
   const auto restless = dot(slip, slip) > F::splat(to.rest_speed_squared);
   const F size = keep(loaded, select(restless, F::splat(to.restless_load), load));
-  gather_rows<4, W>(to.loads, c.read_a, a);
-  gather_rows<4, W>(to.loads, c.read_b, b);
+  gather_rows<4, W>(to.loads, slots_a.of, a);
+  gather_rows<4, W>(to.loads, slots_b.of, b);
   const F sum_a[4] = {a[0] - p.x, a[1] - p.y, a[2] - p.z, a[3] + size},
           sum_b[4] = {b[0] + p.x, b[1] + p.y, b[2] + p.z, b[3] + size};
-  scatter_rows<4, 4, W>(to.loads, c.write_a, sum_a);
-  scatter_rows<4, 4, W>(to.loads, c.write_b, sum_b);
+  scatter_rows<4, 4, W>(to.loads, c.body_a, sum_a);
+  scatter_rows<4, 4, W>(to.loads, c.body_b, sum_b);
 }
 
 template <int W>

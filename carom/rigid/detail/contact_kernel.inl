@@ -146,6 +146,34 @@ CAROM_SIMD_INLINE void who_starts_again(const std::int32_t (&again)[W], std::int
   for (int i = 0; i < W; ++i) chosen[i] = (again[i] & bit) != 0 ? bodies[i] : none;
 }
 
+/// The slots of the lanes' bodies, whoever they are.
+template <int W>
+struct Slots {
+  alignas(4 * W) std::int32_t of[W];
+  CAROM_SIMD_INLINE explicit Slots(const std::int32_t (&bodies)[W]) {
+    const WideInt<W> x = WideInt<W>::load(bodies);
+    (x ^ (x >> 31)).store(of);
+  }
+};
+
+/// How soft the lanes' contacts are.
+template <int W>
+struct WideSoftness {
+  WideFloat<W> bias_rate, mass_scale, impulse_scale;
+
+  CAROM_SIMD_INLINE WideSoftness() : bias_rate{}, mass_scale{}, impulse_scale{} {}
+  template <class D>
+  CAROM_SIMD_INLINE WideSoftness(const ContactSoftness& softness, const ContactBlock<D, W>& c) {
+    const auto firm = (WideInt<W>::load(c.body_a) | WideInt<W>::load(c.body_b)) < WideInt<W>::zero();
+    const auto either = [&](float Softness::* part) __attribute__((always_inline)) {
+      return select(firm, WideFloat<W>::splat(softness.firm.*part), WideFloat<W>::splat(softness.free.*part));
+    };
+    bias_rate = either(&Softness::bias_rate);
+    mass_scale = either(&Softness::mass_scale);
+    impulse_scale = either(&Softness::impulse_scale);
+  }
+};
+
 template <int W, int Columns, class Body>
 CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int offset,
                               WideFloat<W> (&columns)[Columns]) {
@@ -185,7 +213,7 @@ std::uint32_t strikes(const SolverBody<D>* bodies, const void* block) {
   const auto apart = (nearest > F::splat(0)) & (nearest * nearest > F::splat(1e-4f) * min(dot(ra, ra), dot(rb, rb)));
   if (!any(apart)) return 0;
   const auto n = load_vector(c.normal);
-  const auto a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+  const auto a = read_velocity<W>(bodies, Slots<W>(c.body_a).of), b = read_velocity<W>(bodies, Slots<W>(c.body_b).of);
   const F parting = dot(subtract(b.v, a.v), n) + dot(b.w, cross(rb, n)) - dot(a.w, cross(ra, n));
   return bitmask(apart & (parting < F::splat(-least_blow)));
 }

@@ -38,7 +38,8 @@ void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int 
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     const ContactBlock<Dim2, W>& c = static_cast<const ContactBlock<Dim2, W>*>(blocks)[k];
-    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity2<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const WideVec2<W> n = load2<W>(c.normal), offset = load2<W>(c.center_offset);
     const WideVec2<W> t = {F::splat(0) - n.y, n.x};
     const F offset_turn = cross(offset, n), friction = F::load(c.tangent_impulse);
@@ -62,13 +63,13 @@ void warm_start2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int 
     push(b, F::load(c.inverse_mass_b), F::load(c.inverse_inertia_b), p, turn_b);
     if (again) {
       std::int32_t to_a[W], to_b[W];
-      who_starts_again<W>(c.again, 1, c.write_a, to_a);
-      who_starts_again<W>(c.again, 2, c.write_b, to_b);
+      who_starts_again<W>(c.again, 1, c.body_a, to_a);
+      who_starts_again<W>(c.again, 2, c.body_b, to_b);
       write_velocity<W>(bodies, to_a, a);
       write_velocity<W>(bodies, to_b, b);
     } else {
-      write_velocity<W>(bodies, c.write_a, a);
-      write_velocity<W>(bodies, c.write_b, b);
+      write_velocity<W>(bodies, c.body_a, a);
+      write_velocity<W>(bodies, c.body_b, b);
     }
   }
 }
@@ -84,10 +85,11 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
 }
 
 template <int W, bool UseBias>
-CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, ContactBlock<Dim2, W>& c,
-                                                Velocity2<W>& a, Velocity2<W>& b, const WideVec2<W>& n,
-                                                WideFloat<W> inverse_h, WideFloat<W> push_speed, WideFloat<W> counted,
-                                                WideFloat<W> share, int order) {
+CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, const Slots<W>& slots_a,
+                                                const Slots<W>& slots_b, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
+                                                Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
+                                                WideFloat<W> push_speed, const WideSoftness<W>& soft,
+                                                WideFloat<W> counted, WideFloat<W> share, int order) {
   using F = WideFloat<W>;
   order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
@@ -96,8 +98,8 @@ CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, 
   const WideVec2<W> offset = load2<W>(c.center_offset);
   const F offset_turn = cross(offset, n);
   F pa[4], pb[4];
-  gather<W>(bodies, c.read_a, 4, pa);
-  gather<W>(bodies, c.read_b, 4, pb);
+  gather<W>(bodies, slots_a.of, 4, pa);
+  gather<W>(bodies, slots_b.of, 4, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
   const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
   PassBlow<W, 2> blow;
@@ -111,10 +113,10 @@ CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, 
     F bias, yields = one;  // mass_scale; impulse_scale is 1 less that
     const auto apart = s > zero;
     if constexpr (UseBias) {
-      bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
+      bias = select(apart, s * inverse_h, max(soft.bias_rate * s, zero - push_speed));
       // From soft to rigid within so little: rounding must not decide which of the two it is.
       const F rigid = clamp(s * F::splat(1 / touching_gap), zero, one);
-      yields = F::load(c.mass_scale) + rigid * F::load(c.impulse_scale);
+      yields = soft.mass_scale + rigid * soft.impulse_scale;
     } else {
       bias = keep(apart, s * inverse_h);
     }
@@ -134,20 +136,24 @@ CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, 
 }
 
 template <int W>
-void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed, int order) {
+void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed,
+            const ContactSoftness& softness, int order) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
-    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
-    const PassBlow<W, 2> normals = solve_normals2<W, true>(bodies, c, a, b, load2<W>(c.normal), F::splat(inverse_h),
-                                                           F::splat(push_speed), F::splat(1), F::splat(1), order);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity2<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
+    const WideSoftness<W> soft(softness, c);
+    const PassBlow<W, 2> normals =
+        solve_normals2<W, true>(bodies, slots_a, slots_b, c, a, b, load2<W>(c.normal), F::splat(inverse_h),
+                                F::splat(push_speed), soft, F::splat(1), F::splat(1), order);
     const auto struck = find_struck(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
-      const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
+      const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, soft, 0);
       a = shared.a, b = shared.b;
     }
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    write_velocity<W>(bodies, c.body_a, a);
+    write_velocity<W>(bodies, c.body_b, b);
   }
 }
 
@@ -156,7 +162,8 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
-    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity2<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
     const WideVec2<W> n = load2<W>(c.normal);
@@ -165,7 +172,7 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     const auto takes_part = share > F::splat(0);
     auto rubs = takes_part;
     if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
-      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
+      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, {}, 0);
       a = shared.a, b = shared.b;
     }
     F load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
@@ -183,8 +190,8 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
         WideVec2<W> ra = load2<W>(c.patch_r_a), rb = add(ra, load2<W>(c.center_offset));
         if (struck) {  // where the surfaces meet now, both arms reach there
           F pa[4], pb[4];
-          gather<W>(bodies, c.read_a, 4, pa);
-          gather<W>(bodies, c.read_b, 4, pb);
+          gather<W>(bodies, slots_a.of, 4, pa);
+          gather<W>(bodies, slots_b.of, 4, pb);
           const F apart = F::splat(0.5f) * (n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]));
           ra = {ra.x + apart * n.x, ra.y + apart * n.y};
           rb = {rb.x - apart * n.x, rb.y - apart * n.y};
@@ -204,11 +211,11 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
         push(b, mb, ib, p, delta * turn_b);
       }
       if (struck) break;
-      const PassBlow<W, 2> normals =
-          solve_normals2<W, false>(bodies, c, a, b, n, F::splat(inverse_h), F::splat(0), F::splat(counted), share, 0);
+      const PassBlow<W, 2> normals = solve_normals2<W, false>(bodies, slots_a, slots_b, c, a, b, n, F::splat(inverse_h),
+                                                              F::splat(0), {}, F::splat(counted), share, 0);
       const auto hard = find_struck(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
-        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
+        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, counted);
         a = shared.a, b = shared.b;
       }
       const F before = load;
@@ -218,12 +225,12 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     }
     (F::load(c.tangent_total) + F::load(c.tangent_impulse) * F::splat(counted)).store(c.tangent_total);
     if (counted > 0) {
-      write_velocity<W>(bodies, c.write_a, a);
-      write_velocity<W>(bodies, c.write_b, b);
+      write_velocity<W>(bodies, c.body_a, a);
+      write_velocity<W>(bodies, c.body_b, b);
     } else {
       std::int32_t to_a[W], to_b[W];
-      who_settles<W>(c.settles, c.write_a, to_a);
-      who_settles<W>(c.settles, c.write_b, to_b);
+      who_settles<W>(c.settles, c.body_a, to_a);
+      who_settles<W>(c.settles, c.body_b, to_b);
       write_velocity<W>(bodies, to_a, a);
       write_velocity<W>(bodies, to_b, b);
     }
@@ -238,15 +245,16 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     const ContactExtra<Dim2, W>& e = static_cast<const ContactExtra<Dim2, W>*>(extra)[k];
     const F zero = F::splat(0);
     if (!any(max(F::load(e.bounce_speed[0]), F::load(e.bounce_speed[1])) > zero)) continue;
-    Velocity2<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity2<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
     const WideVec2<W> n = load2<W>(c.normal);
     const WideVec2<W> offset = load2<W>(c.center_offset);
     const F offset_turn = cross(offset, n);
     F pa[4], pb[4];
-    gather<W>(bodies, c.read_a, 4, pa);
-    gather<W>(bodies, c.read_b, 4, pb);
+    gather<W>(bodies, slots_a.of, 4, pa);
+    gather<W>(bodies, slots_b.of, 4, pb);
     const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]);
     const WideVec2<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
     const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
@@ -302,8 +310,8 @@ void restitute2(SolverBody<Dim2>* bodies, void* blocks, const void* extra, int b
     const WideVec2<W> p = {delta * t.x, delta * t.y};
     push_back(a, ma, ia, p, delta * turn_a);
     push(b, mb, ib, p, delta * turn_b);
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    write_velocity<W>(bodies, c.body_a, a);
+    write_velocity<W>(bodies, c.body_b, b);
   }
 }
 

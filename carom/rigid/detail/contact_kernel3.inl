@@ -36,7 +36,8 @@ void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int 
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     const ContactBlock<Dim3, W>& c = static_cast<const ContactBlock<Dim3, W>*>(blocks)[k];
-    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const WideVec3<W> n = load3<W>(c.normal), t = load3<W>(c.tangent), u = cross(n, t);
     const WideVec3<W> offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
     const F f1 = F::load(c.tangent_impulse[0]), f2 = F::load(c.tangent_impulse[1]);
@@ -63,13 +64,13 @@ void warm_start3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int 
     push(b, F::load(c.inverse_mass_b), load_symmetric<W>(c.inverse_inertia_b), p, turn_b);
     if (again) {
       std::int32_t to_a[W], to_b[W];
-      who_starts_again<W>(c.again, 1, c.write_a, to_a);
-      who_starts_again<W>(c.again, 2, c.write_b, to_b);
+      who_starts_again<W>(c.again, 1, c.body_a, to_a);
+      who_starts_again<W>(c.again, 2, c.body_b, to_b);
       write_velocity<W>(bodies, to_a, a);
       write_velocity<W>(bodies, to_b, b);
     } else {
-      write_velocity<W>(bodies, c.write_a, a);
-      write_velocity<W>(bodies, c.write_b, b);
+      write_velocity<W>(bodies, c.body_a, a);
+      write_velocity<W>(bodies, c.body_b, b);
     }
   }
 }
@@ -86,18 +87,19 @@ CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], con
 }
 
 template <int W, bool UseBias>
-CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, ContactBlock<Dim3, W>& c,
-                                                Velocity3<W>& a, Velocity3<W>& b, const WideVec3<W>& n,
-                                                const WideSymmetric<W>& ia, const WideSymmetric<W>& ib,
-                                                WideFloat<W> inverse_h, WideFloat<W> push_speed, WideFloat<W> counted,
-                                                WideFloat<W> share, int order) {
+CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, const Slots<W>& slots_a,
+                                                const Slots<W>& slots_b, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
+                                                Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
+                                                const WideSymmetric<W>& ib, WideFloat<W> inverse_h,
+                                                WideFloat<W> push_speed, const WideSoftness<W>& soft,
+                                                WideFloat<W> counted, WideFloat<W> share, int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
   const WideVec3<W> offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
   F pa[8], pb[8];
-  gather<W>(bodies, c.read_a, 8, pa);
-  gather<W>(bodies, c.read_b, 8, pb);
+  gather<W>(bodies, slots_a.of, 8, pa);
+  gather<W>(bodies, slots_b.of, 8, pb);
   const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
   const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
   PassBlow<W, 4> blow;
@@ -111,9 +113,9 @@ CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, 
     F bias, mass_scale = one, impulse_scale = zero;
     const auto apart = s > zero;
     if constexpr (UseBias) {
-      bias = select(apart, s * inverse_h, max(F::load(c.bias_rate) * s, zero - push_speed));
-      mass_scale = select(apart, one, F::load(c.mass_scale));
-      impulse_scale = select(apart, zero, F::load(c.impulse_scale));
+      bias = select(apart, s * inverse_h, max(soft.bias_rate * s, zero - push_speed));
+      mass_scale = select(apart, one, soft.mass_scale);
+      impulse_scale = select(apart, zero, soft.impulse_scale);
     } else {
       bias = keep(apart, s * inverse_h);
     }
@@ -132,22 +134,25 @@ CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, 
 }
 
 template <int W>
-void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed, int order) {
+void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h, float push_speed,
+            const ContactSoftness& softness, int order) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
-    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
+    const WideSoftness<W> soft(softness, c);
     const PassBlow<W, 4> normals =
-        solve_normals3<W, true>(bodies, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
-                                load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed),
-                                F::splat(1), F::splat(1), order);
+        solve_normals3<W, true>(bodies, slots_a, slots_b, c, a, b, load3<W>(c.normal),
+                                load_symmetric<W>(c.inverse_inertia_a), load_symmetric<W>(c.inverse_inertia_b),
+                                F::splat(inverse_h), F::splat(push_speed), soft, F::splat(1), F::splat(1), order);
     const auto struck = find_struck(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
-      const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, 0);
+      const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, soft, 0);
       a = shared.a, b = shared.b;
     }
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    write_velocity<W>(bodies, c.body_a, a);
+    write_velocity<W>(bodies, c.body_b, b);
   }
 }
 
@@ -216,7 +221,8 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
-    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
     const WideVec3<W> n = load3<W>(c.normal);
     const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
@@ -224,7 +230,7 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     auto rubs = takes_part;
     // A push is taken back as it was given, before friction can make something of it.
     if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
-      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, 0);
+      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, {}, 0);
       a = shared.a, b = shared.b;
     }
     F load = load_of<W>(c);
@@ -234,11 +240,11 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, rubs, ia, ib);
       solve_friction3<W>(c, a, b, load, rubs, n, ia, ib);
       if (struck) break;
-      const PassBlow<W, 4> normals = solve_normals3<W, false>(bodies, c, a, b, n, ia, ib, F::splat(inverse_h),
-                                                              F::splat(0), F::splat(counted), share, 0);
+      const PassBlow<W, 4> normals = solve_normals3<W, false>(
+          bodies, slots_a, slots_b, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), {}, F::splat(counted), share, 0);
       const auto hard = find_struck(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
-        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, counted);
+        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, counted);
         a = shared.a, b = shared.b;
       }
       const F before = load;
@@ -250,12 +256,12 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     (F::load(c.tangent_total[0]) + F::load(c.tangent_impulse[0]) * F::splat(counted)).store(c.tangent_total[0]);
     (F::load(c.tangent_total[1]) + F::load(c.tangent_impulse[1]) * F::splat(counted)).store(c.tangent_total[1]);
     if (counted > 0) {
-      write_velocity<W>(bodies, c.write_a, a);
-      write_velocity<W>(bodies, c.write_b, b);
+      write_velocity<W>(bodies, c.body_a, a);
+      write_velocity<W>(bodies, c.body_b, b);
     } else {
       std::int32_t to_a[W], to_b[W];
-      who_settles<W>(c.settles, c.write_a, to_a);
-      who_settles<W>(c.settles, c.write_b, to_b);
+      who_settles<W>(c.settles, c.body_a, to_a);
+      who_settles<W>(c.settles, c.body_b, to_b);
       write_velocity<W>(bodies, to_a, a);
       write_velocity<W>(bodies, to_b, b);
     }
@@ -272,13 +278,14 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     F fastest = F::load(e.bounce_speed[0]);
     for (int i = 1; i < 4; ++i) fastest = max(fastest, F::load(e.bounce_speed[i]));
     if (!any(fastest > zero)) continue;
-    Velocity3<W> a = read_velocity<W>(bodies, c.read_a), b = read_velocity<W>(bodies, c.read_b);
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
     const WideVec3<W> n = load3<W>(c.normal), offset = load3<W>(c.center_offset), offset_turn = cross(offset, n);
     F pa[8], pb[8];
-    gather<W>(bodies, c.read_a, 8, pa);
-    gather<W>(bodies, c.read_b, 8, pb);
+    gather<W>(bodies, slots_a.of, 8, pa);
+    gather<W>(bodies, slots_b.of, 8, pb);
     const F shift = n.x * (pb[0] - pa[0]) + n.y * (pb[1] - pa[1]) + n.z * (pb[2] - pa[2]);
     const WideVec3<W> na = turned_back_change<W>(pa, n), nb = turned_back_change<W>(pb, n);
     const F acceleration = F::load(e.closing_acceleration) + F::load(e.closing_acceleration);
@@ -344,8 +351,8 @@ void restitute3(SolverBody<Dim3>* bodies, void* blocks, const void* extra, int b
     const WideVec3<W> p = add(multiply(t, delta1), multiply(u, delta2));
     push_back(a, ma, ia, p, cross(ra, p));
     push(b, mb, ib, p, cross(rb, p));
-    write_velocity<W>(bodies, c.write_a, a);
-    write_velocity<W>(bodies, c.write_b, b);
+    write_velocity<W>(bodies, c.body_a, a);
+    write_velocity<W>(bodies, c.body_b, b);
   }
 }
 

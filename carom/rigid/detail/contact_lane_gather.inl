@@ -24,8 +24,7 @@ ContactSources<D> sources_of(const StepContext<D>& context) {
   s.bodies = context.bodies;
   s.load_shares = load_shares.share;
   s.loads = reinterpret_cast<float*>(world.scratch.loads.data());
-  s.contact_softness = context.contact_softness;
-  s.fixed_contact_softness = context.fixed_contact_softness;
+  s.softness = context.contact_softness;
   s.gravity = world.definition.gravity;
   s.restitution_threshold = world.definition.restitution_threshold;
   s.push_speed = context.push_speed;
@@ -136,7 +135,7 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   std::uint32_t pushed = found.pushed & lane_bits(lanes), turns = found.turns & ~meets;
   for (; pushed != 0; pushed &= pushed - 1) {
     const int lane = std::countr_zero(pushed);
-    if (!parts_in_flight(context, block.read_a[lane], block.read_b[lane])) marks[lane] |= mark_pushed;
+    if (!parts_in_flight(context, slot_of(block.body_a[lane]), slot_of(block.body_b[lane]))) marks[lane] |= mark_pushed;
   }
   for (; meets != 0; meets &= meets - 1) {
     const int lane = std::countr_zero(meets);

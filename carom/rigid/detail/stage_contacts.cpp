@@ -89,7 +89,7 @@ void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
 template <class D>
 void take_again(WorldImplementation<D>& world, std::int32_t body) {
   // By all threads: all write the same.
-  if (body != none && world.bodies.is_awake(body))
+  if (body >= 0 && world.bodies.is_awake(body))
     std::atomic_ref<std::uint8_t>(world.scratch.again[std::size_t(body)]).store(1, std::memory_order_relaxed);
 }
 
@@ -131,8 +131,8 @@ bool prepare_blocks(StepContext<D>& context) {
                      for (std::uint32_t strikes = world.kernels.strikes(context.bodies, &block); strikes != 0;
                           strikes &= strikes - 1) {
                        const int lane = std::countr_zero(strikes);
-                       take_again(world, block.write_a[lane]);
-                       take_again(world, block.write_b[lane]);
+                       take_again(world, block.body_a[lane]);
+                       take_again(world, block.body_b[lane]);
                        any_strikes.store(true, std::memory_order_relaxed);
                      }
                      for (anew &= lane_bits(lanes); anew != 0; anew &= anew - 1) {
@@ -263,7 +263,7 @@ void find_again(StepContext<D>& context, bool any_strikes) {
                            if (body < 0) return 0;
                            return may_sleep && (of[body] & awake) == 0 ? 1 : of[body] & 1;
                          };
-                         block.again[lane] = again(block.write_a[lane]) | again(block.write_b[lane]) << 1;
+                         block.again[lane] = again(block.body_a[lane]) | again(block.body_b[lane]) << 1;
                          if (block.again[lane] != 0) marks[lane] |= mark_again;
                        }
                      });
@@ -297,9 +297,9 @@ void store_blocks(StepContext<D>& context) {
                    [&](std::span<const std::int32_t> manifolds, std::size_t first, int lanes, ContactBlock<D, W>& block,
                        ContactExtra<D, W>* extra, const std::uint8_t* marks) {
                      for (int lane = 0; lane < lanes; ++lane)
-                       for (const std::int32_t body : {block.read_a[lane], block.read_b[lane]}) {
-                         __builtin_prefetch(sources.loads + 4 * body, 1);
-                         __builtin_prefetch(sources.bodies + body);
+                       for (const std::int32_t body : {block.body_a[lane], block.body_b[lane]}) {
+                         __builtin_prefetch(sources.loads + 4 * slot_of(body), 1);
+                         __builtin_prefetch(sources.bodies + slot_of(body));
                        }
                      for (int lane = 0; lane < lanes; ++lane) {
                        const std::size_t i = first + std::size_t(lane);

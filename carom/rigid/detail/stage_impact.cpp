@@ -224,8 +224,8 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
   rub(block, lane, impulse, r_a, offset, a, b, inertia_a, inertia_b, push);
   a.delta_position -= (a.linear_velocity - va) * time;
   b.delta_position -= (b.linear_velocity - vb) * time;
-  if (block.write_a[lane] != none) context.bodies[ia] = a;
-  if (block.write_b[lane] != none) context.bodies[ib] = b;
+  if (block.body_a[lane] >= 0) context.bodies[ia] = a;
+  if (block.body_b[lane] >= 0) context.bodies[ib] = b;
 
   // The pair parts: what pressed and rubbed there before does so no more, and the last pass has nothing to add.
   for (int i = 0; i < D::max_points; ++i) {

@@ -127,7 +127,8 @@ void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b
   if (is_warm_start(stage.pass))
     kernels.warm_start(context.bodies, b.blocks, b.extra, begin, end, stage.pass == SolverPass::warm_start_again);
   else if (stage.pass == SolverPass::solve)
-    kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, stage.order);
+    kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, context.contact_softness,
+                  stage.order);
   else
     kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h,
                   stage.pass == SolverPass::relax ? 1.0f : 0.0f);

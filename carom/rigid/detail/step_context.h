@@ -25,6 +25,11 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
   return {omega / a1, a2 * a3, a3};
 }
 
+/// Of contacts between two bodies that impulses move, and of those with one that they do not.
+struct ContactSoftness {
+  Softness free, firm;
+};
+
 /// What a substep does to the motion of an awake body besides its constraints: the same in every substep, so that the
 /// cold parts of bodies are read once a step.
 template <class D>
@@ -69,7 +74,8 @@ struct StepContext {
   float h = 0, inverse_h = 0;  ///< of a substep
   int substeps = 1;
   float contact_stiffness = 0;  ///< 1/s²: ω² of contacts between moving bodies
-  Softness contact_softness{}, fixed_contact_softness{}, joint_softness{};
+  ContactSoftness contact_softness{};
+  Softness joint_softness{};
   float rest_speed = 0;             ///< m/s between bodies at rest with each other (load.h)
   float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
   Flight<D>* flights = nullptr;     ///< by place in BodyStore::awake

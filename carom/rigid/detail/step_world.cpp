@@ -151,8 +151,8 @@ StepContext<D> make_context(WorldImplementation<D>& world, float dt, int substep
   const float stiffer = float(substeps) / float(definition.substeps);  // than the world's: BodyDef::substeps
   const float contact_hertz = min(stiffer * definition.contact_hertz, most_contact_turns * context.inverse_h);
   context.contact_stiffness = 4 * pi_f * pi_f * contact_hertz * contact_hertz;
-  context.contact_softness = make_softness(contact_hertz, definition.contact_damping_ratio, context.h);
-  context.fixed_contact_softness = make_softness(2 * contact_hertz, definition.contact_damping_ratio, context.h);
+  context.contact_softness.free = make_softness(contact_hertz, definition.contact_damping_ratio, context.h);
+  context.contact_softness.firm = make_softness(2 * contact_hertz, definition.contact_damping_ratio, context.h);
   context.joint_softness = make_softness(min(stiffer * definition.joint_hertz, 0.25f * context.inverse_h),
                                          definition.joint_damping_ratio, context.h);
   context.push_speed = definition.contact_push_speed;
