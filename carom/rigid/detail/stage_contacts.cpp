@@ -122,12 +122,18 @@ bool prepare_blocks(StepContext<D>& context) {
                      ContactRaw<D, W> raw;
                      const bool approaches = extra != nullptr || any_hits;
                      const std::span<const std::int32_t> list = manifolds.subspan(first, std::size_t(lanes));
-                     for (int lane = 0; lane < lanes; ++lane)
-                       prefetch_manifold(sources, world.shapes.record.data(), manifolds, first + std::size_t(lane),
-                                         approaches);
+                     // A few at a time: the processor waits where more lines are called for than it can wait for.
+                     const auto call_ahead = [&](int part) __attribute__((always_inline)) {
+                       for (int lane = lanes * part / 3; lane < lanes * (part + 1) / 3; ++lane)
+                         prefetch_manifold(sources, world.shapes.record.data(), manifolds, first + std::size_t(lane),
+                                           approaches);
+                     };
+                     call_ahead(0);
                      gather_block(context, sources, list, block, raw, extra, marks);
+                     call_ahead(1);
                      std::uint32_t anew = world.kernels.prepare(&block, &raw, anchor_rate * context.inverse_dt,
                                                                 friction_leak / float(context.substeps));
+                     call_ahead(2);
                      for (std::uint32_t strikes = world.kernels.strikes(context.bodies, &block); strikes != 0;
                           strikes &= strikes - 1) {
                        const int lane = std::countr_zero(strikes);
