@@ -65,22 +65,30 @@ void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
         blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k, blocks.marks + first);
     }
   };
-  int ends[color_count + 1], total = 0;
-  for (int color = 0; color <= overflow_color; ++color) {
+  // Every thread begins with those parts of the colours that it will solve: they are in its cache then.
+  constexpr int most_parts = 16;
+  const int parts = min(context.scheduler.thread_count(), most_parts);
+  int ends[most_parts * (color_count + 1)], total = 0;
+  const auto part_begin = [&](int color, int part) { return world.scratch.blocks[color].count * part / parts; };
+  for (int color = 0; color <= overflow_color && overflow == Overflow::in_order; ++color) {
     const int count = world.scratch.blocks[color].count;
-    ends[color] = total += count;
-    if (overflow == Overflow::at_once || count == 0) continue;
+    if (count == 0) continue;
     if (count <= block_grain || color == overflow_color)
       run(color, 0, count);
     else
       context.scheduler.parallel_for(count, block_grain, [&](int begin, int end, int) { run(color, begin, end); });
   }
-  if (overflow == Overflow::in_order || total == 0) return;
+  if (overflow == Overflow::in_order) return;
+  for (int part = 0; part < parts; ++part)
+    for (int color = 0; color <= overflow_color; ++color)
+      ends[part * (color_count + 1) + color] = total += part_begin(color, part + 1) - part_begin(color, part);
+  if (total == 0) return;
   context.scheduler.parallel_for(total, block_grain, [&](int begin, int end, int) {
-    for (int color = 0; begin < end; ++color) {
-      if (ends[color] <= begin) continue;
-      const int before = color == 0 ? 0 : ends[color - 1], stop = min(end, ends[color]);
-      run(color, begin - before, stop - before);
+    for (int k = 0; begin < end; ++k) {
+      if (ends[k] <= begin) continue;
+      const int color = k % (color_count + 1), from = part_begin(color, k / (color_count + 1));
+      const int before = k == 0 ? 0 : ends[k - 1], stop = min(end, ends[k]);
+      run(color, from + begin - before, from + stop - before);
       begin = stop;
     }
   });
