@@ -56,7 +56,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   bool flown = false, flat = true;
   for (int i = 0; i < most; ++i) {
     if (!flown) {
-      if (!record(guess, accuracy, path, i == 0 && falling)) {
+      if (!sketch(guess, accuracy, path, i == 0 && falling)) {
         if (path.count < Path::most) return root;
         rough *= 4;  // too many steps
         accuracy *= 4;
@@ -71,8 +71,8 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
     bool fine = to.left < allowed && unsettled(path) < allowed && (!flat || all_carry(path) < 10 * allowed);
     flat = false;
     const bool near = to.left < 20 * allowed;
-    const double enough = (near ? 3 : 8) * allowed * strict;
-    bool hard = !fine && (near || to.moved < 0.05 * to.scale) && divisions < 7 && any_mistakes(path, 2 * enough);
+    const double enough = math::max((near ? 3 : 8) * allowed * strict, 3e-3 * to.moved);
+    bool hard = !fine && divisions < 7 && any_mistakes(path, 2 * enough);
     if (fine) {
       measure(path);
       to = newton(path, guess);

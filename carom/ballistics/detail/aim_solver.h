@@ -170,19 +170,24 @@ class AimSolver {
   static constexpr double least_bend = 0.1;  // m/s, of the wind
 
   using Step = FlightStep;
-  template <bool Plain>
+  template <bool Plain, bool Rough>
   [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
-  /// `falling`: until it comes down to the target's height. False: too many steps.
-  bool record(Guess guess, double allowed, Path& path, bool falling = false) const {
-    return fly(guess, allowed, path.arrival, &path, falling);
+  /// `falling`: until it comes down to the target's height; `Rough`: of third order. False: too many steps.
+  template <bool Plain, bool Rough>
+  bool fly(Guess guess, double allowed, Path& path, bool falling) const;
+  bool record(Guess guess, double allowed, Path& path) const {
+    return pull_.plain() ? fly<true, false>(guess, allowed, path, false)
+                         : fly<false, false>(guess, allowed, path, false);
   }
-  bool fly(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling = false) const {
-    return pull_.plain() ? fly_in<true>(guess, allowed, arrival, path, falling)
-                         : fly_in<false>(guess, allowed, arrival, path, falling);
+  /// The same for paths that are moved until they hold, in half of the time.
+  bool sketch(Guess guess, double allowed, Path& path, bool falling) const {
+    if (allowed < 2e-4 * math::length(guess.u) * guess.time)
+      return pull_.plain() ? fly<true, false>(guess, allowed, path, falling)
+                           : fly<false, false>(guess, allowed, path, falling);
+    return pull_.plain() ? fly<true, true>(guess, allowed, path, falling)
+                         : fly<false, true>(guess, allowed, path, falling);
   }
-  template <bool Plain>
-  bool fly_in(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling) const;
   const PointMassPull pull_;  // what holds
   const RoughPull rough_;     // what flights feel
   const AimMedium medium_;    // what holds, for lanes
