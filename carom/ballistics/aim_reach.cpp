@@ -33,13 +33,13 @@ AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
   at.radius = speed * math::sqrt(math::abs(math::dot(rows[0], math::cross(rows[1], rows[2]))) * steep);
   at.way = miss + at.radius * at.normal;
   const double distance = math::length(at.way);
-  const Vec3d to = at.way / distance, velocity = velocity_of_target(time);
+  const Vec3d to = at.way / distance, later = target_(time + 1e-2 * time),
+              velocity = (target_(time + 1e-4 * time) - target) / (1e-4 * time);
   at.drift = velocity - path.arrival.velocity;
   at.gap = distance - at.radius;
   at.bulge = math::abs(at.gap - math::dot(at.normal, miss));
   at.rate = math::dot(to, at.drift);
-  const double later = 1e-2 * time;
-  const Vec3d pull = (velocity_of_target(time + later) - velocity) / later - Path::at(path.k, path.count);
+  const Vec3d pull = ((later - target) / (1e-2 * time) - velocity) / (0.5e-2 * time) - Path::at(path.k, path.count);
   at.bend = math::max(math::dot(to, pull) + math::length_squared(at.drift - at.rate * to) / distance,
                       math::max(0.3 * conditions_.gravity, 1e-4 * speed * speed / at.scale));
   at.known = math::is_finite(at.gap) && math::is_finite(at.bend) && math::is_finite(at.rate);

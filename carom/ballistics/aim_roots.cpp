@@ -22,7 +22,7 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   Newton to;
   const Inverse inverse = inverse_of(path.by_velocity);
   const Arrival& end = path.arrival;
-  const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
+  const Vec3d target = target_(guess.time), miss = target - end.position, barrel = guess.u - shooter_.velocity;
   const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
   const Vec3d d = barrel / speed, goes = velocity_of_target(guess.time), drift = goes - end.velocity;
   const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
@@ -34,12 +34,12 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   const double longest = shooter_.muzzle_speed;
   if (math::length(to.du) > longest) to.du *= longest / math::length(to.du);
   const double end_speed = math::length(end.velocity), time = guess.time + to.dt;
-  to.scale = math::max(math::length(target_(guess.time) - shooter_.muzzle), 0.5 * end_speed * guess.time);
+  to.scale = math::max(math::length(target - shooter_.muzzle), 0.5 * end_speed * guess.time);
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
   // The leap of a wind profile at its beginning they do not know.
   to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale) +
-            math::length(target_(time) - target_(guess.time) - to.dt * goes);
+            math::length(target_(time) - target - to.dt * goes);
   return to;
 }
 
@@ -56,7 +56,7 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   bool flown = false, flat = true;
   for (int i = 0; i < most; ++i) {
     if (!flown) {
-      if (!sketch(guess, accuracy, path, i == 0 && falling)) {
+      if (!record(guess, accuracy, path, i == 0 && falling)) {
         if (path.count < Path::most) return root;
         rough *= 4;  // too many steps
         accuracy *= 4;

@@ -5,11 +5,21 @@
 namespace carom::ballistics::detail {
 
 // Over the whole way between two looks, lest it leap, and at the later one, lest it turn back between them.
-double AimSolver::pace_of_target(int look, Vec3d& place) const {
-  const double time = time_of_look(look);
-  const Vec3d way = target_(time) - place;
-  place += way;
-  return math::max(math::length(way) / (time - time_of_look(look - 1)), math::length(velocity_of_target(time)));
+double AimSolver::Looks::pace(int look) {
+  double& pace = paces_[look];
+  if (pace < 0) {
+    const double time = solver_.time_of_look(look), h = 1e-4 * time;
+    const Vec3d here = place(look), way = here - place(look - 1);
+    pace = math::max(math::length(way) / (time - solver_.time_of_look(look - 1)),
+                     math::length(solver_.target_(time + h) - here) / h);
+  }
+  return pace;
+}
+
+Vec3d AimSolver::Looks::place(int look) {
+  if (!known_[look]) places_[look] = solver_.target_(solver_.time_of_look(look));
+  known_[look] = true;
+  return places_[look];
 }
 
 bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
@@ -32,7 +42,7 @@ bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
 }
 
 // The gap changes by no more than the target and the surface move: so long a step leaves it on its side of the surface.
-void AimSolver::walk(double from, double to, const double* pace, Aims& aims) const {
+void AimSolver::walk(double from, double to, Looks& at_looks, Aims& aims) const {
   const double side = to > from ? 1 : -1;
   // Of the time: from step to step a shot's speed changes little more; a passing touch may be as short as the least.
   const double longest_step = side > 0 ? 0.4 : 0.25;
@@ -61,7 +71,7 @@ void AimSolver::walk(double from, double to, const double* pace, Aims& aims) con
       double most = 0;
       for (int look = 1; look <= looks; ++look)
         if (time_of_look(look) >= time - far && time_of_look(look - 1) <= time + far)
-          most = math::max(most, pace[look]);
+          most = math::max(most, at_looks.pace(look));
       step = math::clamp(0.8 * math::abs(at.gap) / (shots + most), step, math::max(step, far));
     }
     if (time == to) return;
@@ -85,22 +95,24 @@ bool AimSolver::soon(const Reach& at, double time, Aims& aims) const {
   return true;
 }
 
-void AimSolver::scan(Aims& aims) const {
-  double pace[looks + 1] = {}, most = 0;
-  Vec3d place = target_(0);
-  for (int look = 1; look <= looks; ++look) most = math::max(most, pace[look] = pace_of_target(look, place));
-  const double longest = options_.longest_time;
-  const double fastest =
-      shooter_.muzzle_speed + math::length(shooter_.velocity) + math::length(conditions_.wind.at(shooter_.muzzle.y));
-  double first = 0;  // s, before it no shot comes to the target
-  for (int i = 0; i < 3; ++i) {
-    const double g = conditions_.gravity, went = first * (fastest + 0.5 * g * first),
-                 away = math::max(math::length(target_(first) - shooter_.muzzle) - went, 0.0);
-    first += 0.8 * away / (fastest + g * (first + away / fastest) + most);
+double AimSolver::before_any(Looks& at_looks) const {
+  const double g = conditions_.gravity, fastest = shooter_.muzzle_speed + math::length(shooter_.velocity) +
+                                                  math::length(conditions_.wind.at(shooter_.muzzle.y));
+  for (int look = 1; look <= looks; ++look) {
+    const double time = time_of_look(look - 1), next = time_of_look(look);
+    const double away = math::length(at_looks.place(look - 1) - shooter_.muzzle) - time * (fastest + 0.5 * g * time);
+    const double pace = math::max(at_looks.pace(look), at_looks.pace(math::min(look + 1, looks)));
+    const double first = time + 0.8 * away / (fastest + g * next + pace);
+    if (!(first > next)) return math::max(first, time);
   }
-  first = math::max(first, 1e-4);
-  walk(math::min(first, longest), longest, pace, aims);
-  if (options_.high_arc && aims.low) walk(longest, math::max(aims.low->time, 1e-4), pace, aims);
+  return options_.longest_time;
+}
+
+void AimSolver::scan(Aims& aims) const {
+  Looks at_looks(*this);
+  const double longest = options_.longest_time;
+  walk(math::clamp(before_any(at_looks), math::min(1e-4, longest), longest), longest, at_looks, aims);
+  if (options_.high_arc && aims.low) walk(longest, math::max(aims.low->time, 1e-4), at_looks, aims);
 }
 
 }  // namespace carom::ballistics::detail

@@ -59,8 +59,21 @@ class AimSolver {
   /// Looks at how the target moves, closer together at first.
   static constexpr int looks = 64;
   double time_of_look(int look) const { return options_.longest_time * math::square(double(look) / looks); }
-  /// m/s, at most, as far as two looks tell, between the one before, when it was at `place`, and this one, when it is.
-  double pace_of_target(int look, Vec3d& place) const;
+  class Looks {
+   public:
+    explicit Looks(const AimSolver& solver) : solver_(solver) {
+      for (int look = 0; look <= looks; ++look) paces_[look] = -1;
+    }
+    /// m/s, at most, as far as two looks tell, between the one before and this one.
+    double pace(int look);
+    Vec3d place(int look);
+
+   private:
+    const AimSolver& solver_;
+    double paces_[looks + 1];  // < 0: not known yet
+    Vec3d places_[looks + 1];
+    bool known_[looks + 1] = {};
+  };
   /// The roots on either side of the one peak, where each is so far from it that the speed that is needed changes by
   /// `apart` of the muzzle speed in its flight time.
   bool arcs(double apart, Aims& aims) const;
@@ -125,8 +138,10 @@ class AimSolver {
   bool by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const;
   /// The root between a and b, on different sides of the surface: by secants until Newton's method finds one there.
   bool between(Reach a, Reach b, Aims& aims) const;
-  /// Keeps the first root that it comes to. `pace`: of the target by looks, m/s.
-  void walk(double from, double to, const double* pace, Aims& aims) const;
+  /// s, before it no shot comes to the target.
+  double before_any(Looks& at_looks) const;
+  /// Keeps the first root that it comes to.
+  void walk(double from, double to, Looks& at_looks, Aims& aims) const;
   /// The root at about a time at which the gap would close, as far as it is looked at on the way.
   bool soon(const Reach& at, double time, Aims& aims) const;
   /// The shot at a target in vacuum, by muzzle speed.
@@ -176,12 +191,7 @@ class AimSolver {
   /// `falling`: until it comes down to the target's height; `Rough`: of third order. False: too many steps.
   template <bool Plain, bool Rough>
   bool fly(Guess guess, double allowed, Path& path, bool falling) const;
-  bool record(Guess guess, double allowed, Path& path) const {
-    return pull_.plain() ? fly<true, false>(guess, allowed, path, false)
-                         : fly<false, false>(guess, allowed, path, false);
-  }
-  /// The same for paths that are moved until they hold, in half of the time.
-  bool sketch(Guess guess, double allowed, Path& path, bool falling) const {
+  bool record(Guess guess, double allowed, Path& path, bool falling = false) const {
     if (allowed < 2e-4 * math::length(guess.u) * guess.time)
       return pull_.plain() ? fly<true, false>(guess, allowed, path, falling)
                            : fly<false, false>(guess, allowed, path, falling);
