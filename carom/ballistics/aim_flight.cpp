@@ -30,15 +30,18 @@ double fall_within(double from, double from_slope, double to, double to_slope) {
 }  // namespace
 
 template <bool Plain, bool Rough>
-bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling) const {
+bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling, bool on) const {
   double time = guess.time;
   const double share = allowed / math::max(math::length(guess.u) * time, 1e-9);
   const double bend_speed = speed_of_a_bend(share);
   const double least = 0.5 * fall_speed_, tolerance = (Rough ? 4 : 1) * allowed / time;
-  Vec3d x = shooter_.muzzle, v = guess.u, k = rough_.at<Plain>(x, v);
-  double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
-  path.put(0, t, x, v, k);
-  path.count = 0;
+  if (!on) {
+    path.count = 0;
+    path.put(0, 0, shooter_.muzzle, guess.u, rough_.at<Plain>(shooter_.muzzle, guess.u));
+  }
+  Vec3d x = Path::at(path.x, path.count), v = Path::at(path.v, path.count), k = Path::at(path.k, path.count);
+  double t = path.time(), h = 0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9);
+  h = math::min(h, time - t);
   for (int i = 0; i < 4000 && path.count < Path::most; ++i) {
     const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
     if (share < 5e-4 && speed > 0.85 * sound_) {
@@ -79,9 +82,9 @@ bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling) const
   return false;
 }
 
-template bool AimSolver::fly<true, true>(Guess, double, Path&, bool) const;
-template bool AimSolver::fly<true, false>(Guess, double, Path&, bool) const;
-template bool AimSolver::fly<false, true>(Guess, double, Path&, bool) const;
-template bool AimSolver::fly<false, false>(Guess, double, Path&, bool) const;
+template bool AimSolver::fly<true, true>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<true, false>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<false, true>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<false, false>(Guess, double, Path&, bool, bool) const;
 
 }  // namespace carom::ballistics::detail

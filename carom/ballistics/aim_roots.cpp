@@ -43,9 +43,9 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   return to;
 }
 
-AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool falling) const {
+AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool falling, Path* known) const {
   Root root;
-  Path path;
+  Path own, &path = known != nullptr ? *known : own;
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
   // A rough flight from the guess; then that path itself is moved, all of it at once, until it is a flight that hits:
   // in the few elements of that flight, then in as many as the tolerance wants, at last by more points of them.
@@ -53,7 +53,9 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   double accuracy = math::max(0.02 * away, rough);
   double last_missed = 1e300, first_missed = 1e300, strict = 1;
   int divisions = 0;
-  bool flown = false, flat = true;
+  bool flown = known != nullptr, flat = true;
+  if (flown)
+    for (int n = 0; n < path.count; ++n) path.flatten(n);
   for (int i = 0; i < most; ++i) {
     if (!flown) {
       if (!record(guess, accuracy, path, i == 0 && falling)) {

@@ -22,23 +22,30 @@ Vec3d AimSolver::Looks::place(int look) {
   return places_[look];
 }
 
-bool AimSolver::between(Reach a, Reach b, Aims& aims) const {
+bool AimSolver::between(Reach a, Reach b, Trail& trail, Aims& aims) const {
   const double first = math::min(a.guess.time, b.guess.time), last = math::max(a.guess.time, b.guess.time);
   const double margin = 0.02 * (last - first) + 2e-3 * last;  // gaps are known to about 1e-3
   for (int i = 0; i < 24; ++i) {
     const double chord = a.gap / (a.gap - b.gap), share = i % 3 == 2 ? 0.5 : math::clamp(chord, 0.1, 0.9);
     const double time = a.guess.time + share * (b.guess.time - a.guess.time);
     const Guess guess = toward(share < 0.5 ? a : b, time);
-    const Root root = refine(guess);
+    const Root root = refine_along(guess, a.scale, trail, 40, false);
     if (root.found && root.guess.time > first - margin && root.guess.time < last + margin) {
       keep(aims, root);
       return true;
     }
-    const Reach at = reach_nearest(guess);
+    const Reach at = reach_nearest(guess, &trail);
     if (!at.known) return false;
     ((at.gap > 0) == (a.gap > 0) ? a : b) = at;
   }
   return false;
+}
+
+AimSolver::Root AimSolver::refine_along(const Guess& guess, double scale, Trail& trail, int most, bool eager) const {
+  const bool known = trail.known && bring(guess, rough_reach * scale, trail.path);
+  const Root root = refine(guess, most, eager, false, known ? &trail.path : nullptr);
+  trail.known = known && root.found;
+  return root;
 }
 
 // The gap changes by no more than the target and the surface move: so long a step leaves it on its side of the surface.
@@ -48,12 +55,17 @@ void AimSolver::walk(double from, double to, Looks& at_looks, Aims& aims) const 
   const double longest_step = side > 0 ? 0.4 : 0.25;
   Guess guess = straight(from);
   Reach before;
+  Trail trail;
   double foretold = 0;     // s, when the gap would close, by the look before
   double refused = 1e300;  // s, how far ahead that was where it was not so
   for (int i = 0; i < 1000; ++i) {
     const double time = guess.time;
-    const Reach at = reach_nearest(guess);
-    if (at.known && before.known && (before.gap > 0) != (at.gap > 0) && between(before, at, aims)) return;
+    Reach at = reach_nearest(guess, &trail);
+    if (at.known && !at.settled()) {  // it does not find there from the shot before
+      at = reach_nearest(straight(time), &trail);
+      at.known = at.known && at.settled();
+    }
+    if (at.known && before.known && (before.gap > 0) != (at.gap > 0) && between(before, at, trail, aims)) return;
     // Longer the longer it takes, so that a target that stays beside the surface does not hold it up.
     const double least_step = (at.known ? 4e-3 : 2e-2) * (1 + 0.01 * i);
     double step = least_step * time;
@@ -61,7 +73,7 @@ void AimSolver::walk(double from, double to, Looks& at_looks, Aims& aims) const 
       const double ahead = -side * at.gap / at.rate, closes = time + side * ahead;
       if (ahead > 0 && ahead < math::min((side > 0 ? 0.5 : 0.25) * time, 0.6 * refused) &&
           math::abs(closes - foretold) < 0.3 * ahead) {
-        if (soon(at, closes, aims)) return;
+        if (soon(at, closes, trail, aims)) return;
         refused = ahead;
       }
       foretold = closes;
@@ -82,13 +94,13 @@ void AimSolver::walk(double from, double to, Looks& at_looks, Aims& aims) const 
   }
 }
 
-bool AimSolver::soon(const Reach& at, double time, Aims& aims) const {
+bool AimSolver::soon(const Reach& at, double time, Trail& trail, Aims& aims) const {
   const double from = at.guess.time, ahead = math::abs(time - from);
-  const Root root = refine(toward(at, time), 14, true);
+  const Root root = refine_along(toward(at, time), at.scale, trail, 14, true);
   if (!root.found || math::abs(root.guess.time - time) > 0.3 * ahead + 1e-3 * from) return false;
   if ((root.slope < 0) != ((at.gap > 0) == (time > from))) return false;  // that is where it comes back
   if (ahead > 0.05 * from) {
-    const Reach halfway = reach_nearest(toward(at, 0.5 * (from + root.guess.time)));
+    const Reach halfway = reach_nearest(toward(at, 0.5 * (from + root.guess.time)), &trail);
     if (!halfway.known || math::abs(halfway.gap - 0.5 * at.gap) > 0.1 * math::abs(at.gap)) return false;
   }
   keep(aims, root);
