@@ -54,9 +54,9 @@ CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions&
 
 /// The same for any motion of the target, its position (m) by the time since firing (s): the earliest and the latest
 /// hit in the longest time that is not a passing touch of less than a hundredth of it. A target that stays slower than
-/// half of what drag leaves of a shot's speed takes as long as one that keeps its acceleration; a faster one 13 µs for
-/// the low arc, 50 for both, several times that where it weaves for long just out of reach. It is asked for its place
-/// some 200 to 2 000 times, and what it does between two looks (sixty-four, closer together at first) is taken to be
+/// half of what drag leaves of a shot's speed takes as long as one that keeps its acceleration; a faster one 7 µs for
+/// the low arc, 28 for both, several times that where it weaves for long just out of reach. It is asked for its place
+/// some 150 to 1 000 times, and what it does between two looks (sixty-four, closer together at first) is taken to be
 /// no faster than what it does at them.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  core::FunctionRef<math::Vec3d(double)> target, const AimOptions& options = {});

@@ -3,11 +3,14 @@
 
 namespace carom::ballistics::detail {
 
-template <bool Plain>
+template <bool Plain, bool Rough>
 AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
-  return flight_step([&](int, Vec3d position, Vec3d velocity)
-                         __attribute__((always_inline)) { return rough_.at<Plain>(position, velocity); },
-                     x, v, k1, h);
+  const auto at = [&](int, Vec3d position, Vec3d velocity)
+                      __attribute__((always_inline)) { return rough_.at<Plain>(position, velocity); };
+  if constexpr (Rough)
+    return rough_flight_step(at, x, v, k1, h);
+  else
+    return flight_step(at, x, v, k1, h);
 }
 
 namespace {
@@ -26,18 +29,20 @@ double fall_within(double from, double from_slope, double to, double to_slope) {
 
 }  // namespace
 
-template <bool Plain>
-bool AimSolver::fly_in(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling) const {
+template <bool Plain, bool Rough>
+bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling, bool on) const {
   double time = guess.time;
   const double share = allowed / math::max(math::length(guess.u) * time, 1e-9);
   const double bend_speed = speed_of_a_bend(share);
-  const double least = 0.5 * fall_speed_, tolerance = allowed / time;
-  Vec3d x = shooter_.muzzle, v = guess.u, k = rough_.at<Plain>(x, v);
-  double t = 0, h = math::min(0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9), time);
-  int count = 0;
-  if (path) path->put(0, t, x, v, k);
-  const int most = path ? Path::most : 4000;
-  for (int i = 0; i < 4000 && count < most; ++i) {
+  const double least = 0.5 * fall_speed_, tolerance = (Rough ? 4 : 1) * allowed / time;
+  if (!on) {
+    path.count = 0;
+    path.put(0, 0, shooter_.muzzle, guess.u, rough_.at<Plain>(shooter_.muzzle, guess.u));
+  }
+  Vec3d x = Path::at(path.x, path.count), v = Path::at(path.v, path.count), k = Path::at(path.k, path.count);
+  double t = path.time(), h = 0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9);
+  h = math::min(h, time - t);
+  for (int i = 0; i < 4000 && path.count < Path::most; ++i) {
     const double speed = math::length(v), pull = math::max(math::length(k), 1e-9), bend = bend_speed / pull;
     if (share < 5e-4 && speed > 0.85 * sound_) {
       h = math::min(h, far_bend * bend);
@@ -46,7 +51,7 @@ bool AimSolver::fly_in(Guess guess, double allowed, Arrival& arrival, Path* path
     if (share < 5e-4) h = math::min(h, time / 12);
     bool last = !falling && t + h >= time * (1 - 1e-12);
     if (last) h = time - t;
-    const Step end = step<Plain>(x, v, k, h);
+    const Step end = step<Plain, Rough>(x, v, k, h);
     const double room = tolerance / math::max(end.error, 1e-30);
     // The fifth root, near enough: the root of the root, held closer to one.
     const double factor = math::clamp(0.8 * math::sqrt(math::sqrt(room)), 0.2, 1.7);
@@ -68,24 +73,18 @@ bool AimSolver::fly_in(Guess guess, double allowed, Arrival& arrival, Path* path
       v = end.v;
       k = end.k;
       t = last ? time : t + h;
-      ++count;
-      if (path) {
-        path->put(count, t, x, v, k);
-        path->count = count;
-      }
-      if (last) {
-        arrival = {x, v};
-        return true;
-      }
+      path.put(++path.count, t, x, v, k);
+      if (last) return true;
     }
     h *= factor;
     if (!(h > 1e-9 * time) || (falling && t > options_.longest_time)) break;
   }
-  arrival = {x, v};
   return false;
 }
 
-template bool AimSolver::fly_in<true>(Guess, double, Arrival&, Path*, bool) const;
-template bool AimSolver::fly_in<false>(Guess, double, Arrival&, Path*, bool) const;
+template bool AimSolver::fly<true, true>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<true, false>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<false, true>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<false, false>(Guess, double, Path&, bool, bool) const;
 
 }  // namespace carom::ballistics::detail

@@ -15,7 +15,7 @@ AimSolver::Guess AimSolver::flat_guess() const {
   const Vec3d wind = conditions_.wind.at(lies), still = shooter_.velocity - wind;
   double time = 0, dropped = 0, mean = speed, last = speed;
   Vec3d along;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 3; ++i) {
     const Vec3d way = target_(time) - shooter_.muzzle - time * wind + Vec3d{0, dropped, 0};
     const double length = math::max(math::length(way), 1e-9);
     along = way / length;
@@ -38,39 +38,34 @@ AimSolver::Guess AimSolver::flat_guess() const {
 
 AimSolver::Guess AimSolver::steep_guess() const {
   const double speed = shooter_.muzzle_speed, g = math::max(conditions_.gravity, 1e-3), lies = shooter_.muzzle.y;
-  double climb = 0.95 * speed + shooter_.velocity.y, height = 0.1 * climb * climb / g, time = 0;
-  Vec3d barrel;
-  for (int i = 0; i < 2; ++i) {
-    climb = math::max(climb, 0.1 * speed);
-    // Up by the tangent, first faster than sound, then slower; the level speed is worn with it.
-    double up = 0, risen = 0, left = 1, level = 0;  // s, m, of the level speed, s by it
-    const auto rise = [&](double from, double to, double k) {
-      const double pace = math::sqrt(g * k), a = from * k / pace, b = to * k / pace;
-      const double secant_a = math::sqrt(1 + a * a), secant_b = math::sqrt(1 + b * b);
-      up += (math::atan(a) - math::atan(b)) / pace;
-      risen += math::log(secant_a / secant_b) / k;
-      level += left * math::log((a + secant_a) / (b + secant_b)) / (pace * secant_a);
-      left *= secant_b / secant_a;
-    };
-    const double slow = math::min(climb, 1.05 * sound_);
-    if (slow < climb) rise(climb, slow, drag_by_way(0.5 * (climb + slow), lies + 0.2 * height));
-    rise(slow, 0, drag_by_way(0.6 * slow, lies + 0.6 * height));
-    height = risen;
-    // Down by the hyperbolic tangent.
-    const double deep = math::max(height - (target_(up).y - lies), 0.0),
-                 k = drag_by_way(0.5 * slow, lies + 0.5 * height);
-    const double worn = k * deep, pace = math::sqrt(g * k);
-    const double down = worn + math::log1p(math::sqrt(-math::expm1(-2 * worn))), e = math::exp(-down);
-    level += left * 2 * math::atan((1 - e) / (1 + e)) / pace;
-    time = up + down / pace;
-    const Vec3d wind = conditions_.wind.at(lies + 0.5 * height);
-    barrel = (target_(time) - shooter_.muzzle - time * wind) / math::max(level, 1e-9) + wind - shooter_.velocity;
-    barrel.y = 0;
-    const double most = 0.8 * speed, aside = math::length(barrel);
-    if (aside > most) barrel *= most / aside;
-    barrel.y = math::sqrt(speed * speed - math::length_squared(barrel));
-    climb = barrel.y + shooter_.velocity.y;
-  }
+  const double climb = math::max(0.95 * speed + shooter_.velocity.y, 0.1 * speed);
+  double height = 0.1 * climb * climb / g;
+  // Up by the tangent, first faster than sound, then slower; the level speed is worn with it.
+  double up = 0, risen = 0, left = 1, level = 0;  // s, m, of the level speed, s by it
+  const auto rise = [&](double from, double to, double k) {
+    const double pace = math::sqrt(g * k), a = from * k / pace, b = to * k / pace;
+    const double secant_a = math::sqrt(1 + a * a), secant_b = math::sqrt(1 + b * b);
+    up += (math::atan(a) - math::atan(b)) / pace;
+    risen += math::log(secant_a / secant_b) / k;
+    level += left * math::log((a + secant_a) / (b + secant_b)) / (pace * secant_a);
+    left *= secant_b / secant_a;
+  };
+  const double slow = math::min(climb, 1.05 * sound_);
+  if (slow < climb) rise(climb, slow, drag_by_way(0.5 * (climb + slow), lies + 0.2 * height));
+  rise(slow, 0, drag_by_way(0.6 * slow, lies + 0.6 * height));
+  height = risen;
+  // Down by the hyperbolic tangent.
+  const double deep = math::max(height - (target_(up).y - lies), 0.0), k = drag_by_way(0.5 * slow, lies + 0.5 * height);
+  const double worn = k * deep, pace = math::sqrt(g * k);
+  const double down = worn + math::log1p(math::sqrt(-math::expm1(-2 * worn))), e = math::exp(-down);
+  level += left * 2 * math::atan((1 - e) / (1 + e)) / pace;
+  const double time = up + down / pace;
+  const Vec3d wind = conditions_.wind.at(lies + 0.5 * height);
+  Vec3d barrel = (target_(time) - shooter_.muzzle - time * wind) / math::max(level, 1e-9) + wind - shooter_.velocity;
+  barrel.y = 0;
+  const double most = 0.8 * speed, aside = math::length(barrel);
+  if (aside > most) barrel *= most / aside;
+  barrel.y = math::sqrt(speed * speed - math::length_squared(barrel));
   return {shooter_.velocity + barrel, time};
 }
 
@@ -102,7 +97,7 @@ bool AimSolver::by_guesses(const Guess& flat, double apart, Aims& aims, Root& la
     const Reach last = reach_nearest({steep.u, longest});
     return last.known && last.gap < -1e-3 * last.scale && longest > 1.001 * low.guess.time;
   };
-  const bool late_guess = steep.time > 0.97 * longest;
+  const bool late_guess = 0.97 * steep.time > longest;  // they are rather too long
   if (late_guess && longer()) {
     keep(aims, low);
     return true;

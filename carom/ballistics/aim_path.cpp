@@ -20,6 +20,12 @@ void AimSolver::move(Path& path, Vec3d du, double dt) {
       path.x[i][n] += double(dx[i]) + stretch * path.v[i][n];
       path.v[i][n] += double(dv[i]) + stretch * path.k[i][n];
     }
+    // What it feels there then.
+    const Vec3d w = Path::at(path.w, n), turned{double(dv[0]), double(dv[1]), double(dv[2])};
+    const Vec3d more = turned + stretch * Path::at(path.k, n);
+    const double bend = (path.along[n] - path.drag[n]) * math::dot(w, more) / math::max(math::length_squared(w), 1e-18);
+    const double up = double(dx[1]) + stretch * path.v[1][n];
+    for (int i = 0; i < 3; ++i) path.k[i][n] += up * path.rise[i][n] - path.drag[n] * more[i] - bend * w[i];
     if (n == 0) {  // exactly
       for (int i = 0; i < 3; ++i) path.v[i][0] += du[i] - double(dv[i]);
     }
@@ -33,6 +39,22 @@ void AimSolver::move(Path& path, Vec3d du, double dt) {
     }
   }
 }
+
+namespace {
+
+/// Bulges of a part of an element: the powers of t from the sixth on.
+void bend_part(FlightPath& path, int to, const FlightElement& whole, int part, int parts) {
+  const double r = 1.0 / parts, c = (2 * part + 1) * r - 1, r3 = r * r * r, r6 = r3 * r3;
+  auto& bulge = path.elements.bulge;
+  for (int i = 0; i < 3; ++i) {
+    const double p6 = whole.even[i][3], p7 = whole.odd[i][3], p8 = whole.even[i][4];
+    bulge[2][i][to] = -r6 * r * r * p8;
+    bulge[1][i][to] = -r6 * r * (p7 + 8 * c * p8);
+    bulge[0][i][to] = 3 * bulge[2][i][to] - r6 * (p6 + c * (7 * p7 + 28 * c * p8));
+  }
+}
+
+}  // namespace
 
 void AimSolver::divide(Path& path, double enough) const {
   int parts[Path::most], count = 0;
@@ -63,7 +85,7 @@ void AimSolver::divide(Path& path, double enough) const {
     const double t = path.t[n];
     for (int j = parts[n] - 1; j >= 0; --j) {
       const double s = double(j) / parts[n];
-      path.flatten(--to);
+      bend_part(path, --to, flown, j, parts[n]);
       if (j == 0)
         bring(n);
       else

@@ -1,4 +1,6 @@
 // The surface that shots reach at a flight time: how near it comes to the target, and when the target passes it.
+#include <utility>
+
 #include "carom/ballistics/detail/aim_solver.h"
 
 namespace carom::ballistics::detail {
@@ -9,21 +11,66 @@ namespace carom::ballistics::detail {
 // rule: its rate is the speed of the target past the shot along the normal, and two or three flights find where it is
 // least.
 
-AimSolver::Reach AimSolver::reach(const Guess& guess) const {
-  Reach at = reach(guess, 5e-3);
-  if (!at.known || math::abs(at.gap) < 0.03 * at.scale) at = reach(guess, 5e-4);
+AimSolver::Reach AimSolver::reach(const Guess& guess, Trail* trail) const {
+  const double scale = scale_of(guess.time);
+  Path own;
+  Reach at;
+  bool exactly = false;
+  if (trail != nullptr && follow(guess, scale, *trail)) {
+    at = reach(guess, scale, std::as_const(trail->path));
+    exactly = trail->owes < 2e-3 * scale;
+  } else {
+    at = trail != nullptr ? reach(guess, rough_reach, trail->path) : reach(guess, 5e-3, own);
+  }
+  if (trail != nullptr) trail->known = at.known;
+  if (!at.known || (math::abs(at.gap) < 0.03 * scale && !exactly)) at = reach(guess, 5e-4, own);
   return at;
 }
 
-AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
+// What is left then is of second order in the change.
+bool AimSolver::bring(const Guess& guess, double allowed, Path& path) const {
+  const double time = guess.time;
+  move(path, guess.u - Path::at(path.v, 0), 0);
+  if (time > path.time()) return record(guess, allowed, path, false, true);
+  int n = path.count - 1;
+  while (n > 0 && path.t[n] >= time) --n;
+  if (time == path.t[n + 1]) return true;
+  path.flatten(n);
+  const FlightElement flown(path, n);
+  const double s = (time - path.t[n]) / (2 * flown.half);
+  path.put(n + 1, time, {flown.place(0, s), flown.place(1, s), flown.place(2, s)},
+           {flown.velocity(0, s), flown.velocity(1, s), flown.velocity(2, s)}, {});
+  path.count = n + 1;
+  return true;
+}
+
+bool AimSolver::follow(const Guess& guess, double scale, Trail& trail) const {
+  Path& path = trail.path;
+  if (!trail.known || path.count > 40 || !bring(guess, rough_reach * scale, path)) return false;
+  linearize(path, false);
+  if (path.leaps > 0.03 * scale && path.leaps < 0.3 * scale) {
+    move(path, {}, 0);
+    linearize(path, false);
+  }
+  double carried = 0;
+  for (int n = 0; n < path.count; ++n) carried += path.carried(n);
+  trail.owes = path.leaps + carried;
+  return path.leaps < 0.03 * scale && carried < 0.1 * scale;
+}
+
+AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy, Path& path) const {
+  const double scale = scale_of(guess.time);
+  if (!record(guess, accuracy * scale, path)) return {};
+  linearize(path, false);
+  return reach(guess, scale, std::as_const(path));
+}
+
+AimSolver::Reach AimSolver::reach(const Guess& guess, double scale, const Path& path) const {
   const double speed = shooter_.muzzle_speed, time = guess.time;
   const Vec3d target = target_(time);
   Reach at;
   at.guess = guess;
-  at.scale = math::max(math::length(target - shooter_.muzzle), 0.1 * speed * time);
-  Path path;
-  if (!record(guess, accuracy * at.scale, path)) return at;
-  linearize(path, false);
+  at.scale = scale;
   at.inverse = inverse_of(path.by_velocity);
   // Changes of u across the barrel move the arrival within the surface. The ball's curvature is the surface's mean one.
   const Vec3d across = at.inverse.apply_transposed((guess.u - shooter_.velocity) / speed);
@@ -33,13 +80,13 @@ AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy) const {
   at.radius = speed * math::sqrt(math::abs(math::dot(rows[0], math::cross(rows[1], rows[2]))) * steep);
   at.way = miss + at.radius * at.normal;
   const double distance = math::length(at.way);
-  const Vec3d to = at.way / distance, velocity = velocity_of_target(time);
+  const Vec3d to = at.way / distance, later = target_(time + 1e-2 * time),
+              velocity = (target_(time + 1e-4 * time) - target) / (1e-4 * time);
   at.drift = velocity - path.arrival.velocity;
   at.gap = distance - at.radius;
   at.bulge = math::abs(at.gap - math::dot(at.normal, miss));
   at.rate = math::dot(to, at.drift);
-  const double later = 1e-2 * time;
-  const Vec3d pull = (velocity_of_target(time + later) - velocity) / later - Path::at(path.k, path.count);
+  const Vec3d pull = ((later - target) / (1e-2 * time) - velocity) / (0.5e-2 * time) - Path::at(path.k, path.count);
   at.bend = math::max(math::dot(to, pull) + math::length_squared(at.drift - at.rate * to) / distance,
                       math::max(0.3 * conditions_.gravity, 1e-4 * speed * speed / at.scale));
   at.known = math::is_finite(at.gap) && math::is_finite(at.bend) && math::is_finite(at.rate);
@@ -53,10 +100,9 @@ AimSolver::Guess AimSolver::toward(const Reach& at, double time) const {
   return {shooter_.velocity + shooter_.muzzle_speed * math::normalize(barrel), time};
 }
 
-AimSolver::Reach AimSolver::reach_nearest(Guess guess) const {
-  Reach at = reach(guess);
-  for (int i = 0; i < 6 && at.known && at.bulge > math::max(0.2 * math::abs(at.gap), 1e-4 * at.scale); ++i)
-    at = reach(toward(at, guess.time));
+AimSolver::Reach AimSolver::reach_nearest(Guess guess, Trail* trail) const {
+  Reach at = reach(guess, trail);
+  for (int i = 0; i < 6 && at.known && !at.settled(); ++i) at = reach(toward(at, guess.time), trail);
   return at;
 }
 
@@ -157,7 +203,8 @@ bool AimSolver::by_nearest(Aims& aims, const Nearest& nearest, const Root& late)
       outside = reach_nearest(toward(inside, next));
       if (!outside.known) return false;
     }
-    if (outside.gap > 0 && !between(inside, outside, aims)) return false;
+    Trail trail;
+    if (outside.gap > 0 && !between(inside, outside, trail, aims)) return false;
   }
   return aims.low.has_value();
 }

@@ -22,7 +22,7 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   Newton to;
   const Inverse inverse = inverse_of(path.by_velocity);
   const Arrival& end = path.arrival;
-  const Vec3d miss = target_(guess.time) - end.position, barrel = guess.u - shooter_.velocity;
+  const Vec3d target = target_(guess.time), miss = target - end.position, barrel = guess.u - shooter_.velocity;
   const double speed = math::length(barrel), lack = shooter_.muzzle_speed - speed, missed = math::length(miss);
   const Vec3d d = barrel / speed, goes = velocity_of_target(guess.time), drift = goes - end.velocity;
   const Vec3d to_miss = inverse.apply(miss), to_drift = inverse.apply(drift);
@@ -34,18 +34,18 @@ AimSolver::Newton AimSolver::newton(const Path& path, const Guess& guess) const 
   const double longest = shooter_.muzzle_speed;
   if (math::length(to.du) > longest) to.du *= longest / math::length(to.du);
   const double end_speed = math::length(end.velocity), time = guess.time + to.dt;
-  to.scale = math::max(math::length(target_(guess.time) - shooter_.muzzle), 0.5 * end_speed * guess.time);
+  to.scale = math::max(math::length(target - shooter_.muzzle), 0.5 * end_speed * guess.time);
   to.moved = math::length(to.du) * time + end_speed * math::abs(to.dt) + path.leaps;
   // Derivatives are known to a few thousandths, and what is left is as the square of the way.
   // The leap of a wind profile at its beginning they do not know.
   to.left = to.moved * ((path.lands ? 0.1 : 2e-3) + to.moved / to.scale) +
-            math::length(target_(time) - target_(guess.time) - to.dt * goes);
+            math::length(target_(time) - target - to.dt * goes);
   return to;
 }
 
-AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool falling) const {
+AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool falling, Path* known) const {
   Root root;
-  Path path;
+  Path own, &path = known != nullptr ? *known : own;
   const double allowed = options_.tolerance, away = math::length(target_(guess.time) - shooter_.muzzle);
   // A rough flight from the guess; then that path itself is moved, all of it at once, until it is a flight that hits:
   // in the few elements of that flight, then in as many as the tolerance wants, at last by more points of them.
@@ -53,7 +53,9 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
   double accuracy = math::max(0.02 * away, rough);
   double last_missed = 1e300, first_missed = 1e300, strict = 1;
   int divisions = 0;
-  bool flown = false, flat = true;
+  bool flown = known != nullptr, flat = true;
+  if (flown)
+    for (int n = 0; n < path.count; ++n) path.flatten(n);
   for (int i = 0; i < most; ++i) {
     if (!flown) {
       if (!record(guess, accuracy, path, i == 0 && falling)) {
@@ -71,8 +73,8 @@ AimSolver::Root AimSolver::refine(Guess guess, int most, bool eager, bool fallin
     bool fine = to.left < allowed && unsettled(path) < allowed && (!flat || all_carry(path) < 10 * allowed);
     flat = false;
     const bool near = to.left < 20 * allowed;
-    const double enough = (near ? 3 : 8) * allowed * strict;
-    bool hard = !fine && (near || to.moved < 0.05 * to.scale) && divisions < 7 && any_mistakes(path, 2 * enough);
+    const double enough = math::max((near ? 3 : 8) * allowed * strict, 3e-3 * to.moved);
+    bool hard = !fine && divisions < 7 && any_mistakes(path, 2 * enough);
     if (fine) {
       measure(path);
       to = newton(path, guess);

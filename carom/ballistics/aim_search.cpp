@@ -114,9 +114,9 @@ bool AimSolver::one_peak(const Target& target) const {
 // A target slower than half of what drag leaves of any shot's speed is passed once by the surface on its way out and
 // once on its way back, however it moves, but for the time about the peak, when that surface hardly moves.
 bool AimSolver::slow_target() const {
-  Vec3d place = target_(0);
+  Looks at_looks(*this);
   for (int look = 1; look <= looks; ++look)
-    if (!(pace_of_target(look, place) < 0.5 * fall_speed_)) return false;
+    if (!(at_looks.pace(look) < 0.5 * fall_speed_)) return false;
   return true;
 }
 

@@ -89,7 +89,7 @@ class CAROM_API DragCurve {
   /// The curve times a form factor.
   DragCurve scaled(double factor) const;
 
-  static constexpr std::size_t cells = 128;
+  static constexpr std::size_t cells = 256;  // in one of the usual tables no cell holds two nodes
   /// A cubic in the Mach number less that at its start.
   struct Piece {
     double start = 0, constant = 0, slope = 0, square = 0, cube = 0;

@@ -154,4 +154,61 @@ TEST(RopePosts, WhatAThinPostMeetsIsTakenAlong) {
       }
 }
 
+/// How far beyond a rope of 1 kN a light bar or ball is that is flung at it, at most, at the end of a step (m).
+double beyond(double speed, double ahead, bool ball) {
+  constexpr double step = 1.0 / 60, mass = 0.01;
+  World3 world({.gravity = {0, 0, 0}});
+  rigid::BodyDef<Dim3> def;
+  def.type = rigid::BodyType::dynamic;
+  def.position = {0, ahead, 0};
+  def.rotation = {float(math::sqrt(0.5)), float(math::sqrt(0.5)), 0, 0};  // along z
+  def.linear_velocity = {0, -float(speed), 0};
+  const BodyId body = world.create_body(def).value();
+  constexpr double radius = 0.02, half = 0.1;
+  rigid::ShapeDef<Dim3> shape;
+  const double volume = math::pi * radius * radius * (4 * radius / 3 + (ball ? 0 : 2 * half));
+  shape.density = float(mass / volume);
+  if (ball)
+    world.add_shape(body, geometry::Sphere{float(radius)}, shape).value();
+  else
+    world.add_shape(body, geometry::Capsule3{float(half), float(radius)}, shape).value();
+  RopeSet ropes;
+  constexpr double pull = 1000, stiffness = 1e5, length = 2;
+  const Vec3d points[] = {{-0.5 * length, 0, 0}, {0.5 * length, 0, 0}};
+  ropes
+      .add({.material = {.mass_per_length = 0.05,
+                         .radius = 0.005,
+                         .axial_stiffness = stiffness,
+                         .drag_coefficient = 0,
+                         .skin_coefficient = 0},
+            .points = points,
+            .segments = 40,
+            .length = length / (1 + pull / stiffness),
+            .touch = RopeTouch::none})
+      .value();
+  for (const int end : {0, -1}) ropes.attach(0, {.node = end, .point = points[end == 0 ? 0 : 1]}, world).value();
+  double most = -1;
+  for (int i = 0; i < 60; ++i) {
+    ropes.step(world, step).value();
+    world.step(float(step)).value();
+    const Vec3d place = world.state(body)->center_of_mass;
+    double height = 0, nearest = 1e9;  // m, of the rope where the body is
+    for (const Vec3d p : ropes.positions(0))
+      if (const double off = math::abs(p.x - place.x); off < nearest) {
+        nearest = off;
+        height = p.y;
+      }
+    if (nearest < 0.05) most = math::max(most, height - place.y);
+  }
+  return most;
+}
+
+// What a taut rope stops within a step is on its side of it at the step's end.
+TEST(RopePosts, ALightBodyThatATautRopeStopsIsNotBeyondIt) {
+  for (const bool ball : {false, true})
+    for (const double speed : {5.0, 10.0, 20.0})
+      for (int phase = 0; phase < 8; ++phase)
+        EXPECT_LT(beyond(speed, 0.3 + phase * speed / 480, ball), 0) << speed << ' ' << phase << ' ' << ball;
+}
+
 }  // namespace rope_post_test

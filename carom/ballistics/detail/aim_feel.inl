@@ -153,6 +153,7 @@ CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v
   for (int i = 0; i < lanes; ++i) {
     const double here = mach.v[i];
     piece[i] = m.drag.pieces + m.drag.first[part_of_curve[i]];
+    piece[i] += piece[i][1].start < here;  // nobody foresees that one
     while (piece[i][1].start < here) ++piece[i];
   }
   const Columns<lanes> curve([&](int i) { return &piece[i]->start; });

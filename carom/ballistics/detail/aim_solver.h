@@ -22,6 +22,7 @@ class AimSolver {
             core::FunctionRef<Vec3d(double)> target, const AimOptions& options,
             math::InstructionSet most = math::InstructionSet::avx512);
 
+  using Path = FlightPath;
   struct Guess {
     Vec3d u{};  // the initial velocity in the world
     double time = 0;
@@ -36,8 +37,8 @@ class AimSolver {
     Arrival arrival{};
   };
   /// `eager`: gives up where the first steps do not lead there; `falling`: the time of the guess is only the order of
-  /// magnitude, the right one is when it comes down to the target's height.
-  Root refine(Guess guess, int most = 40, bool eager = false, bool falling = false) const;
+  /// magnitude, the right one is when it comes down to the target's height; `known`: a path of the guess, about.
+  Root refine(Guess guess, int most = 40, bool eager = false, bool falling = false, Path* known = nullptr) const;
 
   /// The earliest and the latest of all roots, and of those that are known, by a walk through the flight times.
   void scan(Aims& aims) const;
@@ -59,8 +60,21 @@ class AimSolver {
   /// Looks at how the target moves, closer together at first.
   static constexpr int looks = 64;
   double time_of_look(int look) const { return options_.longest_time * math::square(double(look) / looks); }
-  /// m/s, at most, as far as two looks tell, between the one before, when it was at `place`, and this one, when it is.
-  double pace_of_target(int look, Vec3d& place) const;
+  class Looks {
+   public:
+    explicit Looks(const AimSolver& solver) : solver_(solver) {
+      for (int look = 0; look <= looks; ++look) paces_[look] = -1;
+    }
+    /// m/s, at most, as far as two looks tell, between the one before and this one.
+    double pace(int look);
+    Vec3d place(int look);
+
+   private:
+    const AimSolver& solver_;
+    double paces_[looks + 1];  // < 0: not known yet
+    Vec3d places_[looks + 1];
+    bool known_[looks + 1] = {};
+  };
   /// The roots on either side of the one peak, where each is so far from it that the speed that is needed changes by
   /// `apart` of the muzzle speed in its flight time.
   bool arcs(double apart, Aims& aims) const;
@@ -101,13 +115,31 @@ class AimSolver {
     Vec3d normal{}, way{};      // outward; m, from the centre to the target
     Vec3d drift{};              // m/s, of the target past the shot
     Inverse inverse{};
+    /// It is where the surface comes nearest to the target, or the ball tells little of the gap.
+    bool settled() const { return bulge <= math::max(0.2 * math::abs(gap), 1e-4 * scale); }
   };
   Vec3d velocity_of_shot(const Reach& at) const { return velocity_of_target(at.guess.time) - at.drift; }
-  Reach reach(const Guess& guess) const;
+  static constexpr double rough_reach = 2e-2;  // of the scale
+  /// The path of the last look at the surface, which is moved to the next instead of a flight of its own.
+  struct Trail {
+    bool known = false;
+    double owes = 0;  // m, by how much its elements and the leaps between them move the arrival
+    Path path;
+  };
+  Reach reach(const Guess& guess, Trail* trail = nullptr) const;
   /// By a flight that may be so far off, a share of the scale, before it is known by how much.
-  Reach reach(const Guess& guess, double accuracy) const;
+  Reach reach(const Guess& guess, double accuracy, Path& path) const;
+  /// By a path that is linearized.
+  Reach reach(const Guess& guess, double scale, const Path& path) const;
+  double scale_of(double time) const {
+    return math::max(math::length(target_(time) - shooter_.muzzle), 0.1 * shooter_.muzzle_speed * time);
+  }
+  /// A path with another start to another time: cut off, or flown on. False: too many steps.
+  bool bring(const Guess& guess, double allowed, Path& path) const;
+  /// False: too far for a path that is moved.
+  bool follow(const Guess& guess, double scale, Trail& trail) const;
   /// The same where it is nearest to the target, about, at the time of the guess.
-  Reach reach_nearest(Guess guess) const;
+  Reach reach_nearest(Guess guess, Trail* trail = nullptr) const;
   /// The shot that comes nearest to the target at another flight time, by the ball.
   Guess toward(const Reach& at, double time) const;
   /// Where over all flight times the surface comes nearest to the target, or the target deepest into it.
@@ -124,15 +156,18 @@ class AimSolver {
   /// `late` may be known, the root after that. False: unknown.
   bool by_nearest(Aims& aims, const Nearest& nearest, const Root& late) const;
   /// The root between a and b, on different sides of the surface: by secants until Newton's method finds one there.
-  bool between(Reach a, Reach b, Aims& aims) const;
-  /// Keeps the first root that it comes to. `pace`: of the target by looks, m/s.
-  void walk(double from, double to, const double* pace, Aims& aims) const;
+  bool between(Reach a, Reach b, Trail& trail, Aims& aims) const;
+  /// From the path of a trail, where it is known.
+  Root refine_along(const Guess& guess, double scale, Trail& trail, int most, bool eager) const;
+  /// s, before it no shot comes to the target.
+  double before_any(Looks& at_looks) const;
+  /// Keeps the first root that it comes to.
+  void walk(double from, double to, Looks& at_looks, Aims& aims) const;
   /// The root at about a time at which the gap would close, as far as it is looked at on the way.
-  bool soon(const Reach& at, double time, Aims& aims) const;
+  bool soon(const Reach& at, double time, Trail& trail, Aims& aims) const;
   /// The shot at a target in vacuum, by muzzle speed.
   Guess straight(double time) const;
 
-  using Path = FlightPath;
   /// How the arrival depends on the start and by how much it is off, to first order in the defects of the elements and
   /// the leaps between them. `finely`: but for what is bent within elements, to about the tolerance.
   void linearize(Path& path, bool finely) const;
@@ -170,19 +205,20 @@ class AimSolver {
   static constexpr double least_bend = 0.1;  // m/s, of the wind
 
   using Step = FlightStep;
-  template <bool Plain>
+  template <bool Plain, bool Rough>
   [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
-  /// `falling`: until it comes down to the target's height. False: too many steps.
-  bool record(Guess guess, double allowed, Path& path, bool falling = false) const {
-    return fly(guess, allowed, path.arrival, &path, falling);
+  /// `falling`: until it comes down to the target's height; `Rough`: of third order. False: too many steps.
+  /// On from the end of the path where `on`.
+  template <bool Plain, bool Rough>
+  bool fly(Guess guess, double allowed, Path& path, bool falling, bool on) const;
+  bool record(Guess guess, double allowed, Path& path, bool falling = false, bool on = false) const {
+    if (allowed < 2e-4 * math::length(guess.u) * guess.time)
+      return pull_.plain() ? fly<true, false>(guess, allowed, path, falling, on)
+                           : fly<false, false>(guess, allowed, path, falling, on);
+    return pull_.plain() ? fly<true, true>(guess, allowed, path, falling, on)
+                         : fly<false, true>(guess, allowed, path, falling, on);
   }
-  bool fly(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling = false) const {
-    return pull_.plain() ? fly_in<true>(guess, allowed, arrival, path, falling)
-                         : fly_in<false>(guess, allowed, arrival, path, falling);
-  }
-  template <bool Plain>
-  bool fly_in(Guess guess, double allowed, Arrival& arrival, Path* path, bool falling) const;
   const PointMassPull pull_;  // what holds
   const RoughPull rough_;     // what flights feel
   const AimMedium medium_;    // what holds, for lanes

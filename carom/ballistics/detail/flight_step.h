@@ -1,4 +1,4 @@
-// One step of Dormand and Prince's pair of orders 5 and 4.
+// Steps of flights.
 #pragma once
 
 #include "carom/math/vec.h"
@@ -10,7 +10,8 @@ struct FlightStep {
   double error = 0;  // m/s
 };
 
-/// k1 is the acceleration at the start, k the one at the end; `at(stage, x, v)` is the acceleration, stages 1 to 6.
+/// Dormand and Prince's pair of orders 5 and 4. k1 is the acceleration at the start, k the one at the end; `at(stage,
+/// x, v)` is the acceleration, stages 1 to 6.
 template <class At>
 [[gnu::always_inline]] inline FlightStep flight_step(At&& at, math::Vec3d x, math::Vec3d v, math::Vec3d k1, double h) {
   using math::Vec3d;
@@ -40,6 +41,21 @@ template <class At>
   end.k = at(6, end.x, end.v);
   end.error = h * math::length(71.0 / 57600 * k1 - 71.0 / 16695 * k3 + 71.0 / 1920 * k4 - 17253.0 / 339200 * k5 +
                                22.0 / 525 * k6 - 1.0 / 40 * end.k);
+  return end;
+}
+
+/// Bogacki and Shampine's pair of orders 3 and 2, likewise.
+template <class At>
+[[gnu::always_inline]] inline FlightStep rough_flight_step(At&& at, math::Vec3d x, math::Vec3d v, math::Vec3d k1,
+                                                           double h) {
+  using math::Vec3d;
+  const Vec3d v2 = v + (h / 2) * k1, k2 = at(1, x + (h / 2) * v, v2);
+  const Vec3d v3 = v + (h * (3.0 / 4)) * k2, k3 = at(2, x + (h * (3.0 / 4)) * v2, v3);
+  FlightStep end;
+  end.v = v + (h * (2.0 / 9)) * k1 + (h / 3) * k2 + (h * (4.0 / 9)) * k3;
+  end.x = x + (h * (2.0 / 9)) * v + (h / 3) * v2 + (h * (4.0 / 9)) * v3;
+  end.k = at(3, end.x, end.v);
+  end.error = h * math::length(5.0 / 72 * k1 - 1.0 / 12 * k2 - 1.0 / 9 * k3 + 1.0 / 8 * end.k);
   return end;
 }
 

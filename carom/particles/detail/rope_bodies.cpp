@@ -170,13 +170,23 @@ void RopeSolver::gather() {
 
 void RopeSolver::move_bodies() {
   for (RopeBody& body : set.bodies_) {
+    body.carried += h * body.impulse;
     body.center += h * body.velocity;
     body.rotation = integrate(body.rotation, h * body.spin);
   }
 }
 
+// A force over the step would carry a body that a rope stops early in it beyond that rope: of the impulse of a blow
+// such a share comes at the start that the body goes as far as it did in the ropes' step.
+double RopeSolver::share_at_start(const RopeBody& body) const {
+  constexpr double least_blow = 1;  // m/s
+  const double size = length_squared(body.impulse);
+  if (!body.moves || substeps == 1 || !(length(body.linear * body.impulse) > least_blow)) return 0;
+  const double even = 0.5 * (1 + 1.0 / substeps);  // of dt, how long a steady force has acted
+  return math::clamp((dot(body.carried, body.impulse) / (size * dt) - even) / (1 - even), 0.0, 1.0);
+}
+
 void RopeSolver::hand_over() {
-  const float per_step = float(1 / dt);
   set.memory_.clear();
   for (const RopeBody& body : set.bodies_) {
     if (!body.moves) continue;
@@ -190,6 +200,12 @@ void RopeSolver::hand_over() {
     if (length_squared(body.impulse) == 0 && length_squared(body.turn) == 0) continue;
     // What sleeps is not woken by a rope that only lies on it.
     if (!body.awake && length(body.impulse) < 0.02 * body.mass * length(gravity) * dt) continue;
+    const double start = share_at_start(body);
+    const float per_step = float((1 - start) / dt);
+    if (start > 0) {
+      (void)world.add_impulse(body.id, Vec3f(start * body.impulse));
+      (void)world.add_angular_impulse(body.id, Vec3f(start * body.turn));
+    }
     (void)world.add_force(body.id, Vec3f(body.impulse) * per_step);
     (void)world.add_torque(body.id, Vec3f(body.turn) * per_step);
   }

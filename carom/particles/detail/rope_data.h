@@ -28,8 +28,8 @@ struct RopeBody {
   Mat3d linear = Mat3d::zero(), mixed = Mat3d::zero(),
         angular = Mat3d::zero();  ///< mobility: v = L j + X l, w = Xᵀ j + A l
   Vec3d impulse{}, turn{};        ///< over the step, about the centre of mass
-  Vec3d half_impulse{}, half_turn{};
-  int column = -1;  ///< block of the bodies' system
+  Vec3d carried{};                ///< kg·m, the impulse times how long it has acted
+  int column = -1;                ///< block of the bodies' system
 
   Vec3d place(Vec3d local) const { return center + rotate(rotation, local - local_center); }
   Vec3d velocity_at(Vec3d point) const { return velocity + cross(spin, point - center); }

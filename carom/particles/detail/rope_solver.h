@@ -36,6 +36,7 @@ struct RopeSolver {
   rigid::World3& world;
   double dt;
   double h = 0;
+  int substeps = 1;
   Vec3d gravity{};
 
   Status run();
@@ -52,6 +53,7 @@ struct RopeSolver {
   Vec3d change_at(int body, Vec3d arm) const;  ///< of the velocity of what holds a particle, by the solve
   void move_bodies();
   void hand_over();
+  double share_at_start(const RopeBody& body) const;
 
   // rope_contact.cpp
   double reach_at(const Rope& rope, double speed) const;

@@ -408,7 +408,7 @@ void RopeSolver::substep(double duration, int halvings) {
 Status RopeSolver::run() {
   gravity = Vec3d(world.definition().gravity);
   set.breaks_.clear();
-  int substeps = set.substeps_;
+  substeps = set.substeps_;
   for (std::size_t r = 0; r < set.ropes_.size(); ++r) {
     const int needed = needed_substeps(set.ropes_[r]);
     if (needed > most_substeps)
