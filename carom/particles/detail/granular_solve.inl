@@ -368,7 +368,7 @@ float GranularState<D>::round(float dt, float whole) {
     press();
     for (const int end = (part + 1) * sweeps / parts; swept < end; ++swept) sweep(h, swept % 2 == 0);
     sum_walls();
-    const bool last = part + 1 == parts, looks = !last && stage > looked + 1 && dt > shortest;
+    const bool last = part + 1 == parts, looks = !last && stage > looked + 2 && dt > shortest;
     move(time, last || looks ? still : gained);
     if (!looks) continue;
     looked = stage;
