@@ -10,7 +10,7 @@ namespace carom::particles::detail {
 
 constexpr float pair_way = 1.2f;                         ///< radii that two pass each other by in a substep, at most
 constexpr float sweeps_per_way = 7;                      ///< for each radius that the fastest do
-constexpr int most_substeps = 64;                        ///< of a step
+constexpr int most_grain_substeps = 64;                  ///< of a step
 constexpr float grain_slop = 0.005f, grain_part = 0.4f;  // overlap that stays, of a radius; share of the rest taken out
 /// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
 /// layer by layer, and not pushed into it.
@@ -320,14 +320,14 @@ float GranularState<D>::fastest_beside_solids() const {
 template <class D>
 float GranularState<D>::round(float dt, float whole) {
   sort();
-  const float shortest = whole / float(most_substeps);
+  const float shortest = whole / float(most_grain_substeps);
   dt = math::min(dt, math::max(time_to_search(dt), shortest));
   find_surfaces(dt);
   look_around();
   find_pairs(dt);
   to_rows();
   const float share = dt / whole;
-  const int most = math::max(1, int(share * float(most_substeps)));
+  const int most = math::max(1, int(share * float(most_grain_substeps)));
   int parts = math::max(1, int(math::ceil(share * float(definition.substeps) - 1e-3f)));
   int sweeps = int(math::ceil(share * float(definition.substeps * definition.iterations) - 1e-3f));
   const float pull = solids.empty() ? 0 : dt * length(definition.gravity);
