@@ -37,9 +37,9 @@ struct GranularDef {
   bool walls[6] = {true, true, true, true, true, true};      ///< as FluidDef::walls
   int max_grains = 16384;                                    ///< 1 … 2^20
   int substeps = 8;                                          ///< 1 … 64, at least
-  int iterations = 4;                                        ///< sweeps over the contacts in a substep, 1 … 100: fast
-                                                             ///< ones take more substeps, which share them; two at
-                                                             ///< least, one there and one back
+  int iterations = 4;                                        ///< sweeps over the contacts in a substep, 1 … 100: two
+                                                             ///< at least, one there and one back, and more where
+                                                             ///< grains pass each other fast (docs/fluids.md)
   std::uint64_t seed = 1;                                    ///< of the radii
   int lanes = 0;                                             ///< 0: as many as the machine has; 4, 8, 16
   int threads = 1;                                           ///< 1 … 64
@@ -71,7 +71,7 @@ class CAROM_API Granular {
   using Position = typename D::Position;
   using Angular = typename D::Angular;
 
-  /// Errors: a field out of range, or a domain of more than 2^24 cells of seven radii (in space four).
+  /// Errors: a field out of range, or a domain of more than 2^24 cells of five radii (in space four).
   static core::Result<Granular> create(const GranularDef<D>& definition);
   Granular(const Granular& other);
   Granular& operator=(const Granular& other);

@@ -207,7 +207,7 @@ TEST(Granular, NoGrainPassesAnother) {
     }
     return passed;
   };
-  for (const float speed : {3.0f, 10.0f, 30.0f}) {
+  for (const float speed : {3.0f, 10.0f, 30.0f, 50.0f}) {
     EXPECT_EQ(passes([&](int i) { return i < 20 ? 0 : -speed; }, 9.8f), 0) << speed;
     EXPECT_EQ(passes([&](int i) { return i < 20 ? 0 : i < 40 ? speed / 2 : -speed / 2; }, 0), 0) << speed;
     EXPECT_EQ(passes([&](int i) { return i < 59 ? -2.0f : -speed; }, 9.8f), 0) << speed;

@@ -46,6 +46,9 @@ struct GrainPass {
   float up[3] = {};  ///< against gravity: what is added to the weight of the lower of two, straight below
 };
 
+template <int N>
+inline constexpr int grain_rings = N == 2 ? 2 : 1;  ///< of cells around one, in which neighbours are looked for at most
+
 /// Grains in the order of their cells, places and then radii in columns that may be read a block of lanes too far.
 template <int N>
 struct GrainColumns {
@@ -56,7 +59,7 @@ struct GrainColumns {
 /// memory they are read as one.
 template <int N>
 struct GrainRuns {
-  static constexpr int most = 5;
+  static constexpr int most = (2 * grain_rings<N> + 1) * (N == 2 ? grain_rings<N> + 1 : 2);
   int begin = 0, end = 0, count = 0;
   int from[most], to[most];
   float low[most][4] = {}, high[most][4] = {};  ///< m
@@ -82,7 +85,7 @@ struct GrainKernels {
   /// Neighbours that may come to touch: their numbers and stages go to found[at …], for each grain where they begin to
   /// first[grain]. Returns where they end.
   int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first,
-              int* found, int at);
+              int* found, int* later, int at);
   /// In how many stages from now on pairs may first touch, to `stages`, which has room for a block of lanes more:
   /// grain_stages or more is never. `pace` has by grain, as many floats as a place, how far another may close on it
   /// until the next search.

@@ -76,7 +76,7 @@ void GranularState<D>::make_grid() {
   }
   const int across = N == 2 ? cells[0] : cells[2];
   // Narrow ones leave lanes empty. Four or a multiple of it share evenly between two threads, every second at a time.
-  const int wanted = (across + 2) / (N == 2 ? 14 : 3);
+  const int wanted = int(float(across + 2) * cell_radii / (N == 2 ? 98 : 12));
   const int count = wanted < 3 ? math::max(wanted, 1) : 4 * ((wanted + 2) / 4);
   slab_cells = (across + count - 1) / count;
   slabs.resize(std::size_t((across + slab_cells - 1) / slab_cells));
@@ -85,7 +85,7 @@ void GranularState<D>::make_grid() {
   for (int k = 0; k < across; ++k) column_start[k] = (k / slab_cells * cells[1] * slab_cells + k % slab_cells) * row;
   size = int(slabs.size()) * slab_cells * cells[1] * (N == 2 ? 1 : cells[0]);
   cell_start.assign(std::size_t(size) + 1, 0);
-  haste.assign(std::size_t(size), {});
+  for (auto* list : {&haste, &around, &spare}) list->assign(std::size_t(size), {});
 }
 
 template <class D>
@@ -111,6 +111,7 @@ void GranularState<D>::reserve() {
   for (auto* list : {&wall_blocks, &old_wall_blocks}) list->reserve(n / grain_lanes + 64);
   wall_of.reserve(n / grain_lanes + 64);
   place = AlignedFloats((n + slabs.size()) * grain_place);
+  origin = AlignedFloats((n + slabs.size()) * grain_place);
   motion = AlignedFloats((n + slabs.size()) * grain_motion<N>);
   pace = AlignedFloats(n * grain_place);
   solids.reserve(64);

@@ -58,16 +58,78 @@ void GranularState<D>::sort() {
   }
 }
 
-/// m/s, how fast grains near a cell may close, by axis: what moves there does it with what it has, or is stopped.
+/// The cells of a slab in memory's order.
 template <class D>
-typename D::Vector GranularState<D>::fastest_near(int x, int y, int z) const {
+template <class F>
+void GranularState<D>::for_cells(int slab, F&& f) const {
+  const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
+  const int low = slab * slab_cells, high = math::min(low + slab_cells, across);
+  for (int y = 0; y < cells[1]; ++y)
+    for (int k = low; k < high; ++k)
+      for (int x = 0; x < layer; ++x) f(N == 2 ? k : x, y, N == 2 ? 0 : k);
+}
+
+/// Between what the velocities of the grains of each cell and of those within `rings` lie, and of what they may strike.
+template <class D>
+void GranularState<D>::look_around() {
+  const std::vector<Haste<D>>* from = &haste;
+  for (int axis = 0; axis < N; ++axis) {
+    std::vector<Haste<D>>& to = (N - axis) % 2 ? around : spare;
+    for_slabs([&](GrainSlab<N>&, int index) {
+      for_cells(index, [&](int x, int y, int z) {
+        int at[3] = {x, y, z};
+        const int here = at[axis], last = math::min(here + rings, cells[axis] - 1);
+        Haste<D> all;
+        for (at[axis] = math::max(here - rings, 0); at[axis] <= last; ++at[axis])
+          all.add((*from)[cell_at(at[0], at[1], at[2])]);
+        to[cell_at(x, y, z)] = all;
+      });
+    });
+    from = &to;
+  }
+}
+
+/// s, `dt` at most, until neighbours are to be looked for again: no two anywhere, nor one and what stands still, then
+/// close by more than `search_way`.
+template <class D>
+float GranularState<D>::time_to_search(float dt) const {
   Haste<D> all;
-  const Haste<D>* const by_cell = haste.data();
-  const int left = math::max(x - 1, 0), right = math::min(x + 1, cells[0] - 1);
-  for (int k = math::max(z - 1, 0); k <= math::min(z + 1, cells[2] - 1); ++k)
-    for (int j = math::max(y - 1, 0); j <= math::min(y + 1, cells[1] - 1); ++j)
-      for (int i = left; i <= right; ++i) all.add(by_cell[cell_at(i, j, k)]);
-  return all.range();
+  all.add(Vector{});
+  for (const Haste<D>& one : haste) all.add(one);
+  const Vector range = all.range();
+  float closing = 0;
+  for (int k = 0; k < N; ++k) closing = math::max(closing, range[k]);
+  const float parts = closing * dt / (search_way * definition.radius);
+  return parts > 1 ? dt / math::ceil(parts) : dt;
+}
+
+/// Whether `time` after a search a grain is where it was not foreseen by more than a radius: two could then meet that
+/// were not found.
+template <class D>
+bool GranularState<D>::astray(float time) {
+  using Four = math::WideFloat<4>;
+  const float margin = (1 - definition.radius_spread) * definition.radius;
+  for_slabs([&](GrainSlab<N>& slab, int index) {
+    slab.astray = false;
+    for_cells(index, [&](int x, int y, int z) {
+      const int c = cell_at(x, y, z);
+      const Haste<D>& near = around[c];
+      float least[4] = {}, most[4] = {};
+      for (int k = 0; k < N; ++k) {
+        const float gain = time * definition.gravity[k];
+        least[k] = -time * (near.most[Haste<D>::down + k] - math::min(gain, 0.0f)) - margin;
+        most[k] = time * (near.most[k] + math::max(gain, 0.0f)) + margin;
+      }
+      for (int i = cell_start[c]; i < cell_start[c + 1]; ++i) {
+        const std::size_t row = std::size_t(i) * grain_place;
+        const Four way = Four::load(&place[row]) - Four::load(&origin[row]);
+        if (math::any((way < Four::load(least)) | (way > Four::load(most)))) slab.astray = true;
+      }
+    });
+  });
+  bool any = false;
+  for (const GrainSlab<N>& slab : slabs) any = any || slab.astray;
+  return any;
 }
 
 /// Lists the neighbours of a cell's grains, each pair once: those that come later along x, up or across to the next
@@ -78,8 +140,8 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   if (begin == end) return;
   // What pulls one of the two pulls the other alike unless it is borne, and it then falls by half of g dt², in parts a
   // little more.
-  const Vector closing = fastest_near(x, y, z);
-  GrainReach<N> reach{.slack = 0.02f * definition.radius, .most = (cell_radii - 2) * definition.radius};
+  const Vector closing = around[c].range();
+  GrainReach<N> reach{.slack = 0.02f * definition.radius, .most = (rings * cell_radii - 2) * definition.radius};
   for (int k = 0; k < N; ++k) reach.way[k] = dt * closing[k] + 0.55f * dt * dt * math::abs(definition.gravity[k]);
   // As fast at any time until the next search.
   float* const paces = pace.data();
@@ -89,13 +151,16 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   // Along an axis they are as far apart, at most, as where they come closest askew to it.
   const float radii = 2 * definition.radius + reach.slack, width = cell_radii * definition.radius;
-  float ways = 0, square = 0, far[N];
+  float sum = 0, square = 0, far[N], farthest = 0;
   for (int k = 0; k < N; ++k) {
-    ways += reach.way[k];
+    sum += reach.way[k];
     square += reach.way[k] * reach.way[k];
   }
-  for (int k = 0; k < N; ++k)
-    far[k] = 1.001f * (radii + math::min(math::min(0.5f * (ways + reach.way[k]), math::sqrt(square)), reach.most));
+  for (int k = 0; k < N; ++k) {
+    far[k] = 1.001f * (radii + math::min(math::min(0.5f * (sum + reach.way[k]), math::sqrt(square)), reach.most));
+    farthest = math::max(farthest, far[k]);
+  }
+  const int near = farthest > width ? rings : 1;
   GrainRuns<N> runs;
   runs.begin = begin;
   runs.end = end;
@@ -113,11 +178,10 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
     }
   };
   if constexpr (N == 2) {
-    add(x, x, y, z);
-    add(x + 1, x + 1, y, z);
-    add(x, x, y + 1, z);
-    add(x + 1, x + 1, y + 1, z);
-    add(x + 1, x + 1, y - 1, z);
+    for (int k = 0; k <= 2 * near; ++k) {  // its own row first
+      const int up = k <= near ? k : near - k;
+      for (int right = up < 0 ? 1 : 0; right <= near; ++right) add(x + right, x + right, y + up, z);
+    }
   } else {
     add(x, x + 1, y, z);
     add(x - 1, x + 1, y + 1, z);
@@ -125,11 +189,13 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
-  most = most * std::size_t(end - begin) + std::size_t(slab.pair_count);
+  if (most + grain_lanes > slab.waiting.size()) slab.waiting.resize(2 * most + grain_lanes);
+  most = most * std::size_t(end - begin) + std::size_t(slab.pair_count) + grain_lanes;
   if (most > slab.pairs.size()) slab.pairs.resize(2 * most);
   GrainColumns<N> columns;
   for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
-  slab.pair_count = kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.pair_count);
+  slab.pair_count =
+      kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.waiting.data(), slab.pair_count);
 }
 
 /// One more, empty; `none`: a grain that is none.
@@ -191,19 +257,20 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
   const int *const old_first = old_first_pair.data(), *const others = old_pairs.data(),
                    *const places = old_place.data();
   for (auto& list : slab.later) list.clear();
+  const int *const first = first_pair.data(), *const mine = pairs.data();
+  const std::uint8_t* const stage_of = stages.data();
+  const Grain<D>* const all = grains.data();
   float fastest = 0;
   for (int grain = begin; grain < end; ++grain) {
     const int own = places[grain];
     const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
     int next = old_begin;
-    for (int k = first_pair[grain], to = first_pair[grain + 1]; k < to; ++k) {
-      if (stages[k] > 0) {
-        slab.later[stages[k]].push_back({std::uint32_t(grain * grain_place), std::uint32_t(pairs[k] * grain_place), k});
-        continue;
-      }
-      const Vector passing = grains[pairs[k]].v - grains[grain].v;
+    int k = first[grain];
+    const int to = first[grain + 1];
+    for (; k < to && stage_of[k] == 0; ++k) {
+      const Vector passing = all[mine[k]].v - all[grain].v;
       fastest = math::max(fastest, dot(passing, passing));
-      const int other = places[pairs[k]];
+      const int other = places[mine[k]];
       int old = next, was = -1;
       if (old >= old_end || others[old] != other) {
         old = old_begin;
@@ -218,6 +285,8 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
       }
       slab.was[place_pair(slab, end, grain, k)] = was;
     }
+    for (; k < to; ++k)
+      slab.later[stage_of[k]].push_back({std::uint32_t(grain * grain_place), std::uint32_t(mine[k] * grain_place), k});
   }
   slab.fastest = math::sqrt(fastest);
 }
@@ -258,13 +327,9 @@ void GranularState<D>::find_pairs(float dt) {
   first_pair.resize(std::size_t(count) + 1);
   last_block.assign(std::size_t(count), -1);
   last_across.assign(std::size_t(count), -1);
-  const int across = N == 2 ? cells[0] : cells[2], layer = N == 2 ? 1 : cells[0];
   for_slabs([&](GrainSlab<N>& slab, int index) {
     slab.pair_count = slab.block_count = 0;
-    const int low = index * slab_cells, high = math::min(low + slab_cells, across);
-    for (int y = 0; y < cells[1]; ++y)
-      for (int k = low; k < high; ++k)
-        for (int x = 0; x < layer; ++x) find_neighbours(slab, N == 2 ? k : x, y, N == 2 ? 0 : k, dt);
+    for_cells(index, [&](int x, int y, int z) { find_neighbours(slab, x, y, z, dt); });
   });
   pair_count = 0;
   for (const GrainSlab<N>& slab : slabs) pair_count += slab.pair_count;
@@ -329,16 +394,16 @@ void GranularState<D>::touch(int grain, int surface, std::uint32_t key) {
 }
 
 template <class D>
-void GranularState<D>::touch_solid(int i, int index, float reach) {
+bool GranularState<D>::near_solid(int i, int index, float reach) const {
   const GrainSolid<D>& solid = solids[index];
   const Grain<D>& g = grains[i];
   const float most = g.radius + reach;
   for (int b = 0; b < N; ++b)
-    if (g.x[b] < solid.bounds.low[b] - most || g.x[b] > solid.bounds.high[b] + most) return;
-  const Vector local = inverse_transform_point(solid.at, g.x);
-  if (signed_distance(solid.shape, local, solid.sheet) < most) touch(i, 2 * N + index, solid.key);
+    if (g.x[b] < solid.bounds.low[b] - most || g.x[b] > solid.bounds.high[b] + most) return false;
+  return signed_distance(solid.shape, inverse_transform_point(solid.at, g.x), solid.sheet) < most;
 }
 
+/// Also what grains may strike, to their cells' haste.
 template <class D>
 void GranularState<D>::find_surfaces(float dt) {
   old_touches.swap(touches);
@@ -354,11 +419,23 @@ void GranularState<D>::find_surfaces(float dt) {
   const float reach = statistics.max_speed * dt + 0.02f * definition.radius;
   for (int i = 0; i < int(grains.size()); ++i) {
     first_touch[i] = int(touches.size());
+    Haste<D>& here = haste[cell_of[old_place[i]]];
     for (int side = 0; side < 2 * N; ++side) {
       const float x = grains[i].x[side / 2], distance = side % 2 ? extent[side / 2] - x : x;
-      if (definition.walls[side] && distance < grains[i].radius + reach) touch(i, side, std::uint32_t(side));
+      if (!definition.walls[side] || distance >= grains[i].radius + reach) continue;
+      touch(i, side, std::uint32_t(side));
+      here.add_still(side / 2);
     }
-    for (int k = 0; k < int(solids.size()); ++k) touch_solid(i, k, reach);
+    for (int k = 0; k < int(solids.size()); ++k) {
+      if (!near_solid(i, k, reach)) continue;
+      touch(i, 2 * N + k, solids[k].key);
+      Vector speed{};
+      if (solids[k].body >= 0) {
+        const GrainBody<D>& b = bodies[solids[k].body];
+        speed = b.velocity + grain_turn(b.spin, grains[i].x - b.center);
+      }
+      here.add(speed);
+    }
   }
   first_touch[grains.size()] = int(touches.size());
 }

@@ -148,12 +148,29 @@ CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lan
   }
 }
 
+/// What lanes have that `chosen` has bits for, to to[at …], in which a block of lanes more is written; returns where it
+/// ends.
+CAROM_SIMD_INLINE int append(math::WideInt<width> lanes, std::uint32_t chosen, int* to, int at) {
+#if defined(__AVX512F__)
+  if constexpr (width == 16) {
+    const __m512i packed = _mm512_maskz_compress_epi32(__mmask16(chosen), __m512i(lanes.v));
+    _mm512_storeu_si512(to + at, packed);
+    return at + __builtin_popcount(chosen);
+  }
+#endif
+  std::int32_t number[width];
+  lanes.store(number);
+  for (; chosen != 0; chosen &= chosen - 1) to[at++] = number[__builtin_ctz(chosen)];
+  return at;
+}
+
 template <int N>
 int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first, int* found,
-         int at) {
+         int* later, int at) {
   using Four = math::WideFloat<4>;
   for (int i = runs.begin; i < runs.end; ++i) {
     first[i] = at;
+    int waits = 0;
     F x[N];
     float place[4] = {};
     for (int k = 0; k < N; ++k) {
@@ -172,29 +189,28 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
     }
     for (int run = 0; run <= last; ++run)
       for (int j = from[run]; j < to[run]; j += width) {
-        // They close by no more than s = Σ |d| way / |d|. Few are left of those that d² < u² + 2 |d| s leaves, with u
-        // the sum of radii and slack: it holds wherever |d| < u + s does, and asks for no root.
+        // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
+        // slack: then d² < u² + 2 |d| s too, which asks for no root and lets in few others, or these too soon.
         F square, twice;
         for (int k = 0; k < N; ++k) {
           const F d = F::load(grains.column[k] + j) - x[k], far = math::abs(d) * ways[k];
           square = k == 0 ? d * d : square + d * d;
           twice = k == 0 ? far : twice + far;
         }
-        const F touch = own + F::load(grains.column[N] + j);
-        std::uint32_t hits = math::bitmask(square < touch * touch + twice);
+        const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
+        const F open = square - touch * touch, all = splat(grain_stages) * open;
+        std::uint32_t hits = math::bitmask((open < twice) & (square < farthest * farthest));
         if (to[run] - j < width) hits &= (1u << (to[run] - j)) - 1;
         if (hits == 0) continue;
-        const F farthest = touch + more, way = splat(0.5f) * twice, open = square - touch * math::sqrt(square);
-        hits &= math::bitmask((open <= way) & (square < farthest * farthest));
-        const F stage = math::min(math::max(open, F::zero()) * splat(grain_stages) / math::max(way, splat(1e-30f)),
-                                  splat(grain_stages - 1));
-        std::int32_t stages[width];
-        (math::to_int(stage) << grain_stage_bit).store(stages);
-        for (; hits != 0; hits &= hits - 1) {
-          const int lane = __builtin_ctz(hits);
-          found[at++] = stages[lane] | (j + lane);
-        }
+        const std::uint32_t soon = math::bitmask(all < twice) & hits;
+        const auto others = math::WideInt<width>::lanes() + math::WideInt<width>::splat(j);
+        at = append(others, soon, found, at);
+        if (hits == soon) continue;
+        const F stage = math::max(math::min(all / math::max(twice, splat(1e-30f)), splat(grain_stages - 1)), splat(1));
+        waits = append(others | (math::to_int(stage) << grain_stage_bit), hits ^ soon, later, waits);
       }
+    for (int k = 0; k < waits; k += width) math::WideInt<width>::load(later + k).store(found + at + k);
+    at += waits;
   }
   return at;
 }

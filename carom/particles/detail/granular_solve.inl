@@ -8,8 +8,10 @@
 
 namespace carom::particles::detail {
 
-constexpr float pair_way = 0.4f;                         ///< radii
-constexpr float grain_slop = 0.005f, grain_part = 0.3f;  // overlap that stays, of a radius; share of the rest taken out
+constexpr float pair_way = 1.2f;                         ///< radii that two pass each other by in a substep, at most
+constexpr float sweeps_per_way = 7;                      ///< for each radius that the fastest do
+constexpr int most_grain_substeps = 64;                  ///< of a step
+constexpr float grain_slop = 0.005f, grain_part = 0.4f;  // overlap that stays, of a radius; share of the rest taken out
 /// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
 /// layer by layer, and not pushed into it.
 constexpr float grain_settle = 2;
@@ -24,27 +26,28 @@ int GranularState<D>::grain_in(const Block& block, int lane) const {
 template <class D>
 void GranularState<D>::to_rows() {
   const int count = int(grains.size());
-  for_grains(count + int(slabs.size()),
-             [count, from = grains.data(), places = place.data(), motions = motion.data()](int i) {
-               float* const p = places + std::size_t(i) * grain_place;
-               float* const m = motions + std::size_t(i) * grain_motion<N>;
-               const Grain<D> none{.curve = 1, .inverse_mass = 1};
-               const Grain<D>& g = i < count ? from[i] : none;
-               p[2] = 0;
-               for (int k = 0; k < N; ++k) {
-                 p[k] = g.x[k];
-                 m[k] = g.v[k];
-               }
-               p[3] = g.radius;
-               if constexpr (N == 2) {
-                 m[2] = g.radius * g.spin;
-                 m[3] = g.curve;
-               } else {
-                 m[3] = g.inverse_mass;
-                 for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
-                 m[7] = g.curve;
-               }
-             });
+  for_grains(count + int(slabs.size()), [count, from = grains.data(), places = place.data(), origins = origin.data(),
+                                         motions = motion.data()](int i) {
+    float* const p = places + std::size_t(i) * grain_place;
+    float* const m = motions + std::size_t(i) * grain_motion<N>;
+    const Grain<D> none{.curve = 1, .inverse_mass = 1};
+    const Grain<D>& g = i < count ? from[i] : none;
+    p[2] = 0;
+    for (int k = 0; k < N; ++k) {
+      p[k] = g.x[k];
+      m[k] = g.v[k];
+    }
+    p[3] = g.radius;
+    std::copy_n(p, grain_place, origins + std::size_t(i) * grain_place);
+    if constexpr (N == 2) {
+      m[2] = g.radius * g.spin;
+      m[3] = g.curve;
+    } else {
+      m[3] = g.inverse_mass;
+      for (int k = 0; k < 3; ++k) m[4 + k] = g.radius * g.spin[k];
+      m[7] = g.curve;
+    }
+  });
 }
 
 template <class D>
@@ -310,21 +313,30 @@ float GranularState<D>::fastest_beside_solids() const {
   return math::sqrt(most);
 }
 
-/// `dt` seconds with one search, in `parts` to `most` substeps and with `sweeps` at least, two in each substep. How
-/// fast grains fall together does not matter, nor on a wall: no two pass each other by more than `pair_way` in a
-/// substep, nor one a shape, which may be hollow, by more than half a radius.
+/// One search, and substeps for as long as it holds, `dt` seconds at most of a `whole` step: returns how long. How fast
+/// grains fall together does not matter, nor on a wall: no two pass each other by more than `pair_way` in a substep,
+/// nor one a shape, which may be hollow, by more than half a radius. What takes a blow takes sweeps: as many for each
+/// radius that two pass each other by, in however many substeps.
 template <class D>
-void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
+float GranularState<D>::round(float dt, float whole) {
   sort();
-  find_pairs(dt);
+  const float shortest = whole / float(most_grain_substeps);
+  dt = math::min(dt, math::max(time_to_search(dt), shortest));
   find_surfaces(dt);
+  look_around();
+  find_pairs(dt);
   to_rows();
+  const float share = dt / whole;
+  const int most = math::max(1, int(share * float(most_grain_substeps)));
+  int parts = math::max(1, int(math::ceil(share * float(definition.substeps) - 1e-3f)));
+  int sweeps = int(math::ceil(share * float(definition.substeps * definition.iterations) - 1e-3f));
   const float pull = solids.empty() ? 0 : dt * length(definition.gravity);
-  float ways = 2 * (fastest_beside_solids() + pull);
-  for (const GrainSlab<N>& slab : slabs) ways = math::max(ways, slab.fastest / pair_way);
-  ways *= dt / definition.radius;
-  parts = math::max(parts, ways < float(most) ? int(math::ceil(ways)) : most);
-  sweeps = math::max(sweeps, 2 * parts);
+  float passing = 0;  // radii
+  for (const GrainSlab<N>& slab : slabs) passing = math::max(passing, slab.fastest * dt / definition.radius);
+  const float beside = 2 * (fastest_beside_solids() + pull) * dt / definition.radius;
+  parts = math::max(parts, int(math::ceil(math::min(math::max(passing / pair_way, beside), float(most)))));
+  const float blows = sweeps_per_way * math::min(passing, pair_way * float(most));
+  sweeps = math::max(math::max(sweeps, 2 * parts), int(math::ceil(blows)));
   const float h = dt / float(parts), scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with it
   last_h = h;
   scale_surfaces(scale);
@@ -346,7 +358,7 @@ void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
     });
   };
   move(still, gained);
-  for (int part = 0, swept = 0, stage = 0; part < parts; ++part) {
+  for (int part = 0, swept = 0, stage = 0, looked = 0; part < parts; ++part) {
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
     for (const int last = ((part + 1) * grain_stages - 1) / parts; stage < last;) {
@@ -356,7 +368,16 @@ void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
     press();
     for (const int end = (part + 1) * sweeps / parts; swept < end; ++swept) sweep(h, swept % 2 == 0);
     sum_walls();
-    move(time, part + 1 == parts ? still : gained);
+    const bool last = part + 1 == parts, looks = !last && stage > looked + 2 && dt > shortest;
+    move(time, last || looks ? still : gained);
+    if (!looks) continue;
+    looked = stage;
+    const float gone = h * float(part + 1);
+    if (astray(gone)) {
+      dt = gone;
+      break;
+    }
+    move(still, gained);
   }
   from_rows();
   held.resize(std::size_t(pair_count) * grain_held<N>);
@@ -365,6 +386,7 @@ void GranularState<D>::round(float dt, int parts, int most, int sweeps) {
   });
   statistics.contacts = pair_count;
   statistics.wall_contacts = int(touches.size());
+  return dt;
 }
 
 template <class D>
@@ -379,17 +401,11 @@ core::Status GranularState<D>::step(rigid::World<D>* world, float dt) {
     if (!gathered.ok()) return gathered;
   }
   const core::ParallelRegion region(*scheduler);
-  // Contacts are looked for every `search_way` radii.
   float fastest = 0;
   for (const Grain<D>& g : grains) fastest = math::max(fastest, dot(g.v, g.v));
   fastest = math::sqrt(fastest) + dt * length(definition.gravity);
   statistics.max_speed = fastest;
-  const float ways = fastest * dt / (search_way * definition.radius);
-  const int rounds = ways < 64 ? math::max(1, int(math::ceil(ways))) : 64;
-  const int parts = math::max(definition.substeps, rounds);
-  const int sweeps = definition.substeps * definition.iterations;
-  const auto share = [&](int all, int k) { return (k + 1) * all / rounds - k * all / rounds; };
-  for (int k = 0; k < rounds; ++k) round(dt / float(rounds), share(parts, k), share(64, k), share(sweeps, k));
+  for (float left = dt; left > 1e-6f * dt;) left -= round(left, dt);
   for (const GrainSlab<N>& slab : slabs)
     statistics.max_overlap =
         math::max(statistics.max_overlap, kernels->deepest(slab.blocks.data(), 0, slab.block_count, place.data()));

@@ -1,6 +1,7 @@
 // What grains consist of, and what happens in a step.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "carom/core/scheduler.h"
@@ -69,13 +70,15 @@ struct GrainSolid {
   std::uint32_t key = 0;
 };
 
-/// m/s: between what velocities the grains of a cell lie, and nought.
+/// m/s: between what velocities the grains of a cell lie and, as in space one ring of cells around tells too little of
+/// what may stop them, nought.
 template <class D>
 struct Haste {
   static constexpr int N = D::dimension, lanes = N == 2 ? 4 : 8, down = lanes / 2;
   using Four = math::WideFloat<4>;
-  float most[lanes] = {};  ///< up the axes, and from `down` on down them
+  float most[lanes];  ///< up the axes, and from `down` on down them
 
+  Haste() { std::fill_n(most, lanes, N == 2 ? -1e30f : 0.0f); }
   void add(const typename D::Vector& v) {
     for (int k = 0; k < N; ++k) {
       most[k] = math::max(most[k], v[k]);
@@ -84,6 +87,10 @@ struct Haste {
   }
   void add(const Haste& other) {
     for (int k = 0; k < lanes; k += 4) math::max(Four::load(most + k), Four::load(other.most + k)).store(most + k);
+  }
+  void add_still(int axis) {
+    most[axis] = math::max(most[axis], 0.0f);
+    most[down + axis] = math::max(most[down + axis], 0.0f);
   }
   typename D::Vector range() const {
     typename D::Vector r{};
@@ -95,16 +102,18 @@ struct Haste {
 /// Neighbouring columns of cells: their pairs are found and placed by one thread, without a look at other slabs'.
 template <int N>
 struct GrainSlab {
-  std::vector<int> pairs;  ///< its grains' pairs, as GrainKernels::find leaves them: room for more than pair_count
+  std::vector<int> waiting;  ///< those of a grain that GrainKernels::find sets aside
+  std::vector<int> pairs;    ///< its grains' pairs, as GrainKernels::find leaves them: room for more than pair_count
   int pair_count = 0;
   // Where they are solved, in the order of the slab's layers.
   std::vector<GrainBlock<N>> blocks;  ///< room for more than block_count, which is not made anew
   int block_count = 0;
   std::vector<int> pair_of, was;               ///< by block and lane: the pair's number, and its old one (GrainKernels)
-  std::vector<std::uint8_t> filled;            ///< lanes by block
+  std::vector<int> filled;                     ///< lanes by block
   std::vector<int> open_block;                 ///< the next that has room, by block
   std::vector<GrainWait> later[grain_stages];  ///< pairs that do not touch at once
   float fastest = 0;                           ///< m/s, that two pass each other that may touch at once
+  bool astray = false;                         ///< one of its grains has gone another way than was foreseen
 
   void add_block(std::uint32_t none);
 };
@@ -112,9 +121,10 @@ struct GrainSlab {
 template <class D>
 struct GranularState {
   static constexpr int N = D::dimension;
-  static constexpr float cell_radii = N == 2 ? 7 : 4;  ///< width of a cell in the largest radii
-  /// Largest radii that the fastest grain moves from search to search: no more than cells have room for.
-  static constexpr float search_way = N == 2 ? 4.8f : 2;
+  static constexpr float cell_radii = N == 2 ? 5 : 4;  ///< width of a cell in the largest radii
+  static constexpr int rings = grain_rings<N>;
+  /// Largest radii that two may close along an axis from search to search: no more than cells have room for.
+  static constexpr float search_way = N == 2 ? 7.5f : 2;
   using Vector = typename D::Vector;
   using Angular = typename D::Angular;
   using Position = typename D::Position;
@@ -131,12 +141,13 @@ struct GranularState {
   std::vector<Grain<D>> grains, sorted;
   std::uint64_t added = 0;  ///< in all, the stream of the next one's radius
   std::vector<int> cell_of, cell_start;
-  std::vector<Haste<D>> haste;        ///< by cell
-  std::vector<int> old_place;         ///< of a grain when contacts were last looked for
-  std::vector<float> near_by[N + 1];  ///< places, then radii, in the order of the cells
+  std::vector<Haste<D>> haste, around, spare;  ///< by cell; of those within `rings`; what it is made with
+  std::vector<int> old_place;                  ///< of a grain when contacts were last looked for
+  std::vector<float> near_by[N + 1];           ///< places, then radii, in the order of the cells
   // While contacts are solved grains are rows of floats (granular_block.h); behind them one for each slab that is none.
   AlignedFloats place, motion;
-  AlignedFloats pace;  ///< m, rows by grain: how far another may close on it until the next search, by axis
+  AlignedFloats origin;  ///< places when contacts were last looked for
+  AlignedFloats pace;    ///< m, rows by grain: how far another may close on it until the next search, by axis
   // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
   /// By pair: in which stage of the time until the next search it may first touch; 0 once it is solved.
@@ -172,7 +183,11 @@ struct GranularState {
   void to_rows();
   void from_rows();
   void find_pairs(float dt);
-  Vector fastest_near(int x, int y, int z) const;
+  template <class F>
+  void for_cells(int slab, F&& f) const;
+  void look_around();
+  float time_to_search(float dt) const;
+  bool astray(float time);
   void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
   int place_pair(GrainSlab<N>& slab, int end, int grain, int pair);
   void place_pairs(GrainSlab<N>& slab, int begin, int end);
@@ -180,7 +195,7 @@ struct GranularState {
   int slab_begin(int slab) const { return cell_start[std::size_t(slab) * (std::size_t(size) / slabs.size())]; }
   void find_surfaces(float dt);
   void touch(int grain, int surface, std::uint32_t key);
-  void touch_solid(int grain, int index, float reach);
+  bool near_solid(int grain, int index, float reach) const;
   void scale_surfaces(float scale);
   float fastest_beside_solids() const;
   float push_out(int grain, const Vector& normal, float gap, const GrainPass& pass);
@@ -197,7 +212,7 @@ struct GranularState {
   void solve_body(Contact& contact, float h);
   void apply_body(const Contact& contact, float normal, Vector friction, Angular rolling);
   void sum_walls();
-  void round(float dt, int parts, int most, int sweeps);
+  float round(float dt, float whole);
   core::Status step(rigid::World<D>* world, float dt);
 };
 
