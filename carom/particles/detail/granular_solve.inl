@@ -8,10 +8,16 @@
 
 namespace carom::particles::detail {
 
-constexpr float pair_way = 1.2f;                         ///< radii that two pass each other by in a substep, at most
-constexpr float sweeps_per_way = 7;                      ///< for each radius that the fastest do
-constexpr int most_grain_substeps = 64;                  ///< of a step
-constexpr float grain_slop = 0.005f, grain_part = 0.4f;  // overlap that stays, of a radius; share of the rest taken out
+/// Radii that two pass each other by in a substep, at most. In space, whose searches take most, long substeps gain
+/// nothing.
+template <int N>
+constexpr float pair_way = N == 2 ? 1.2f : 0.4f;
+template <int N>
+constexpr float sweeps_per_way = N == 2 ? 7 : 5;  ///< for each radius that the fastest do
+constexpr int most_grain_substeps = 64;           ///< of a step
+constexpr float grain_slop = 0.005f;              // overlap that stays, of a radius
+template <int N>
+constexpr float grain_part = N == 2 ? 0.4f : 0.3f;  ///< share of the rest that a substep takes out
 /// What lies straight below counts by so much heavier while an overlap is taken out: a heap is let up from the ground,
 /// layer by layer, and not pushed into it.
 constexpr float grain_settle = 2;
@@ -252,7 +258,7 @@ void GranularState<D>::for_grains(int count, F&& f) {
 /// are; and the impulses of the last substep, to begin with.
 template <class D>
 void GranularState<D>::press() {
-  GrainPass pass{.lightness = lightness(), .slop = grain_slop * definition.radius, .part = grain_part};
+  GrainPass pass{.lightness = lightness(), .slop = grain_slop * definition.radius, .part = grain_part<N>};
   const float pull = length(definition.gravity);
   for (int k = 0; k < N && pull > 0; ++k) pass.up[k] = -grain_settle * definition.gravity[k] / pull;
   measure_surfaces(pass);
@@ -334,8 +340,8 @@ float GranularState<D>::round(float dt, float whole) {
   float passing = 0;  // radii
   for (const GrainSlab<N>& slab : slabs) passing = math::max(passing, slab.fastest * dt / definition.radius);
   const float beside = 2 * (fastest_beside_solids() + pull) * dt / definition.radius;
-  parts = math::max(parts, int(math::ceil(math::min(math::max(passing / pair_way, beside), float(most)))));
-  const float blows = sweeps_per_way * math::min(passing, pair_way * float(most));
+  parts = math::max(parts, int(math::ceil(math::min(math::max(passing / pair_way<N>, beside), float(most)))));
+  const float blows = sweeps_per_way<N> * math::min(passing, pair_way<N> * float(most));
   sweeps = math::max(math::max(sweeps, 2 * parts), int(math::ceil(blows)));
   const float h = dt / float(parts), scale = last_h > 0 ? h / last_h : 0;  // impulses of a steady load go with it
   last_h = h;
@@ -368,7 +374,8 @@ float GranularState<D>::round(float dt, float whole) {
     press();
     for (const int end = (part + 1) * sweeps / parts; swept < end; ++swept) sweep(h, swept % 2 == 0);
     sum_walls();
-    const bool last = part + 1 == parts, looks = !last && stage > looked + 2 && dt > shortest;
+    // In space it is foreseen that anything may stop.
+    const bool last = part + 1 == parts, looks = N == 2 && !last && stage > looked + 2 && dt > shortest;
     move(time, last || looks ? still : gained);
     if (!looks) continue;
     looked = stage;
