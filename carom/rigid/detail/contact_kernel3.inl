@@ -240,8 +240,9 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, rubs, ia, ib);
       solve_friction3<W>(c, a, b, load, rubs, n, ia, ib);
       if (struck) break;
-      const PassBlow<W, 4> normals = solve_normals3<W, false>(
-          bodies, slots_a, slots_b, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), {}, F::splat(counted), share, 0);
+      const PassBlow<W, 4> normals =
+          solve_normals3<W, false>(bodies, slots_a, slots_b, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), {},
+                                   F::splat(counted), share, 0);
       const auto hard = find_struck(c, normals, takes_part);
       if (any(hard)) [[unlikely]] {
         const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, counted);
