@@ -57,9 +57,8 @@ struct GatheredRecords {
   CAROM_SIMD_INLINE WideMask<W> has(int flag) const {
     return (WideInt<W>::load(flags) & WideInt<W>::splat(flag)) != WideInt<W>::zero();
   }
-  /// The softness of the contacts, where their bodies are, and what a step starts without.
-  CAROM_SIMD_INLINE GatheredLanes begin(const ContactSources<D>& from, ContactBlock<D, W>& c,
-                                        ContactRaw<D, W>& raw) const {
+  /// Where the bodies of the contacts are, and what a step starts without.
+  CAROM_SIMD_INLINE GatheredLanes begin(ContactBlock<D, W>& c, ContactRaw<D, W>& raw) const {
     using F = WideFloat<W>;
     using I = WideInt<W>;
     const float* rows[W];

@@ -122,7 +122,7 @@ GatheredLanes gather2(const ContactSources<Dim2>& from, const std::int32_t* list
     base[2 + i].store(raw.base.q[i]);
   }
   F::zero().store(c.tangent_total);
-  GatheredLanes result = records.begin(from, c, raw);
+  GatheredLanes result = records.begin(c, raw);
   result.pushed = gather_points2<W>(from, lane, c, raw, records.anchor, records.has(contact_round));
   // Without gravity nothing rocks, and arms of the step's start are those of most blows.
   if (records.rolls != 0 && from.still_way > 0) result.turns = records.rolls & turning2<W>(from, lane, c);

@@ -138,7 +138,7 @@ GatheredLanes gather3(const ContactSources<Dim3>& from, const std::int32_t* list
   for (int i = 0; i < 3; ++i) base[i].store(raw.base.p[i]);
   for (int i = 0; i < 4; ++i) base[3 + i].store(raw.base.q[i]);
   for (auto& total : c.tangent_total) F::zero().store(total);
-  GatheredLanes result = records.begin(from, c, raw);
+  GatheredLanes result = records.begin(c, raw);
   WideMask<W> loaded;
   result.pushed =
       gather_points3<W>(from, lane, c, raw, WideInt<W>::load(records.anchor), WideInt<W>::load(records.flags), loaded);
