@@ -3,10 +3,10 @@
 
 namespace carom::ballistics::detail {
 
-template <bool Plain, bool Rough>
+template <bool Rough>
 AimSolver::Step AimSolver::step(Vec3d x, Vec3d v, Vec3d k1, double h) const {
   const auto at = [&](int, Vec3d position, Vec3d velocity)
-                      __attribute__((always_inline)) { return rough_.at<Plain>(position, velocity); };
+                      __attribute__((always_inline)) { return rough_.at(position, velocity); };
   if constexpr (Rough)
     return rough_flight_step(at, x, v, k1, h);
   else
@@ -29,7 +29,7 @@ double fall_within(double from, double from_slope, double to, double to_slope) {
 
 }  // namespace
 
-template <bool Plain, bool Rough>
+template <bool Rough>
 bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling, bool on) const {
   double time = guess.time;
   const double share = allowed / math::max(math::length(guess.u) * time, 1e-9);
@@ -37,7 +37,7 @@ bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling, bool 
   const double least = 0.5 * fall_speed_, tolerance = (Rough ? 4 : 1) * allowed / time;
   if (!on) {
     path.count = 0;
-    path.put(0, 0, shooter_.muzzle, guess.u, rough_.at<Plain>(shooter_.muzzle, guess.u));
+    path.put(0, 0, shooter_.muzzle, guess.u, rough_.at(shooter_.muzzle, guess.u));
   }
   Vec3d x = Path::at(path.x, path.count), v = Path::at(path.v, path.count), k = Path::at(path.k, path.count);
   double t = path.time(), h = 0.25 * math::max(math::length(v), least) / math::max(math::length(k), 1e-9);
@@ -51,7 +51,7 @@ bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling, bool 
     if (share < 5e-4) h = math::min(h, time / 12);
     bool last = !falling && t + h >= time * (1 - 1e-12);
     if (last) h = time - t;
-    const Step end = step<Plain, Rough>(x, v, k, h);
+    const Step end = step<Rough>(x, v, k, h);
     const double room = tolerance / math::max(end.error, 1e-30);
     // The fifth root, near enough: the root of the root, held closer to one.
     const double factor = math::clamp(0.8 * math::sqrt(math::sqrt(room)), 0.2, 1.7);
@@ -82,9 +82,7 @@ bool AimSolver::fly(Guess guess, double allowed, Path& path, bool falling, bool 
   return false;
 }
 
-template bool AimSolver::fly<true, true>(Guess, double, Path&, bool, bool) const;
-template bool AimSolver::fly<true, false>(Guess, double, Path&, bool, bool) const;
-template bool AimSolver::fly<false, true>(Guess, double, Path&, bool, bool) const;
-template bool AimSolver::fly<false, false>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<true>(Guess, double, Path&, bool, bool) const;
+template bool AimSolver::fly<false>(Guess, double, Path&, bool, bool) const;
 
 }  // namespace carom::ballistics::detail

@@ -56,7 +56,7 @@ double fastest(const Shooter& shooter) { return 1.5 * (shooter.muzzle_speed + ma
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options, math::InstructionSet most)
     : pull_(projectile, conditions),
-      rough_(projectile, conditions),
+      rough_(projectile, conditions, pull_.plain()),
       medium_(medium_of(projectile, conditions)),
       lanes_(best_kernel(most)),
       few_lanes_(best_kernel(math::min(most, math::InstructionSet::avx2))),

@@ -205,19 +205,16 @@ class AimSolver {
   static constexpr double least_bend = 0.1;  // m/s, of the wind
 
   using Step = FlightStep;
-  template <bool Plain, bool Rough>
+  template <bool Rough>
   [[gnu::always_inline]] inline Step step(Vec3d x, Vec3d v, Vec3d k1, double h) const;
   /// Steps held by the error of the velocity: at every moment so small that it moves the end by less than `allowed` m.
   /// `falling`: until it comes down to the target's height; `Rough`: of third order. False: too many steps.
   /// On from the end of the path where `on`.
-  template <bool Plain, bool Rough>
+  template <bool Rough>
   bool fly(Guess guess, double allowed, Path& path, bool falling, bool on) const;
   bool record(Guess guess, double allowed, Path& path, bool falling = false, bool on = false) const {
-    if (allowed < 2e-4 * math::length(guess.u) * guess.time)
-      return pull_.plain() ? fly<true, false>(guess, allowed, path, falling, on)
-                           : fly<false, false>(guess, allowed, path, falling, on);
-    return pull_.plain() ? fly<true, true>(guess, allowed, path, falling, on)
-                         : fly<false, true>(guess, allowed, path, falling, on);
+    return allowed < 2e-4 * math::length(guess.u) * guess.time ? fly<false>(guess, allowed, path, falling, on)
+                                                               : fly<true>(guess, allowed, path, falling, on);
   }
   const PointMassPull pull_;  // what holds
   const RoughPull rough_;     // what flights feel
