@@ -28,8 +28,7 @@ AimMedium medium_of(const Projectile& projectile, const Conditions& conditions) 
   m.drag = projectile.drag.table();
   m.half_area = 0.5 * projectile.area_per_mass;
   m.gravity = conditions.gravity;
-  const bool plain = conditions.gravity_model == GravityModel::uniform && conditions.rotation == Vec3d{};
-  m.beside = plain ? nullptr : add_beside;
+  m.beside = only_height_matters(conditions) ? nullptr : add_beside;
   m.conditions = &conditions;
   return m;
 }
@@ -55,8 +54,7 @@ double fastest(const Shooter& shooter) { return 1.5 * (shooter.muzzle_speed + ma
 
 AimSolver::AimSolver(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                      core::FunctionRef<Vec3d(double)> target, const AimOptions& options, math::InstructionSet most)
-    : pull_(projectile, conditions),
-      rough_(projectile, conditions, pull_.plain()),
+    : rough_(projectile, conditions),
       medium_(medium_of(projectile, conditions)),
       lanes_(best_kernel(most)),
       few_lanes_(best_kernel(math::min(most, math::InstructionSet::avx2))),

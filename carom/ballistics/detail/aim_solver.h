@@ -216,9 +216,8 @@ class AimSolver {
     return allowed < 2e-4 * math::length(guess.u) * guess.time ? fly<false>(guess, allowed, path, falling, on)
                                                                : fly<true>(guess, allowed, path, falling, on);
   }
-  const PointMassPull pull_;  // what holds
-  const RoughPull rough_;     // what flights feel
-  const AimMedium medium_;    // what holds, for lanes
+  const RoughPull rough_;   // what flights feel
+  const AimMedium medium_;  // what holds, for lanes
   const AimKernel& lanes_;
   const AimKernel& few_lanes_;  // for up to four elements
   const Projectile& projectile_;

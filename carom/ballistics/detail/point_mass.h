@@ -26,6 +26,11 @@ inline math::Vec3d beside_drag(const Conditions& conditions, math::Vec3d positio
   return a - 2.0 * math::cross(conditions.rotation, velocity);
 }
 
+/// Gravity is uniform and the frame does not turn: of the position the height alone matters.
+inline bool only_height_matters(const Conditions& conditions) {
+  return conditions.gravity_model == GravityModel::uniform && conditions.rotation == math::Vec3d{};
+}
+
 /// Of one projectile under one set of conditions, for loops: what does not change is decided before them.
 class PointMassPull {
  public:
@@ -33,10 +38,7 @@ class PointMassPull {
       : projectile_(projectile),
         conditions_(conditions),
         half_area_(0.5 * projectile.area_per_mass),
-        plain_(conditions.gravity_model == GravityModel::uniform && conditions.rotation == math::Vec3d{}) {}
-
-  /// Gravity is uniform and the frame does not turn: of the position the height alone matters.
-  bool plain() const { return plain_; }
+        plain_(only_height_matters(conditions)) {}
 
   math::Vec3d operator()(math::Vec3d position, math::Vec3d velocity) const {
     return plain_ ? at<true>(position, velocity) : at<false>(position, velocity);

@@ -8,8 +8,11 @@ namespace carom::ballistics::detail {
 /// By DragCurve::roughly: half the time of a step, which is one long chain of such questions.
 class RoughPull {
  public:
-  RoughPull(const Projectile& projectile, const Conditions& conditions, bool plain)
-      : drag_(projectile.drag), conditions_(conditions), half_area_(0.5 * projectile.area_per_mass), plain_(plain) {}
+  RoughPull(const Projectile& projectile, const Conditions& conditions)
+      : drag_(projectile.drag),
+        conditions_(conditions),
+        half_area_(0.5 * projectile.area_per_mass),
+        plain_(only_height_matters(conditions)) {}
 
   [[gnu::always_inline]] math::Vec3d at(math::Vec3d position, math::Vec3d velocity) const {
     const environment::AirColumn::Air air = conditions_.air.at(position.y);

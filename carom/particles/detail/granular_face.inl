@@ -112,7 +112,7 @@ void GranularState<D>::reserve() {
   for (auto* list : {&wall_blocks, &old_wall_blocks}) list->reserve(n / grain_lanes + 64);
   wall_of.reserve(n / grain_lanes + 64);
   place = AlignedFloats((n + slabs.size()) * grain_place);
-  origin = AlignedFloats((n + slabs.size()) * grain_place);
+  if constexpr (N == 2) origin = AlignedFloats((n + slabs.size()) * grain_place);
   motion = AlignedFloats((n + slabs.size()) * grain_motion<N>);
   pace = AlignedFloats(n * grain_place);
   solids.reserve(64);

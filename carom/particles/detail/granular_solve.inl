@@ -44,7 +44,7 @@ void GranularState<D>::to_rows() {
       m[k] = g.v[k];
     }
     p[3] = g.radius;
-    std::copy_n(p, grain_place, origins + std::size_t(i) * grain_place);
+    if constexpr (N == 2) std::copy_n(p, grain_place, origins + std::size_t(i) * grain_place);  // astray()
     if constexpr (N == 2) {
       m[2] = g.radius * g.spin;
       m[3] = g.curve;

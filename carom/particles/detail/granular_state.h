@@ -146,7 +146,7 @@ struct GranularState {
   std::vector<float> near_by[N + 1];           ///< places, then radii, in the order of the cells
   // While contacts are solved grains are rows of floats (granular_block.h); behind them one for each slab that is none.
   AlignedFloats place, motion;
-  AlignedFloats origin;  ///< places when contacts were last looked for
+  AlignedFloats origin;  ///< in the plane: places when contacts were last looked for
   AlignedFloats pace;    ///< m, rows by grain: how far another may close on it until the next search, by axis
   // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;

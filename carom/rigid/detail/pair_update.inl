@@ -358,7 +358,7 @@ class PairUpdates {
     std::uint8_t& change = world_.scratch.contact_changes[std::size_t(awake_index_[lane])];
     if ((apart.stays >> lane & 1u) != 0) return watch_apart(world_, c, now, moved);
     if ((apart.slides >> lane & 1u) != 0 && slide_on(world_, c, moved, now)) return;
-    if (c.first_manifold != none && may_stay(c) && recycle(world_, c, moved, now, change)) return;
+    if (may_recycle(c) && recycle(world_, c, moved, now, change)) return;
     const ShapeRecord<D>&a = world_.shapes.at(c.shape[0]), &b = world_.shapes.at(c.shape[1]);
     if ((c.flags & contact_known) != 0 && goes_past(world_, c, a, b)) {
       change = pass_by(world_, c, a, b);

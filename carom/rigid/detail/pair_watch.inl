@@ -121,10 +121,10 @@ bool recycle(WorldImplementation<D>& world, ContactRecord<D>& c, const Moved<D>&
   return true;
 }
 
-/// May what is known of it be still true?
+/// Has it manifolds that may be kept?
 template <class D>
-bool may_stay(const ContactRecord<D>& c) {
-  return (c.flags & contact_known) != 0 && (c.first_manifold == none || (c.flags & contact_round) == 0);
+bool may_recycle(const ContactRecord<D>& c) {
+  return c.first_manifold != none && (c.flags & (contact_known | contact_round)) == contact_known;
 }
 
 /// A contact whose shapes were found to be `c.gap` apart.

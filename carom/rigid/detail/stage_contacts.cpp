@@ -65,20 +65,22 @@ void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
         blocks.extra == nullptr ? nullptr : static_cast<ContactExtra<D, W>*>(blocks.extra) + k, blocks.marks + first);
     }
   };
+  if (overflow == Overflow::in_order) {
+    for (int color = 0; color <= overflow_color; ++color) {
+      const int count = world.scratch.blocks[color].count;
+      if (count == 0) continue;
+      if (count <= block_grain || color == overflow_color)
+        run(color, 0, count);
+      else
+        context.scheduler.parallel_for(count, block_grain, [&](int begin, int end, int) { run(color, begin, end); });
+    }
+    return;
+  }
   // Every thread begins with those parts of the colours that it will solve: they are in its cache then.
   constexpr int most_parts = 16;
   const int parts = min(context.scheduler.thread_count(), most_parts);
   int ends[most_parts * (color_count + 1)], total = 0;
   const auto part_begin = [&](int color, int part) { return world.scratch.blocks[color].count * part / parts; };
-  for (int color = 0; color <= overflow_color && overflow == Overflow::in_order; ++color) {
-    const int count = world.scratch.blocks[color].count;
-    if (count == 0) continue;
-    if (count <= block_grain || color == overflow_color)
-      run(color, 0, count);
-    else
-      context.scheduler.parallel_for(count, block_grain, [&](int begin, int end, int) { run(color, begin, end); });
-  }
-  if (overflow == Overflow::in_order) return;
   for (int part = 0; part < parts; ++part)
     for (int color = 0; color <= overflow_color; ++color)
       ends[part * (color_count + 1) + color] = total += part_begin(color, part + 1) - part_begin(color, part);
