@@ -138,41 +138,34 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
                 const detail::PlacedCorners& corners, const detail::OffDirections& off, const Transform3f& x,
                 const Bounds3f& tight, float limit, float worth, bool solid) {
   const Mat3f turn = to_matrix(x.q);
-  const Vec3f axis[3] = {turn.cx, turn.cy, turn.cz};
   const Bounds3f own = detail::own_bounds(shape);
+  const detail::ClearanceQuestion question{{turn.cx, turn.cy, turn.cz}, own.low, own.high, tight.low, tight.high};
+  detail::PlacedShape placed{};
+  corners.tell(placed);
+  off.tell(placed);
+  placed.radius = b.radius, placed.solid = solid;
   Bounds3f box = grow(tight, limit);
   if (solid) box.high.y = 3.4e38f;
   float least = limit;
-  detail::visit_triangles(surface, box, false, [&](const detail::SurfaceTriangle& t) {
-    const Vec3f p = t.corner[0] - x.p, q = t.corner[1] - x.p, r = t.corner[2] - x.p;
-    float gap = off.distance(p, q, r) - b.radius;
-    if (gap >= least) return true;
-    const Vec3f low = min(t.corner[0], min(t.corner[1], t.corner[2])),
-                high = max(t.corner[0], max(t.corner[1], t.corner[2]));
-    gap = max(gap, solid ? max(tight.low.y - high.y, max(max(low.x - tight.high.x, tight.low.x - high.x),
-                                                         max(low.z - tight.high.z, tight.low.z - high.z)))
-                         : 0.0f);
-    Vec3f normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
-    const float size = length(normal);
-    if (size > 0 && gap < least) {
-      normal = normal * (1 / size);
-      for (const float side : {1.0f, -1.0f}) {
-        if (side < 0 && solid) continue;
-        if (corners.known()) {
-          gap = max(gap, corners.least(side * normal) - side * dot(normal, p) - b.radius);
-          continue;
+  detail::visit_groups(surface, box, false, [&](const detail::TriangleGroup& group, std::uint32_t lanes) {
+    float gaps[detail::TriangleGroup::lanes];
+    detail::triangle_kernels().clearance(group, placed, question, gaps);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      float gap = gaps[lane];
+      if (!corners.known() && gap < least) {
+        const detail::SurfaceTriangle t = detail::triangle_of(surface, group, lane);
+        Vec3f normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+        const float size = length(normal);
+        for (const float side : {1.0f, -1.0f}) {
+          if (!(size > 0) || (side < 0 && solid)) continue;
+          const Vec3f n = normal * (side / size);
+          const Vec3f nearest = transform_point(x, Vec3f(detail::support(b, Vec3d(inverse_rotate(x.q, -n)))));
+          gap = max(gap, dot(n, nearest - t.corner[0]) - b.radius);
         }
-        const Vec3f facing = inverse_rotate(x.q, normal * -side);
-        const Vec3f nearest = transform_point(x, Vec3f(detail::support(b, Vec3d(facing))));
-        gap = max(gap, side * dot(normal, nearest - t.corner[0]) - b.radius);
       }
+      least = min(least, gap);
     }
-    if (!solid && gap < least)
-      for (int k = 0; k < 3; ++k) {
-        const float u = dot(axis[k], p), v = dot(axis[k], q), w = dot(axis[k], r);
-        gap = max(gap, max(min(u, min(v, w)) - own.high[k], own.low[k] - max(u, max(v, w))));
-      }
-    least = min(least, gap);
     return least > worth;
   });
   return least > worth ? least : 0;
@@ -180,24 +173,22 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
 
 /// Returns −1 for what meets nothing. `near`: of a shape with corners, some of it was in the box.
 int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
-                   const detail::PlacedCorners& corners, const Transform3f& x, float margin,
-                   const detail::ShapeWay& approach, Bounds3f box, detail::OffDirections& off, bool& near,
-                   std::span<Manifold3> out) {
+                   const detail::PlacedCorners& corners, const Transform3f& x, float margin, Bounds3f box,
+                   detail::OffDirections& off, bool& near, std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const bool solid = surface.type == ShapeType3::height_field;
   if (surface.type == ShapeType3::voxels && buried(*surface.voxels, b, x, out[0])) return 1;
   if (solid) box.high.y += 2 * (detail::outer_size(b) + b.radius);
-  const detail::TriangleReach reach(shape, b, corners, x, margin, approach, solid);
-  const float same = 2e-3f * length(reach.own.extents());  // hulls may lie far from the origin of their frame
+  const bool cornered = corners.known();
+  const Bounds3f own = grow(detail::own_bounds(shape), margin);
+  const float same = 2e-3f * length(own.extents());  // hulls may lie far from the origin of their frame
   Patch patches[max_patches];
   int count = 0;
-  detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
-    near = corners.known();
-    if (!reach.meets(t.corner, off)) return true;
+  const auto meet = [&](const detail::SurfaceTriangle& t) {
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
-    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, off, points, n)) return true;
+    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, off, points, n)) return;
     // Corners of the moving shape keep their names from triangle to triangle; points cut by an edge are the triangle's.
     for (int i = 0; i < points.count; ++i)
       if (points.point[i].feature > 0xff) points.point[i].feature ^= t.index * 2654435761u;
@@ -212,7 +203,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
         int shallowest = 0;
         for (int i = 1; i < count; ++i)
           if (patches[i].depth > patches[shallowest].depth) shallowest = i;
-        if (patches[shallowest].depth <= depth) return true;
+        if (patches[shallowest].depth <= depth) return;
         at = shallowest;
       }
       patches[at].points.count = 0;
@@ -223,8 +214,25 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
     if (depth < patch.depth) patch.depth = depth, patch.normal = n;
     patch.child = min(patch.child, t.index);
     merge_into(patch, points, same);
-    return true;
-  });
+  };
+  if (cornered) {
+    detail::CornersReach reach(corners, b.radius, length(max(abs(own.low), abs(own.high))), margin, solid, off);
+    detail::visit_groups(surface, box, true, [&](const detail::TriangleGroup& group, std::uint32_t lanes) {
+      near = true;
+      lanes = reach.meets(group, lanes);
+      for (const int learned = off.learned(); lanes != 0; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        if (off.learned() == learned || !reach.keeps_off(group, lane)) meet(triangle_of(surface, group, lane));
+      }
+      return true;
+    });
+  } else {
+    const detail::TriangleReach reach(shape, b, x, margin, solid);
+    detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
+      if (reach.meets(t.corner)) meet(t);
+      return true;
+    });
+  }
   if (solid && count == 0 && sunk(*surface.height_field, b, x, out[0])) return 1;
   if (count == 0) return -1;
   Deepest found{out};
@@ -242,21 +250,20 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
 int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f& x, float margin,
                    const detail::ShapeWay& approach, PairCache& cache, std::span<Manifold3> out) {
   const detail::Convex b = detail::convex_of(shape);
-  const Bounds3f tight = bounds(shape, x);
   detail::PlacedCorners corners(b, x);
+  const Bounds3f now = corners.known() ? corners.bounds() : Bounds3f{};
+  const Bounds3f tight = corners.known() ? grow(Bounds3f{x.p + now.low, x.p + now.high}, b.radius) : bounds(shape, x);
   Bounds3f box = grow(tight, margin);
   if (corners.known() && approach.margin < margin) {
     corners.go(approach);
-    const Bounds3f way = corners.bounds();
-    const float most = b.radius + approach.margin + approach.bend;
-    box.low = max(box.low, x.p + way.low - Vec3f{most, most, most});
-    box.high = min(box.high, x.p + way.high + Vec3f{most, most, most});
+    const Bounds3f way = grow(merge(now, corners.bounds_then()), b.radius + approach.margin + approach.bend);
+    box.low = max(box.low, x.p + way.low), box.high = min(box.high, x.p + way.high);
   }
   const bool solid = surface.type == ShapeType3::height_field;
   detail::OffDirections off(corners, approach, b.radius, margin, solid);
   off.begin_with(cache);
   bool near = false;
-  const int count = surface_convex(surface, shape, b, corners, x, margin, approach, box, off, near, out);
+  const int count = surface_convex(surface, shape, b, corners, x, margin, box, off, near, out);
   off.keep(cache);
   if (count >= 0) return count;
   out[0] = {};
@@ -352,7 +359,7 @@ int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transf
   const PlacedCorners corners(core, b_in_a);
   OffDirections off(corners, {}, core.radius, margin, false);
   bool near = false;
-  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, off, near, out), 0);
+  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, box, off, near, out), 0);
 }
 int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
                                 const ShapeWay& approach, PairCache& cache, std::span<Manifold3> out) {

@@ -30,7 +30,7 @@ constexpr Vec2<T> transform_point(const Transform2<T>& t, Vec2<T> v) {
   return rotate(t.q, v) + t.p;
 }
 template <class T>
-constexpr Vec3<T> transform_point(const Transform3<T>& t, Vec3<T> v) {
+CAROM_ROTATION_INLINE constexpr Vec3<T> transform_point(const Transform3<T>& t, Vec3<T> v) {
   return rotate(t.q, v) + t.p;
 }
 template <class T>
@@ -38,7 +38,7 @@ constexpr Vec2<T> inverse_transform_point(const Transform2<T>& t, Vec2<T> v) {
   return inverse_rotate(t.q, v - t.p);
 }
 template <class T>
-constexpr Vec3<T> inverse_transform_point(const Transform3<T>& t, Vec3<T> v) {
+CAROM_ROTATION_INLINE constexpr Vec3<T> inverse_transform_point(const Transform3<T>& t, Vec3<T> v) {
   return inverse_rotate(t.q, v - t.p);
 }
 /// a ∘ b: first b, then a.

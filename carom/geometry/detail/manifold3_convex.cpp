@@ -35,6 +35,18 @@ void place(Feature& f, const Transform3f& t) {
   f.normal = rotate(t.q, f.normal);
 }
 
+int face_index(const Convex& c, Vec3f n) {
+  if (c.kind == CoreKind::hull) return farthest(c.hull->normal_lanes, n);
+  float most = -2;
+  int best = -1;
+  const int count = face_count(c);
+  for (int i = 0; i < count; ++i) {
+    const float d = dot(face_plane(c, i).normal, n);
+    if (d > most) most = d, best = i;
+  }
+  return best;
+}
+
 struct Pair {
   const Convex &a, &b;
   const Transform3f& x;  // B in A
@@ -47,6 +59,11 @@ struct Pair {
   Vec3f below_b(Vec3f n) const { return inverse_transform_point(x, Vec3f(support(a, Vec3d(-rotate(x.q, n))))); }
   float along_a(FacePlane p) const { return dot(p.normal, below_a(p.normal)) - p.offset; }
   float along_b(FacePlane p) const { return dot(p.normal, below_b(p.normal)) - p.offset; }
+  int face_of_a(Vec3f n) const { return face_index(a, n); }
+  int face_of_b(Vec3f n) const { return face_index(b, -inverse_rotate(x.q, n)); }  // n from A to B, in A's frame
+  Vec3f normal_of_b(int face) const { return -rotate(x.q, face_plane(b, face).normal); }
+  float along_face_of_a(int face) const { return along_a(face_plane(a, face)); }
+  float along_face_of_b(int face) const { return along_b(face_plane(b, face)); }
   // Separation of the cores along n, from A to B in A's frame.
   float along(Vec3f n) const {
     const Vec3f on_a = Vec3f(support(a, Vec3d(n))), on_b = Vec3f(support(b, Vec3d(-inverse_rotate(x.q, n))));
@@ -63,6 +80,83 @@ struct Pair {
     Feature incident;
     feature(a, -face.normal, incident);
     clip_to_face(face, b.radius, incident, a.radius, margin, 0x80000000u, points);
+  }
+  /// Of a face of A or B, towards n (from A to B, in A's frame).
+  Vec3f clip(bool of_a, int face, Vec3f n, ContactPoints& points) const {
+    Feature flat;
+    if (of_a) {
+      face_feature(a, face, n, flat);
+      clip_a(flat, points);
+      return flat.normal;
+    }
+    face_feature(b, face, -inverse_rotate(x.q, n), flat);
+    clip_b(flat, points);
+    return -rotate(x.q, flat.normal);
+  }
+};
+
+/// What clip_to_face finds of the line of a ball or capsule over a triangle, for far less. Returns whether anything.
+bool clip_line(const Convex& t, const Convex& b, Vec3f center, Vec3f end, float margin, float widen,
+               ContactPoints& out) {
+  const int count = b.kind == CoreKind::point ? 1 : 2;
+  Vec3f p[2] = {center - end, center + end};
+  std::uint32_t name[2] = {0, 1};
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const Vec3f a = t.corner[e], side = cross(t.corner[e == 2 ? 0 : e + 1] - a, t.normal);  // outward
+    const float size = dot(side, side), tolerance = max(1e-5f * size, widen > 0 ? widen * math::sqrt(size) : 0.0f);
+    const float first = dot(side, p[0] - a), second = count == 2 ? dot(side, p[1] - a) : first;
+    const bool out_first = first > tolerance, out_second = second > tolerance;
+    if (!out_first && !out_second) continue;
+    if (out_first && out_second) return false;
+    const float from = out_first ? first : min(first, 0.0f), to = out_second ? second : min(second, 0.0f);
+    const Vec3f cut = p[0] + (p[1] - p[0]) * (from / (from - to));
+    const std::uint32_t low = min(name[0], name[1]), high = max(name[0], name[1]);
+    const int replaced = out_first ? 0 : 1;
+    p[replaced] = cut;
+    name[replaced] = (e + 1) << 8 | ((low * 31 + high * 7) & 0xffff) << 14 | (low & 0xff);
+  }
+  const int before = out.count;
+  for (int i = 0; i < count; ++i) {
+    const float height = dot(t.normal, p[i] - t.corner[0]), s = height - b.radius;
+    if (s <= margin) out.add(p[i] - t.normal * (0.5f * (b.radius + height)), s, name[i]);
+  }
+  return out.count > before;
+}
+
+/// A triangle (A) and the line of a ball or capsule, from its middle to an end.
+struct LinePair : Pair {
+  Vec3f center, end;
+
+  int face_of_a(Vec3f) const { return 0; }
+  int face_of_b(Vec3f) const { return -1; }
+  Vec3f normal_of_b(int) const { return {}; }
+  float along_face_of_a(int) const { return dot(a.normal, center - a.corner[0]) - abs(dot(a.normal, end)); }
+  float along_face_of_b(int) const { return -1e30f; }
+  Vec3f clip(bool, int, Vec3f, ContactPoints& points) const {
+    clip_line(a, b, center, end, margin, 0, points);
+    return a.normal;
+  }
+};
+
+/// A triangle (A) and a shape whose corners and faces are placed already: what is asked of them costs far less.
+struct TrianglePair : Pair {
+  const PlacedCorners& corners;
+
+  int face_of_a(Vec3f) const { return 0; }
+  int face_of_b(Vec3f n) const { return corners.face_toward(-n); }
+  Vec3f normal_of_b(int face) const { return -corners.plane(face).normal; }
+  float along_face_of_a(int) const {
+    return dot(a.normal, corners.corner(corners.farthest(-a.normal)) + x.p - a.corner[0]);
+  }
+  float along_face_of_b(int face) const {
+    const FacePlane plane = corners.plane(face);
+    const Vec3f m = plane.normal;
+    return min(dot(m, a.corner[0] - x.p), min(dot(m, a.corner[1] - x.p), dot(m, a.corner[2] - x.p))) - plane.offset;
+  }
+  Vec3f clip(bool of_a, int face, Vec3f n, ContactPoints& points) const {
+    if (!of_a) return Pair::clip(of_a, face, n, points);
+    corners.clip_face(a.corner, a.normal, b.radius, margin, 0, points);
+    return a.normal;
   }
 };
 
@@ -119,18 +213,6 @@ bool keep_face(const Pair& pair, const PairCache& cache, float small, Manifold3&
   return true;
 }
 
-int face_index(const Convex& c, Vec3f n) {
-  if (c.kind == CoreKind::hull) return farthest(c.hull->normal_lanes, n);
-  float most = -2;
-  int best = -1;
-  const int count = face_count(c);
-  for (int i = 0; i < count; ++i) {
-    const float d = dot(face_plane(c, i).normal, n);
-    if (d > most) most = d, best = i;
-  }
-  return best;
-}
-
 // Sharp shapes side by side with a flat face of each level with the other's (an upright cylinder before the next tile):
 // where they meet only in a strip narrower than a small tolerance, a contact across the row would catch on the joint.
 bool grazes(const Convex& a, const Convex& b, const Transform3f& b_in_a, Vec3f n, float tolerance) {
@@ -148,13 +230,12 @@ bool grazes(const Convex& a, const Convex& b, const Transform3f& b_in_a, Vec3f n
 }
 
 // Contacts for the normal n (A to B, in A's frame) with core separation d. Returns the cache entry.
-void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCache& cache, Manifold3& out) {
+template <class AnyPair>
+void points_for(const AnyPair& pair, const CoreDistance& found, float slack, PairCache& cache, Manifold3& out) {
   const Vec3f n = normalize(Vec3f(found.normal));
   const float d = float(found.distance);
-  const int fa = face_index(pair.a, n), fb = face_index(pair.b, -inverse_rotate(pair.x.q, n));
-  float sa = -1e30f, sb = -1e30f;
-  if (fa >= 0) sa = pair.along_a(face_plane(pair.a, fa));
-  if (fb >= 0) sb = pair.along_b(face_plane(pair.b, fb));
+  const int fa = pair.face_of_a(n), fb = pair.face_of_b(n);
+  const float sa = fa >= 0 ? pair.along_face_of_a(fa) : -1e30f, sb = fb >= 0 ? pair.along_face_of_b(fb) : -1e30f;
   if (pair.radius() == 0 && pair.a.kind != CoreKind::triangle && slack > 0) {
     const float graze = min(40 * slack, 0.005f);  // 2 % of the smaller shape
     if (d > -graze && (grazes(pair.a, pair.b, pair.x, n, graze) ||
@@ -167,19 +248,12 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
   const float tolerance = d > 0 ? 0.01f * d + 0.02f * slack : 0.05f * -d + slack;
   const auto level = [&](Vec3f face) { return d <= 0 || pair.radius() * (1 - dot(face, n)) < 0.5f * slack; };
   const bool use_a = sa >= d - tolerance && level(face_plane(pair.a, fa).normal);
-  const bool use_b = sb >= d - tolerance && level(-rotate(pair.x.q, face_plane(pair.b, fb).normal));
+  const bool use_b = sb >= d - tolerance && level(pair.normal_of_b(fb));
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool of_a = (attempt == 0) == (use_a && (!use_b || sb <= sa + slack));
     if (!(of_a ? use_a : use_b)) continue;
-    const Convex& c = of_a ? pair.a : pair.b;
-    Feature face;
-    const Vec3f toward = of_a ? n : -inverse_rotate(pair.x.q, n);
-    face_feature(c, of_a ? fa : fb, toward, face);
     ContactPoints points;
-    if (of_a)
-      pair.clip_a(face, points);
-    else
-      pair.clip_b(face, points);
+    const Vec3f normal = pair.clip(of_a, of_a ? fa : fb, n, points);
     if (points.count == 0) continue;
     // The deepest corner may stand outside the face, or belong to another face than the one clipped.
     const float deepest = (of_a ? sa : sb) - pair.radius();
@@ -187,7 +261,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
       const Vec3f pa = Vec3f(found.point_a) + n * pair.a.radius, pb = Vec3f(found.point_b) - n * pair.b.radius;
       points.add((pa + pb) * 0.5f, d - pair.radius(), 0x20000000u);
     }
-    write_points(points, of_a ? face.normal : -rotate(pair.x.q, face.normal), out);
+    write_points(points, normal, out);
     cache.kind = of_a ? face_of_a : face_of_b;
     cache.d = std::uint32_t(of_a ? fa : fb);
     return;
@@ -210,7 +284,7 @@ void points_for(const Pair& pair, const CoreDistance& found, float slack, PairCa
         beyond = d > pair.radius();
     }
     if (fb >= 0 && pair.b.radius == 0 && sb - pair.radius() > -border && pushed == n) {
-      const Vec3f f = -rotate(pair.x.q, face_plane(pair.b, fb).normal);
+      const Vec3f f = pair.normal_of_b(fb);
       if (dot(f, n) > border_cosine)
         pushed = f;
       else
@@ -298,34 +372,6 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
   points_for(pair, found, 5e-4f * small, cache, out);
 }
 
-/// What clip_to_face finds of the line of a ball or capsule over a triangle, for far less. Returns whether anything.
-static bool clip_line(const Convex& t, const Convex& b, Vec3f center, Vec3f end, float margin, float widen,
-                      ContactPoints& out) {
-  const int count = b.kind == CoreKind::point ? 1 : 2;
-  Vec3f p[2] = {center - end, center + end};
-  std::uint32_t name[2] = {0, 1};
-  for (std::uint32_t e = 0; e < 3; ++e) {
-    const Vec3f a = t.corner[e], side = cross(t.corner[e == 2 ? 0 : e + 1] - a, t.normal);  // outward
-    const float size = dot(side, side), tolerance = max(1e-5f * size, widen > 0 ? widen * math::sqrt(size) : 0.0f);
-    const float first = dot(side, p[0] - a), second = count == 2 ? dot(side, p[1] - a) : first;
-    const bool out_first = first > tolerance, out_second = second > tolerance;
-    if (!out_first && !out_second) continue;
-    if (out_first && out_second) return false;
-    const float from = out_first ? first : min(first, 0.0f), to = out_second ? second : min(second, 0.0f);
-    const Vec3f cut = p[0] + (p[1] - p[0]) * (from / (from - to));
-    const std::uint32_t low = min(name[0], name[1]), high = max(name[0], name[1]);
-    const int replaced = out_first ? 0 : 1;
-    p[replaced] = cut;
-    name[replaced] = (e + 1) << 8 | ((low * 31 + high * 7) & 0xffff) << 14 | (low & 0xff);
-  }
-  const int before = out.count;
-  for (int i = 0; i < count; ++i) {
-    const float height = dot(t.normal, p[i] - t.corner[0]), s = height - b.radius;
-    if (s <= margin) out.add(p[i] - t.normal * (0.5f * (b.radius + height)), s, name[i]);
-  }
-  return out.count > before;
-}
-
 bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const PlacedCorners& corners,
                       const Transform3f& x, float margin, OffDirections& off, ContactPoints& out, Vec3f& normal) {
   using namespace core_pair;
@@ -333,7 +379,7 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const Pair pair{t, b, x, margin};
   // Balls and capsules: what stands for them is a line about their middle, and most is known in closed form.
   const bool line = b.kind == CoreKind::point || b.kind == CoreKind::segment;
-  const Vec3f center = line ? x.p : transform_point(x, inner_point(b));
+  const Vec3f center = line ? x.p : corners.known() ? corners.middle() + x.p : transform_point(x, inner_point(b));
   const Vec3f end = line ? rotate(x.q, Vec3f{0, b.half.y, 0}) : Vec3f{};
   const float behind = dot(t.normal, center - t.corner[0]);
   if (behind < (solid ? -2 * (outer_size(b) + b.radius) : 0.0f)) return false;
@@ -422,12 +468,11 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
            triangle_segment_distance(own, Vec3d(center) + Vec3d(end), Vec3d(center) - Vec3d(end), cutoff, found);
   };
   if (!in_closed_form() && !stands_over()) {
-    const Placed pa(t), pb(b, x);
     if (!corners.known())
-      core_distance(pa, pb, cutoff, {}, found);
+      core_distance(Placed(t), Placed(b, x), cutoff, {}, found);
     else if (!triangle_distance(own, corners, Vec3d(t.normal), cutoff, beyond, off, found))
       return false;
-    if (found.overlap && !core_depth(pa, pb, found)) return on_face();
+    if (found.overlap && !core_depth(Placed(t), Placed(b, x), found)) return on_face();
   }
   if (!found.overlap && found.distance > cutoff) return false;
   const Vec3f n = normalize(Vec3f(found.normal)), p = Vec3f(found.point_a);
@@ -448,7 +493,12 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   if (!legal) return on_face();
   PairCache cache;
   Manifold3 m;
-  points_for(pair, found, 5e-4f * small, cache, m);
+  if (corners.has_faces())
+    points_for(TrianglePair{pair, corners}, found, 5e-4f * small, cache, m);
+  else if (line)
+    points_for(LinePair{pair, center, end}, found, 5e-4f * small, cache, m);
+  else
+    points_for(pair, found, 5e-4f * small, cache, m);
   for (int i = 0; i < m.count; ++i) out.add(m.points[i].point, m.points[i].separation, m.points[i].feature);
   normal = m.normal;
   return m.count > 0;

@@ -39,6 +39,17 @@ class OffDirections {
     cache.b = std::uint8_t((p >> 16 & 0xf0) | (p >> 12 & 0xf));
     cache.c = std::uint8_t(p >> 4);
   }
+  /// What groups of triangles are to know of them, and how many each of those kept off.
+  void tell(PlacedShape& shape) const {
+    shape.directions = lanes_, shape.floor = floor_, shape.now = now_, shape.direction_count = count_;
+  }
+  void count_uses(const int (&uses)[8]) {
+    for (int i = 0; i < count_; ++i) uses_[i] += uses[i];
+  }
+  /// m: what is farther off, now and then, does not count.
+  float most() const { return most_; }
+  /// Counts what was learned.
+  int learned() const { return learned_; }
   /// Is a triangle (seen from the origin of the corners) out of reach, now and as the shape goes on?
   bool keeps_off(Vec3f p, Vec3f q, Vec3f r) {
     for (int i = 0; i < count_; i += 4) {
@@ -64,13 +75,8 @@ class OffDirections {
     const float now = corners_.least(n), then = corners_.least_then(n);
     if (!(min(now, then) - max(dot(n, p), max(dot(n, q), dot(n, r))) > most_)) return false;
     add(n, now, then, 1);
+    ++learned_;
     return true;
-  }
-  /// How far the shape is from a triangle, along the best of them.
-  float distance(Vec3f p, Vec3f q, Vec3f r) const {
-    Four most = Four::splat(-3.4e38f);
-    for (int i = 0; i < count_; i += 4) most = max(most, Four::load(now_ + i) - farthest(i, p, q, r));
-    return max(max(most[0], most[1]), max(most[2], most[3]));
   }
 
  private:
@@ -107,7 +113,7 @@ class OffDirections {
   const PlacedCorners& corners_;
   float most_;
   bool used_, solid_;
-  int count_ = 0, next_ = 0, uses_[capacity] = {};
+  int count_ = 0, next_ = 0, learned_ = 0, uses_[capacity] = {};
   float lanes_[3 * capacity], now_[capacity], floor_[capacity];
 };
 

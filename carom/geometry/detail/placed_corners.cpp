@@ -7,6 +7,7 @@ namespace carom::geometry::detail {
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): what the shape has not is not read
 PlacedCorners::PlacedCorners(const Convex& core, const Transform3f& x)
     : origin_(x.p), hull_(core.hull), turn_(to_matrix(x.q)) {
+  middle_ = turn_ * inner_point(core);
   if (core.kind == CoreKind::hull) {
     if (core.hull->vertices.size() > capacity) return;
     blocks_ = int(core.hull->vertex_lanes.size() / 12);
@@ -68,6 +69,23 @@ PlacedCorners::Before PlacedCorners::face_before(Vec3f p, Vec3f q, Vec3f r) cons
     if (most[lane] > most[best]) best = lane;
   const float* lane = planes_ + 16 * where[best] + best;
   return {most[best], {lane[0], lane[4], lane[8]}};
+}
+int PlacedCorners::face_toward(Vec3f d) const {
+  if (!planes_placed_) place_planes();
+  const Four x = Four::splat(d.x), y = Four::splat(d.y), z = Four::splat(d.z);
+  Four most = Four::splat(-3.4e38f);
+  math::WideInt<4> where = math::WideInt<4>::zero();
+  for (int i = 0; i < face_blocks_; ++i) {
+    const float* lane = planes_ + 16 * i;
+    const Four along = x * Four::load(lane) + y * Four::load(lane + 4) + z * Four::load(lane + 8);
+    const math::WideMask<4> more = along > most;
+    most = select(more, along, most);
+    where = select(more, math::WideInt<4>::splat(i), where);
+  }
+  int best = 0;
+  for (int lane = 1; lane < 4; ++lane)
+    if (most[lane] > most[best] || (most[lane] == most[best] && where[lane] < where[best])) best = lane;
+  return 4 * where[best] + best;
 }
 bool PlacedCorners::meets_segment(Vec3f start, Vec3f way) const {
   if (!planes_placed_) place_planes();
@@ -241,15 +259,14 @@ void PlacedCorners::go(const ShapeWay& approach) {
     }
   }
 }
-Bounds3f PlacedCorners::bounds() const {
+Bounds3f PlacedCorners::bounds_of(const float* lanes) const {
   Bounds3f b;
   for (int k = 0; k < 3; ++k) {
-    Four low = Four::load(lanes_ + 4 * k), high = low;
-    for (int i = 0; i < blocks_; ++i)
-      for (const float* p : {lanes_, then_}) {
-        const Four at = Four::load(p + 12 * i + 4 * k);
-        low = min(low, at), high = max(high, at);
-      }
+    Four low = Four::load(lanes + 4 * k), high = low;
+    for (int i = 1; i < blocks_; ++i) {
+      const Four at = Four::load(lanes + 12 * i + 4 * k);
+      low = min(low, at), high = max(high, at);
+    }
     b.low[k] = min(min(low[0], low[1]), min(low[2], low[3]));
     b.high[k] = max(max(high[0], high[1]), max(high[2], high[3]));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/geometry/detail/contact_points.h"
+#include "carom/geometry/detail/triangle_groups.h"
 #include "carom/math/mat.h"
 #include "carom/math/simd.h"
 
@@ -17,6 +18,7 @@ class PlacedCorners {
   bool known() const { return blocks_ > 0; }
   bool has_faces() const { return face_blocks_ > 0; }
   Vec3f origin() const { return origin_; }
+  Vec3f middle() const { return middle_; }  ///< deep inside, from the origin
   Vec3f corner(int i) const {
     const float* p = lanes_ + 12 * (i / 4) + i % 4;
     return {p[0], p[4], p[8]};
@@ -24,12 +26,28 @@ class PlacedCorners {
   /// The least that any corner lies along d (m, times its length), and then, when it has gone on.
   float least(Vec3f d) const { return least_of(lanes_, d); }
   float least_then(Vec3f d) const { return least_of(then_, d); }
+  /// What groups of triangles are to know of it; the planes of its faces where they are asked for.
+  void tell(PlacedShape& shape) const {
+    shape.origin = origin_;
+    shape.corners = lanes_, shape.corners_then = then_, shape.corner_blocks = blocks_;
+    shape.planes = planes_, shape.face_blocks = 0;
+  }
+  void tell_faces(PlacedShape& shape) const {
+    if (!planes_placed_) place_planes();
+    shape.face_blocks = face_blocks_;
+  }
   /// The face before whose plane a triangle (seen from the origin) lies farthest.
   struct Before {
     float distance;  ///< m, of its nearest corner
     Vec3f normal;
   };
   Before face_before(Vec3f p, Vec3f q, Vec3f r) const;
+  /// Which face looks most along d; its plane, seen from the origin.
+  int face_toward(Vec3f d) const;
+  FacePlane plane(int face) const {
+    const float* lane = planes_ + 16 * (face / 4) + face % 4;
+    return {{lane[0], lane[4], lane[8]}, lane[12]};
+  }
   /// The edge that comes nearest to the segment from `start` by `way` (seen from the origin). False where the shape has
   /// too many, or no faces.
   struct Edge {
@@ -44,8 +62,9 @@ class PlacedCorners {
                  ContactPoints& out) const;
   /// Lets the corners go on.
   void go(const ShapeWay& approach);
-  /// From the origin, of now and then.
-  Bounds3f bounds() const;
+  /// From the origin.
+  Bounds3f bounds() const { return bounds_of(lanes_); }
+  Bounds3f bounds_then() const { return bounds_of(then_); }
   /// Which of them lies farthest along d; the first among equals.
   int farthest(Vec3f d) const { return detail::farthest(lanes_, blocks_, d); }
 
@@ -60,12 +79,13 @@ class PlacedCorners {
     return min(min(low[0], low[1]), min(low[2], low[3]));
   }
 
+  Bounds3f bounds_of(const float* lanes) const;
   int face_corners(Vec3f toward, std::uint8_t (&corners)[Feature::capacity]) const;
   void place_planes() const;
   void place_edges() const;
 
   static constexpr int capacity = 64, most_edges = 32;
-  Vec3f origin_;
+  Vec3f origin_, middle_;
   const Hull* hull_ = nullptr;
   Mat3f turn_;
   Vec3f half_{};  ///< of a box

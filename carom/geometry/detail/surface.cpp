@@ -2,18 +2,15 @@
 
 namespace carom::geometry::detail {
 
-using VisitTriangle = core::FunctionRef<bool(const SurfaceTriangle&)>;
-
 namespace {
 
-/// In three of four lanes.
-Four lanes_of(Vec3f p) { return {Four::Vector{p.x, p.y, p.z, 0}}; }
+using VisitGroup = core::FunctionRef<bool(const TriangleGroup&, std::uint32_t)>;
 
 /// Triangles of a mesh lie anywhere in memory: some are called for before the first of them is met.
 class MeshVisit {
  public:
-  MeshVisit(const TriangleMesh& mesh, const Bounds3f& box, VisitTriangle visit)
-      : mesh_(mesh), low_(lanes_of(box.low)), high_(lanes_of(box.high)), visit_(visit) {}
+  MeshVisit(const TriangleMesh& mesh, const Bounds3f& box, VisitGroup visit)
+      : mesh_(mesh), box_(box), visit_(visit), load_(triangle_kernels().load) {}
 
   bool add(const std::uint32_t* items, int count) {
     for (int i = 0; i < count; ++i) {
@@ -25,31 +22,30 @@ class MeshVisit {
   }
   bool meet() {
     for (int k = 0; k < count_; ++k)
-      for (std::uint32_t corner = 0; corner < 3; ++corner) __builtin_prefetch(&vertex(list_[k], corner));
+      for (std::uint32_t corner = 0; corner < 3; ++corner)
+        __builtin_prefetch(&mesh_.vertices[mesh_.indices[3 * list_[k] + corner]]);
     const int count = count_;
     count_ = 0;
-    for (int k = 0; k < count; ++k) {
-      const Four p = lanes_of(vertex(list_[k], 0)), q = lanes_of(vertex(list_[k], 1)),
-                 r = lanes_of(vertex(list_[k], 2));
-      const auto meets = (min(p, min(q, r)) <= high_) & (max(p, max(q, r)) >= low_);
-      if (bitmask(meets) == 0xf && !visit_(triangle_of(mesh_, list_[k]))) return false;
+    TriangleGroup group;
+    for (int k = 0; k < count; k += TriangleGroup::lanes) {
+      const std::uint32_t lanes = load_(&mesh_.vertices[0].x, mesh_.indices.data(), list_ + k,
+                                        min(count - k, TriangleGroup::lanes), box_.low, box_.high, group);
+      if (lanes != 0 && !visit_(group, lanes)) return false;
     }
     return true;
   }
 
  private:
   static constexpr int room = 64;
-  const Vec3f& vertex(std::uint32_t triangle, std::uint32_t corner) const {
-    return mesh_.vertices[mesh_.indices[3 * triangle + corner]];
-  }
   const TriangleMesh& mesh_;
-  Four low_, high_;
-  VisitTriangle visit_;
+  Bounds3f box_;
+  VisitGroup visit_;
+  decltype(TriangleKernels::load) load_;
   int count_ = 0;
   std::uint32_t list_[room];
 };
 
-void visit_mesh(const TriangleMesh& mesh, const Bounds3f& box, VisitTriangle visit) {
+void visit_mesh(const TriangleMesh& mesh, const Bounds3f& box, VisitGroup visit) {
   MeshVisit all(mesh, box, visit);
   const auto add = [&](const std::uint32_t* items, int count) { return all.add(items, count); };
   std::uint32_t leaves[64];
@@ -62,8 +58,45 @@ void visit_mesh(const TriangleMesh& mesh, const Bounds3f& box, VisitTriangle vis
 
 }  // namespace
 
-void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges, VisitTriangle visit) {
+void visit_groups(const Shape3& surface, const Bounds3f& box, bool with_edges, VisitGroup visit) {
   if (surface.type == ShapeType3::mesh) return visit_mesh(*surface.mesh, box, visit);
+  TriangleGroup group;
+  int count = 0;
+  bool more = true;
+  const auto meet = [&] {
+    const int lanes = count;
+    for (; count < TriangleGroup::lanes; ++count)
+      for (auto& corner : group.corner)
+        for (auto& row : corner) row[count] = row[lanes - 1];
+    count = 0;
+    return more = visit(group, (1u << lanes) - 1);
+  };
+  visit_triangles(surface, box, with_edges, [&](const SurfaceTriangle& t) {
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k) group.corner[c][k][count] = t.corner[c][k];
+    group.index[count] = t.index, group.edges[count] = t.edges, group.material[count] = t.material;
+    return ++count < TriangleGroup::lanes || meet();
+  });
+  if (more && count > 0) meet();
+}
+
+SurfaceTriangle triangle_of(const Shape3& surface, const TriangleGroup& group, int lane) {
+  if (surface.type == ShapeType3::mesh) return triangle_of(*surface.mesh, group.index[lane]);
+  SurfaceTriangle t;
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 3; ++k) t.corner[c][k] = group.corner[c][k][lane];
+  t.edges = group.edges[lane], t.material = group.material[lane], t.index = group.index[lane];
+  return t;
+}
+
+void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges,
+                     core::FunctionRef<bool(const SurfaceTriangle&)> visit) {
+  if (surface.type == ShapeType3::mesh)
+    return visit_mesh(*surface.mesh, box, [&](const TriangleGroup& group, std::uint32_t lanes) {
+      for (; lanes != 0; lanes &= lanes - 1)
+        if (!visit(triangle_of(*surface.mesh, group.index[__builtin_ctz(lanes)]))) return false;
+      return true;
+    });
   if (surface.type == ShapeType3::voxels) {
     visit_voxel_faces(*surface.voxels, box, [&](const VoxelFace& face) {
       for (int k = 0; k < 2; ++k)

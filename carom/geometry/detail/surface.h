@@ -3,6 +3,7 @@
 
 #include "carom/core/function_ref.h"
 #include "carom/geometry/detail/tree_build.h"
+#include "carom/geometry/detail/triangle_groups.h"
 #include "carom/geometry/detail/voxel_faces.h"
 #include "carom/geometry/height_field.h"
 #include "carom/geometry/tree_walk.h"
@@ -80,5 +81,12 @@ inline SurfaceTriangle triangle_of(const VoxelFace& face, int k) {
 /// Calls visit (false: stop) for the triangles whose boxes meet `box`, with what their edges are if it is asked for.
 void visit_triangles(const Shape3& surface, const Bounds3f& box, bool with_edges,
                      core::FunctionRef<bool(const SurfaceTriangle&)> visit);
+/// The same by eight: visit (false: stop) is told which lanes' triangles meet `box`.
+void visit_groups(const Shape3& surface, const Bounds3f& box, bool with_edges,
+                  core::FunctionRef<bool(const TriangleGroup&, std::uint32_t lanes)> visit);
+inline std::uint8_t edges_of(const Shape3& surface, const TriangleGroup& group, int lane) {
+  return surface.type == ShapeType3::mesh ? surface.mesh->edge_flags[group.index[lane]] : group.edges[lane];
+}
+SurfaceTriangle triangle_of(const Shape3& surface, const TriangleGroup& group, int lane);
 
 }  // namespace carom::geometry::detail

@@ -51,20 +51,20 @@ TriangleBlocks::TriangleBlocks(int lanes)
 void TriangleBlocks::gather(const Shape3& surface, const Bounds3f& box) {
   clear();
   solid_ = surface.type == ShapeType3::height_field;
-  visit_triangles(surface, box, true, [&](const SurfaceTriangle& t) {
-    const int lane = count_++ % TriangleBlock::lanes;
-    if (lane == 0) {
-      // Lanes without a triangle are too far away for anything.
-      blocks_.emplace_back();
-      for (auto& corner : blocks_.back().corner)
-        for (float& x : corner[0]) x = 3e30f;
+  visit_groups(surface, box, true, [&](const TriangleGroup& group, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int from = __builtin_ctz(lanes), lane = count_++ % TriangleBlock::lanes;
+      if (lane == 0) {
+        // Lanes without a triangle are too far away for anything.
+        blocks_.emplace_back();
+        for (auto& corner : blocks_.back().corner)
+          for (float& x : corner[0]) x = 3e30f;
+      }
+      TriangleBlock& b = blocks_.back();
+      for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < 3; ++k) b.corner[c][k][lane] = group.corner[c][k][from];
+      b.edges[lane] = edges_of(surface, group, from);
     }
-    TriangleBlock& b = blocks_.back();
-    for (int c = 0; c < 3; ++c) {
-      const Vec3f corner = t.corner[c];
-      b.corner[c][0][lane] = corner.x, b.corner[c][1][lane] = corner.y, b.corner[c][2][lane] = corner.z;
-    }
-    b.edges[lane] = t.edges;
     return true;
   });
   set_normals_(blocks_.data(), int(blocks_.size()));

@@ -7,23 +7,7 @@ using F = math::WideFloat<width>;
 using Int = math::WideInt<width>;
 using Mask = math::WideMask<width>;
 
-struct Wide3 {
-  F x, y, z;
-  CAROM_SIMD_INLINE friend Wide3 operator+(const Wide3& a, const Wide3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  CAROM_SIMD_INLINE friend Wide3 operator-(const Wide3& a, const Wide3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  CAROM_SIMD_INLINE friend Wide3 operator*(const Wide3& a, F s) { return {a.x * s, a.y * s, a.z * s}; }
-};
-CAROM_SIMD_INLINE Wide3 load(const float (&p)[3][TriangleBlock::lanes], int lane) {
-  return {F::load(p[0] + lane), F::load(p[1] + lane), F::load(p[2] + lane)};
-}
-CAROM_SIMD_INLINE Wide3 splat(const Vec3f& v) { return {F::splat(v.x), F::splat(v.y), F::splat(v.z)}; }
-CAROM_SIMD_INLINE F dot(const Wide3& a, const Wide3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-CAROM_SIMD_INLINE Wide3 cross(const Wide3& a, const Wide3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-CAROM_SIMD_INLINE Wide3 select(Mask m, const Wide3& a, const Wide3& b) {
-  return {math::select(m, a.x, b.x), math::select(m, a.y, b.y), math::select(m, a.z, b.z)};
-}
+using V = Wide3<width>;
 CAROM_SIMD_INLINE F select(Mask m, F a, F b) { return math::select(m, a, b); }
 
 /// As normalize of the cross product of two sides.
@@ -31,8 +15,8 @@ void set_normals(TriangleBlock* blocks, int count) {
   for (int k = 0; k < count; ++k)
     for (int lane = 0; lane < TriangleBlock::lanes; lane += width) {
       TriangleBlock& block = blocks[k];
-      const Wide3 first = load(block.corner[0], lane);
-      const Wide3 n = cross(load(block.corner[1], lane) - first, load(block.corner[2], lane) - first);
+      const V first = V::load(block.corner[0], lane);
+      const V n = cross(V::load(block.corner[1], lane) - first, V::load(block.corner[2], lane) - first);
       const F length = sqrt(dot(n, n)), inverse = F::splat(1) / length;
       const Mask has = length > F::splat(1e-18f);
       select(has, n.x * inverse, F::zero()).store(block.normal[0] + lane);
@@ -45,18 +29,18 @@ void set_normals(TriangleBlock* blocks, int count) {
 int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPlane* out) {
   const float r = q.radius, cutoff = r + q.margin, graze = 0.02f * r < 0.005f ? 0.02f * r : 0.005f;
   const float size2 = 4 * (q.end.x * q.end.x + q.end.y * q.end.y + q.end.z * q.end.z);
-  const Wide3 center = splat(q.center), end = splat(q.end);
+  const V center = V::splat(q.center), end = V::splat(q.end);
   const F zero = F::zero(), one = F::splat(1), radius = F::splat(r);
-  const Wide3 first = Wide3{zero, zero, zero} - end, whole = end + end;
+  const V first = V{zero, zero, zero} - end, whole = end + end;
   const F inverse = F::splat(size2 > 0 ? 1 / size2 : 0.0f), length2 = F::splat(size2);
   int number = 0;
   for (int lane = 0; lane < TriangleBlock::lanes; lane += width) {
     const Int edges = Int::load(block.edges + lane);
     Mask live = edges > Int::splat(-1);
     if (none(live)) continue;
-    const Wide3 corner[3] = {load(block.corner[0], lane) - center, load(block.corner[1], lane) - center,
-                             load(block.corner[2], lane) - center};
-    const Wide3 normal = load(block.normal, lane);
+    const V corner[3] = {V::load(block.corner[0], lane) - center, V::load(block.corner[1], lane) - center,
+                         V::load(block.corner[2], lane) - center};
+    const V normal = V::load(block.normal, lane);
     const F above = zero - dot(normal, corner[0]), lean = dot(normal, end), nearest = above - abs(lean);
     const auto has = [&](int bits) { return (edges & Int::splat(bits)) != Int::zero(); };
     const Mask flat[3] = {has(edge0_flat), has(edge1_flat), has(edge2_flat)};
@@ -65,10 +49,10 @@ int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPl
     // The part of the line over the triangle, and whether its foot (the end near the plane) is beyond a sharp edge.
     F enter = zero, leave = one, size[3];
     Mask beside = Mask::none(), beyond_sharp = Mask::none();
-    Wide3 outward[3];
+    V outward[3];
     const Mask far_end = lean < zero;  // the foot is the line's second end
     for (int e = 0; e < 3; ++e) {
-      const Wide3 side = corner[e == 2 ? 0 : e + 1] - corner[e];
+      const V side = corner[e == 2 ? 0 : e + 1] - corner[e];
       outward[e] = cross(side, normal);
       const F square = dot(outward[e], outward[e]);
       size[e] = sqrt(square);
@@ -93,20 +77,20 @@ int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPl
     const Mask by_face = (flat[0] & flat[1] & flat[2]) | (in_front & (!beyond_sharp)) |
                          ((!in_front) & over & ((height <= zero) | (nearest > F::splat(-0.02f * r))));
     Mask face = live & by_face & over, edge = live & (!by_face);
-    Wide3 pushed = normal, touched{};
+    V pushed = normal, touched{};
     F separation = height - radius;
     if (any(edge)) {
       F least = F::splat(3e38f);
-      Wide3 apart{};
+      V apart{};
       for (int e = 0; e < 3; ++e) {
         // The closest points of two segments (Ericson 2005, §5.1.9).
-        const Wide3 side = corner[e == 2 ? 0 : e + 1] - corner[e], between = first - corner[e];
+        const V side = corner[e == 2 ? 0 : e + 1] - corner[e], between = first - corner[e];
         const F d = dot(side, side), b = dot(whole, side), c = dot(whole, between), f = dot(side, between);
         const F slant = length2 * d - b * b;
         const F guess =
             select(slant > F::splat(1e-6f) * length2 * d, clamp((b * f - c * d) / slant, zero, one), F::splat(0.5f));
         const F t = clamp((b * guess + f) / d, zero, one), s = clamp((b * t - c) * inverse, zero, one);
-        const Wide3 on_edge = side * t, way = between + whole * s - on_edge;
+        const V on_edge = side * t, way = between + whole * s - on_edge;
         const F square = dot(way, way);
         const Mask nearer = square < least;
         least = select(nearer, square, least);
@@ -115,7 +99,7 @@ int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPl
       }
       const F distance = sqrt(least);
       edge = edge & (distance <= F::splat(cutoff));
-      const Wide3 toward = apart * (one / max(distance, F::splat(1e-20f)));
+      const V toward = apart * (one / max(distance, F::splat(1e-20f)));
       const F upright = dot(toward, normal);
       // The Gauss map of the surface: a direction that leans over a flat or concave edge is not on it.
       Mask wrong = !(upright > F::splat(-1e-3f)), lost = Mask::none();
@@ -139,8 +123,8 @@ int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPl
     }
     const Mask met = (face | edge) & (separation <= F::splat(q.margin));
     if (none(met)) continue;
-    const Wide3 under = first + whole * select(by_leave, leave, enter) - normal * height;
-    const Wide3 point = select(edge, touched, under);
+    const V under = first + whole * select(by_leave, leave, enter) - normal * height;
+    const V point = select(edge, touched, under);
     for (std::uint32_t lanes = bitmask(met); lanes != 0; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
       out[number++] = {{pushed.x[i], pushed.y[i], pushed.z[i]}, separation[i], {point.x[i], point.y[i], point.z[i]}};
@@ -150,7 +134,7 @@ int planes_of_block(const TriangleBlock& block, const TriangleQuestion& q, MetPl
 }
 
 int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& q, MetPlane* out) {
-  const Wide3 low = splat(q.low), high = splat(q.high), center = splat(q.center), end = splat(q.end);
+  const V low = V::splat(q.low), high = V::splat(q.high), center = V::splat(q.center), end = V::splat(q.end);
   const F behind = F::splat(q.behind), cutoff = F::splat(q.radius + q.margin);
   // Few of them come near: these move together, so that their lanes are filled.
   TriangleBlock near{};
@@ -163,7 +147,8 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
   for (int k = 0; k < count * (TriangleBlock::lanes / width); ++k) {
     const TriangleBlock& block = blocks[k / (TriangleBlock::lanes / width)];
     const int lane = k % (TriangleBlock::lanes / width) * width;
-    const Wide3 corner[3] = {load(block.corner[0], lane), load(block.corner[1], lane), load(block.corner[2], lane)};
+    const V corner[3] = {V::load(block.corner[0], lane), V::load(block.corner[1], lane),
+                         V::load(block.corner[2], lane)};
     const auto meets = [&](F a, F b, F c, F least, F most) {
       return (min(a, min(b, c)) <= most) & (max(a, max(b, c)) >= least);
     };
@@ -171,7 +156,7 @@ int find_planes(const TriangleBlock* blocks, int count, const TriangleQuestion& 
                 meets(corner[0].y, corner[1].y, corner[2].y, low.y, high.y) &
                 meets(corner[0].z, corner[1].z, corner[2].z, low.z, high.z);
     if (none(live)) continue;
-    const Wide3 normal = load(block.normal, lane);
+    const V normal = V::load(block.normal, lane);
     const F above = F::zero() - dot(normal, corner[0] - center), nearest = above - abs(dot(normal, end));
     live = live & (above >= behind) & (nearest <= cutoff);
     for (std::uint32_t lanes = bitmask(live); lanes != 0; lanes &= lanes - 1) {

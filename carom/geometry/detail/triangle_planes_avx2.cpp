@@ -1,7 +1,7 @@
 // The planes of triangles for 8 lanes.
 #include "carom/geometry/detail/triangle_planes.h"
+#include "carom/geometry/detail/wide3.h"
 #include "carom/geometry/triangle_mesh.h"
-#include "carom/math/simd.h"
 
 #define CAROM_PLANES_NAMESPACE triangle_planes_avx2
 #define CAROM_PLANES_WIDTH 8

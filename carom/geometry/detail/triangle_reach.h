@@ -15,38 +15,26 @@ inline Bounds3f own_bounds(const Shape3& shape) {
   return shape.type == ShapeType3::hull ? grow(shape.hull->bounds, shape.hull->radius) : bounds(shape, {});
 }
 
-/// What a triangle must reach to be worth a look: in front of it the shape's middle, near its plane and its sides, and
-/// in the shape's own frame its box, which fits closer than the one in the surface's frame.
+/// What a triangle must reach to be worth a look, for shapes without corners: in front of it the shape's middle, near
+/// its plane and its sides, and in the shape's own frame its box, which fits closer than the one in the surface's
+/// frame.
 struct TriangleReach {
   Vec3f middle{}, axis[3]{}, origin{};
   Bounds3f own{};
   float around = 0;  ///< m from the middle; of a ball or capsule, from its line
   Vec3f end{};       ///< of the line, from the middle
   Vec3f box_middle{}, half[3]{};
-  const PlacedCorners& corners;
-  const ShapeWay& approach;
-  float radius = 0;
   bool line = false, solid = false;
 
-  TriangleReach(const Shape3& shape, const Convex& core, const PlacedCorners& placed, const Transform3f& x,
-                float margin, const ShapeWay& goes, bool below)
+  TriangleReach(const Shape3& shape, const Convex& core, const Transform3f& x, float margin, bool below)
       : middle(transform_point(x, inner_point(core))),
         origin(x.p),
         own(grow(own_bounds(shape), margin)),
         box_middle(transform_point(x, own.center())),
-        corners(placed),
-        approach(goes),
-        radius(core.radius),
         solid(below) {
     line = core.kind == CoreKind::point || core.kind == CoreKind::segment;
-    if (corners.known()) {
-      middle -= origin;
-      around = 1.0001f * (core.radius + margin) + 1e-6f * (length(origin) + length(max(abs(own.low), abs(own.high))));
-      if (corners.has_faces()) return;  // the rest is not asked for
-    }
     const Mat3f turn = to_matrix(x.q);
     axis[0] = turn.cx, axis[1] = turn.cy, axis[2] = turn.cz;
-    if (corners.known()) return;
     const Vec3f at = inner_point(core), extents = 1.0001f * own.extents();
     for (int k = 0; k < 3; ++k) half[k] = extents[k] * axis[k];
     if (line) end = core.half.y * axis[1];
@@ -58,11 +46,7 @@ struct TriangleReach {
     return dot(normal, box_middle - corner) - abs(dot(normal, half[0])) - abs(dot(normal, half[1])) -
            abs(dot(normal, half[2]));
   }
-  bool meets(const Vec3f (&corner)[3], OffDirections& off) const {
-    if (corners.known()) {
-      const Vec3f p = corner[0] - origin, q = corner[1] - origin, r = corner[2] - origin;
-      return near_corners(p, q, r, off);
-    }
+  bool meets(const Vec3f (&corner)[3]) const {
     const Vec3f normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const float above = max(line_height(normal, corner[0]), 0.0f), size = length_squared(normal),
                 most = around * around;
@@ -79,58 +63,68 @@ struct TriangleReach {
       const float beside = line_height(outward, corner[e]), length = length_squared(outward);
       if (beside > 0 && beside * beside * size + above * above * length > most * size * length) return false;
     }
-    return solid || in_box(corner[0] - origin, corner[1] - origin, corner[2] - origin);
-  }
-
- private:
-  bool in_box(Vec3f p, Vec3f q, Vec3f r) const {
+    if (solid) return true;
     for (int k = 0; k < 3; ++k) {
-      const float a = dot(axis[k], p), b = dot(axis[k], q), c = dot(axis[k], r);
+      const float a = dot(axis[k], corner[0] - origin), b = dot(axis[k], corner[1] - origin),
+                  c = dot(axis[k], corner[2] - origin);
       if (min(a, min(b, c)) > own.high[k] || max(a, max(b, c)) < own.low[k]) return false;
     }
     return true;
   }
-  /// Does all of the shape, which lies this far along a direction, stay out of reach as it goes on?
-  bool keeps_off(float height, Vec3f direction, float level) const {
-    const float most = approach.margin + approach.bend + radius, size = most * most * length_squared(direction);
-    if (!(height > 0) || height * height <= size) return false;
-    const float then = corners.least_then(direction) - level;
-    return then > 0 && then * then > size;
+};
+
+/// The same for shapes with corners, a group at a time; what is off as the shape goes on does not count.
+class CornersReach {
+ public:
+  /// `size`: m, no corner is farther from the origin.
+  CornersReach(const PlacedCorners& corners, float radius, float size, float margin, bool solid, OffDirections& off)
+      : corners_(corners), off_(off), kernels_(triangle_kernels()) {
+    question_.middle = corners.middle();
+    question_.around = 1.0001f * (radius + margin) + 1e-6f * (length(corners.origin()) + size);
+    question_.keeps = off.most();
+    corners.tell(shape_);
+    shape_.radius = radius, shape_.solid = solid;
   }
-  /// By the corners themselves; p, q, r are seen from the origin of the shape.
-  bool near_corners(Vec3f p, Vec3f q, Vec3f r, OffDirections& off) const {
-    if (off.keeps_off(p, q, r)) return false;
-    const Vec3f edge[3] = {q - p, r - q, p - r}, start[3] = {p, q, r}, normal = cross(edge[0], edge[1]);
-    const float level = dot(normal, p);
-    if (!solid && dot(normal, middle) < level) return false;
-    const float above = max(corners.least(normal) - level, 0.0f), size = length_squared(normal), most = around * around;
-    if (above * above > most * size || keeps_off(above, normal, level)) {
-      off.learn(normal, p, q, r);
-      return false;
+  /// Which of the lanes may be met.
+  std::uint32_t meets(const TriangleGroup& group, std::uint32_t lanes) {
+    off_.tell(shape_);
+    NearAnswer near;
+    lanes = kernels_.near(group, lanes, shape_, question_, near);
+    off_.count_uses(near.uses);
+    for (int i = 0; i < near.learned; ++i) learn(group, near.lane[i], near.direction[i]);
+    if (lanes == 0 || shape_.solid || !corners_.has_faces()) return lanes;
+    corners_.tell_faces(shape_);
+    FacesAnswer faces;
+    kernels_.before_faces(group, lanes, shape_, question_, faces);
+    if (faces.apart != 0) {
+      const int lane = __builtin_ctz(faces.apart);
+      learn(group, lane, -corners_.plane(faces.face[lane]).normal);
+      lanes &= ~faces.apart;
     }
-    for (int e = 0; e < 3; ++e) {
-      // Above the plane and beside an edge of it: both are parts of the distance.
-      const Vec3f outward = cross(edge[e], normal);
-      const float beside = corners.least(outward) - dot(outward, start[e]);
-      if (!(beside > 0)) continue;
-      const float length = length_squared(outward);
-      if (beside * beside * size + above * above * length > most * size * length ||
-          keeps_off(beside, outward, dot(outward, start[e]))) {
-        off.learn(outward, p, q, r);
-        return false;
-      }
+    for (std::uint32_t ahead = faces.ahead; ahead != 0; ahead &= ahead - 1) {
+      const int lane = __builtin_ctz(ahead);
+      if (learn(group, lane, -corners_.plane(faces.face[lane]).normal)) lanes &= ~(1u << lane);
     }
-    if (solid) return true;
-    if (!corners.has_faces()) return in_box(p, q, r);
-    // In front of a face of the shape.
-    const PlacedCorners::Before face = corners.face_before(p, q, r);
-    const float most_before = approach.margin + approach.bend + radius;
-    if (face.distance > around) {
-      off.learn(-face.normal, p, q, r);
-      return false;
-    }
-    return !(face.distance > most_before && off.learn(-face.normal, p, q, r));
+    return lanes;
   }
+  /// Is one of a group off along what was learned since?
+  bool keeps_off(const TriangleGroup& group, int lane) {
+    return off_.keeps_off(seen(group, 0, lane), seen(group, 1, lane), seen(group, 2, lane));
+  }
+
+ private:
+  Vec3f seen(const TriangleGroup& group, int c, int lane) const {
+    return Vec3f{group.corner[c][0][lane], group.corner[c][1][lane], group.corner[c][2][lane]} - corners_.origin();
+  }
+  bool learn(const TriangleGroup& group, int lane, Vec3f direction) {
+    return off_.learn(direction, seen(group, 0, lane), seen(group, 1, lane), seen(group, 2, lane));
+  }
+
+  const PlacedCorners& corners_;
+  OffDirections& off_;
+  const TriangleKernels& kernels_;
+  PlacedShape shape_{};
+  NearQuestion question_{};
 };
 
 }  // namespace carom::geometry::detail

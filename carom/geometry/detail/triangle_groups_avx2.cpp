@@ -1,0 +1,7 @@
+// Groups of triangles, for AVX2.
+#include "carom/geometry/detail/triangle_groups.h"
+#include "carom/geometry/detail/wide3.h"
+
+#define CAROM_GROUPS_NAMESPACE triangle_groups_avx2
+#include "carom/geometry/detail/triangle_groups.inl"
+#undef CAROM_GROUPS_NAMESPACE
