@@ -268,10 +268,9 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
   if (count >= 0) return count;
   out[0] = {};
   if (near && approach.worth >= margin) return 0;  // the distance is hardly worth knowing
-  // A little less than what was measured, for rounding.
-  // More than the double of what is worth knowing is no better.
+  // A little less than what was measured, for rounding. To be farther off than is worth knowing is no better.
   const float half = 0.5f * detail::inner_size(b);
-  const float limit = margin + (approach.worth > 0 ? min(half, 2 * approach.worth) : half);
+  const float limit = margin + (approach.worth > 0 ? min(half, approach.worth) : half);
   const float apart = clearance(surface, shape, b, corners, off, x, tight, limit, approach.worth, solid);
   out[0].points[0].separation = apart - 1e-5f * (1 + length(x.p));
   return 0;

@@ -67,6 +67,7 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   if (alone && still.emplace(world, geometry::grow(whole, double(motion.outer_extent)), list).count == 0) return;
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
+  const float turn = turn_of(sweep.q0, sweep.q1);
   float fraction = 1;
   std::int32_t by = none, at = none;  // which of its shapes is stopped first, and at which
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
@@ -77,7 +78,7 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
     const float most_slow = bullet ? 0.25f : 0.5f;
     bool slow = false;  // by itself it passes nothing; what is driven may pass it
     if (!turns_far) {
-      const MiddleWay<D> middle(shape, own);
+      const MiddleWay<D> middle(shape, own, turn);
       slow = middle.is_slow(shape, most_slow);
       if (slow && world.scratch.driven.empty()) continue;
       if (list > 0 && alone && still->is_free(world, middle.box(start.center))) continue;

@@ -96,26 +96,27 @@ typename D::Bounds bounds_of_way(const WorldImplementation<D>& world, const Shap
 
 inline float turn_of(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a.c) + square(b.s - a.s)); }
 inline float turn_of(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
-/// The way of a shape's middle, and how far the shape turns about it.
+/// The way of a shape's middle; the shape turns about it as far (rad) as its body.
 template <class D>
 struct MiddleWay {
-  typename D::Vector begin, end;
-  float arm, radius, turn;
+  typename D::Vector from, begin, end;
+  float radius, turn;
 
-  MiddleWay(const ShapeRecord<D>& shape, const Sweep<D>& own) : turn(turn_of(own.q0, own.q1)) {
+  MiddleWay(const ShapeRecord<D>& shape, const Sweep<D>& own, float turn_of_body) : turn(turn_of_body) {
     const ShapeBall<D> ball = ball_about(shape);
-    const typename D::Vector from = ball.middle - own.local_center;
+    from = ball.middle - own.local_center, radius = ball.radius;
     begin = own.c0 + rotate(own.q0, from), end = own.c1 + rotate(own.q1, from);
-    arm = math::length(from), radius = ball.radius;
   }
   /// Did no point of the shape come as far as a part of its thickness? Then it passed nothing.
   bool is_slow(const ShapeRecord<D>& shape, float part) const {
-    return math::length(end - begin) + turn * radius <= part * shape.inner_extent;
+    const float left = part * shape.inner_extent - turn * radius;
+    return left >= 0 && math::length_squared(end - begin) <= left * left;
   }
   /// A box that all of the shape stays in on its way, found sooner than way_bounds and larger.
   typename D::Bounds box(const typename D::Position& base) const {
     using P = typename D::Position;
     // The arc of a point strays from its chord by less than its turn times the arm.
+    const float arm = math::length(from);
     const double reach = double(radius) + double(turn) * double(arm) + 1e-5 * double(arm + radius);
     return geometry::grow(typename D::Bounds{base + P(math::min(begin, end)), base + P(math::max(begin, end))}, reach);
   }
@@ -203,11 +204,12 @@ void find_driven(WorldImplementation<D>& world) {
     const SweepStart<D>& start = world.scratch.swept[place];
     const bool turns_far = start.turn != typename D::Angular{};
     const Sweep<D> sweep = way_of_body(world, body, start.center);
+    const float turn = turn_of(sweep.q0, sweep.q1);
     for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
       const ShapeRecord<D>& shape = world.shapes.at(s);
       if (shape.leaf == none) continue;
       const Sweep<D> own = way_of_shape(shape, sweep);
-      if (turns_far || !MiddleWay<D>(shape, own).is_slow(shape, 0.5f))
+      if (turns_far || !MiddleWay<D>(shape, own, turn).is_slow(shape, 0.5f))
         driven.push_back({bounds_of_way(world, shape, own, start), s});
     }
   }
