@@ -78,8 +78,8 @@ TEST(BoxStrips, TellWhatMeetsNowAndDidNotBeforeOnceByAnyLanes) {
         const auto kernels = kernels_of<Dim2>(math::choose_instruction_set(math::instruction_set_of_width(width)));
         Meetings meetings{strips};
         for (meetings.strip = 0; meetings.strip < strips.strip_count(); ++meetings.strip)
-          kernels.sweep(strips.rows(), strips.strip_begin(meetings.strip), strips.strip_end(meetings.strip),
-                        Meetings::tell, &meetings);
+          kernels.pairs.sweep(strips.rows(), strips.strip_begin(meetings.strip), strips.strip_end(meetings.strip),
+                              Meetings::tell, &meetings);
         EXPECT_EQ(meetings.found, expected) << width;
         EXPECT_EQ(meetings.told, expected.size()) << "a pair was told twice";
       }

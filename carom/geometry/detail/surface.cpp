@@ -15,15 +15,11 @@ class MeshVisit {
   bool add(const std::uint32_t* items, int count) {
     for (int i = 0; i < count; ++i) {
       __builtin_prefetch(&mesh_.indices[3 * items[i]]);
-      __builtin_prefetch(&mesh_.edge_flags[items[i]]);
       list_[count_++] = items[i];
     }
     return count_ <= room - 4 || meet();
   }
   bool meet() {
-    for (int k = 0; k < count_; ++k)
-      for (std::uint32_t corner = 0; corner < 3; ++corner)
-        __builtin_prefetch(&mesh_.vertices[mesh_.indices[3 * list_[k] + corner]]);
     const int count = count_;
     count_ = 0;
     TriangleGroup group;

@@ -358,7 +358,8 @@ static typename D::Vector way_of_middle(const WorldImplementation<D>& world, con
 
 template <class D>
 typename D::Position way_ahead(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
-  return typename D::Position(within_foresight(way_of_middle(world, shape), shape, world.shapes.bounce));
+  const typename D::Vector way = way_of_middle(world, shape);
+  return typename D::Position(way * within_foresight(math::length_squared(way), shape, world.shapes.bounce));
 }
 
 /// A bullet asks the pairs of its fat bounds what it meets, so they must hold how it turns as well.

@@ -57,13 +57,12 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
 /// Finds out what ShapeStore::bounce says.
 template <class D>
 void learn_bounce(WorldImplementation<D>& world);
-/// The way of a shape in the next step (m), as far as contacts look: all of it where anything rebounds, else up to half
-/// the shape's thickness.
-template <class V, class D>
-V within_foresight(V way, const ShapeRecord<D>& shape, Bounce bounce) {
-  const float most = 0.5f * shape.inner_extent, length_squared = math::length_squared(way);
-  if (bounce == Bounce::none && length_squared > most * most) way *= most / math::sqrt(length_squared);
-  return way;
+/// Which part of a shape's way in the next step (m², squared) contacts look along: all of it where anything rebounds,
+/// else up to half the shape's thickness.
+template <class D>
+float within_foresight(float way_squared, const ShapeRecord<D>& shape, Bounce bounce) {
+  const float most = 0.5f * shape.inner_extent;
+  return bounce == Bounce::none && way_squared > most * most ? most / math::sqrt(way_squared) : 1.0f;
 }
 /// How far fat bounds must reach ahead along the velocity: for a step where anything rebounds; else as far as contacts
 /// look.

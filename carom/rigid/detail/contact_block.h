@@ -136,10 +136,9 @@ struct GatheredLanes {
   std::uint32_t turns = 0;               ///< is to be solved as it is in the middle of the step (contact_middle.h)
 };
 
-/// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.
+/// What is asked of pairs before they are solved, compiled for one instruction set.
 template <class D>
-struct ContactKernels {
-  using Blocks = void*;
+struct PairKernels {
   int width = 4;
   /// Which of the others (a multiple of 16) each member of a group meets now, but did not before: bits by place.
   void (*new_meetings)(const BoxGroup<D>& group, int members, int others, std::uint64_t* news) = nullptr;
@@ -150,6 +149,13 @@ struct ContactKernels {
                                const BodySweep<D>* sweeps, float dt) = nullptr;
   /// How `count` pairs have moved, at most as many as the width.
   KnownApart (*pair_motions)(PairMotions<D>& pairs, int count, const MovingBodies<D>& bodies, float dt) = nullptr;
+};
+
+/// The kernels of one width, compiled for one instruction set. Blocks [begin, end); `extra` may be null.
+template <class D>
+struct ContactKernels {
+  using Blocks = void*;
+  int width = 4;
   /// Fills `block` and `raw` from the records of the manifolds in `list`; lanes without one are like the first, but
   /// move nobody.
   GatheredLanes (*gather)(const ContactSources<D>& from, const std::int32_t* list, int lanes, void* block,
@@ -188,11 +194,15 @@ struct ContactKernels {
 };
 
 namespace contact_kernels_baseline {
+PairKernels<Dim2> pair_kernels(Dim2);
+PairKernels<Dim3> pair_kernels(Dim3);
 ContactKernels<Dim2> kernels(Dim2);
 ContactKernels<Dim3> kernels(Dim3);
 }  // namespace contact_kernels_baseline
 #if defined(__x86_64__)
 namespace contact_kernels_avx2 {
+PairKernels<Dim2> pair_kernels(Dim2);
+PairKernels<Dim3> pair_kernels(Dim3);
 ContactKernels<Dim2> kernels(Dim2);
 ContactKernels<Dim3> kernels(Dim3);
 }  // namespace contact_kernels_avx2

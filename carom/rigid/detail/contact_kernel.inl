@@ -218,14 +218,20 @@ std::uint32_t strikes(const SolverBody<D>* bodies, const void* block) {
   return bitmask(apart & (parting < F::splat(-least_blow)));
 }
 
+#if CAROM_CONTACT_WIDTH <= 8
+PairKernels<Dim2> pair_kernels(Dim2) {
+  constexpr int W = CAROM_CONTACT_WIDTH;
+  return {W, new_meetings<Dim2, W>, sweep<W>, nothing_new2<W>, pair_motions<Dim2, W>};
+}
+PairKernels<Dim3> pair_kernels(Dim3) {
+  constexpr int W = CAROM_CONTACT_WIDTH;
+  return {W, new_meetings<Dim3, W>, nullptr, nothing_new3<W>, pair_motions<Dim3, W>};
+}
+#endif
 ContactKernels<Dim2> kernels(Dim2) {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim2> k;
   k.width = W;
-  k.new_meetings = new_meetings<Dim2, W>;
-  k.sweep = sweep<W>;
-  k.nothing_new = nothing_new2<W>;
-  k.pair_motions = pair_motions<Dim2, W>;
   k.gather = gather2<W>;
   k.prepare = prepare2<W>;
   k.approach = approach2<W>;
@@ -244,9 +250,6 @@ ContactKernels<Dim3> kernels(Dim3) {
   constexpr int W = CAROM_CONTACT_WIDTH;
   ContactKernels<Dim3> k;
   k.width = W;
-  k.new_meetings = new_meetings<Dim3, W>;
-  k.nothing_new = nothing_new3<W>;
-  k.pair_motions = pair_motions<Dim3, W>;
   k.gather = gather3<W>;
   k.prepare = prepare3<W>;
   k.approach = approach3<W>;

@@ -320,7 +320,7 @@ template <class D>
 class PairUpdates {
  public:
   PairUpdates(WorldImplementation<D>& world, std::vector<FoundManifold<D>>& list)
-      : world_(world), list_(list), queues_(world.kernels.width) {}
+      : world_(world), list_(list), queues_(world.kernels.pairs.width) {}
 
   void add(std::int32_t awake_index) {
     ContactRecord<D>& c = contact(awake_index);
@@ -330,7 +330,7 @@ class PairUpdates {
     pairs_.contact[count_] = &c;
     for (int side = 0; side < 2; ++side) pairs_.local[side][count_] = &world_.shapes.at(c.shape[side]).local;
     tell_shape(pairs_, count_, c, world_.shapes.at(c.shape[1]));
-    if (++count_ == world_.kernels.width) run();
+    if (++count_ == world_.kernels.pairs.width) run();
   }
   void finish() {
     if (count_ > 0) run();
@@ -342,10 +342,11 @@ class PairUpdates {
     return world_.contacts.at(world_.contacts.awake[std::size_t(awake_index)]);
   }
   void run() {
-    const KnownApart apart = world_.kernels.pair_motions(pairs_, count_,
-                                                         {world_.bodies.pose.data(), world_.scratch.sweeps.data(),
-                                                          world_.bodies.solver.data(), world_.bodies.motion.data()},
-                                                         world_.last_dt);
+    const KnownApart apart =
+        world_.kernels.pairs.pair_motions(pairs_, count_,
+                                          {world_.bodies.pose.data(), world_.scratch.sweeps.data(),
+                                           world_.bodies.solver.data(), world_.bodies.motion.data()},
+                                          world_.last_dt);
     for (int lane = 0; lane < count_; ++lane) update(lane, apart);
     count_ = 0;
   }

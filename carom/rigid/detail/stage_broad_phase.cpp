@@ -92,7 +92,7 @@ void find_pairs_of_group(WorldImplementation<D>& world, std::span<const std::int
     const int full = (number + 15) / 16 * 16;  // a multiple of all widths
     for (int k = number; k < full; ++k) group.others.put_nowhere(k), group.old_others.put_nowhere(k);
     std::uint64_t news[most_in_group];
-    world.kernels.new_meetings(group, count, full, news);
+    world.kernels.pairs.new_meetings(group, count, full, news);
     for (int i = 0; i < count; ++i)
       for (std::uint64_t left = news[i]; left != 0; left &= left - 1) {
         const int k = std::countr_zero(left);
@@ -248,8 +248,8 @@ bool sweep_strips(WorldImplementation<Dim2>& world) {
   world.scheduler->parallel_for(strips.strip_count(), 2, [&](int begin, int end, int worker) {
     MeetingsInStrip finder{world, scratch.found_pairs[std::size_t(worker)], 0};
     for (finder.strip = begin; finder.strip < end; ++finder.strip)
-      world.kernels.sweep(rows, strips.strip_begin(finder.strip), strips.strip_end(finder.strip), MeetingsInStrip::tell,
-                          &finder);
+      world.kernels.pairs.sweep(rows, strips.strip_begin(finder.strip), strips.strip_end(finder.strip),
+                                MeetingsInStrip::tell, &finder);
   });
   return true;
 }

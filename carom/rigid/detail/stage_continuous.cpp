@@ -68,13 +68,19 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
   const float turn = turn_of(sweep.q0, sweep.q1);
+  // No point of the body came farther, unless it turned far.
+  const bool turns_far = start.turn != typename D::Angular{};
+  const double farthest = 1.1 * double(math::length(travel) + turn * motion.outer_extent);
   float fraction = 1;
   std::int32_t by = none, at = none;  // which of its shapes is stopped first, and at which
   for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
     const ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
+    // Most shapes of a long body are far from all of it: their bounds held them where the step began.
+    if (list > 0 && alone && !turns_far &&
+        still->is_far(geometry::grow(world.shapes.trees[shape.tree].bounds(shape.leaf), farthest)))
+      continue;
     const Sweep<D> own = way_of_shape(shape, sweep);
-    const bool turns_far = start.turn != typename D::Angular{};
     const float most_slow = bullet ? 0.25f : 0.5f;
     bool slow = false;  // by itself it passes nothing; what is driven may pass it
     if (!turns_far) {

@@ -56,48 +56,61 @@ float settle(const StepContext<D>& context, const BodyMotion<D>& m, SolverBody<D
 }
 
 /// Where the hulls of a body of several shapes are and go, all of which are asked in every step while it is quick: as
-/// the boxes that they have in their own frame, found far sooner than their bounds, and no smaller.
+/// the boxes that they have in their own frame, found far sooner than their bounds, and no smaller; x, y and z in
+/// lanes.
 class BoxesOfHulls {
  public:
-  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body, bool several) : several_(several) {
-    if (!several_) return;
+  using Four = math::WideFloat<4>;
+
+  BoxesOfHulls(const WorldImplementation<Dim3>& world, std::int32_t body, bool quick) : quick_(quick) {
+    if (!quick) return;
     const SolverBody<Dim3>& s = world.bodies.solver[std::size_t(body)];
     position_ = world.bodies.pose[std::size_t(body)].position;
-    turn_ = math::to_matrix(world.bodies.pose[std::size_t(body)].rotation);
-    center_ = turn_ * world.bodies.motion[std::size_t(body)].local_center;
-    way_ = s.linear_velocity * world.last_dt;
-    spin_ = s.angular_velocity * world.last_dt;
+    const Mat3f turn = math::to_matrix(world.bodies.pose[std::size_t(body)].rotation);
+    const Vec3f spin = s.angular_velocity * world.last_dt,
+                center = turn * world.bodies.motion[std::size_t(body)].local_center;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3f axis = k == 0 ? turn.cx : k == 1 ? turn.cy : turn.cz;
+      axis_[k] = lanes(axis), size_[k] = lanes(abs(axis)), turning_[k] = lanes(cross(spin, axis));
+    }
+    way_ = lanes(s.linear_velocity * world.last_dt - cross(spin, center));
     bounce_ = world.shapes.bounce;
   }
-  bool know(const ShapeRecord<Dim3>& shape) const {
-    return several_ && shape.at_origin && shape.geometry.type == geometry::ShapeType3::hull;
-  }
-  Dim3::Bounds bounds(const ShapeRecord<Dim3>& shape) const {
+  /// Does it stay in its fat bounds, with its way in the next step? Then with so much room (m).
+  bool stay_within(const ShapeRecord<Dim3>& shape, const Dim3::Bounds& fat, Vec3d& least_below, Vec3d& least_above) {
+    if (!quick_ || !shape.at_origin || shape.geometry.type != geometry::ShapeType3::hull) return false;
     const geometry::Bounds3f& own = shape.geometry.hull->bounds;
-    const Vec3f e = own.extents(), middle = turn_ * own.center(), size = abs(middle) + e;
-    Vec3f half = abs(turn_.cx) * e.x + abs(turn_.cy) * e.y + abs(turn_.cz) * e.z;
-    const float rounding = 1e-6f * (size.x + size.y + size.z) + shape.geometry.hull->radius;
-    half += Vec3f{rounding, rounding, rounding};
-    return {position_ + Vec3d(middle - half), position_ + Vec3d(middle + half)};
-  }
-  /// As the function of that name.
-  Vec3d way_ahead(const ShapeRecord<Dim3>& shape) const {
-    const Vec3f way = way_ + cross(spin_, turn_ * shape.geometry.hull->bounds.center() - center_);
-    return Vec3d(within_foresight(way, shape, bounce_));
+    const Vec3f c = own.center(), e = own.extents();
+    const auto sum = [](const Four(&rows)[3], const Vec3f& v) {
+      return rows[0] * Four::splat(v.x) + rows[1] * Four::splat(v.y) + rows[2] * Four::splat(v.z);
+    };
+    const Four middle = sum(axis_, c), zero = Four::zero();
+    const float size = math::abs(c.x) + math::abs(c.y) + math::abs(c.z) + e.x + e.y + e.z;
+    const Four half = sum(size_, e) + Four::splat(4e-6f * size + shape.geometry.hull->radius);
+    const Four to = way_ + sum(turning_, c), squares = to * to;
+    const Four way = to * Four::splat(within_foresight(squares[0] + squares[1] + squares[2], shape, bounce_));
+    const Four below = middle - half - lanes(Vec3f(fat.low - position_)),
+               above = lanes(Vec3f(fat.high - position_)) - middle - half;
+    const auto within = (below + min(way, zero) >= zero) & (above - max(way, zero) >= zero);
+    if ((bitmask(within) & 7) != 7) return false;
+    for (int k = 0; k < 3; ++k) {
+      least_below[k] = min(least_below[k], double(below[k]));
+      least_above[k] = min(least_above[k], double(above[k]));
+    }
+    return true;
   }
 
  private:
-  bool several_;
+  static Four lanes(const Vec3f& v) { return {Four::Vector{v.x, v.y, v.z, 0}}; }
+
+  bool quick_;
   Bounce bounce_ = Bounce::unknown;
   Vec3d position_{};
-  Vec3f center_{}, way_{}, spin_{};
-  Mat3f turn_{};
+  Four axis_[3], size_[3], turning_[3], way_;  ///< rad, m
 };
 struct NoBoxes {
   NoBoxes(const WorldImplementation<Dim2>&, std::int32_t, bool) {}
-  static bool know(const ShapeRecord<Dim2>&) { return false; }
-  static Dim2::Bounds bounds(const ShapeRecord<Dim2>&) { return {}; }
-  static Vec2d way_ahead(const ShapeRecord<Dim2>&) { return {}; }
+  static bool stay_within(const ShapeRecord<Dim2>&, const Dim2::Bounds&, Vec2d&, Vec2d&) { return false; }
 };
 
 }  // namespace
@@ -129,7 +142,7 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   const bool bullet = (world.bodies.record[std::size_t(body)].flags & body_bullet) != 0;  // looks one step ahead
   if (quick && (bullet || !several))
     for (int k = 0; k < D::dimension; ++k) farthest = max(farthest, math::abs(way[k]));
-  const std::conditional_t<D::dimension == 2, NoBoxes, BoxesOfHulls> boxes(world, body, several);
+  std::conditional_t<D::dimension == 2, NoBoxes, BoxesOfHulls> boxes(world, body, several && quick);
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
@@ -142,17 +155,14 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
       return true;
     }
     const typename D::Bounds fat = world.shapes.trees[shape.tree].bounds(shape.leaf);
-    const bool known = boxes.know(shape);
-    const P ahead = !quick ? P{} : known ? boxes.way_ahead(shape) : way_ahead(world, shape);
-    const auto stays_within = [&](const typename D::Bounds& box) {
-      const typename D::Bounds next{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
-      if (!geometry::contains(fat, next)) return false;
+    if (boxes.stay_within(shape, fat, least_below, least_above)) continue;
+    const typename D::Bounds box = shape_bounds(world, shape);
+    const P ahead = quick ? way_ahead(world, shape) : P{};
+    if (geometry::contains(fat, {box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})})) {
       least_below = math::min(least_below, box.low - fat.low);
       least_above = math::min(least_above, fat.high - box.high);
-      return true;
-    };
-    if (quick && known && stays_within(boxes.bounds(shape))) continue;
-    if (stays_within(shape_bounds(world, shape))) continue;
+      continue;
+    }
     shape.flags |= shape_outgrown;
     any = true;
     // It gets new ones in this step (update_trees), with so much room.

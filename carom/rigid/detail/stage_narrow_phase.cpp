@@ -141,7 +141,7 @@ void update_contacts(WorldImplementation<D>& world) {
   world.scheduler->parallel_for(int(count), worker_grain<D>, [&](int begin, int end, int worker) {
     std::int32_t due[contact_grain];
     PairUpdates<D> updates(world, scratch.found_manifolds[std::size_t(worker)]);
-    const int width = world.kernels.width;
+    const int width = world.kernels.pairs.width;
     // Found once: to the compiler, whatever is written might move them.
     const ContactWatch<D>* const watches = scratch.watches.data();
     const typename D::Pose* const poses = world.bodies.pose.data();
@@ -169,7 +169,7 @@ void update_contacts(WorldImplementation<D>& world) {
           if (many && watch.body[0] != none) bodies_soon(watch.body);
         }
         const std::uint32_t old =
-            world.kernels.nothing_new(watches + begin, lanes, poses, sweeps, world.last_dt);  // bits by lane
+            world.kernels.pairs.nothing_new(watches + begin, lanes, poses, sweeps, world.last_dt);  // bits by lane
         for (std::uint32_t news = ~old & ((1u << lanes) - 1); news != 0; news &= news - 1) {
           const int i = begin + std::countr_zero(news);
           prefetch_lines(contacts + awake[i], sizeof(ContactRecord<D>));

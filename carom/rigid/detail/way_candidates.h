@@ -179,6 +179,12 @@ struct StillNear {
       ++count;
     }
   }
+  /// Does a box reach the bounds of none of them?
+  bool is_far(const typename D::Bounds& box) const {
+    bool far = count <= most;
+    for (int i = 0; far && i < count; ++i) far = !overlaps(*bounds[i], box);
+    return far;
+  }
   bool is_free(const WorldImplementation<D>& world, const typename D::Bounds& box) const {
     if (count > most) return StillNear(world, box).count == 0;
     for (int i = 0; i < count; ++i)
