@@ -239,8 +239,9 @@ template <class F>
 void GranularState<D>::for_slabs_in_turn(bool back, F&& f) {
   for (int color = 0; color < 2; ++color) {
     const int odd = back ? 1 - color : color;
-    scheduler->parallel_for((int(slabs.size()) + 1 - odd) / 2, 1, [&](int begin, int end, int) {
-      for (int k = begin; k < end; ++k) f(slabs[2 * k + odd]);
+    const int count = (int(slabs.size()) + 1 - odd) / 2;
+    scheduler->parallel_for(count, 1, [&](int begin, int end, int) {
+      for (int k = begin; k < end; ++k) f(slabs[2 * (back ? count - 1 - k : k) + odd]);
     });
   }
 }
@@ -367,8 +368,8 @@ float GranularState<D>::round(float dt, float whole) {
   for (int part = 0, swept = 0, stage = 0, looked = 0; part < parts; ++part) {
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
-    for (const int last = ((part + 1) * grain_stages - 1) / parts; stage < last;) {
-      ++stage;  // this substep ends in it
+    for (const int last = part == 0 ? 0 : math::min(part * grain_stages / parts + 1, grain_stages - 1); stage < last;) {
+      ++stage;  // the next to come, at most
       for_slabs([&](GrainSlab<N>& slab, int index) { place_later(slab, slab_begin(index + 1), stage); });
     }
     press();
