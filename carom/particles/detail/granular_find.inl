@@ -52,10 +52,6 @@ void GranularState<D>::sort() {
   cell_start[0] = 0;
   grains.swap(sorted);
   for (auto& list : near_by) list.resize(grains.size() + grain_lanes);
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    for (int axis = 0; axis < N; ++axis) near_by[axis][i] = grains[i].x[axis];
-    near_by[N][i] = grains[i].radius;
-  }
 }
 
 /// The cells of a slab in memory's order.
@@ -259,17 +255,23 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
   for (auto& list : slab.later) list.clear();
   const int *const first = first_pair.data(), *const mine = pairs.data();
   const std::uint8_t* const stage_of = stages.data();
-  const Grain<D>* const all = grains.data();
+  const float* const motions = motion.data();
   float fastest = 0;
   for (int grain = begin; grain < end; ++grain) {
     const int own = places[grain];
+    const float* const ours = motions + std::size_t(grain) * grain_motion<N>;
     const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
     int next = old_begin;
     int k = first[grain];
     const int to = first[grain + 1];
     for (; k < to && stage_of[k] == 0; ++k) {
-      const Vector passing = all[mine[k]].v - all[grain].v;
-      fastest = math::max(fastest, dot(passing, passing));
+      const float* const theirs = motions + std::size_t(mine[k]) * grain_motion<N>;
+      float square = 0;
+      for (int axis = 0; axis < N; ++axis) {
+        const float passing = theirs[axis] - ours[axis];
+        square += passing * passing;
+      }
+      fastest = math::max(fastest, square);
       const int other = places[mine[k]];
       int old = next, was = -1;
       if (old >= old_end || others[old] != other) {

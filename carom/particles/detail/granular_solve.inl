@@ -1,6 +1,7 @@
 // The impulses of grains that touch.
 #pragma once
 
+#include <array>
 #include <chrono>
 
 #include "carom/math/elementary.h"
@@ -32,8 +33,10 @@ int GranularState<D>::grain_in(const Block& block, int lane) const {
 template <class D>
 void GranularState<D>::to_rows() {
   const int count = int(grains.size());
+  std::array<float*, N + 1> columns{};
+  for (int k = 0; k <= N; ++k) columns[std::size_t(k)] = near_by[k].data();
   for_grains(count + int(slabs.size()), [count, from = grains.data(), places = place.data(), origins = origin.data(),
-                                         motions = motion.data()](int i) {
+                                         motions = motion.data(), columns](int i) {
     float* const p = places + std::size_t(i) * grain_place;
     float* const m = motions + std::size_t(i) * grain_motion<N>;
     const Grain<D> none{.curve = 1, .inverse_mass = 1};
@@ -44,6 +47,10 @@ void GranularState<D>::to_rows() {
       m[k] = g.v[k];
     }
     p[3] = g.radius;
+    if (i < count) {
+      for (int k = 0; k < N; ++k) columns[std::size_t(k)][i] = g.x[k];
+      columns[N][i] = g.radius;
+    }
     if constexpr (N == 2) std::copy_n(p, grain_place, origins + std::size_t(i) * grain_place);  // astray()
     if constexpr (N == 2) {
       m[2] = g.radius * g.spin;
@@ -329,10 +336,10 @@ float GranularState<D>::round(float dt, float whole) {
   sort();
   const float shortest = whole / float(most_grain_substeps);
   dt = math::min(dt, math::max(time_to_search(dt), shortest));
+  to_rows();
   find_surfaces(dt);
   look_around();
   find_pairs(dt);
-  to_rows();
   const float share = dt / whole;
   const int most = math::max(1, int(share * float(most_grain_substeps)));
   int parts = math::max(1, int(math::ceil(share * float(definition.substeps) - 1e-3f)));
