@@ -169,8 +169,8 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
     runs.from[run] = cell_start[cell_at(x0, row, across)];
     runs.to[run] = cell_start[cell_at(x1, row, across) + 1];
     for (int k = 0; k < N; ++k) {
-      runs.low[run][k] = float(low[k]) * width - far[k];
-      runs.high[run][k] = float(high[k] + 1) * width + far[k];
+      runs.low[k][run] = float(low[k]) * width - far[k];
+      runs.high[k][run] = float(high[k] + 1) * width + far[k];
     }
   };
   if constexpr (N == 2) {

@@ -167,23 +167,24 @@ CAROM_SIMD_INLINE int append(math::WideInt<width> lanes, std::uint32_t chosen, i
 template <int N>
 int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first, int* found,
          int* later, int at) {
-  using Four = math::WideFloat<4>;
   for (int i = runs.begin; i < runs.end; ++i) {
     first[i] = at;
     int waits = 0;
     F x[N];
-    float place[4] = {};
-    for (int k = 0; k < N; ++k) {
-      place[k] = grains.column[k][i];
-      x[k] = splat(place[k]);
-    }
-    const Four here = Four::load(place);
+    for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
     const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
     F ways[N];
     for (int k = 0; k < N; ++k) ways[k] = splat(reach.way[k]);
     int from[GrainRuns<N>::most] = {i + 1}, to[GrainRuns<N>::most] = {runs.to[0]}, last = 0;
-    for (int run = 1; run < runs.count; ++run) {
-      if (math::any((here < Four::load(runs.low[run])) | (here > Four::load(runs.high[run])))) continue;
+    std::uint32_t reached = 0;
+    for (int run = 0; run < runs.count; run += width) {
+      M near = (x[0] >= F::load(runs.low[0] + run)) & (x[0] <= F::load(runs.high[0] + run));
+      for (int k = 1; k < N; ++k)
+        near = near & (x[k] >= F::load(runs.low[k] + run)) & (x[k] <= F::load(runs.high[k] + run));
+      reached |= math::bitmask(near) << run;
+    }
+    for (reached &= (1u << runs.count) - 2; reached != 0; reached &= reached - 1) {
+      const int run = __builtin_ctz(reached);
       if (to[last] != runs.from[run]) from[++last] = runs.from[run];
       to[last] = runs.to[run];
     }
