@@ -245,25 +245,24 @@ template <class D>
   return block * grain_lanes + lane;
 }
 
-/// Gives the pairs of the slab's grains that may touch at once their blocks, and finds which they were when last looked
-/// for: mostly the same in turn. The others wait for their stage.
+/// Finds which the pairs of the slab's grains that may touch at once were when last looked for: mostly the same in
+/// turn. The others wait for their stage.
 template <class D>
-void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
+void GranularState<D>::match_pairs(GrainSlab<N>& slab, int begin, int end) {
   const int known = int(old_first_pair.size()) - 1;
   const int *const old_first = old_first_pair.data(), *const others = old_pairs.data(),
-                   *const places = old_place.data();
-  for (auto& list : slab.later) list.clear();
-  const int *const first = first_pair.data(), *const mine = pairs.data();
-  const std::uint8_t* const stage_of = stages.data();
+                   *const places = old_place.data(), *const first = first_pair.data(), *const mine = pairs.data();
+  const std::uint8_t *const stage_of = stages.data(), *const old_stage_of = old_stages.data();
   const float* const motions = motion.data();
+  int* const old_of = was.data();
+  for (auto& list : slab.later) list.clear();
   float fastest = 0;
   for (int grain = begin; grain < end; ++grain) {
     const int own = places[grain];
     const float* const ours = motions + std::size_t(grain) * grain_motion<N>;
     const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
-    int next = old_begin;
-    int k = first[grain];
     const int to = first[grain + 1];
+    int k = first[grain], next = old_begin;
     for (; k < to && stage_of[k] == 0; ++k) {
       const float* const theirs = motions + std::size_t(mine[k]) * grain_motion<N>;
       float square = 0;
@@ -273,24 +272,34 @@ void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
       }
       fastest = math::max(fastest, square);
       const int other = places[mine[k]];
-      int old = next, was = -1;
+      int old = next, found = -1;
       if (old >= old_end || others[old] != other) {
         old = old_begin;
         while (old < old_end && others[old] != other) ++old;
       }
       if (old < old_end) {
         next = old + 1;
-        was = old_stages[old] == 0 ? 2 * old : -1;
+        found = old_stage_of[old] == 0 ? 2 * old : -1;
       } else if (other < known) {
         for (old = old_first[other]; old < old_first[other + 1]; ++old)
-          if (others[old] == own && old_stages[old] == 0) was = 2 * old + 1;
+          if (others[old] == own && old_stage_of[old] == 0) found = 2 * old + 1;
       }
-      slab.was[place_pair(slab, end, grain, k)] = was;
+      old_of[k] = found;
     }
     for (; k < to; ++k)
       slab.later[stage_of[k]].push_back({std::uint32_t(grain * grain_place), std::uint32_t(mine[k] * grain_place), k});
   }
   slab.fastest = math::sqrt(fastest);
+}
+
+/// Gives the pairs of the slab's grains that may touch at once their blocks.
+template <class D>
+void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
+  const int* const first = first_pair.data();
+  const std::uint8_t* const stage_of = stages.data();
+  for (int grain = begin; grain < end; ++grain)
+    for (int k = first[grain], to = first[grain + 1]; k < to && stage_of[k] == 0; ++k)
+      slab.was[place_pair(slab, end, grain, k)] = was[k];
 }
 
 /// At the begin of a stage: pairs that may touch within it get a lane, the others wait on.
@@ -349,7 +358,11 @@ void GranularState<D>::find_pairs(float dt) {
     for (int i = slab_begin(k); i < slab_begin(k + 1); ++i) first_pair[i] += before;
     before += found_here;
   }
-  for_slabs([&](GrainSlab<N>& slab, int index) { place_pairs(slab, slab_begin(index), slab_begin(index + 1)); });
+  if (was.size() < pairs.size()) was.resize(pairs.size());
+  for_slabs([&](GrainSlab<N>& slab, int index) {
+    match_pairs(slab, slab_begin(index), slab_begin(index + 1));
+    place_pairs(slab, slab_begin(index), slab_begin(index + 1));
+  });
 }
 
 /// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.

@@ -175,7 +175,9 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
     const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
     F ways[N];
     for (int k = 0; k < N; ++k) ways[k] = splat(reach.way[k]);
-    int from[GrainRuns<N>::most] = {i + 1}, to[GrainRuns<N>::most] = {runs.to[0]}, last = 0;
+    int from[GrainRuns<N>::most], to[GrainRuns<N>::most], last = 0;
+    from[0] = i + 1;
+    to[0] = runs.to[0];
     std::uint32_t reached = 0;
     for (int run = 0; run < runs.count; run += width) {
       M near = (x[0] >= F::load(runs.low[0] + run)) & (x[0] <= F::load(runs.high[0] + run));
