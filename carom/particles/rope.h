@@ -157,7 +157,7 @@ class CAROM_API RopeSet {
   std::vector<detail::RopeMemory> memory_;
   std::vector<double> matrix_, right_;
   std::vector<int> first_block_;
-  std::vector<rigid::ShapeId> found_;
+  std::vector<rigid::ShapeId> found_, found_far_;
   std::vector<rigid::JointId> joints_;
   std::vector<RopeBreakEvent> breaks_;
   std::vector<detail::RopeCross> crossings_, crossings_before_;

@@ -60,9 +60,10 @@ struct GrainColumns {
 template <int N>
 struct GrainRuns {
   static constexpr int most = (2 * grain_rings<N> + 1) * (N == 2 ? grain_rings<N> + 1 : 2);
+  static constexpr int room = (most + grain_lanes - 1) / grain_lanes * grain_lanes;
   int begin = 0, end = 0, count = 0;
   int from[most], to[most];
-  float low[most][4] = {}, high[most][4] = {};  ///< m
+  float low[N][room] = {}, high[N][room] = {};  ///< m
 };
 
 /// m: how far two grains may close by axis, what is added in any direction, and no more than `most` in all.

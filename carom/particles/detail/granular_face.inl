@@ -95,7 +95,7 @@ void GranularState<D>::reserve() {
   for (auto* list : {&cell_of, &old_place, &last_block, &last_across}) list->reserve(n);
   for (auto* list : {&first_pair, &old_first_pair, &first_touch, &old_first_touch}) list->reserve(n + 1);
   for (auto& list : near_by) list.reserve(n + grain_lanes);
-  for (auto* list : {&pairs, &old_pairs}) list->resize(contacts);
+  for (auto* list : {&pairs, &old_pairs, &was}) list->resize(contacts);
   for (auto* list : {&stages, &old_stages}) list->resize(contacts);
   held.reserve(contacts * grain_held<N>);
   for (GrainSlab<N>& slab : slabs) {

@@ -52,10 +52,6 @@ void GranularState<D>::sort() {
   cell_start[0] = 0;
   grains.swap(sorted);
   for (auto& list : near_by) list.resize(grains.size() + grain_lanes);
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    for (int axis = 0; axis < N; ++axis) near_by[axis][i] = grains[i].x[axis];
-    near_by[N][i] = grains[i].radius;
-  }
 }
 
 /// The cells of a slab in memory's order.
@@ -78,11 +74,12 @@ void GranularState<D>::look_around() {
     for_slabs([&](GrainSlab<N>&, int index) {
       for_cells(index, [&](int x, int y, int z) {
         int at[3] = {x, y, z};
-        const int here = at[axis], last = math::min(here + rings, cells[axis] - 1);
+        const int c = cell_at(x, y, z), here = at[axis], last = math::min(here + rings, cells[axis] - 1);
+        if (axis == N - 1 && cell_start[c] == cell_start[c + 1]) return;  // nobody asks
         Haste<D> all;
         for (at[axis] = math::max(here - rings, 0); at[axis] <= last; ++at[axis])
           all.add((*from)[cell_at(at[0], at[1], at[2])]);
-        to[cell_at(x, y, z)] = all;
+        to[c] = all;
       });
     });
     from = &to;
@@ -173,8 +170,8 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
     runs.from[run] = cell_start[cell_at(x0, row, across)];
     runs.to[run] = cell_start[cell_at(x1, row, across) + 1];
     for (int k = 0; k < N; ++k) {
-      runs.low[run][k] = float(low[k]) * width - far[k];
-      runs.high[run][k] = float(high[k] + 1) * width + far[k];
+      runs.low[k][run] = float(low[k]) * width - far[k];
+      runs.high[k][run] = float(high[k] + 1) * width + far[k];
     }
   };
   if constexpr (N == 2) {
@@ -249,46 +246,61 @@ template <class D>
   return block * grain_lanes + lane;
 }
 
-/// Gives the pairs of the slab's grains that may touch at once their blocks, and finds which they were when last looked
-/// for: mostly the same in turn. The others wait for their stage.
+/// Finds which the pairs of the slab's grains that may touch at once were when last looked for: mostly the same in
+/// turn. The others wait for their stage.
 template <class D>
-void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
+void GranularState<D>::match_pairs(GrainSlab<N>& slab, int begin, int end) {
   const int known = int(old_first_pair.size()) - 1;
   const int *const old_first = old_first_pair.data(), *const others = old_pairs.data(),
-                   *const places = old_place.data();
+                   *const places = old_place.data(), *const first = first_pair.data(), *const mine = pairs.data();
+  const std::uint8_t *const stage_of = stages.data(), *const old_stage_of = old_stages.data();
+  const float* const motions = motion.data();
+  int* const old_of = was.data();
   for (auto& list : slab.later) list.clear();
-  const int *const first = first_pair.data(), *const mine = pairs.data();
-  const std::uint8_t* const stage_of = stages.data();
-  const Grain<D>* const all = grains.data();
   float fastest = 0;
   for (int grain = begin; grain < end; ++grain) {
     const int own = places[grain];
+    const float* const ours = motions + std::size_t(grain) * grain_motion<N>;
     const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
-    int next = old_begin;
-    int k = first[grain];
     const int to = first[grain + 1];
+    int k = first[grain], next = old_begin;
     for (; k < to && stage_of[k] == 0; ++k) {
-      const Vector passing = all[mine[k]].v - all[grain].v;
-      fastest = math::max(fastest, dot(passing, passing));
+      const float* const theirs = motions + std::size_t(mine[k]) * grain_motion<N>;
+      float square = 0;
+      for (int axis = 0; axis < N; ++axis) {
+        const float passing = theirs[axis] - ours[axis];
+        square += passing * passing;
+      }
+      fastest = math::max(fastest, square);
       const int other = places[mine[k]];
-      int old = next, was = -1;
+      int old = next, found = -1;
       if (old >= old_end || others[old] != other) {
         old = old_begin;
         while (old < old_end && others[old] != other) ++old;
       }
       if (old < old_end) {
         next = old + 1;
-        was = old_stages[old] == 0 ? 2 * old : -1;
+        found = old_stage_of[old] == 0 ? 2 * old : -1;
       } else if (other < known) {
         for (old = old_first[other]; old < old_first[other + 1]; ++old)
-          if (others[old] == own && old_stages[old] == 0) was = 2 * old + 1;
+          if (others[old] == own && old_stage_of[old] == 0) found = 2 * old + 1;
       }
-      slab.was[place_pair(slab, end, grain, k)] = was;
+      old_of[k] = found;
     }
     for (; k < to; ++k)
       slab.later[stage_of[k]].push_back({std::uint32_t(grain * grain_place), std::uint32_t(mine[k] * grain_place), k});
   }
   slab.fastest = math::sqrt(fastest);
+}
+
+/// Gives the pairs of the slab's grains that may touch at once their blocks.
+template <class D>
+void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
+  const int* const first = first_pair.data();
+  const std::uint8_t* const stage_of = stages.data();
+  for (int grain = begin; grain < end; ++grain)
+    for (int k = first[grain], to = first[grain + 1]; k < to && stage_of[k] == 0; ++k)
+      slab.was[place_pair(slab, end, grain, k)] = was[k];
 }
 
 /// At the begin of a stage: pairs that may touch within it get a lane, the others wait on.
@@ -347,7 +359,11 @@ void GranularState<D>::find_pairs(float dt) {
     for (int i = slab_begin(k); i < slab_begin(k + 1); ++i) first_pair[i] += before;
     before += found_here;
   }
-  for_slabs([&](GrainSlab<N>& slab, int index) { place_pairs(slab, slab_begin(index), slab_begin(index + 1)); });
+  if (was.size() < pairs.size()) was.resize(pairs.size());
+  for_slabs([&](GrainSlab<N>& slab, int index) {
+    match_pairs(slab, slab_begin(index), slab_begin(index + 1));
+    place_pairs(slab, slab_begin(index), slab_begin(index + 1));
+  });
 }
 
 /// Surface: a side of the domain, or 2 N + the index of a solid. Each has blocks of its own: a grain is in one once.

@@ -167,46 +167,50 @@ CAROM_SIMD_INLINE int append(math::WideInt<width> lanes, std::uint32_t chosen, i
 template <int N>
 int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first, int* found,
          int* later, int at) {
-  using Four = math::WideFloat<4>;
   for (int i = runs.begin; i < runs.end; ++i) {
     first[i] = at;
     int waits = 0;
     F x[N];
-    float place[4] = {};
-    for (int k = 0; k < N; ++k) {
-      place[k] = grains.column[k][i];
-      x[k] = splat(place[k]);
-    }
-    const Four here = Four::load(place);
+    for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
     const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
     F ways[N];
-    for (int k = 0; k < N; ++k) ways[k] = splat(2 * reach.way[k]);
-    int from[GrainRuns<N>::most] = {i + 1}, to[GrainRuns<N>::most] = {runs.to[0]}, last = 0;
-    for (int run = 1; run < runs.count; ++run) {
-      if (math::any((here < Four::load(runs.low[run])) | (here > Four::load(runs.high[run])))) continue;
+    for (int k = 0; k < N; ++k) ways[k] = splat(reach.way[k]);
+    int from[GrainRuns<N>::most], to[GrainRuns<N>::most], last = 0;
+    from[0] = i + 1;
+    to[0] = runs.to[0];
+    std::uint32_t reached = 0;
+    for (int run = 0; run < runs.count; run += width) {
+      M near = (x[0] >= F::load(runs.low[0] + run)) & (x[0] <= F::load(runs.high[0] + run));
+      for (int k = 1; k < N; ++k)
+        near = near & (x[k] >= F::load(runs.low[k] + run)) & (x[k] <= F::load(runs.high[k] + run));
+      reached |= math::bitmask(near) << run;
+    }
+    for (reached &= (1u << runs.count) - 2; reached != 0; reached &= reached - 1) {
+      const int run = __builtin_ctz(reached);
       if (to[last] != runs.from[run]) from[++last] = runs.from[run];
       to[last] = runs.to[run];
     }
     for (int run = 0; run <= last; ++run)
       for (int j = from[run]; j < to[run]; j += width) {
         // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
-        // slack: then d² < u² + 2 |d| s too, which asks for no root and lets in few others, or these too soon.
-        F square, twice;
+        // slack: then d² < u² + 2 |d| s too, which asks for no root.
+        F square, way;
         for (int k = 0; k < N; ++k) {
           const F d = F::load(grains.column[k] + j) - x[k], far = math::abs(d) * ways[k];
           square = k == 0 ? d * d : square + d * d;
-          twice = k == 0 ? far : twice + far;
+          way = k == 0 ? far : way + far;
         }
         const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
-        const F open = square - touch * touch, all = splat(grain_stages) * open;
-        std::uint32_t hits = math::bitmask((open < twice) & (square < farthest * farthest));
+        std::uint32_t hits = math::bitmask((square - touch * touch < way + way) & (square < farthest * farthest));
         if (to[run] - j < width) hits &= (1u << (to[run] - j)) - 1;
         if (hits == 0) continue;
-        const std::uint32_t soon = math::bitmask(all < twice) & hits;
+        const F open = square - touch * math::sqrt(square), all = splat(grain_stages) * open;
+        hits &= math::bitmask(open < way);
+        const std::uint32_t soon = math::bitmask(all < way) & hits;
         const auto others = math::WideInt<width>::lanes() + math::WideInt<width>::splat(j);
         at = append(others, soon, found, at);
         if (hits == soon) continue;
-        const F stage = math::max(math::min(all / math::max(twice, splat(1e-30f)), splat(grain_stages - 1)), splat(1));
+        const F stage = math::max(math::min(all / math::max(way, splat(1e-30f)), splat(grain_stages - 1)), splat(1));
         waits = append(others | (math::to_int(stage) << grain_stage_bit), hits ^ soon, later, waits);
       }
     for (int k = 0; k < waits; k += width) math::WideInt<width>::load(later + k).store(found + at + k);

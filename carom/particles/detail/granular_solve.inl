@@ -1,6 +1,7 @@
 // The impulses of grains that touch.
 #pragma once
 
+#include <array>
 #include <chrono>
 
 #include "carom/math/elementary.h"
@@ -32,8 +33,10 @@ int GranularState<D>::grain_in(const Block& block, int lane) const {
 template <class D>
 void GranularState<D>::to_rows() {
   const int count = int(grains.size());
+  std::array<float*, N + 1> columns{};
+  for (int k = 0; k <= N; ++k) columns[std::size_t(k)] = near_by[k].data();
   for_grains(count + int(slabs.size()), [count, from = grains.data(), places = place.data(), origins = origin.data(),
-                                         motions = motion.data()](int i) {
+                                         motions = motion.data(), columns](int i) {
     float* const p = places + std::size_t(i) * grain_place;
     float* const m = motions + std::size_t(i) * grain_motion<N>;
     const Grain<D> none{.curve = 1, .inverse_mass = 1};
@@ -44,6 +47,10 @@ void GranularState<D>::to_rows() {
       m[k] = g.v[k];
     }
     p[3] = g.radius;
+    if (i < count) {
+      for (int k = 0; k < N; ++k) columns[std::size_t(k)][i] = g.x[k];
+      columns[N][i] = g.radius;
+    }
     if constexpr (N == 2) std::copy_n(p, grain_place, origins + std::size_t(i) * grain_place);  // astray()
     if constexpr (N == 2) {
       m[2] = g.radius * g.spin;
@@ -239,8 +246,9 @@ template <class F>
 void GranularState<D>::for_slabs_in_turn(bool back, F&& f) {
   for (int color = 0; color < 2; ++color) {
     const int odd = back ? 1 - color : color;
-    scheduler->parallel_for((int(slabs.size()) + 1 - odd) / 2, 1, [&](int begin, int end, int) {
-      for (int k = begin; k < end; ++k) f(slabs[2 * k + odd]);
+    const int count = (int(slabs.size()) + 1 - odd) / 2;
+    scheduler->parallel_for(count, 1, [&](int begin, int end, int) {
+      for (int k = begin; k < end; ++k) f(slabs[2 * (back ? count - 1 - k : k) + odd]);
     });
   }
 }
@@ -328,10 +336,10 @@ float GranularState<D>::round(float dt, float whole) {
   sort();
   const float shortest = whole / float(most_grain_substeps);
   dt = math::min(dt, math::max(time_to_search(dt), shortest));
+  to_rows();
   find_surfaces(dt);
   look_around();
   find_pairs(dt);
-  to_rows();
   const float share = dt / whole;
   const int most = math::max(1, int(share * float(most_grain_substeps)));
   int parts = math::max(1, int(math::ceil(share * float(definition.substeps) - 1e-3f)));
@@ -367,8 +375,8 @@ float GranularState<D>::round(float dt, float whole) {
   for (int part = 0, swept = 0, stage = 0, looked = 0; part < parts; ++part) {
     for (GrainBody<D>& b : bodies)
       if (b.moves) b.velocity += h * b.gain;
-    for (const int last = ((part + 1) * grain_stages - 1) / parts; stage < last;) {
-      ++stage;  // this substep ends in it
+    for (const int last = part == 0 ? 0 : math::min(part * grain_stages / parts + 1, grain_stages - 1); stage < last;) {
+      ++stage;  // the next to come, at most
       for_slabs([&](GrainSlab<N>& slab, int index) { place_later(slab, slab_begin(index + 1), stage); });
     }
     press();

@@ -150,6 +150,8 @@ struct GranularState {
   AlignedFloats pace;    ///< m, rows by grain: how far another may close on it until the next search, by axis
   // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
+  std::vector<int>
+      was;  ///< twice the old number of a pair that may touch at once, and 1 where its grains are swapped; or −1
   /// By pair: in which stage of the time until the next search it may first touch; 0 once it is solved.
   std::vector<std::uint8_t> stages, old_stages;
   int pair_count = 0;
@@ -190,6 +192,7 @@ struct GranularState {
   bool astray(float time);
   void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
   int place_pair(GrainSlab<N>& slab, int end, int grain, int pair);
+  void match_pairs(GrainSlab<N>& slab, int begin, int end);
   void place_pairs(GrainSlab<N>& slab, int begin, int end);
   void place_later(GrainSlab<N>& slab, int end, int stage);
   int slab_begin(int slab) const { return cell_start[std::size_t(slab) * (std::size_t(size) / slabs.size())]; }

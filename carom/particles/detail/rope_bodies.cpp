@@ -182,7 +182,7 @@ double RopeSolver::share_at_start(const RopeBody& body) const {
   constexpr double least_blow = 1;  // m/s
   const double size = length_squared(body.impulse);
   if (!body.moves || substeps == 1 || !(length(body.linear * body.impulse) > least_blow)) return 0;
-  const double even = 0.5 * (1 + 1.0 / substeps);  // of dt, how long a steady force has acted
+  constexpr double even = 0.5;  // of dt, how long a steady force has acted
   return math::clamp((dot(body.carried, body.impulse) / (size * dt) - even) / (1 - even), 0.0, 1.0);
 }
 

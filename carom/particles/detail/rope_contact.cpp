@@ -1,4 +1,6 @@
 // Particles of ropes against the shapes of the world; segments between them are in rope_edges.cpp.
+#include <algorithm>
+
 #include "carom/math/elementary.h"
 #include "carom/particles/detail/checks.h"
 #include "carom/particles/detail/rope_solver.h"
@@ -11,7 +13,8 @@ namespace {
 constexpr double rope_slip = 0.01;       // m/s: friction grows up to here
 constexpr int friction_iterations = 15;  // in which how things rub is found anew
 constexpr double meet_depth = 0.25;      // radii: where a motion within a substep enters a shape
-constexpr double fastest_body = 20;      // m/s: what comes to a rope faster than that may be found late
+constexpr double usual_body = 20;     // m/s: up to there what comes to a rope is looked for without a look at its speed
+constexpr double fastest_body = 100;  // m/s: what comes to a rope faster than that may be found late
 constexpr int meet_steps = 24;
 
 }  // namespace
@@ -35,6 +38,18 @@ bool RopeSolver::strayed(const Rope& rope) const {
   return false;
 }
 
+void RopeSolver::find_shapes(const geometry::Bounds3d& bounds) {
+  (void)world.overlap_bounds(grow(bounds, dt * usual_body), set.found_);
+  (void)world.overlap_bounds(grow(bounds, dt * fastest_body), set.found_far_);
+  for (const rigid::ShapeId id : set.found_far_) {
+    const auto owner = world.body_of(id);
+    if (!owner) continue;
+    const auto state = world.state(*owner);
+    if (!state || length(state->linear_velocity) <= float(usual_body)) continue;
+    if (std::find(set.found_.begin(), set.found_.end(), id) == set.found_.end()) set.found_.push_back(id);
+  }
+}
+
 void RopeSolver::find_contacts(Rope& rope) {
   const std::size_t n = rope.position.size();
   if (!rope.collide) return;
@@ -49,7 +64,7 @@ void RopeSolver::find_contacts(Rope& rope) {
     rope.room[i] = reach_at(rope, speed);
   }
   const double reach = reach_at(rope, fastest);
-  (void)world.overlap_bounds(grow(bounds, radius + reach + dt * fastest_body), set.found_);
+  find_shapes(grow(bounds, radius + reach));
 
   for (RopeContact& contact : rope.contacts) contact.separation = 1e30;
   for (RopeEdge& edge : rope.edges) edge.contact.separation = 1e30;

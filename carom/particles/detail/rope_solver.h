@@ -57,6 +57,8 @@ struct RopeSolver {
 
   // rope_contact.cpp
   double reach_at(const Rope& rope, double speed) const;
+  /// Shapes in the bounds, and those that may come there within the step.
+  void find_shapes(const geometry::Bounds3d& bounds);
   void find_contacts(Rope& rope);
   bool strayed(const Rope& rope) const;                          ///< from where things near it were looked for
   Vec3d shape_point(const RopeShape& shape, Vec3d point) const;  ///< in the shape's frame
