@@ -80,12 +80,13 @@ class CAROM_API DynamicTree {
   void visit_leaves(Visit&& visit) const {
     visit_leaves_below(root_, visit);
   }
-  /// The same in the order in which they lie in memory.
+  /// The same in the order in which they lie in memory: of the nodes [begin, end) of node_count().
   template <class Visit>
-  void each_leaf(Visit&& visit) const {
-    for (const Node& node : nodes_)
-      if (node.child_b < 0 && node.child_a >= 0) visit(std::uint32_t(node.child_a), node.box);
+  void each_leaf(std::size_t begin, std::size_t end, Visit&& visit) const {
+    for (const Node *node = nodes_.data() + begin, *last = nodes_.data() + end; node < last; ++node)
+      if (node->child_b < 0 && node->child_a >= 0) visit(std::uint32_t(node->child_a), node->box);
   }
+  std::size_t node_count() const { return nodes_.size(); }
 
   /// Subtrees that together hold all leaves, in the order in which visit_leaves comes to them: for work on several
   /// threads. Returns how many there are, at most roots.size().

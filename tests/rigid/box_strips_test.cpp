@@ -37,12 +37,13 @@ std::vector<MovedBox> boxes_of(int count, Vec2d size, Vec2d origin) {
   }
   return boxes;
 }
-bool take(BoxStrips& strips, const std::vector<MovedBox>& boxes) {
+bool take(BoxStrips& strips, const std::vector<MovedBox>& boxes, int parts = 1) {
   Bounds2d whole = boxes.front().now;
   for (const MovedBox& box : boxes) whole = merge(whole, box.now);
-  if (!strips.begin(whole, boxes.size())) return false;
-  for (std::size_t i = 0; i < boxes.size(); ++i) strips.add(std::uint32_t(i), boxes[i].now, boxes[i].old);
-  return strips.sort();
+  if (!strips.begin(whole, parts, boxes.size())) return false;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    strips.add(int(i * std::size_t(parts) / boxes.size()), std::uint32_t(i), boxes[i].now, boxes[i].old);
+  return strips.sort(*core::make_thread_pool(parts));
 }
 
 struct Meetings {
@@ -73,8 +74,8 @@ TEST(BoxStrips, TellWhatMeetsNowAndDidNotBeforeOnceByAnyLanes) {
           if (overlaps(boxes[i].now, boxes[k].now) && !overlaps(boxes[i].old, boxes[k].old)) expected.insert({i, k});
       EXPECT_GT(expected.size(), 200u);
       BoxStrips strips;
-      ASSERT_TRUE(take(strips, boxes));
-      for (const int width : {4, 8, 16}) {
+      for (const auto [width, parts] : {std::pair{4, 1}, {8, 1}, {16, 1}, {16, 3}}) {
+        ASSERT_TRUE(take(strips, boxes, parts));
         const auto kernels = kernels_of<Dim2>(math::choose_instruction_set(math::instruction_set_of_width(width)));
         Meetings meetings{strips};
         for (meetings.strip = 0; meetings.strip < strips.strip_count(); ++meetings.strip)

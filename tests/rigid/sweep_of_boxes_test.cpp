@@ -12,6 +12,8 @@ namespace carom::rigid::detail {
 namespace {
 using math::Vec3d;
 
+core::SerialScheduler serial;
+
 /// Boxes of fast bodies: long, few of them side by side, on the grid of fat bounds.
 std::vector<geometry::Bounds3d> boxes_of(int count, double size, Vec3d origin, std::uint64_t seed) {
   math::Random random(seed);
@@ -48,7 +50,7 @@ TEST(BoxSweep, FindsWhatComparingAllWithAllFinds) {
         for (std::uint32_t k = i + 1; k < boxes.size(); ++k)
           if (overlaps(boxes[i], boxes[k])) expected.insert({i, k});
       BoxSweep sweep;
-      ASSERT_TRUE(sweep.take(tree_of(boxes)));
+      ASSERT_TRUE(sweep.take(serial, tree_of(boxes)));
       std::size_t visits = 0;
       for (int s = 0; s < sweep.strip_count(); ++s)
         sweep.visit_strip(s, [&](std::uint32_t a, std::uint32_t b) {
@@ -68,7 +70,7 @@ TEST(BoxSweep, FindsWhatMeetsABox) {
     const geometry::DynamicTree3 tree = tree_of(boxes);
     BoxSweep sweep;
     EXPECT_FALSE(sweep.holds(tree));
-    ASSERT_TRUE(sweep.take(tree));
+    ASSERT_TRUE(sweep.take(serial, tree));
     EXPECT_TRUE(sweep.holds(tree));
     math::Random random(13);
     std::size_t met = 0;
@@ -97,13 +99,13 @@ TEST(BoxSweep, FindsWhatMeetsABox) {
 
 TEST(BoxSweep, LeavesCrowdsAndWideWorldsToTheTree) {
   BoxSweep sweep;
-  EXPECT_FALSE(sweep.take(tree_of(boxes_of(3000, 6, {}, 3)))) << "a heap";
+  EXPECT_FALSE(sweep.take(serial, tree_of(boxes_of(3000, 6, {}, 3)))) << "a heap";
   std::vector<geometry::Bounds3d> far = boxes_of(500, 60, {}, 5);
   far.push_back({{2e4, 0, 0}, {2e4 + 1, 1, 1}});
-  EXPECT_FALSE(sweep.take(tree_of(far))) << "wider than floats hold exactly";
+  EXPECT_FALSE(sweep.take(serial, tree_of(far))) << "wider than floats hold exactly";
   std::vector<geometry::Bounds3d> outlier = boxes_of(3000, 6, {}, 5);
   outlier.push_back({{7e3, 7e3, 7e3}, {7e3 + 1, 7e3 + 1, 7e3 + 1}});
-  EXPECT_FALSE(sweep.take(tree_of(outlier))) << "a heap and one far from it";
+  EXPECT_FALSE(sweep.take(serial, tree_of(outlier))) << "a heap and one far from it";
 }
 
 }  // namespace

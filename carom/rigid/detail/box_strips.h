@@ -20,13 +20,14 @@ using TellMeetings = void (*)(void* whom, std::int32_t i, std::int32_t first, st
 
 class BoxStrips : public StripOrder {
  public:
-  /// Forgets all boxes. Those to come reach into `whole`, and lie on a grid of 2⁻¹⁰ m. False where floats do not hold
-  /// them exactly.
-  bool begin(const geometry::Bounds2d& whole, std::size_t count);
-  /// A box of now and what it was when pairs were last looked for: of what lies far off, that it met none here.
-  void add(std::uint32_t item, const geometry::Bounds2d& box, const geometry::Bounds2d& old);
+  /// Forgets all boxes. Those to come, at most `room` in each part, reach into `whole`, and lie on a grid of 2⁻¹⁰ m.
+  /// False where floats do not hold them exactly.
+  bool begin(const geometry::Bounds2d& whole, int parts, std::size_t room);
+  /// A box of now and what it was when pairs were last looked for: of what lies far off, that it met none here. Each
+  /// part may be filled by a thread of its own.
+  void add(int part, std::uint32_t item, const geometry::Bounds2d& box, const geometry::Bounds2d& old);
   /// Puts them in order. False where they crowd so that a tree is faster.
-  bool sort();
+  bool sort(core::TaskScheduler& scheduler);
 
   std::int32_t strip_begin(int strip) const { return first_[std::size_t(strip)]; }
   std::int32_t strip_end(int strip) const { return first_[std::size_t(strip) + 1] - padding; }
@@ -49,14 +50,14 @@ class BoxStrips : public StripOrder {
   struct Box {
     float side[8];  ///< m: low, high, old low, old high, x and y of each
     std::uint32_t item;
-    std::uint16_t key, last;  ///< bins
-    std::uint16_t first_strip, last_strip;
+    std::uint16_t key = 0, last = 0;  ///< bins
+    std::uint16_t first_strip = 0, last_strip = 0;
   };
   static constexpr int padding = 16;  ///< places after each strip that meet none, for the widest lanes
 
   std::vector<Box> boxes_;
-  std::vector<float> row_[8];  ///< by place in the strips, as Box::side, the axis of the sweep before the other
-  math::Vec2d origin_{}, extent_{}, sum_{};  ///< m; sum_: of the sizes of all boxes
+  std::vector<float> row_[8];        ///< by place in the strips, as Box::side, the axis of the sweep before the other
+  math::Vec2d origin_{}, extent_{};  ///< m
 };
 
 }  // namespace carom::rigid::detail

@@ -4,7 +4,7 @@
 
 namespace carom::rigid::detail {
 
-bool BoxSweep::take(const geometry::DynamicTree3& tree) {
+bool BoxSweep::take(core::TaskScheduler& scheduler, const geometry::DynamicTree3& tree) {
   version_ = 0;
   const std::size_t count = std::size_t(tree.size());
   const geometry::Bounds3d whole = tree.root_bounds();
@@ -27,40 +27,36 @@ bool BoxSweep::take(const geometry::DynamicTree3& tree) {
   if (share(axes[1]) < share(axes[0])) std::swap(axes[0], axes[1]);
 
   measure(extent[axes[0]], extent[axes[1]], 3 * sum[axes[1]] / double(count));  // three boxes wide
-  std::uint32_t place[bins] = {};
+  parts_.resize(std::size_t(part_count(scheduler.thread_count(), count)));
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    parts_[p].begin = std::uint32_t(count * p / parts_.size());
+    parts_[p].end = std::uint32_t(count * (p + 1) / parts_.size());
+  }
+  float *low[3], *high[3];
+  int along[3];
+  for (int k = 0; k < 3; ++k) {
+    low_[k].resize(room_for(count, padding)), high_[k].resize(room_for(count, padding));
+    low[k] = low_[k].data(), high[k] = high_[k].data(), along[k] = axes[k];
+  }
+  // Where boxes crowd, the tree is faster.
+  const bool sparse = arrange(
+      scheduler, boxes_, padding, 64,
+      [&](Box& box) {
+        box.key = std::uint16_t(bin_of(box.low[axes[0]])), box.last = std::uint16_t(bin_of(box.high[axes[0]]));
+        box.first_strip = std::uint16_t(strip_of(box.low[axes[1]]));
+        box.last_strip = std::uint16_t(strip_of(box.high[axes[1]]));
+      },
+      [low, high, along](const Box& box, std::size_t place) {
+        for (int axis = 0; axis < 3; ++axis) {
+          low[axis][place] = box.low[along[axis]];
+          high[axis][place] = box.high[along[axis]];
+        }
+      });
+  if (!sparse) return false;
   longest_ = 0;
-  for (Box& box : boxes_) {
-    box.key = std::uint16_t(bin_of(box.low[axes[0]])), box.last = std::uint16_t(bin_of(box.high[axes[0]]));
-    longest_ = math::max(longest_, box.last - box.key);
-    ++place[box.key];
-  }
-  order_by_bins(boxes_, place);
-  for (const Box& box : boxes_)
-    for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s)
-      ++first_[std::size_t(s) + 1];
-  std::int32_t at[most_strips];
-  std::uint64_t in_strip[most_strips];
-  const std::size_t room = lay_out(count, padding, at, in_strip);
-  if (room == 0) return false;
-  for (int k = 0; k < 3; ++k) low_[k].resize(room), high_[k].resize(room);
-  std::uint64_t compared = 0;  // times their number: with what begins before a box ends, as far as it is in its strips
-  for (std::size_t k = 0; k < count; ++k) {
-    const Box& box = boxes_[order_[k]];
-    const std::uint64_t met = place[box.last] - k;  // by now the end of that bin
-    for (int s = strip_of(box.low[axes[1]]), last = strip_of(box.high[axes[1]]); s <= last; ++s) {
-      compared += met * in_strip[s];
-      const std::size_t p = std::size_t(at[s]++);
-      for (int axis = 0; axis < 3; ++axis) {
-        low_[axis][p] = box.low[axes[axis]];
-        high_[axis][p] = box.high[axes[axis]];
-      }
-      item_[p] = box.item, key_[p] = box.key, last_[p] = box.last;
-    }
-  }
-  const std::uint64_t most = 64 * std::uint64_t(count);
-  if (compared > most * std::uint64_t(count)) return false;  // where boxes crowd, the tree is faster
+  for (const Box& box : boxes_) longest_ = math::max(longest_, box.last - box.key);
   for (int s = 0; s < strip_count(); ++s)
-    for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(at[s]) + k] = 1e30f;
+    for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(first_[std::size_t(s) + 1]) - padding + k] = 1e30f;
   version_ = tree.version();
   return true;
 }

@@ -16,7 +16,7 @@ class BoxSweep : public StripOrder {
  public:
   /// Takes the leaves of a tree, whose boxes lie on a grid of 2⁻¹⁰ m. False where it would take longer than the tree,
   /// or floats do not hold the boxes exactly.
-  bool take(const geometry::DynamicTree3& tree);
+  bool take(core::TaskScheduler& scheduler, const geometry::DynamicTree3& tree);
   /// Calls visit(item, item) for those that meet in a strip, each pair in one strip only.
   template <class Visit>
   void visit_strip(int strip, Visit&& visit) const {
@@ -66,7 +66,7 @@ class BoxSweep : public StripOrder {
   struct Box {
     float low[3], high[3];
     std::uint32_t item;
-    std::uint16_t key, last;
+    std::uint16_t key = 0, last = 0, first_strip = 0, last_strip = 0;
   };
   /// A box as the strips see it.
   struct Range {

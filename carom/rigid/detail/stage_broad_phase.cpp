@@ -9,7 +9,7 @@ namespace {
 constexpr int pair_grain = 64;
 constexpr int most_subtrees = 128;  ///< that threads look through
 constexpr int most_in_group = BoxGroup<Dim2>::most_members;
-constexpr int bounds_grain = 128;
+constexpr int bounds_grain = 128, list_grain = 1024;
 constexpr double most_worse = 4;  ///< times its best: a tree of what flies
 
 /// Remembers two shapes whose bounds overlap, if they are a pair without a contact.
@@ -171,7 +171,7 @@ bool sweep_dynamic(WorldImplementation<Dim2>&, bool&) { return false; }
 bool sweep_dynamic(WorldImplementation<Dim3>& world, bool& still_too) {
   using Bounds = geometry::Bounds3d;
   StepScratch<Dim3>& scratch = world.scratch;
-  if (!most_fly(world) || !scratch.sweep.take(world.shapes.trees[tree_dynamic])) return false;
+  if (!most_fly(world) || !scratch.sweep.take(*world.scheduler, world.shapes.trees[tree_dynamic])) return false;
   constexpr int most_still = 32;
   const Bounds* still_box[most_still];
   std::uint32_t still[most_still];
@@ -237,13 +237,20 @@ bool sweep_strips(WorldImplementation<Dim2>& world) {
   if (world.contact_filter || 3 * scratch.moved.size() < dynamic + still || dynamic < 64) return false;
   const Bounds whole = trees[tree_dynamic].root_bounds();
   BoxStrips& strips = scratch.strips;
-  if (!strips.begin(whole, dynamic + still)) return false;
-  for (const auto& tree : trees)
-    tree.each_leaf([&](std::uint32_t item, const Bounds& box) {
+  const int parts = BoxStrips::part_count(world.scheduler->thread_count(), dynamic + still);
+  const std::size_t nodes = (trees[tree_dynamic].node_count() + std::size_t(parts) - 1) / std::size_t(parts);
+  if (!strips.begin(whole, parts, min(nodes, dynamic) + still)) return false;
+  world.scheduler->parallel_for(parts, 1, [&](int part, int, int) {
+    const auto add = [&](std::uint32_t item, const Bounds& box) {
       const std::int32_t place = scratch.moved_place[item];
-      if (overlaps(box, whole)) strips.add(item, box, place >= 0 ? scratch.old_bounds[std::size_t(place)] : box);
-    });
-  if (!strips.sort()) return false;
+      if (overlaps(box, whole)) strips.add(part, item, box, place >= 0 ? scratch.old_bounds[std::size_t(place)] : box);
+    };
+    const std::size_t begin = std::size_t(part) * nodes;
+    trees[tree_dynamic].each_leaf(begin, min(begin + nodes, trees[tree_dynamic].node_count()), add);
+    for (int tree = 0; tree < tree_dynamic && part == 0; ++tree)
+      trees[tree].each_leaf(0, trees[tree].node_count(), add);
+  });
+  if (!strips.sort(*world.scheduler)) return false;
   const StripRows rows = strips.rows();
   world.scheduler->parallel_for(strips.strip_count(), 2, [&](int begin, int end, int worker) {
     MeetingsInStrip finder{world, scratch.found_pairs[std::size_t(worker)], 0};
@@ -282,14 +289,16 @@ void find_pairs(WorldImplementation<D>& world) {
   for (std::vector<FoundPair>& list : scratch.found_pairs) list.clear();
   scratch.old_bounds.resize(scratch.moved.size(), nowhere<D>());
   scratch.moved_place.resize(world.shapes.record.size(), none);
-  for (std::size_t k = 0; k < scratch.moved.size(); ++k)
-    scratch.moved_place[std::size_t(scratch.moved[k])] = std::int32_t(k);
+  const int moved = int(scratch.moved.size());
+  world.scheduler->parallel_for(moved, list_grain, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) scratch.moved_place[std::size_t(scratch.moved[std::size_t(k)])] = k;
+  });
   // Where much of the tree moved, neighbours look together.
   const bool in_strips = sweep_strips(world);
   const bool grouped = !in_strips && 16 * scratch.moved.size() > std::size_t(world.shapes.trees[tree_dynamic].size());
   bool still_too = false;
   const bool swept = grouped && sweep_dynamic(world, still_too);
-  const int one_by_one = in_strips ? 0 : int(scratch.moved.size());
+  const int one_by_one = in_strips ? 0 : moved;
   world.scheduler->parallel_for(one_by_one, pair_grain, [&](int begin, int end, int worker) {
     for (int i = begin; i < end; ++i) {
       const bool dynamic = world.shapes.at(scratch.moved[std::size_t(i)]).tree == tree_dynamic;
@@ -319,10 +328,13 @@ void find_pairs(WorldImplementation<D>& world) {
         world.contact_filter(world.shapes.slots.handle_at(pair.a), world.shapes.slots.handle_at(pair.b)))
       create_contact(world, pair.a, pair.b);
   }
-  for (const std::int32_t s : scratch.moved) {
-    world.shapes.at(s).flags &= std::uint8_t(~shape_moved);
-    scratch.moved_place[std::size_t(s)] = none;
-  }
+  world.scheduler->parallel_for(moved, list_grain, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) {
+      const std::int32_t s = scratch.moved[std::size_t(k)];
+      world.shapes.at(s).flags &= std::uint8_t(~shape_moved);
+      scratch.moved_place[std::size_t(s)] = none;
+    }
+  });
   scratch.moved.clear();
   scratch.old_bounds.clear();
 }
@@ -332,29 +344,41 @@ template <class D>
 void list_outgrown(WorldImplementation<D>& world) {
   StepScratch<D>& scratch = world.scratch;
   const std::vector<std::int32_t>& awake = world.bodies.awake;
-  const auto changes = [&](std::size_t i) { return i < awake.size() && scratch.body_changes[i] != 0; };
+  // Each thread lists those of its part of the bodies.
+  const int parts = int(scratch.found_outgrown.size()), count = int(awake.size()), grain = (count + parts - 1) / parts;
+  for (std::vector<std::int32_t>& list : scratch.found_outgrown) list.clear();
+  world.scheduler->parallel_for(count, grain, [&](int begin, int end, int) {
+    std::vector<std::int32_t>& found = scratch.found_outgrown[std::size_t(begin / grain)];
+    const auto changes = [&](int i) { return i < end && scratch.body_changes[std::size_t(i)] != 0; };
+    const auto record = [&](int i) -> BodyRecord& { return world.bodies.record[std::size_t(awake[std::size_t(i)])]; };
+    for (int i = begin; i < end; ++i) {
+      if (changes(i + 16)) __builtin_prefetch(&record(i + 16));
+      if (changes(i + 8))
+        if (const std::int32_t s = record(i + 8).first_shape; s != none)
+          prefetch_lines(&world.shapes.at(s), sizeof(ShapeTraits<D>));
+      if (!changes(i)) continue;
+      for (std::int32_t s = record(i).first_shape; s != none;) {
+        ShapeRecord<D>& shape = world.shapes.at(s);
+        if ((shape.flags & shape_outgrown) != 0) {
+          const bool known = (shape.flags & shape_moved) != 0;  // its old bounds are, or none need be
+          found.push_back(known ? ~s : s);
+          shape.flags = std::uint8_t((shape.flags & ~shape_outgrown) | shape_moved);
+        }
+        s = shape.next;
+      }
+    }
+  });
+  level_room(scratch.found_outgrown);
   scratch.outgrown.clear();
   scratch.outgrown_places.clear();
   scratch.outgrown.reserve(scratch.moved.capacity());
   scratch.outgrown_places.reserve(scratch.moved.capacity());
-  for (std::size_t i = 0; i < awake.size(); ++i) {
-    if (changes(i + 16)) __builtin_prefetch(&world.bodies.record[std::size_t(awake[i + 16])]);
-    if (changes(i + 8))
-      if (const std::int32_t s = world.bodies.record[std::size_t(awake[i + 8])].first_shape; s != none)
-        prefetch_lines(&world.shapes.at(s), sizeof(ShapeTraits<D>));
-    if (!changes(i)) continue;
-    for (std::int32_t s = world.bodies.record[std::size_t(awake[i])].first_shape; s != none;) {
-      ShapeRecord<D>& shape = world.shapes.at(s);
-      if ((shape.flags & shape_outgrown) != 0) {
-        const bool known = (shape.flags & shape_moved) != 0;  // its old bounds are, or none need be
-        scratch.outgrown.push_back(s);
-        scratch.outgrown_places.push_back(known ? none : std::int32_t(scratch.moved.size()));
-        if (!known) scratch.moved.push_back(s);
-        shape.flags = std::uint8_t((shape.flags & ~shape_outgrown) | shape_moved);
-      }
-      s = shape.next;
+  for (const std::vector<std::int32_t>& list : scratch.found_outgrown)
+    for (const std::int32_t s : list) {
+      scratch.outgrown.push_back(s < 0 ? ~s : s);
+      scratch.outgrown_places.push_back(s < 0 ? none : std::int32_t(scratch.moved.size()));
+      if (s >= 0) scratch.moved.push_back(s);
     }
-  }
   scratch.old_bounds.resize(scratch.moved.size());
 }
 

@@ -1,6 +1,9 @@
 // From manifolds to the blocks of the wide solver, and from the solved blocks back.
+#include <algorithm>
 #include <atomic>
 #include <bit>
+#include <span>
+#include <utility>
 
 #include "carom/math/cpu.h"
 #include "carom/math/simd.h"
@@ -17,6 +20,7 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr int block_grain = 8;
+constexpr std::uint64_t order_steps = 16;  ///< from one ordering by place to the next
 
 /// Contacts of a colour lie anywhere in memory: three rounds of pre-loading walk from the manifold to its contact to
 /// its bodies, some lanes ahead of their use; preparing is bound by latency, and a round that comes before the memory
@@ -334,6 +338,62 @@ void store_blocks(StepContext<D>& context) {
 
 }  // namespace
 
+/// Which share of the bodies that a thread moves in a colour another thread had in the colour before.
+template <class D>
+static float share_of_strangers(WorldImplementation<D>& world) {
+  std::vector<std::uint8_t>& last = world.scratch.again;  // 0, as it is to be left
+  last.resize(max(last.size(), world.bodies.record.size()));
+  const std::size_t threads = std::size_t(min(world.scheduler->thread_count(), 255));
+  std::size_t met = 0, strange = 0;
+  for (int color = 0; color < color_count; ++color) {
+    const std::vector<std::int32_t>& list = world.graph.colors[color].manifolds;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::uint8_t thread = std::uint8_t(1 + i * threads / list.size());
+      for (const std::int32_t body : world.contacts.at(world.contacts.manifold(list[i]).contact).body) {
+        if (!world.bodies.is_dynamic(body)) continue;
+        std::uint8_t& before = last[std::size_t(body)];
+        met += before != 0, strange += before != 0 && before != thread;
+        before = thread;
+      }
+    }
+  }
+  std::fill(last.begin(), last.end(), std::uint8_t(0));
+  return float(strange) / float(max(met, std::size_t(1)));
+}
+
+template <class D>
+void order_by_place(WorldImplementation<D>& world) {
+  if (world.scheduler->thread_count() == 1 || world.step_count % order_steps != 0) return;
+  if (share_of_strangers(world) < 0.06f) return;  // as where bodies were made in rows
+  const typename D::Bounds whole = world.shapes.trees[tree_dynamic].root_bounds();
+  const typename D::Position size = whole.high - whole.low;
+  int axis = 0;
+  for (int k = 1; k < D::dimension; ++k)
+    if (size[k] > size[axis]) axis = k;
+  std::vector<std::uint64_t>& placed = world.scratch.placed;
+  std::size_t begin[color_count], total = 0;
+  for (int color = 0; color < color_count; ++color)
+    begin[color] = std::exchange(total, total + world.graph.colors[color].manifolds.size());
+  placed.reserve(world.contacts.manifolds.capacity());
+  placed.resize(total);
+  world.scheduler->parallel_for(color_count, 1, [&](int color, int, int) {
+    std::vector<std::int32_t>& list = world.graph.colors[color].manifolds;
+    const std::span<std::uint64_t> of_color = std::span(placed).subspan(begin[color], list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::int32_t(&body)[2] = world.contacts.at(world.contacts.manifold(list[i]).contact).body;
+      const std::int32_t one = world.bodies.is_dynamic(body[0]) ? body[0] : body[1];
+      const double along = world.bodies.pose[std::size_t(one)].position[axis] - whole.low[axis];
+      const double share = along > 0 ? min(along / (size[axis] + 1e-6), 1.0) : 0;
+      of_color[i] = std::uint64_t(share * 0xFFFFFF) << 32 | std::uint32_t(list[i]);
+    }
+    std::sort(of_color.begin(), of_color.end());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      list[i] = std::int32_t(of_color[i] & 0xFFFFFFFF);
+      world.contacts.manifold(list[i]).place.position = std::int32_t(i);
+    }
+  });
+}
+
 template <class D>
 void prepare_contacts(StepContext<D>& context) {
   if constexpr (math::widest_lanes > 4) {
@@ -375,6 +435,8 @@ void contact_points_now(const WorldImplementation<D>& world, const ManifoldRecor
   }
 }
 
+template void order_by_place<Dim2>(WorldImplementation<Dim2>&);
+template void order_by_place<Dim3>(WorldImplementation<Dim3>&);
 template void prepare_contacts<Dim2>(StepContext<Dim2>&);
 template void prepare_contacts<Dim3>(StepContext<Dim3>&);
 template void store_contacts<Dim2>(StepContext<Dim2>&);

@@ -9,6 +9,9 @@
 // other or the ground bounce here too. The other bounces, of bodies that rest on something or are part of a figure of
 // joints, are left to the pass at the
 // step's end (`restitute_contacts`), which weighs them against everything that they rest on.
+#include <algorithm>
+#include <tuple>
+
 #include "carom/math/cpu.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/stages.h"
@@ -330,9 +333,17 @@ void find_impacts(StepContext<D>& context) {
   for (int color = 0; color <= overflow_color; ++color) {
     ColorBlocks& blocks = world.scratch.blocks[color];
     if (blocks.extra == nullptr) continue;
+    const std::size_t first = impacts.size();
     for_marked(world, color, mark_bounces, [&](std::int32_t manifold) {
       blocks.bounces = true;
       if (strikes_here(world, world.contacts.manifold(manifold))) impacts.push_back(manifold);
+    });
+    // By their shapes: where in its colour a contact lies depends on the number of threads (order_by_place).
+    std::sort(impacts.begin() + std::ptrdiff_t(first), impacts.end(), [&](std::int32_t l, std::int32_t r) {
+      const ManifoldRecord<D>&a = world.contacts.manifold(l), &b = world.contacts.manifold(r);
+      const ContactRecord<D>&in_a = world.contacts.at(a.contact), &in_b = world.contacts.at(b.contact);
+      return std::tie(in_a.shape[0], in_a.shape[1], a.manifold.child) <
+             std::tie(in_b.shape[0], in_b.shape[1], b.manifold.child);
     });
   }
 }

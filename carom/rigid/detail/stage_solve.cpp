@@ -8,7 +8,7 @@ namespace {
 constexpr int body_grain = 256;
 /// Up to so many blocks a barrier (half a microsecond) costs more than a second core saves.
 template <class D>
-constexpr int few_blocks = D::dimension == 2 ? 24 : 8;
+constexpr int few_blocks = D::dimension == 2 ? 12 : 8;
 
 /// Colours in the order of a sweep: the overflow first, because what is solved last holds best.
 int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
@@ -66,7 +66,7 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
     if (serial)
       loops.push_back({1, 1});
     else
-      loops.push_back({count, max(few_blocks<D> / 4, (count + 3 * threads - 1) / (3 * threads))});
+      loops.push_back({count, (count + threads - 1) / threads});  // each thread has the same part in every pass
     joining = serial;
   }
 }

@@ -124,6 +124,7 @@ struct StepScratch {
   std::vector<BodyLoad<D>> loads;                   ///< by slot of the body; nothing between steps
   std::vector<std::uint8_t> again;                  ///< by slot of the body: takes impulses of contacts again in every
                                                     ///< substep (list_stages); nothing between steps
+  std::vector<std::uint64_t> placed;                ///< manifolds of all colours behind their places (order_by_place)
   std::vector<std::int32_t> hits;                   ///< places in ContactStore::awake of what may be told as a hit
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
   std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now
@@ -132,16 +133,17 @@ struct StepScratch {
   std::vector<BodySweep<D>> sweeps;                      ///< by slot of the body
   std::vector<std::int32_t> sweeping;                    ///< bodies whose sweep is not zero
   core::Column<ContactWatch<D>> watches;                 ///< by place in ContactStore::awake, or empty: look at all
-  std::vector<typename D::Bounds> old_bounds;       ///< by place in `moved`: fat bounds when pairs were last looked for
-  std::vector<std::int32_t> moved_place;            ///< by slot of the shape: place in old_bounds, or −1
-  std::vector<std::int32_t> moved;                  ///< shapes whose fat bounds changed
-  BoxSweep sweep;                                   ///< of what flies, where it is sparse
-  BoxStrips strips;                                 ///< in the plane of all, where much moved
-  std::vector<std::int32_t> outgrown;               ///< shapes that left their fat bounds,
-  std::vector<std::int32_t> outgrown_places;        ///< their places in `moved`, or none: they were there before,
-  std::vector<typename D::Bounds> new_bounds;       ///< and what these become
-  std::vector<std::vector<FoundPair>> found_pairs;  ///< by worker
-  std::vector<std::vector<SensorMeeting>> met_sensors;  ///< by worker
+  std::vector<typename D::Bounds> old_bounds;  ///< by place in `moved`: fat bounds when pairs were last looked for
+  std::vector<std::int32_t> moved_place;       ///< by slot of the shape: place in old_bounds, or −1
+  std::vector<std::int32_t> moved;             ///< shapes whose fat bounds changed
+  BoxSweep sweep;                              ///< of what flies, where it is sparse
+  BoxStrips strips;                            ///< in the plane of all, where much moved
+  std::vector<std::vector<std::int32_t>> found_outgrown;  ///< by part of the bodies; ~shape: was in `moved` before
+  std::vector<std::int32_t> outgrown;                     ///< shapes that left their fat bounds,
+  std::vector<std::int32_t> outgrown_places;              ///< their places in `moved`, or none: they were there before,
+  std::vector<typename D::Bounds> new_bounds;             ///< and what these become
+  std::vector<std::vector<FoundPair>> found_pairs;        ///< by worker
+  std::vector<std::vector<SensorMeeting>> met_sensors;    ///< by worker
   std::vector<FoundPair> pairs;
   std::vector<std::vector<BulletPair>> found_bullet_pairs;  ///< by worker
   std::vector<std::vector<StrayShape<D>>> found_strays;     ///< by worker

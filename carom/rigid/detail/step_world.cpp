@@ -194,6 +194,7 @@ WorldImplementation<D>::WorldImplementation(const WorldDef<D>& d)
     own_scheduler = core::make_thread_pool(d.threads);
     scheduler = own_scheduler.get();
   }
+  scratch.found_outgrown.resize(std::size_t(scheduler->thread_count()));
   scratch.found_pairs.resize(std::size_t(scheduler->thread_count()));
   scratch.met_sensors.resize(std::size_t(scheduler->thread_count()));
   scratch.found_bullet_pairs.resize(std::size_t(scheduler->thread_count()));
@@ -256,6 +257,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
     StepContext<D> all = make_context(world, dt, world.definition.substeps);
     hand_down_loads(all);
   }
+  order_by_place(world);
   for_each_substep_group<D>(world, [&](int substeps) {
     StepContext<D> group = make_context(world, dt, substeps);
     prepare_joints(group);

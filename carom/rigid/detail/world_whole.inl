@@ -97,9 +97,11 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.loads.reserve(bodies);
   s.again.reserve(bodies);
   s.flights.reserve(bodies);
+  s.placed.reserve(manifolds);
   s.impacts.reserve(manifolds);
   s.impact_queue.resize(manifolds);
   s.moved.reserve(shapes);
+  for (auto& list : s.found_outgrown) list.reserve(shapes);
   s.outgrown.reserve(shapes);
   s.outgrown_places.reserve(shapes);
   s.new_bounds.reserve(shapes);
