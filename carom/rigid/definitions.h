@@ -44,7 +44,7 @@ struct WorldDef {
   int threads = 1;  ///< worker threads the world makes for itself, 1 … 64 (the caller's included)
   core::TaskScheduler* scheduler = nullptr;  ///< the caller's own, instead; must outlive the world
   core::Profiler* profiler = nullptr;        ///< takes the stages of every step, lane 0; must outlive the world
-  int simd_width = 0;  ///< lanes of the contact solver: 4, 8 or 16, or 0 for the widest the machine has; same results
+  int simd_width = 0;  ///< lanes of the contact solver: 4, 8 or 16, or 0 for what suits machine and work; same results
   bool allow_sleep = true;
   bool continuous = true;              ///< fast bodies never pass through static geometry
   float restitution_threshold = 1.0f;  ///< m/s: slower impacts do not bounce
