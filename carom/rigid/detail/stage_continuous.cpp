@@ -67,7 +67,7 @@ void go_past_fixed(WorldImplementation<D>& world, std::int32_t body, std::size_t
   if (alone && still.emplace(world, geometry::grow(whole, double(motion.outer_extent)), list).count == 0) return;
   const Sweep<D> sweep = way_of_body(world, body, start.center);
   const typename D::Vector travel = sweep.c1 - sweep.c0;
-  const float turn = turn_between(sweep.q0, sweep.q1);
+  const float turn = turned_by(sweep.q0, sweep.q1);
   // No point of the body came farther, unless it turned far.
   const bool turns_far = start.turn != typename D::Angular{};
   const double farthest = 1.1 * double(math::length(travel) + turn * motion.outer_extent);

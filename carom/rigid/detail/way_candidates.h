@@ -94,8 +94,8 @@ typename D::Bounds bounds_of_way(const WorldImplementation<D>& world, const Shap
   return geometry::grow(typename D::Bounds{math::min(start.center, end), math::max(start.center, end)}, reach);
 }
 
-inline float turn_between(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a.c) + square(b.s - a.s)); }
-inline float turn_between(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
+inline float turned_by(const Rot2f& a, const Rot2f& b) { return math::sqrt(square(b.c - a.c) + square(b.s - a.s)); }
+inline float turned_by(const Quatf& a, const Quatf& b) { return 2 * min(length(b - a), length(b + a)); }
 /// The way of a shape's middle; the shape turns about it as far (rad) as its body.
 template <class D>
 struct MiddleWay {
@@ -131,7 +131,7 @@ bool is_slow(const ShapeRecord<D>& shape, const Sweep<D>& own, const Sweep<D>& o
   const V begin = inverse_rotate(other.q0, own.c0 + rotate(own.q0, arm) - other.c0),
           end = inverse_rotate(other.q1, own.c1 + rotate(own.q1, arm) - other.c1);
   return math::length(end - begin) +
-             turn_between(conjugate(other.q0) * own.q0, conjugate(other.q1) * own.q1) * ball.radius <=
+             turned_by(conjugate(other.q0) * own.q0, conjugate(other.q1) * own.q1) * ball.radius <=
          part * shape.inner_extent;
 }
 
@@ -210,7 +210,7 @@ void find_driven(WorldImplementation<D>& world) {
     const SweepStart<D>& start = world.scratch.swept[place];
     const bool turns_far = start.turn != typename D::Angular{};
     const Sweep<D> sweep = way_of_body(world, body, start.center);
-    const float turn = turn_between(sweep.q0, sweep.q1);
+    const float turn = turned_by(sweep.q0, sweep.q1);
     for (std::int32_t s = record.first_shape; s != none; s = world.shapes.at(s).next) {
       const ShapeRecord<D>& shape = world.shapes.at(s);
       if (shape.leaf == none) continue;
