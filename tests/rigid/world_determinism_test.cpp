@@ -60,6 +60,33 @@ TYPED_TEST(WorldDeterminism, WidthsDoNotMatter) {
   EXPECT_EQ(heap_hash<D>(1, 8, false), four);
   EXPECT_EQ(heap_hash<D>(2, 16, false), four);
 }
+/// A world in which there comes to be so much to solve that it takes more lanes (choose_kernels), and then less again.
+template <class D>
+std::uint64_t growing_wall_hash(int threads, int width) {
+  WorldDef<D> d = world_with<D>();
+  d.threads = threads;
+  d.simd_width = width;
+  World<D> world(d);
+  add_ground(world);
+  const int along = D::dimension == 2 ? 420 : 70;
+  std::vector<BodyId> bodies;
+  for (int layer = 0; layer < 12; ++layer) {
+    for (int i = 0; i < along; ++i)
+      bodies.push_back(add_box<D>(world, at<D>(0.51 * (i - 0.5 * along), 0.26 + 0.52 * layer), 0.25f));
+    run(world, 2);
+  }
+  run(world, 20);
+  for (std::size_t i = 0; i < bodies.size(); i += 2) world.destroy_body(bodies[i]).value();
+  run(world, 10);
+  return world.state_hash();
+}
+TYPED_TEST(WorldDeterminism, WidthsDoNotMatterWhereTheWorkGrows) {
+  using D = TypeParam;
+  const std::uint64_t eight = growing_wall_hash<D>(1, 8);
+  EXPECT_EQ(growing_wall_hash<D>(1, 16), eight);
+  EXPECT_EQ(growing_wall_hash<D>(1, 0), eight);
+  EXPECT_EQ(growing_wall_hash<D>(2, 0), eight);
+}
 TYPED_TEST(WorldDeterminism, ARunRepeatsInTheSameProcess) {
   using D = TypeParam;
   EXPECT_EQ(heap_hash<D>(1, 0, true), heap_hash<D>(1, 0, true));

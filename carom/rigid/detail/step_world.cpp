@@ -152,7 +152,6 @@ void choose_kernels(WorldImplementation<D>& world) {
 
 template <class D>
 StepContext<D> make_context(WorldImplementation<D>& world, float dt, int substeps) {
-  choose_kernels(world);
   StepContext<D> context{world, *world.scheduler, world.arena};
   const WorldDef<D>& definition = world.definition;
   context.dt = dt;
@@ -253,6 +252,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   modify_contacts(world);
   profile.narrow_phase = watch.lap("narrow phase");
 
+  choose_kernels(world);
   if (!world.scratch.new_touches.empty()) {
     StepContext<D> all = make_context(world, dt, world.definition.substeps);
     hand_down_loads(all);
