@@ -338,17 +338,17 @@ void store_blocks(StepContext<D>& context) {
 
 }  // namespace
 
-/// Which share of the bodies that a thread moves in a colour another thread had in the colour before.
+/// Which share of the bodies that a thread moves in a colour another had in the colour before, if there are two: what a
+/// snapshot holds is the same for any number of threads.
 template <class D>
 static float share_of_strangers(WorldImplementation<D>& world) {
   std::vector<std::uint8_t>& last = world.scratch.again;  // 0, as it is to be left
   last.resize(max(last.size(), world.bodies.record.size()));
-  const std::size_t threads = std::size_t(min(world.scheduler->thread_count(), 255));
   std::size_t met = 0, strange = 0;
   for (int color = 0; color < color_count; ++color) {
     const std::vector<std::int32_t>& list = world.graph.colors[color].manifolds;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::uint8_t thread = std::uint8_t(1 + i * threads / list.size());
+      const std::uint8_t thread = i < list.size() / 2 ? 1 : 2;
       for (const std::int32_t body : world.contacts.at(world.contacts.manifold(list[i]).contact).body) {
         if (!world.bodies.is_dynamic(body)) continue;
         std::uint8_t& before = last[std::size_t(body)];
@@ -363,7 +363,7 @@ static float share_of_strangers(WorldImplementation<D>& world) {
 
 template <class D>
 void order_by_place(WorldImplementation<D>& world) {
-  if (world.scheduler->thread_count() == 1 || world.step_count % order_steps != 0) return;
+  if (world.step_count % order_steps != 0) return;
   if (share_of_strangers(world) < 0.06f) return;  // as where bodies were made in rows
   const typename D::Bounds whole = world.shapes.trees[tree_dynamic].root_bounds();
   const typename D::Position size = whole.high - whole.low;

@@ -30,8 +30,8 @@ bool any_contacts(const WorldImplementation<D>& world) {
     if (!color.manifolds.empty()) return true;
   return false;
 }
-/// On several threads, now and then: the contacts of each colour in the order of their places, so that a thread, which
-/// has a run of each colour, mostly finds bodies that it wrote itself. No result depends on their order.
+/// Now and then: the contacts of each colour in the order of their places, so that a thread, which has a run of each
+/// colour, mostly finds bodies that it wrote itself. No result depends on their order.
 template <class D>
 void order_by_place(WorldImplementation<D>& world);
 /// Contact blocks from manifolds, and back.
