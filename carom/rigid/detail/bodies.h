@@ -57,8 +57,8 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
 /// Finds out what ShapeStore::bounce says.
 template <class D>
 void learn_bounce(WorldImplementation<D>& world);
-/// Which part of a shape's way in the next step (m², squared) contacts look along: all of it where anything rebounds,
-/// else up to half the shape's thickness.
+/// Which part of a shape's way in the next step contacts look along: all of it where anything rebounds, else up to half
+/// the shape's thickness. way_squared: m².
 template <class D>
 float within_foresight(float way_squared, const ShapeRecord<D>& shape, Bounce bounce) {
   const float most = 0.5f * shape.inner_extent;

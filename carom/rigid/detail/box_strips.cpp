@@ -30,10 +30,10 @@ bool BoxStrips::sort(core::TaskScheduler& scheduler) {
   measure(extent_[along], extent_[across], 3 * sum[across] / double(count));  // three boxes wide
   float* row[8];
   int side[8];  // of a box, for each row
-  for (int i = 0; i < 8; ++i) row_[i].resize(room_for(count, padding)), row[i] = row_[i].data();
+  for (int i = 0; i < 8; ++i) row_[i].resize(room_for(count)), row[i] = row_[i].data();
   for (int i = 0; i < 8; ++i) side[i] = i / 2 * 2 + (i % 2 == 0 ? along : across);
-  const bool sparse = arrange(
-      scheduler, boxes_, padding, 256,
+  return arrange(
+      scheduler, boxes_, row_[0], 256,
       [&](Box& box) {
         box.key = std::uint16_t(bin_of(box.side[along])), box.last = std::uint16_t(bin_of(box.side[2 + along]));
         box.first_strip = std::uint16_t(strip_of(box.side[across]));
@@ -42,10 +42,6 @@ bool BoxStrips::sort(core::TaskScheduler& scheduler) {
       [row, side](const Box& box, std::size_t place) {
         for (int i = 0; i < 8; ++i) row[i][place] = box.side[side[i]];
       });
-  if (!sparse) return false;
-  for (int s = 0; s < strip_count(); ++s)
-    for (std::int32_t k = strip_end(s); k < strip_end(s) + padding; ++k) row_[0][std::size_t(k)] = 1e30f;
-  return true;
 }
 
 StripRows BoxStrips::rows() const {

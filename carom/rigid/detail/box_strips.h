@@ -29,8 +29,6 @@ class BoxStrips : public StripOrder {
   /// Puts them in order. False where they crowd so that a tree is faster.
   bool sort(core::TaskScheduler& scheduler);
 
-  std::int32_t strip_begin(int strip) const { return first_[std::size_t(strip)]; }
-  std::int32_t strip_end(int strip) const { return first_[std::size_t(strip) + 1] - padding; }
   StripRows rows() const;
   std::uint32_t item(std::int32_t place) const { return item_[std::size_t(place)]; }
   /// A pair that meets in several strips is that of one of them.
@@ -53,7 +51,6 @@ class BoxStrips : public StripOrder {
     std::uint16_t key = 0, last = 0;  ///< bins
     std::uint16_t first_strip = 0, last_strip = 0;
   };
-  static constexpr int padding = 16;  ///< places after each strip that meet none, for the widest lanes
 
   std::vector<Box> boxes_;
   std::vector<float> row_[8];        ///< by place in the strips, as Box::side, the axis of the sweep before the other

@@ -35,12 +35,12 @@ bool BoxSweep::take(core::TaskScheduler& scheduler, const geometry::DynamicTree3
   float *low[3], *high[3];
   int along[3];
   for (int k = 0; k < 3; ++k) {
-    low_[k].resize(room_for(count, padding)), high_[k].resize(room_for(count, padding));
+    low_[k].resize(room_for(count)), high_[k].resize(room_for(count));
     low[k] = low_[k].data(), high[k] = high_[k].data(), along[k] = axes[k];
   }
   // Where boxes crowd, the tree is faster.
   const bool sparse = arrange(
-      scheduler, boxes_, padding, 64,
+      scheduler, boxes_, low_[0], 64,
       [&](Box& box) {
         box.key = std::uint16_t(bin_of(box.low[axes[0]])), box.last = std::uint16_t(bin_of(box.high[axes[0]]));
         box.first_strip = std::uint16_t(strip_of(box.low[axes[1]]));
@@ -55,8 +55,6 @@ bool BoxSweep::take(core::TaskScheduler& scheduler, const geometry::DynamicTree3
   if (!sparse) return false;
   longest_ = 0;
   for (const Box& box : boxes_) longest_ = math::max(longest_, box.last - box.key);
-  for (int s = 0; s < strip_count(); ++s)
-    for (std::size_t k = 0; k < padding; ++k) low_[0][std::size_t(first_[std::size_t(s) + 1]) - padding + k] = 1e30f;
   version_ = tree.version();
   return true;
 }

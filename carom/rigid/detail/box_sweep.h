@@ -21,7 +21,7 @@ class BoxSweep : public StripOrder {
   template <class Visit>
   void visit_strip(int strip, Visit&& visit) const {
     using F = math::WideFloat<4>;
-    const std::size_t end = std::size_t(first_[std::size_t(strip) + 1]) - padding;
+    const std::size_t end = std::size_t(strip_end(strip));
     for (std::size_t i = std::size_t(first_[std::size_t(strip)]); i + 1 < end; ++i) {
       const F low[3] = {F::splat(low_[0][i]), F::splat(low_[1][i]), F::splat(low_[2][i])},
               high[3] = {F::splat(high_[0][i]), F::splat(high_[1][i]), F::splat(high_[2][i])};
@@ -95,7 +95,7 @@ class BoxSweep : public StripOrder {
     const F low[3] = {F::splat(range.low[0]), F::splat(range.low[1]), F::splat(range.low[2])},
             high[3] = {F::splat(range.high[0]), F::splat(range.high[1]), F::splat(range.high[2])};
     const std::uint16_t *begin = &key_[std::size_t(first_[std::size_t(strip)])],
-                        *end = &key_[std::size_t(first_[std::size_t(strip) + 1]) - padding];
+                        *end = &key_[std::size_t(strip_end(strip))];
     if (range.first_key > 0) begin = std::lower_bound(begin, end, range.first_key);
     const std::size_t stop = std::size_t(end - key_.data());
     for (std::size_t k = std::size_t(begin - key_.data()); k < stop && key_[k] <= range.last_key; k += 4) {
@@ -108,7 +108,6 @@ class BoxSweep : public StripOrder {
       }
     }
   }
-  static constexpr std::size_t padding = 4;  ///< boxes that meet none, after each strip
 
   std::vector<Box> boxes_;
   // By place in the strips; axes in the order sweep, strips, the other.

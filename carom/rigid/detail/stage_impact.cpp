@@ -338,7 +338,7 @@ void find_impacts(StepContext<D>& context) {
       blocks.bounces = true;
       if (strikes_here(world, world.contacts.manifold(manifold))) impacts.push_back(manifold);
     });
-    // By their shapes: where in its colour a contact lies depends on the number of threads (order_by_place).
+    // By their shapes, wherever in its colour a contact lies by now (order_by_place).
     std::sort(impacts.begin() + std::ptrdiff_t(first), impacts.end(), [&](std::int32_t l, std::int32_t r) {
       const ManifoldRecord<D>&a = world.contacts.manifold(l), &b = world.contacts.manifold(r);
       const ContactRecord<D>&in_a = world.contacts.at(a.contact), &in_b = world.contacts.at(b.contact);

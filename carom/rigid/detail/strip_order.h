@@ -15,6 +15,8 @@ namespace carom::rigid::detail {
 class StripOrder {
  public:
   int strip_count() const { return int(first_.size()) - 1; }
+  std::int32_t strip_begin(int strip) const { return first_[std::size_t(strip)]; }
+  std::int32_t strip_end(int strip) const { return first_[std::size_t(strip) + 1] - padding; }
   /// Into how many parts threads should cut so many boxes. No order depends on it.
   static int part_count(int threads, std::size_t boxes) {
     return math::clamp(int(boxes / 1024), 1, math::clamp(threads, 1, most_parts));
@@ -22,6 +24,7 @@ class StripOrder {
 
  protected:
   static constexpr int most_strips = 128, bins = 1024, most_parts = 8;
+  static constexpr int padding = 16;    ///< places after each strip that meet none, for the widest lanes
   static constexpr double exact = 8e3;  ///< m: multiples of 2⁻¹⁰ m are exact in floats up to 16 km
 
   /// Boxes that one thread measures and orders.
@@ -44,11 +47,11 @@ class StripOrder {
   }
   /// Lays the boxes of all parts out: by strips, in each by bins. Bins rise with the coordinate, so that what begins in
   /// a later one than that in which a box ends does not meet it. Box has key, last, first_strip and last_strip, which
-  /// find(box) sets; put(box, place) copies the rest; with `padding` places free after each strip. False where most
-  /// boxes lie in several strips, or each is near `most_near` others.
+  /// find(box) sets; put(box, place) copies the rest; `lows` get where boxes begin along the bins, and beyond all of
+  /// them after each strip. False where most boxes lie in several strips, or each is near `most_near` others.
   template <class Box, class Find, class Put>
-  bool arrange(core::TaskScheduler& scheduler, std::vector<Box>& boxes, std::size_t padding, std::uint64_t most_near,
-               const Find& find, const Put& put) {
+  bool arrange(core::TaskScheduler& scheduler, std::vector<Box>& boxes, std::vector<float>& lows,
+               std::uint64_t most_near, const Find& find, const Put& put) {
     const int parts = int(parts_.size());
     scheduler.parallel_for(parts, 1, [&](int p, int, int) {
       Part& part = parts_[std::size_t(p)];
@@ -85,8 +88,8 @@ class StripOrder {
       total += in_strip[s] + padding;
     }
     first_.back() = std::int32_t(total);
-    if (total > room_for(count, padding)) return false;
-    const std::size_t room = room_for(count, padding);
+    const std::size_t room = room_for(count);
+    if (total > room) return false;
     item_.resize(room), key_.resize(room), last_.resize(room);
     std::uint64_t
         near[most_parts];  // times their number: with what begins before a box ends, as far as it is in its strips
@@ -119,10 +122,12 @@ class StripOrder {
       near[p] = met_here;
     });
     for (int p = 1; p < parts; ++p) near[0] += near[p];
-    return near[0] <= most_near * count * count;
+    if (near[0] > most_near * count * count) return false;
+    for (int s = 0; s < strips; ++s) std::fill_n(&lows[std::size_t(strip_end(s))], padding, 1e30f);
+    return true;
   }
   /// That all rows need for so many boxes at most.
-  static std::size_t room_for(std::size_t boxes, std::size_t padding) { return 2 * boxes + padding * most_strips; }
+  static std::size_t room_for(std::size_t boxes) { return 2 * boxes + padding * most_strips; }
   template <class Self, class Visit>
   static void visit_order(Self& self, Visit&& visit) {
     visit(self.parts_), visit(self.order_), visit(self.first_), visit(self.item_), visit(self.key_), visit(self.last_);
