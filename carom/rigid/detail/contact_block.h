@@ -179,10 +179,9 @@ struct ContactKernels {
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
                 const ContactSoftness& softness, int order) = nullptr;
-  /// counted: 1 where the impulses are those of the substep, 0 where another relaxing pass follows; then only lanes
-  /// that settle take part.
-  void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h,
-                float counted) = nullptr;
+  /// Relaxing of the lanes that settle, before the pass that counts.
+  void (*settle)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h) = nullptr;
+  void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h) = nullptr;
   void (*restitute)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end) = nullptr;
   /// As many bodies as there are lanes through a substep, from a place of the awake list on (2D; stage_integrate.cpp).
   /// flights: Flight<D> as floats; max_turn: rad; carry_on: see SolverStage::order. False, and nothing done, where one

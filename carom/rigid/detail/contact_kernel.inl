@@ -122,6 +122,10 @@ CAROM_SIMD_INLINE WideFloat<W> multiply(WideFloat<W> a, WideFloat<W> s) {
   return a * s;
 }
 
+/// The passes over normals: pushing out, taking the speed of that back where things settle, and doing so everywhere,
+/// for the impulses that count.
+enum class NormalPass { solve, settle, relax };
+
 /// m/s that the relaxing pass takes off where bodies meet: with more it is a blow, whose friction is due at once.
 inline constexpr float least_blow = 0.25f;
 
@@ -240,6 +244,7 @@ ContactKernels<Dim2> kernels(Dim2) {
   k.strikes = strikes<Dim2, W>;
   k.warm_start = warm_start2<W>;
   k.solve = solve2<W>;
+  k.settle = settle2<W>;
   k.relax = relax2<W>;
   k.restitute = restitute2<W>;
   k.integrate_velocities = integrate_velocities2<W>;
@@ -258,6 +263,7 @@ ContactKernels<Dim3> kernels(Dim3) {
   k.strikes = strikes<Dim3, W>;
   k.warm_start = warm_start3<W>;
   k.solve = solve3<W>;
+  k.settle = settle3<W>;
   k.relax = relax3<W>;
   k.restitute = restitute3<W>;
   return k;

@@ -84,12 +84,11 @@ CAROM_SIMD_INLINE WideVec2<W> turned_back_change(const WideFloat<W> (&q)[4], con
   return {change.x - n.x * lift, change.y - n.y * lift};
 }
 
-template <int W, bool UseBias>
+template <int W, NormalPass Pass>
 CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, const Slots<W>& slots_a,
                                                 const Slots<W>& slots_b, ContactBlock<Dim2, W>& c, Velocity2<W>& a,
                                                 Velocity2<W>& b, const WideVec2<W>& n, WideFloat<W> inverse_h,
-                                                WideFloat<W> push_speed, const WideSoftness<W>& soft,
-                                                WideFloat<W> counted, WideFloat<W> share, int order) {
+                                                WideFloat<W> push_speed, const WideSoftness<W>& soft, int order) {
   using F = WideFloat<W>;
   order &= 1;
   const F zero = F::splat(0), one = F::splat(1);
@@ -112,7 +111,7 @@ CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, 
     const F old = F::load(point.impulse);
     F bias, yields = one;  // mass_scale; impulse_scale is 1 less that
     const auto apart = s > zero;
-    if constexpr (UseBias) {
+    if constexpr (Pass == NormalPass::solve) {
       bias = select(apart, s * inverse_h, max(soft.bias_rate * s, zero - push_speed));
       // From soft to rigid within so little: rounding must not decide which of the two it is.
       const F rigid = clamp(s * F::splat(1 / touching_gap), zero, one);
@@ -121,12 +120,13 @@ CAROM_SIMD_INLINE PassBlow<W, 2> solve_normals2(const SolverBody<Dim2>* bodies, 
       bias = keep(apart, s * inverse_h);
     }
     const F vn = dot(subtract(b.v, a.v), n) + b.w * turn_b - a.w * turn_a;
-    const F mass = share * F::load(point.normal_mass);
+    F mass = F::load(point.normal_mass);
+    if constexpr (Pass == NormalPass::settle) mass = F::load(c.settles) * mass;
     const F wanted = old - mass * (vn + bias);
-    const F lambda = max(UseBias ? yields * wanted : wanted, zero);
+    const F lambda = max(Pass == NormalPass::solve ? yields * wanted : wanted, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
-    if constexpr (!UseBias) (F::load(point.total) + lambda * counted).store(point.total);
+    if constexpr (Pass == NormalPass::relax) (F::load(point.total) + lambda).store(point.total);
     const WideVec2<W> p = {delta * n.x, delta * n.y};
     push_back(a, ma, ia, p, delta * turn_a);
     push(b, mb, ib, p, delta * turn_b);
@@ -144,9 +144,8 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
     const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
     Velocity2<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const WideSoftness<W> soft(softness, c);
-    const PassBlow<W, 2> normals =
-        solve_normals2<W, true>(bodies, slots_a, slots_b, c, a, b, load2<W>(c.normal), F::splat(inverse_h),
-                                F::splat(push_speed), soft, F::splat(1), F::splat(1), order);
+    const PassBlow<W, 2> normals = solve_normals2<W, NormalPass::solve>(
+        bodies, slots_a, slots_b, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(push_speed), soft, order);
     const auto struck = find_struck(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
       const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, soft, 0);
@@ -157,8 +156,36 @@ void solve2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float in
   }
 }
 
+/// The speed of a push is along the normals: friction takes part only once that is gone.
 template <int W>
-void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h, float counted) {
+void settle2(SolverBody<Dim2>* bodies, void* blocks, int begin, int end, float inverse_h) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity2<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
+    const auto takes_part = F::load(c.settles) > F::splat(0);
+    if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
+      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, {}, 0);
+      a = shared.a, b = shared.b;
+    }
+    const PassBlow<W, 2> normals = solve_normals2<W, NormalPass::settle>(
+        bodies, slots_a, slots_b, c, a, b, load2<W>(c.normal), F::splat(inverse_h), F::splat(0), {}, 0);
+    const auto hard = find_struck(c, normals, takes_part);
+    if (any(hard)) [[unlikely]] {
+      const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, 0);
+      a = shared.a, b = shared.b;
+    }
+    std::int32_t to_a[W], to_b[W];
+    who_settles<W>(c.settles, c.body_a, to_a);
+    who_settles<W>(c.settles, c.body_b, to_b);
+    write_velocity<W>(bodies, to_a, a);
+    write_velocity<W>(bodies, to_b, b);
+  }
+}
+
+template <int W>
+void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim2, W>& c = static_cast<ContactBlock<Dim2, W>*>(blocks)[k];
@@ -168,10 +195,8 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
     const F ia = F::load(c.inverse_inertia_a), ib = F::load(c.inverse_inertia_b);
     const WideVec2<W> n = load2<W>(c.normal);
     const WideVec2<W> t = {F::splat(0) - n.y, n.x};
-    const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
-    const auto takes_part = share > F::splat(0);
-    auto rubs = takes_part;
-    if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
+    auto rubs = WideMask<W>::all();
+    if (const auto pushed = F::load(c.struck) >= F::splat(block_pushed); any(pushed)) [[unlikely]] {
       const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, {}, 0);
       a = shared.a, b = shared.b;
     }
@@ -211,29 +236,21 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
         push(b, mb, ib, p, delta * turn_b);
       }
       if (struck) break;
-      const PassBlow<W, 2> normals = solve_normals2<W, false>(bodies, slots_a, slots_b, c, a, b, n, F::splat(inverse_h),
-                                                              F::splat(0), {}, F::splat(counted), share, 0);
-      const auto hard = find_struck(c, normals, takes_part);
+      const PassBlow<W, 2> normals = solve_normals2<W, NormalPass::relax>(bodies, slots_a, slots_b, c, a, b, n,
+                                                                          F::splat(inverse_h), F::splat(0), {}, 0);
+      const auto hard = find_struck(c, normals, WideMask<W>::all());
       if (any(hard)) [[unlikely]] {
-        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, counted);
+        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, 1);
         a = shared.a, b = shared.b;
       }
       const F before = load;
       load = F::load(c.point[0].impulse) + F::load(c.point[1].impulse);
-      rubs = takes_part & ((load - before) * (ma + mb) > F::splat(least_blow));
+      rubs = (load - before) * (ma + mb) > F::splat(least_blow);
       if (!any(rubs)) break;
     }
-    (F::load(c.tangent_total) + F::load(c.tangent_impulse) * F::splat(counted)).store(c.tangent_total);
-    if (counted > 0) {
-      write_velocity<W>(bodies, c.body_a, a);
-      write_velocity<W>(bodies, c.body_b, b);
-    } else {
-      std::int32_t to_a[W], to_b[W];
-      who_settles<W>(c.settles, c.body_a, to_a);
-      who_settles<W>(c.settles, c.body_b, to_b);
-      write_velocity<W>(bodies, to_a, a);
-      write_velocity<W>(bodies, to_b, b);
-    }
+    (F::load(c.tangent_total) + F::load(c.tangent_impulse)).store(c.tangent_total);
+    write_velocity<W>(bodies, c.body_a, a);
+    write_velocity<W>(bodies, c.body_b, b);
   }
 }
 

@@ -86,13 +86,12 @@ CAROM_SIMD_INLINE WideVec3<W> turned_back_change(const WideFloat<W> (&q)[8], con
   return subtract(change, multiply(n, dot(change, n)));
 }
 
-template <int W, bool UseBias>
+template <int W, NormalPass Pass>
 CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, const Slots<W>& slots_a,
                                                 const Slots<W>& slots_b, ContactBlock<Dim3, W>& c, Velocity3<W>& a,
                                                 Velocity3<W>& b, const WideVec3<W>& n, const WideSymmetric<W>& ia,
                                                 const WideSymmetric<W>& ib, WideFloat<W> inverse_h,
-                                                WideFloat<W> push_speed, const WideSoftness<W>& soft,
-                                                WideFloat<W> counted, WideFloat<W> share, int order) {
+                                                WideFloat<W> push_speed, const WideSoftness<W>& soft, int order) {
   using F = WideFloat<W>;
   const F zero = F::splat(0), one = F::splat(1);
   const F ma = F::load(c.inverse_mass_a), mb = F::load(c.inverse_mass_b);
@@ -112,7 +111,7 @@ CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, 
     const F old = F::load(point.impulse);
     F bias, mass_scale = one, impulse_scale = zero;
     const auto apart = s > zero;
-    if constexpr (UseBias) {
+    if constexpr (Pass == NormalPass::solve) {
       bias = select(apart, s * inverse_h, max(soft.bias_rate * s, zero - push_speed));
       mass_scale = select(apart, one, soft.mass_scale);
       impulse_scale = select(apart, zero, soft.impulse_scale);
@@ -120,11 +119,12 @@ CAROM_SIMD_INLINE PassBlow<W, 4> solve_normals3(const SolverBody<Dim3>* bodies, 
       bias = keep(apart, s * inverse_h);
     }
     const F vn = dot(subtract(b.v, a.v), n) + dot(b.w, turn_b) - dot(a.w, turn_a);
-    const F mass = share * F::load(point.normal_mass);
+    F mass = F::load(point.normal_mass);
+    if constexpr (Pass == NormalPass::settle) mass = F::load(c.settles) * mass;
     const F lambda = max(old - mass * mass_scale * (vn + bias) - impulse_scale * old, zero);
     const F delta = lambda - old;
     lambda.store(point.impulse);
-    if constexpr (!UseBias) (F::load(point.total) + lambda * counted).store(point.total);
+    if constexpr (Pass == NormalPass::relax) (F::load(point.total) + lambda).store(point.total);
     const WideVec3<W> p = multiply(n, delta);
     push_back(a, ma, ia, p, multiply(turn_a, delta));
     push(b, mb, ib, p, multiply(turn_b, delta));
@@ -142,10 +142,9 @@ void solve3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float in
     const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
     Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const WideSoftness<W> soft(softness, c);
-    const PassBlow<W, 4> normals =
-        solve_normals3<W, true>(bodies, slots_a, slots_b, c, a, b, load3<W>(c.normal),
-                                load_symmetric<W>(c.inverse_inertia_a), load_symmetric<W>(c.inverse_inertia_b),
-                                F::splat(inverse_h), F::splat(push_speed), soft, F::splat(1), F::splat(1), order);
+    const PassBlow<W, 4> normals = solve_normals3<W, NormalPass::solve>(
+        bodies, slots_a, slots_b, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
+        load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(push_speed), soft, order);
     const auto struck = find_struck(c, normals, WideMask<W>::all());
     if (any(struck)) [[unlikely]] {
       const auto shared = share_blow<W, true>(bodies, c, a, b, struck, inverse_h, push_speed, soft, 0);
@@ -216,8 +215,37 @@ CAROM_SIMD_INLINE void solve_friction3(ContactBlock<Dim3, W>& c, Velocity3<W>& a
   push(b, F::load(c.inverse_mass_b), ib, p, cross(rb, p));
 }
 
+/// The speed of a push is along the normals: friction takes part only once that is gone.
 template <int W>
-void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h, float counted) {
+void settle3(SolverBody<Dim3>* bodies, void* blocks, int begin, int end, float inverse_h) {
+  using F = WideFloat<W>;
+  for (int k = begin; k < end; ++k) {
+    ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
+    const Slots<W> slots_a(c.body_a), slots_b(c.body_b);
+    Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
+    const auto takes_part = F::load(c.settles) > F::splat(0);
+    if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
+      const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, {}, 0);
+      a = shared.a, b = shared.b;
+    }
+    const PassBlow<W, 4> normals = solve_normals3<W, NormalPass::settle>(
+        bodies, slots_a, slots_b, c, a, b, load3<W>(c.normal), load_symmetric<W>(c.inverse_inertia_a),
+        load_symmetric<W>(c.inverse_inertia_b), F::splat(inverse_h), F::splat(0), {}, 0);
+    const auto hard = find_struck(c, normals, takes_part);
+    if (any(hard)) [[unlikely]] {
+      const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, 0);
+      a = shared.a, b = shared.b;
+    }
+    std::int32_t to_a[W], to_b[W];
+    who_settles<W>(c.settles, c.body_a, to_a);
+    who_settles<W>(c.settles, c.body_b, to_b);
+    write_velocity<W>(bodies, to_a, a);
+    write_velocity<W>(bodies, to_b, b);
+  }
+}
+
+template <int W>
+void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int end, float inverse_h) {
   using F = WideFloat<W>;
   for (int k = begin; k < end; ++k) {
     ContactBlock<Dim3, W>& c = static_cast<ContactBlock<Dim3, W>*>(blocks)[k];
@@ -225,11 +253,9 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
     Velocity3<W> a = read_velocity<W>(bodies, slots_a.of), b = read_velocity<W>(bodies, slots_b.of);
     const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
     const WideVec3<W> n = load3<W>(c.normal);
-    const F share = counted > 0 ? F::splat(1) : F::load(c.settles);
-    const auto takes_part = share > F::splat(0);
-    auto rubs = takes_part;
+    auto rubs = WideMask<W>::all();
     // A push is taken back as it was given, before friction can make something of it.
-    if (const auto pushed = takes_part & (F::load(c.struck) >= F::splat(block_pushed)); any(pushed)) [[unlikely]] {
+    if (const auto pushed = F::load(c.struck) >= F::splat(block_pushed); any(pushed)) [[unlikely]] {
       const auto shared = share_blow<W, false>(bodies, c, a, b, pushed, inverse_h, 0, {}, 0);
       a = shared.a, b = shared.b;
     }
@@ -240,32 +266,23 @@ void relax3(SolverBody<Dim3>* bodies, void* blocks, void* extra, int begin, int 
       if (extra != nullptr) solve_rolling3<W>(static_cast<ContactExtra<Dim3, W>*>(extra)[k], a, b, load, rubs, ia, ib);
       solve_friction3<W>(c, a, b, load, rubs, n, ia, ib);
       if (struck) break;
-      const PassBlow<W, 4> normals =
-          solve_normals3<W, false>(bodies, slots_a, slots_b, c, a, b, n, ia, ib, F::splat(inverse_h), F::splat(0), {},
-                                   F::splat(counted), share, 0);
-      const auto hard = find_struck(c, normals, takes_part);
+      const PassBlow<W, 4> normals = solve_normals3<W, NormalPass::relax>(bodies, slots_a, slots_b, c, a, b, n, ia, ib,
+                                                                          F::splat(inverse_h), F::splat(0), {}, 0);
+      const auto hard = find_struck(c, normals, WideMask<W>::all());
       if (any(hard)) [[unlikely]] {
-        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, counted);
+        const auto shared = share_blow<W, false>(bodies, c, a, b, hard, inverse_h, 0, {}, 1);
         a = shared.a, b = shared.b;
       }
       const F before = load;
       load = load_of<W>(c);
       const F blow = (load - before) * (F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b));
-      rubs = takes_part & (blow > F::splat(least_blow));
+      rubs = blow > F::splat(least_blow);
       if (!any(rubs)) break;
     }
-    (F::load(c.tangent_total[0]) + F::load(c.tangent_impulse[0]) * F::splat(counted)).store(c.tangent_total[0]);
-    (F::load(c.tangent_total[1]) + F::load(c.tangent_impulse[1]) * F::splat(counted)).store(c.tangent_total[1]);
-    if (counted > 0) {
-      write_velocity<W>(bodies, c.body_a, a);
-      write_velocity<W>(bodies, c.body_b, b);
-    } else {
-      std::int32_t to_a[W], to_b[W];
-      who_settles<W>(c.settles, c.body_a, to_a);
-      who_settles<W>(c.settles, c.body_b, to_b);
-      write_velocity<W>(bodies, to_a, a);
-      write_velocity<W>(bodies, to_b, b);
-    }
+    (F::load(c.tangent_total[0]) + F::load(c.tangent_impulse[0])).store(c.tangent_total[0]);
+    (F::load(c.tangent_total[1]) + F::load(c.tangent_impulse[1])).store(c.tangent_total[1]);
+    write_velocity<W>(bodies, c.body_a, a);
+    write_velocity<W>(bodies, c.body_b, b);
   }
 }
 

@@ -129,9 +129,10 @@ void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b
   else if (stage.pass == SolverPass::solve)
     kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, context.contact_softness,
                   stage.order);
+  else if (stage.pass == SolverPass::settle)
+    kernels.settle(context.bodies, b.blocks, begin, end, context.inverse_h);
   else
-    kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h,
-                  stage.pass == SolverPass::relax ? 1.0f : 0.0f);
+    kernels.relax(context.bodies, b.blocks, b.extra, begin, end, context.inverse_h);
 }
 
 /// Does one of a block's lanes (1, 4, 8 or 16) have the mark? By words: it is asked of every block in each pass.

@@ -61,7 +61,7 @@ enum class SolverPass : std::uint8_t {
   solve_trees,
   positions,
   factorise_trees,
-  settle,  ///< relaxing, and not the last time
+  settle,  ///< what is pushed out: relaxing of normals, before the pass that counts
   relax,
   settle_trees
 };
