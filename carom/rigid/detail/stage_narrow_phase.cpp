@@ -17,9 +17,13 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr int contact_grain = 128;  ///< so many are passed over and sorted at a time
-/// So many are a worker's: in the plane more, so that fewer lanes stay empty when its queues end.
+/// So many of all contacts are a worker's at a time: in the plane more, so that fewer lanes stay empty when its queues
+/// end; where there are few, fewer: one with a mesh takes as long as many others.
 template <class D>
-constexpr int worker_grain = D::dimension == 2 ? 3 * contact_grain : contact_grain;
+constexpr int worker_grain(std::size_t count) {
+  if (D::dimension == 2) return 3 * contact_grain;
+  return count < 8 * contact_grain ? contact_grain / 4 : contact_grain;
+}
 
 /// Contacts of one kind take the same ways through the code.
 template <class D>
@@ -138,7 +142,7 @@ void update_contacts(WorldImplementation<D>& world) {
   std::fill(scratch.contact_changes.begin(), scratch.contact_changes.end(), std::uint8_t(0));
   for (std::vector<FoundManifold<D>>& list : scratch.found_manifolds) list.clear();
   measure_sweeps(world);
-  world.scheduler->parallel_for(int(count), worker_grain<D>, [&](int begin, int end, int worker) {
+  world.scheduler->parallel_for(int(count), worker_grain<D>(count), [&](int begin, int end, int worker) {
     std::int32_t due[contact_grain];
     PairUpdates<D> updates(world, scratch.found_manifolds[std::size_t(worker)]);
     const int width = world.kernels.pairs.width;

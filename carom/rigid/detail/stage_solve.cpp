@@ -10,6 +10,9 @@ constexpr int body_grain = 256;
 template <class D>
 constexpr int few_blocks = D::dimension == 2 ? 12 : 8;
 
+/// So few manifolds and joints are solved sooner by one thread than handed to and fro.
+constexpr std::size_t few_rows = 300;
+
 /// Colours in the order of a sweep: the overflow first, because what is solved last holds best.
 int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
 
@@ -195,8 +198,12 @@ template <class D>
 void solve_constraints(StepContext<D>& context) {
   list_stages(context);
   prepare_drives(context);
-  context.scheduler.run_stages(context.world.scratch.solver_loops,
-                               [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
+  std::size_t rows = 0;
+  for (const GraphColor& color : context.world.graph.colors) rows += color.manifolds.size() + color.joints.size();
+  core::SerialScheduler alone;
+  core::TaskScheduler& scheduler = rows <= few_rows ? alone : context.scheduler;
+  scheduler.run_stages(context.world.scratch.solver_loops,
+                       [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
 }
 
 template <class D>

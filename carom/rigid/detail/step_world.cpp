@@ -129,7 +129,7 @@ void release_scratch(WorldImplementation<D>& world) {
 /// Is there enough to do that keeping the workers at hand pays? A small step wakes nobody.
 template <class D>
 bool worth_a_region(const WorldImplementation<D>& world) {
-  return world.scheduler->thread_count() > 1 && world.bodies.awake.size() + world.contacts.awake.size() >= 512;
+  return world.scheduler->thread_count() > 1 && world.bodies.awake.size() + world.contacts.awake.size() >= 256;
 }
 
 template <class D>
