@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "carom/math/elementary.h"
+#include "carom/rigid/detail/bodies.h"
 #include "carom/rigid/detail/character_shape.h"
 #include "carom/rigid/detail/check.h"
 #include "carom/rigid/detail/contacts.h"

@@ -449,13 +449,27 @@ void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
 }
 
 template <class D>
-void refresh_bounds(WorldImplementation<D>& world, std::int32_t body) {
+void refresh_bounds(WorldImplementation<D>& world, std::int32_t body, const typename D::Position& way) {
+  using P = typename D::Position;
+  const auto and_ahead = [](const typename D::Bounds& box, const P& ahead) {
+    return typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
+  };
   learn_bounce(world);
-  look_at_bounds(world.bodies.motion[std::size_t(body)]);
+  BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
+  look_at_bounds(motion);
+  // What its owner moves in small ways, as a character, has bounds for some of them to come.
+  constexpr double ways = 3;
+  const bool goes_on = world.bodies.record[std::size_t(body)].type == BodyType::kinematic &&
+                       math::length(way) < double(motion.outer_extent);
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next) {
     ShapeRecord<D>& shape = world.shapes.at(s);
     if (shape.leaf == none) continue;
-    world.shapes.trees[shape.tree].update(shape.leaf, fat_bounds(world, shape));
+    auto& tree = world.shapes.trees[shape.tree];
+    if (goes_on &&
+        geometry::contains(tree.bounds(shape.leaf), and_ahead(shape_bounds(world, shape), bounds_ahead(world, shape))))
+      continue;
+    const typename D::Bounds box = fat_bounds(world, shape);
+    tree.update(shape.leaf, goes_on ? on_grid(and_ahead(box, way * ways)) : box);
     if ((shape.flags & shape_moved) == 0) {
       shape.flags |= shape_moved;
       world.scratch.moved.push_back(s);
@@ -539,7 +553,7 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
   template D::Bounds fat_bounds<D>(const WorldImplementation<D>&, const ShapeRecord<D>&);     \
   template void insert_into_tree<D>(WorldImplementation<D>&, std::int32_t);                   \
   template void remove_from_tree<D>(WorldImplementation<D>&, std::int32_t);                   \
-  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t);                     \
+  template void refresh_bounds<D>(WorldImplementation<D>&, std::int32_t, const D::Position&); \
   template void attach_joint<D>(WorldImplementation<D>&, std::int32_t);                       \
   template void detach_joint<D>(WorldImplementation<D>&, std::int32_t);                       \
   template bool joints_forbid_collision<D>(const WorldImplementation<D>&, std::int32_t, std::int32_t);

@@ -48,6 +48,22 @@ void pose_from_center(WorldImplementation<D>& world, std::int32_t body);
 template <class D>
 void center_from_pose(WorldImplementation<D>& world, std::int32_t body);
 
+template <class D>
+BodyState<D> state_of(const WorldImplementation<D>& world, std::int32_t body) {
+  const std::size_t i = std::size_t(body);
+  const BodyRecord& r = world.bodies.record[i];
+  BodyState<D> s;
+  s.pose = world.bodies.pose[i];
+  s.center_of_mass = world.bodies.motion[i].center;
+  s.linear_velocity = world.bodies.solver[i].linear_velocity;
+  s.angular_velocity = world.bodies.solver[i].angular_velocity;
+  s.mass = world.bodies.motion[i].mass;
+  s.type = r.type;
+  s.awake = r.awake_index != none;
+  s.enabled = r.enabled();
+  s.user_data = word_of(world.bodies.user_data, body);
+  return s;
+}
 /// Tight bounds of a shape where it stands.
 template <class D>
 typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);
@@ -79,9 +95,9 @@ template <class D>
 void insert_into_tree(WorldImplementation<D>& world, std::int32_t shape);
 template <class D>
 void remove_from_tree(WorldImplementation<D>& world, std::int32_t shape);
-/// After a teleport or a change of size.
+/// After a body was set to another place, `way` (m) from the one before.
 template <class D>
-void refresh_bounds(WorldImplementation<D>& world, std::int32_t body);
+void refresh_bounds(WorldImplementation<D>& world, std::int32_t body, const typename D::Position& way);
 
 /// Locked degrees of freedom do not move: their velocities go to zero.
 inline void apply_locks(SolverBody<Dim2>& s, std::uint8_t locks) {

@@ -93,7 +93,7 @@ void Character<D>::look_around(const World<D>& world, const geometry::Bounds<Vec
     if (store.contact_filter && !store.contact_filter(shape_, id)) continue;
     special = special || (shape.flags & detail::shape_special) != 0;
     const BodyId owner = store.bodies.slots.handle_at(shape.body);
-    all.near.push_back({id, owner, shape.geometry, pose, world.state(owner).value(), approach, seen});
+    all.near.push_back({id, owner, shape.geometry, pose, detail::state_of(store, shape.body), approach, seen});
   }
   all.keep_triangles();
   for (std::size_t i = all.near.size(); special && i-- > 0;) {

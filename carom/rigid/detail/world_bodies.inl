@@ -184,22 +184,9 @@ bool World<D>::contains(BodyId body) const {
 
 template <class D>
 Result<BodyState<D>> World<D>::state(BodyId body) const {
-  using namespace detail;
-  const Result<std::int32_t> slot = slot_of(*self_, "state", body);
+  const Result<std::int32_t> slot = detail::slot_of(*self_, "state", body);
   if (!slot.ok()) return slot.error();
-  const std::size_t i = std::size_t(*slot);
-  const BodyRecord& r = self_->bodies.record[i];
-  BodyState<D> s;
-  s.pose = self_->bodies.pose[i];
-  s.center_of_mass = self_->bodies.motion[i].center;
-  s.linear_velocity = self_->bodies.solver[i].linear_velocity;
-  s.angular_velocity = self_->bodies.solver[i].angular_velocity;
-  s.mass = self_->bodies.motion[i].mass;
-  s.type = r.type;
-  s.awake = r.awake_index != none;
-  s.enabled = r.enabled();
-  s.user_data = word_of(self_->bodies.user_data, *slot);
-  return s;
+  return detail::state_of(*self_, *slot);
 }
 
 template <class D>

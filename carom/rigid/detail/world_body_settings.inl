@@ -17,6 +17,7 @@ Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
   if (!complaint.none_yet()) return complaint.error();
   wake_body(*self_, *slot);
   wake_touching(*self_, *slot);
+  const Position way = position - self_->bodies.pose[std::size_t(*slot)].position;
   self_->bodies.pose[std::size_t(*slot)] = {position, unit_rotation(rotation)};
   center_from_pose(*self_, *slot);
   // What is set from place to place has gone no way in between.
@@ -25,7 +26,7 @@ Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
     self_->scratch.swept[place] = {
         self_->bodies.pose[std::size_t(*slot)].rotation, self_->bodies.motion[std::size_t(*slot)].center, {}, 1};
   update_world_inertia(*self_, *slot);
-  refresh_bounds(*self_, *slot);
+  refresh_bounds(*self_, *slot, way);
   return {};
 }
 
