@@ -403,6 +403,29 @@ void fill_up_limbs(JointStore<D>& joints, std::size_t first, std::size_t width) 
   }
 }
 
+/// How a joint is solved in this step: 0 by itself, else side by side with others, as a pin or with those parts.
+constexpr std::uint32_t solved_as_pin = ~0u;
+template <class D>
+std::span<const std::uint32_t> joints_by_lanes(StepContext<D>& context) {
+  const WorldImplementation<D>& world = context.world;
+  std::size_t total = 0;
+  for (int color = 0; color < overflow_color; ++color) total += world.graph.colors[color].joints.size();
+  const std::span<std::uint32_t> all = context.arena.template allocate<std::uint32_t>(total);
+  std::size_t first = 0;
+  for (int color = 0; color < overflow_color; ++color) {
+    const std::vector<std::int32_t>& joints = world.graph.colors[color].joints;
+    std::uint32_t* const of_color = all.data() + first;
+    first += joints.size();
+    context.scheduler.parallel_for(int(joints.size()), 256, [&](int begin, int end, int) {
+      for (int i = begin; i < end; ++i) {
+        const std::int32_t joint = joints[std::size_t(i)];
+        of_color[i] = goes_wide(world, joint) ? solved_as_pin : limb_parts(world, joint);
+      }
+    });
+  }
+  return all;
+}
+
 template <class D>
 void prepare_joints(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
@@ -417,6 +440,7 @@ void prepare_joints(StepContext<D>& context) {
   joints.limb_begin.clear();
   const std::size_t width = std::size_t(world.kernels.width);
   std::uint32_t units = 0;
+  const std::uint32_t* by_lanes = joints_by_lanes(context).data();
   for (const GraphColor& color : world.graph.colors) {
     const bool overflows = &color == &world.graph.colors[overflow_color];
     joints.color_begin.push_back(std::int32_t(joints.order.size()));
@@ -424,12 +448,11 @@ void prepare_joints(StepContext<D>& context) {
     joints.limb_begin.push_back(std::int32_t(joints.limbs.size() / width));
     const std::size_t first_limb = joints.limbs.size();
     for (const std::int32_t joint : color.joints) {
-      if (!overflows && goes_wide(world, joint)) {
-        joints.pins.push_back(joint);
-        continue;
-      }
-      if (const std::uint32_t parts = overflows ? 0 : limb_parts(world, joint); parts != 0) {
-        joints.limbs.push_back({parts, joint});
+      if (const std::uint32_t parts = overflows ? 0 : *by_lanes++; parts != 0) {
+        if (parts == solved_as_pin)
+          joints.pins.push_back(joint);
+        else
+          joints.limbs.push_back({parts, joint});
         continue;
       }
       joints.order.push_back(joint);
