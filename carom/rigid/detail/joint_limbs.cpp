@@ -176,7 +176,7 @@ void prepare_limbs(StepContext<D>& context) {
     if (count == 0) return;
     const auto blocks = context.arena.template allocate<LimbLanes<D, W>>(std::size_t(count));
     joints.limb_blocks = blocks.data();
-    context.scheduler.parallel_for(count, 4, [&](int begin, int end, int) {
+    for_blocks_of_colors(context.scheduler, 4, joints.limb_begin, [&](int begin, int end) {
       SameSpring same;
       for (int b = begin; b < end; ++b) {
         LimbLanes<D, W>& block = *::new (static_cast<void*>(&blocks[std::size_t(b)])) LimbLanes<D, W>{};
@@ -197,7 +197,7 @@ void store_limbs(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
   for_width(context.world.kernels.width, [&]<int W>() {
     const auto* const blocks = static_cast<const LimbLanes<D, W>*>(joints.limb_blocks);
-    context.scheduler.parallel_for(int(joints.limbs.size()) / W, 4, [&](int begin, int end, int) {
+    for_blocks_of_colors(context.scheduler, 4, joints.limb_begin, [&](int begin, int end) {
       for (int b = begin; b < end; ++b)
         for (int lane = 0; lane < W; ++lane) {
           if (blocks[b].joint[lane] == none) continue;

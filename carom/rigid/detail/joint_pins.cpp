@@ -16,7 +16,7 @@ void prepare_pins(StepContext<D>& context) {
     if (count == 0) return;
     const auto blocks = context.arena.template allocate<PinLanes<D, W>>(std::size_t(count));
     joints.pin_blocks = blocks.data();
-    context.scheduler.parallel_for(count, 8, [&](int begin, int end, int) {
+    for_blocks_of_colors(context.scheduler, 8, joints.pin_begin, [&](int begin, int end) {
       for (int b = begin; b < end; ++b) {
         PinLanes<D, W>& block = *::new (static_cast<void*>(&blocks[std::size_t(b)])) PinLanes<D, W>{};
         BodyTurns<D, W> turns{};
@@ -34,7 +34,7 @@ void store_pins(StepContext<D>& context) {
   JointStore<D>& joints = context.world.joints;
   for_width(context.world.kernels.width, [&]<int W>() {
     const auto* const blocks = static_cast<const PinLanes<D, W>*>(joints.pin_blocks);
-    context.scheduler.parallel_for(int(joints.pins.size()) / W, 8, [&](int begin, int end, int) {
+    for_blocks_of_colors(context.scheduler, 8, joints.pin_begin, [&](int begin, int end) {
       for (int b = begin; b < end; ++b) {
         for (int lane = 0; lane < W; ++lane) {
           if (blocks[b].joint[lane] == none) continue;

@@ -52,8 +52,8 @@ void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
   save_pair(pair, record, bodies);
 }
 
-/// The joints of a colour as units of a loop: records that are solved one by one, then blocks of limbs, then of pins.
-constexpr int records_a_unit = 8;
+/// The joints of a colour: records that are solved one by one, then blocks of limbs, then of pins.
+constexpr int records_a_unit = 8;  ///< take about as long as a block
 struct JointUnits {
   int first_record, records, first_limb, limbs, first_pin, pins;
 
@@ -65,16 +65,15 @@ struct JointUnits {
         limbs(joints.limb_begin[std::size_t(color) + 1] - first_limb),
         first_pin(joints.pin_begin[std::size_t(color)]),
         pins(joints.pin_begin[std::size_t(color) + 1] - first_pin) {}
-  int record_units() const { return (records + records_a_unit - 1) / records_a_unit; }
-  int count() const { return record_units() + limbs + pins; }
+  int count() const { return (records + records_a_unit - 1) / records_a_unit + limbs + pins; }
 };
 
-/// Runs `act` on the records of units [begin, end).
+/// Runs `act` on a share of the records.
 template <bool first_of_substep, class D, class Act>
-void for_each_record(StepContext<D>& context, const JointUnits& units, int begin, int end, const Act& act) {
+void for_each_record(StepContext<D>& context, const JointUnits& units, ThreadShare share, const Act& act) {
   JointStore<D>& joints = context.world.joints;
-  const int last = units.first_record + min(end * records_a_unit, units.records);
-  for (int i = units.first_record + begin * records_a_unit; i < last; ++i) {
+  const int last = units.first_record + share.end(units.records);
+  for (int i = units.first_record + share.begin(units.records); i < last; ++i) {
     auto& record = *std::launder(reinterpret_cast<JointRecord<D>*>(&joints.records[joints.offset[std::size_t(i)]]));
     if constexpr (D::dimension == 3) {
       if (!record.isotropic) {
@@ -87,10 +86,10 @@ void for_each_record(StepContext<D>& context, const JointUnits& units, int begin
   }
 }
 
-/// Runs f(first block, last block) on those of units [begin, end) that are among `count` blocks from unit `from` on.
+/// Runs f(first block, last block) on a share of `count` blocks.
 template <class F>
-void for_blocks(int begin, int end, int from, int count, int first_block, F&& f) {
-  const int first = max(begin - from, 0), last = min(end - from, count);
+void for_blocks(int first_block, int count, ThreadShare share, F&& f) {
+  const int first = share.begin(count), last = share.end(count);
   if (first < last) f(first_block + first, first_block + last);
 }
 
@@ -102,33 +101,31 @@ int joint_units(const WorldImplementation<D>& world, int color) {
 }
 
 template <class D>
-void warm_start_joints(StepContext<D>& context, int color, int begin, int end) {
+void warm_start_joints(StepContext<D>& context, int color, ThreadShare share) {
   const JointStore<D>& joints = context.world.joints;
   const LaneKernels<D>& kernels = context.world.kernels;
   const JointUnits units(joints, color);
-  for_each_record<true>(context, units, begin, end, [](auto& pair, auto& block) { block.warm_start(pair); });
-  const int from = units.record_units();
-  for_blocks(begin, end, from, units.limbs, units.first_limb,
+  for_each_record<true>(context, units, share, [](auto& pair, auto& block) { block.warm_start(pair); });
+  for_blocks(units.first_limb, units.limbs, share,
              [&](int first, int last) { kernels.limbs.warm_start(context.bodies, joints.limb_blocks, first, last); });
-  for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin,
+  for_blocks(units.first_pin, units.pins, share,
              [&](int first, int last) { kernels.pins.warm_start(context.bodies, joints.pin_blocks, first, last); });
 }
 
 template <class D>
-void solve_joints(StepContext<D>& context, int color, bool use_bias, int begin, int end) {
+void solve_joints(StepContext<D>& context, int color, bool use_bias, ThreadShare share) {
   const Softness& soft = context.joint_softness;
   const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
   const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
   const JointStore<D>& joints = context.world.joints;
   const LaneKernels<D>& kernels = context.world.kernels;
   const JointUnits units(joints, color);
-  for_each_record<false>(context, units, begin, end, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
-  const int from = units.record_units();
+  for_each_record<false>(context, units, share, [&pass](auto& pair, auto& block) { block.solve(pair, pass); });
   const LimbPass limb_pass{biased.velocity, biased.position, biased.memory, context.inverse_h};
-  for_blocks(begin, end, from, units.limbs, units.first_limb, [&](int first, int last) {
+  for_blocks(units.first_limb, units.limbs, share, [&](int first, int last) {
     (use_bias ? kernels.limbs.solve : kernels.limbs.relax)(context.bodies, joints.limb_blocks, first, last, limb_pass);
   });
-  for_blocks(begin, end, from + units.limbs, units.pins, units.first_pin, [&](int first, int last) {
+  for_blocks(units.first_pin, units.pins, share, [&](int first, int last) {
     if (use_bias)
       kernels.pins.solve(context.bodies, joints.pin_blocks, first, last,
                          {biased.velocity, biased.position, biased.memory});
@@ -158,10 +155,10 @@ void release_joint(WorldImplementation<D>& world, std::int32_t joint) {
 
 template int joint_units(const WorldImplementation<Dim2>&, int);
 template int joint_units(const WorldImplementation<Dim3>&, int);
-template void warm_start_joints(StepContext<Dim2>&, int, int, int);
-template void warm_start_joints(StepContext<Dim3>&, int, int, int);
-template void solve_joints(StepContext<Dim2>&, int, bool, int, int);
-template void solve_joints(StepContext<Dim3>&, int, bool, int, int);
+template void warm_start_joints(StepContext<Dim2>&, int, ThreadShare);
+template void warm_start_joints(StepContext<Dim3>&, int, ThreadShare);
+template void solve_joints(StepContext<Dim2>&, int, bool, ThreadShare);
+template void solve_joints(StepContext<Dim3>&, int, bool, ThreadShare);
 template void destroy_joints_of(WorldImplementation<Dim2>&, std::int32_t);
 template void destroy_joints_of(WorldImplementation<Dim3>&, std::int32_t);
 template void release_joint(WorldImplementation<Dim2>&, std::int32_t);

@@ -7,6 +7,7 @@
 
 #include "carom/math/cpu.h"
 #include "carom/math/simd.h"
+#include "carom/rigid/detail/color_parts.h"
 #include "carom/rigid/detail/contact_foresight.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/contact_middle.h"
@@ -80,24 +81,7 @@ void for_blocks(StepContext<D>& context, Overflow overflow, F&& f) {
     }
     return;
   }
-  // Every thread begins with those parts of the colours that it will solve: they are in its cache then.
-  constexpr int most_parts = 16;
-  const int parts = min(context.scheduler.thread_count(), most_parts);
-  int ends[most_parts * (color_count + 1)], total = 0;
-  const auto part_begin = [&](int color, int part) { return world.scratch.blocks[color].count * part / parts; };
-  for (int part = 0; part < parts; ++part)
-    for (int color = 0; color <= overflow_color; ++color)
-      ends[part * (color_count + 1) + color] = total += part_begin(color, part + 1) - part_begin(color, part);
-  if (total == 0) return;
-  context.scheduler.parallel_for(total, block_grain, [&](int begin, int end, int) {
-    for (int k = 0; begin < end; ++k) {
-      if (ends[k] <= begin) continue;
-      const int color = k % (color_count + 1), from = part_begin(color, k / (color_count + 1));
-      const int before = k == 0 ? 0 : ends[k - 1], stop = min(end, ends[k]);
-      run(color, from + begin - before, from + stop - before);
-      begin = stop;
-    }
-  });
+  for_color_parts(context.scheduler, block_grain, [&](int color) { return world.scratch.blocks[color].count; }, run);
 }
 
 template <class D>

@@ -69,7 +69,7 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
     if (serial)
       loops.push_back({1, 1});
     else
-      loops.push_back({count, (count + threads - 1) / threads});  // each thread has the same part in every pass
+      loops.push_back({threads, 1});
     joining = serial;
   }
 }
@@ -157,12 +157,20 @@ void run_marked(StepContext<D>& context, SolverStage stage, std::uint8_t mark, i
 }
 
 template <class D>
-void run_joints(StepContext<D>& context, SolverPass pass, int color, int begin, int end) {
-  if (begin >= end) return;
-  if (is_warm_start(pass))
-    warm_start_joints(context, color, begin, end);
+void run_color(StepContext<D>& context, SolverStage stage, int color, ThreadShare share) {
+  const ColorBlocks& blocks = context.world.scratch.blocks[color];
+  if (is_warm_start(stage.pass))
+    warm_start_joints(context, color, share);
+  else if (stage.pass != SolverPass::settle)
+    solve_joints(context, color, stage.pass == SolverPass::solve, share);
+  const int count = block_count_of(context, stage.pass, color), first = share.begin(count), last = share.end(count);
+  if (first >= last) return;
+  if (stage.pass == SolverPass::settle)
+    run_marked(context, stage, mark_settles, color, first, last);
+  else if (stage.pass == SolverPass::warm_start_again)
+    run_marked(context, stage, mark_again, color, first, last);
   else
-    solve_joints(context, color, pass == SolverPass::solve, begin, end);
+    run_blocks(context, stage, blocks, first, last);
 }
 
 template <class D>
@@ -174,22 +182,9 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
   if (stage.pass == SolverPass::impacts) return solve_impacts(context, ImpactMoment(stage.order));
   if (is_of_trees(stage.pass)) return run_trees(context, stage.pass, begin, end);
-  const bool whole = context.world.scratch.solver_loops[std::size_t(index)].count == 1;
-  for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank) {
-    const int color = color_of_rank(rank);
-    const ColorBlocks& blocks = context.world.scratch.blocks[color];
-    const int units = joint_units_of(context, stage.pass, color);
-    run_joints(context, stage.pass, color, whole ? 0 : begin, whole ? units : min(end, units));
-    const int first = whole ? 0 : max(begin - units, 0);
-    const int last = whole ? block_count_of(context, stage.pass, color) : end - units;
-    if (first >= last) continue;
-    if (stage.pass == SolverPass::settle)
-      run_marked(context, stage, mark_settles, color, first, last);
-    else if (stage.pass == SolverPass::warm_start_again)
-      run_marked(context, stage, mark_again, color, first, last);
-    else
-      run_blocks(context, stage, blocks, first, last);
-  }
+  const int parts = context.world.scratch.solver_loops[std::size_t(index)].count;
+  for (int rank = stage.first_rank; rank <= stage.last_rank; ++rank)
+    for (int part = begin; part < end; ++part) run_color(context, stage, color_of_rank(rank), {part, parts});
 }
 
 }  // namespace

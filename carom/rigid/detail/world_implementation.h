@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "carom/core/hash.h"
+#include "carom/rigid/detail/color_parts.h"
 #include "carom/rigid/detail/contact_store.h"
 #include "carom/rigid/detail/effector_store.h"
 #include "carom/rigid/detail/joint_store.h"
@@ -99,9 +100,9 @@ void prepare_joints(StepContext<D>& context);
 template <class D>
 int joint_units(const WorldImplementation<D>& world, int color);
 template <class D>
-void warm_start_joints(StepContext<D>& context, int color, int begin, int end);
+void warm_start_joints(StepContext<D>& context, int color, ThreadShare share);
 template <class D>
-void solve_joints(StepContext<D>& context, int color, bool use_bias, int begin, int end);
+void solve_joints(StepContext<D>& context, int color, bool use_bias, ThreadShare share);
 template <class D>
 void store_joints(StepContext<D>& context);
 /// Destroys joints that were loaded above what they bear, and tells of it.
