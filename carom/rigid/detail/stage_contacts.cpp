@@ -289,9 +289,7 @@ void prepare_and_mark(StepContext<D>& context) {
   std::vector<std::int32_t>& hits = world.scratch.hits;
   if (hits.capacity() < world.contacts.awake.size()) hits.reserve(world.contacts.awake.capacity());
   for (int color = 0; color <= overflow_color; ++color)
-    for_marked(world, color, mark_hits, [&](std::int32_t manifold) {
-      hits.push_back(world.contacts.at(world.contacts.manifold(manifold).contact).awake_index);
-    });
+    for_marked(world, color, mark_hits, [&](std::int32_t manifold) { hits.push_back(manifold); });
 }
 
 template <class D, int W>

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <type_traits>
 #include <utility>
 
@@ -10,7 +11,7 @@
 namespace carom::rigid::detail {
 namespace {
 
-constexpr int finalize_grain = 128;
+constexpr int finalize_grain = 128, hit_grain = 128;
 constexpr float settling_speed = 3;  ///< of its sleep speed, below which a body that lies on something settles
 constexpr float settling_resistance =
     0.014f;  ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
@@ -300,52 +301,85 @@ void release_broken_bodies(WorldImplementation<D>& world) {
   world.scratch.broken.clear();
 }
 
+/// What a contact that may have been hit tells: an impulse of 0 where nothing is to be told.
+template <class D>
+static ContactHitEvent<D> hit_event(WorldImplementation<D>& world, const ContactRecord<D>& c) {
+  ContactHitEvent<D> event{};
+  for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+    ManifoldRecord<D>& record = world.contacts.manifold(m);
+    const float approach_speed = std::exchange(record.approach_speed, 0.0f);  // not every step finds it anew
+    float impulse = 0;
+    for (int i = 0; i < record.manifold.count; ++i) impulse += record.impulses.total[i];
+    if (approach_speed < bounce_threshold(world, c.body[0], c.body[1]) || impulse <= 0) continue;
+    if (approach_speed > event.approach_speed) {
+      typename D::Position points[D::max_points];
+      float separations[D::max_points];
+      contact_points_now(world, record, points, separations, event.normal);
+      int strongest = 0;
+      for (int i = 1; i < record.manifold.count; ++i)
+        if (record.impulses.total[i] > record.impulses.total[strongest]) strongest = i;
+      event.point = points[strongest];
+      event.approach_speed = approach_speed;
+      event.slip_speed = record.slip_speed;
+      event.material_a = material_at(world, c.shape[0], record.manifold.material).user_id;
+      event.material_b = material_at(world, c.shape[1], record.manifold.material).user_id;
+    }
+    event.impulse += impulse;
+  }
+  if (event.impulse <= 0) return {};
+  // A foreseen contact may take a first breath of an impulse in the step before the blow: that is told when it falls.
+  const auto velocity = [&](std::int32_t body) {
+    const SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
+    const typename D::Vector arm(event.point - world.bodies.motion[std::size_t(body)].center);
+    return s.linear_velocity + cross(s.angular_velocity, arm);
+  };
+  if (dot(event.normal, velocity(c.body[0]) - velocity(c.body[1])) > 0.5f * event.approach_speed) return {};
+  event.shape_a = world.shapes.slots.handle_at(c.shape[0]);
+  event.shape_b = world.shapes.slots.handle_at(c.shape[1]);
+  return event;
+}
+
 template <class D>
 void gather_hit_events(StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
   std::vector<std::int32_t>& hits = world.scratch.hits;
-  std::sort(hits.begin(), hits.end());
-  hits.erase(std::unique(hits.begin(), hits.end()), hits.end());
-  for (const std::int32_t hit : hits) {
-    const ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(hit)]);
-    ContactHitEvent<D> event{};
-    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
-      ManifoldRecord<D>& record = world.contacts.manifold(m);
-      const float approach_speed = std::exchange(record.approach_speed, 0.0f);  // not every step finds it anew
-      float impulse = 0;
-      for (int i = 0; i < record.manifold.count; ++i) impulse += record.impulses.total[i];
-      if (approach_speed < bounce_threshold(world, c.body[0], c.body[1]) || impulse <= 0) continue;
-      if (approach_speed > event.approach_speed) {
-        typename D::Position points[D::max_points];
-        float separations[D::max_points];
-        contact_points_now(world, record, points, separations, event.normal);
-        int strongest = 0;
-        for (int i = 1; i < record.manifold.count; ++i)
-          if (record.impulses.total[i] > record.impulses.total[strongest]) strongest = i;
-        event.point = points[strongest];
-        event.approach_speed = approach_speed;
-        event.slip_speed = record.slip_speed;
-        event.material_a = material_at(world, c.shape[0], record.manifold.material).user_id;
-        event.material_b = material_at(world, c.shape[1], record.manifold.material).user_id;
-      }
-      event.impulse += impulse;
-    }
-    if (event.impulse <= 0) continue;
-    // A foreseen contact may take a first breath of an impulse in the step before the blow: that is told when it falls.
-    const auto velocity = [&](std::int32_t body) {
-      const SolverBody<D>& s = world.bodies.solver[std::size_t(body)];
-      const typename D::Vector arm(event.point - world.bodies.motion[std::size_t(body)].center);
-      return s.linear_velocity + cross(s.angular_velocity, arm);
+  if (hits.empty()) return;
+  // From manifolds to contacts, in the order in which those are awake, each once.
+  std::vector<std::uint8_t>& is_hit = world.scratch.contact_changes;
+  is_hit.assign((world.contacts.awake.size() + 7) / 8 * 8, 0);
+  world.scheduler->parallel_for(int(hits.size()), hit_grain, [&](int begin, int end, int) {
+    const auto contact_of = [&](int k) -> const ContactRecord<D>& {
+      return world.contacts.at(world.contacts.manifold(hits[std::size_t(k)]).contact);
     };
-    if (dot(event.normal, velocity(c.body[0]) - velocity(c.body[1])) > 0.5f * event.approach_speed) continue;
-    event.shape_a = world.shapes.slots.handle_at(c.shape[0]);
-    event.shape_b = world.shapes.slots.handle_at(c.shape[1]);
-    world.scratch.contact_hit.push_back(event);
+    for (int k = begin; k < end; ++k) {
+      if (k + 16 < end) __builtin_prefetch(&world.contacts.manifold(hits[std::size_t(k) + 16]));
+      if (k + 8 < end) __builtin_prefetch(&contact_of(k + 8).awake_index);
+      // By all threads: all write the same.
+      std::atomic_ref<std::uint8_t>(is_hit[std::size_t(contact_of(k).awake_index)]).store(1, std::memory_order_relaxed);
+    }
+  });
+  hits.clear();
+  for (std::size_t i = 0; i < world.contacts.awake.size(); i += 8) {
+    std::uint64_t any;
+    __builtin_memcpy(&any, &is_hit[i], 8);
+    for (std::size_t k = i; any != 0 && k < i + 8; ++k)
+      if (is_hit[k] != 0) hits.push_back(world.contacts.awake[k]);
   }
+  std::vector<ContactHitEvent<D>>& events = world.scratch.contact_hit;
+  events.resize(hits.size());
+  world.scheduler->parallel_for(int(hits.size()), hit_grain, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) {
+      if (k + 12 < end) prefetch_lines(&world.contacts.at(hits[std::size_t(k) + 12]), 64);
+      if (k + 6 < end)
+        if (const std::int32_t soon = world.contacts.at(hits[std::size_t(k) + 6]).first_manifold; soon != none)
+          prefetch_lines(&world.contacts.manifold(soon), sizeof(ManifoldRecord<D>));
+      events[std::size_t(k)] = hit_event(world, world.contacts.at(hits[std::size_t(k)]));
+    }
+  });
+  std::erase_if(events, [](const ContactHitEvent<D>& event) { return !(event.impulse > 0); });
   hits.clear();
 }
-
 #define CAROM_INSTANTIATE(D)                                          \
   template void quarantine<D>(WorldImplementation<D>&, std::int32_t); \
   template void finalize_bodies<D>(StepContext<D>&);                  \

@@ -244,7 +244,7 @@ bool strike(StepContext<D>& context, ManifoldRecord<D>& m, bool accelerated) {
   for (auto& rolling : extra.rolling_impulse) rolling[lane] = 0;
   if ((contact.flags & contact_hit_events) != 0) {
     m.approach_speed = max(m.approach_speed, fastest);
-    context.world.scratch.hits.push_back(contact.awake_index);
+    context.world.scratch.hits.push_back(std::int32_t(&m - context.world.contacts.manifolds.data()));
   }
   return true;
 }

@@ -125,7 +125,7 @@ struct StepScratch {
   std::vector<std::uint8_t> again;                  ///< by slot of the body: takes impulses of contacts again in every
                                                     ///< substep (list_stages); nothing between steps
   std::vector<std::uint64_t> placed;                ///< manifolds of all colours behind their places (order_by_place)
-  std::vector<std::int32_t> hits;                   ///< places in ContactStore::awake of what may be told as a hit
+  std::vector<std::int32_t> hits;                   ///< manifolds of what may be told as a hit
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake
   std::vector<std::int32_t> impacts, impact_queue;  ///< manifolds that may strike a row, and those to look at now
   std::vector<SolverStage> solver_stages;
