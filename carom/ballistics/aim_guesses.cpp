@@ -86,7 +86,8 @@ bool AimSolver::by_guesses(const Guess& flat, double apart, Aims& aims, Root& la
       keep(aims, low);
       return true;
     }
-    const Reach sooner = reach({low.guess.u, 0.98 * low.guess.time});
+    const double before = 0.98 * low.guess.time;
+    const Reach sooner = reach({low.guess.u, before}, target_(before));
     if (!sooner.known || sooner.gap <= 0) return false;
     keep(aims, low);
     return true;
