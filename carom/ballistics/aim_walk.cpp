@@ -195,9 +195,10 @@ void AimSolver::scan(Aims& aims) const {
   Trail trail;
   const double longest = options_.longest_time,
                first = math::clamp(before_any(at_looks), math::min(1e-4, longest), longest);
-  const Guess flat = flat_guess();
+  bool far = false;
+  const Guess flat = flat_guess(far);
   Guess from = straight(first);
-  if (flat.time > first && flat.time < longest) {
+  if (!far && flat.time > first && flat.time < longest) {
     from.u = shooter_.velocity + shooter_.muzzle_speed * math::normalize(flat.u - shooter_.velocity);
     trail.horizon = math::min(1.1 * flat.time, longest);
   }

@@ -87,8 +87,14 @@ class AimSolver {
   }
   /// 1/m, the share of the speed that drag takes by way.
   double drag_by_way(double speed, double height) const;
-  /// Straight at the target, but for what it falls.
-  Guess flat_guess() const;
+  /// s, m, of a straight way that rises by `up` of its length (m), in steps each with a drag of its own.
+  struct Straight {
+    double time = 0, fall = 0;
+  };
+  Straight fly_straight(double speed, double length, double up) const;
+  /// Straight at the target, but for what it falls. `far`: that is more than shots that go farthest do (.3 to .55 of
+  /// the way).
+  Guess flat_guess(bool& far) const;
   /// Nearly straight up, and down on the target.
   Guess steep_guess() const;
   void keep(Aims& aims, const Root& root) const;
