@@ -47,15 +47,15 @@ struct AimOptions {
 };
 
 /// Both ways to hit a target that keeps its acceleration. On one core of a server: the low arc alone 2 to 8 µs, both
-/// 8 to 25 µs, a target out of reach, at rest or in flight, 4 to 20 µs; one at the very edge of reach 20 to 45 µs, one
+/// 7 to 20 µs, a target out of reach, at rest or in flight, 4 to 20 µs; one at the very edge of reach 20 to 45 µs, one
 /// with several arcs 30 to 80 µs. Errors: a field that is not finite, a muzzle speed ≤ 0.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,
                                  const Target& target, const AimOptions& options = {});
 
 /// The same for any motion of the target, its position (m) by the time since firing (s): the earliest and the latest
 /// hit in the longest time that is not a passing touch of less than a hundredth of it. A target that stays slower than
-/// half of what drag leaves of a shot's speed takes as long as one that keeps its acceleration; a faster one 7 µs for
-/// the low arc, 28 for both, several times that where it weaves for long just out of reach. It is asked for its place
+/// half of what drag leaves of a shot's speed takes as long as one that keeps its acceleration; a faster one 6 µs for
+/// the low arc, 17 for both, several times that where it weaves for long just out of reach. It is asked for its place
 /// some 150 to 1 000 times, and what it does between two looks (sixty-four, closer together at first) is taken to be
 /// no faster than what it does at them.
 CAROM_API core::Result<Aims> aim(const Projectile& projectile, const Conditions& conditions, const Shooter& shooter,

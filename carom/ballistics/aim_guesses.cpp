@@ -8,20 +8,50 @@ double AimSolver::drag_by_way(double speed, double height) const {
   return math::max(medium_.half_area * air.density * projectile_.drag(speed / air.speed_of_sound), 1e-9);
 }
 
+AimSolver::Straight AimSolver::fly_straight(double speed, double length, double up) const {
+  constexpr int steps = 5;
+  const double g = conditions_.gravity, lies = shooter_.muzzle.y, way = length / steps;
+  double k = drag_by_way(speed, lies), sinks = 0;  // 1/m, m/s
+  Straight flown;
+  for (int i = 0; i < steps; ++i) {
+    k = drag_by_way(speed * (1 - 0.5 * math::min(k * way, 1.0)), lies + (i + 0.5) * way * up);
+    const double left = math::exp(-k * way), next = speed * left, dt = way / math::sqrt(speed * next),
+                 sinks_then = left * sinks + g * dt * math::sqrt(left);
+    flown.fall += 0.5 * (sinks + sinks_then) * dt;
+    flown.time += dt;
+    sinks = sinks_then;
+    speed = next;
+  }
+  return flown;
+}
+
 // Along a straight way drag leaves e^(−ks) of the speed after s: so long does it take, z = e^(ks) − 1 in units of 1/(k
 // v), and the fall is what gravity adds up to under the same drag.
-AimSolver::Guess AimSolver::flat_guess() const {
+AimSolver::Guess AimSolver::flat_guess(bool& far) const {
   const double speed = shooter_.muzzle_speed, g = conditions_.gravity, lies = shooter_.muzzle.y;
   const Vec3d wind = conditions_.wind.at(lies), still = shooter_.velocity - wind;
   double time = 0, dropped = 0, mean = speed, last = speed;
   Vec3d along;
-  for (int i = 0; i < 3; ++i) {
+  bool stepwise = false;
+  far = false;
+  for (int i = 0; i < (stepwise ? 4 : 3); ++i) {
     const Vec3d way = target_(time) - shooter_.muzzle - time * wind + Vec3d{0, dropped, 0};
     const double length = math::max(math::length(way), 1e-9);
     along = way / length;
     // The speed through the air that the barrel gives along that way.
     const double ahead = math::dot(along, still), beside = speed * speed - math::length_squared(still) + ahead * ahead;
     const double first = math::max(ahead + math::sqrt(math::max(beside, 0.0)), 0.1 * speed);
+    if (stepwise) {
+      const Straight flown = fly_straight(first, length, along.y);
+      along *= first;
+      if (!(flown.fall < 0.8 * length)) {
+        far = true;
+        break;
+      }
+      time = flown.time;
+      dropped = flown.fall;
+      continue;
+    }
     // Where it comes down through the speed of sound that mean swings to and fro; what holds at first is nearer.
     const bool falls_through = first > 1.2 * sound_ && last < 1.2 * sound_;
     const double at_first = drag_by_way(first, lies),
@@ -32,7 +62,9 @@ AimSolver::Guess AimSolver::flat_guess() const {
     time = z / (k * first);
     dropped = z > 1e-3 ? g * math::square(time / z) * 0.5 * (z + 0.5 * z * z - worn) : 0.5 * g * time * time;
     along *= first;
+    stepwise = i > 0 && last < 0.7 * first;  // so much is lost that drag in the mean tells little
   }
+  far = far || 0.5 * g * time * time > 0.65 * math::length(target_(time) - shooter_.muzzle);
   return {wind + along, time};
 }
 
@@ -86,7 +118,8 @@ bool AimSolver::by_guesses(const Guess& flat, double apart, Aims& aims, Root& la
       keep(aims, low);
       return true;
     }
-    const Reach sooner = reach({low.guess.u, 0.98 * low.guess.time});
+    const double before = 0.98 * low.guess.time;
+    const Reach sooner = reach({low.guess.u, before}, target_(before));
     if (!sooner.known || sooner.gap <= 0) return false;
     keep(aims, low);
     return true;

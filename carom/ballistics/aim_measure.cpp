@@ -97,6 +97,7 @@ double AimSolver::unsettled(Path& path) const {
 }
 
 double AimSolver::kinks(const Path& path, int n) const {
+  if (!medium_.drag.varies) return 0;
   constexpr double most = 1.2e-4;  // of a half of s², that seven of Lobatto's points mistake, wherever it begins
   const environment::AirColumn::Air air = conditions_.air.at(path.x[1][n]);
   const Vec3d from = Path::at(path.w, n), to = Path::at(path.w, n + 1);

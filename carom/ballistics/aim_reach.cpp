@@ -1,6 +1,4 @@
 // The surface that shots reach at a flight time: how near it comes to the target, and when the target passes it.
-#include <utility>
-
 #include "carom/ballistics/detail/aim_solver.h"
 
 namespace carom::ballistics::detail {
@@ -11,19 +9,72 @@ namespace carom::ballistics::detail {
 // rule: its rate is the speed of the target past the shot along the normal, and two or three flights find where it is
 // least.
 
-AimSolver::Reach AimSolver::reach(const Guess& guess, Trail* trail) const {
-  const double scale = scale_of(guess.time);
+AimSolver::Reach AimSolver::reach(const Guess& guess, Vec3d target, Trail* trail) const {
+  const double scale = scale_of(guess.time, target);
   Path own;
   Reach at;
-  bool exactly = false;
-  if (trail != nullptr && follow(guess, scale, *trail)) {
-    at = reach(guess, scale, std::as_const(trail->path));
-    exactly = trail->owes < 2e-3 * scale;
+  if (trail == nullptr) {
+    at = reach(guess, target, 5e-3, own);
   } else {
-    at = trail != nullptr ? reach(guess, rough_reach, trail->path) : reach(guess, 5e-3, own);
+    const Guess far{guess.u, math::max(guess.time, trail->horizon)};
+    const auto spread_path = [&](bool flown, bool fine = false) {
+      trail->spread = flown;
+      trail->fine = fine;
+      if (flown) spread(trail->path);
+      at = along(*trail, guess.time, target);
+    };
+    if (trail->known && trail->path.count <= 40 && bring(far, rough_reach * scale, trail->path)) spread_path(true);
+    if (!at.known) spread_path(record(far, rough_reach * scale, trail->path));
+    settle(*trail, target, at);
+    if (!at.known || !at.told()) spread_path(record(far, 5e-4 * scale, trail->path), true);
+    trail->known = at.known;
   }
-  if (trail != nullptr) trail->known = at.known;
-  if (!at.known || (math::abs(at.gap) < 0.03 * scale && !exactly)) at = reach(guess, 5e-4, own);
+  if (!at.known || (trail == nullptr && math::abs(at.gap) < 0.03 * scale)) at = reach(guess, target, 5e-4, own);
+  return at;
+}
+
+// As Newton's method moves it: what it owes falls as its square.
+void AimSolver::settle(Trail& trail, Vec3d target, Reach& at) const {
+  for (int i = 0; i < 2 && at.known && !at.told() && math::abs(at.gap) > 3e-3 * at.scale; ++i) {
+    move(trail.path, {}, 0);
+    spread(trail.path);
+    at = along(trail, at.guess.time, target);
+  }
+}
+
+AimSolver::Reach AimSolver::along(Trail& trail, double time, Vec3d target, bool moving) const {
+  Path& path = trail.path;
+  if (!trail.spread || time > path.time()) return {};
+  const double scale = scale_of(time, target);
+  int n = path.count - 1;
+  while (n > 0 && path.t[n] > time) --n;
+  const double h = path.t[n + 1] - path.t[n], s = (time - path.t[n]) / h, left = 1 - s;
+  const Path::Spread &from = path.spread[n], &to = path.spread[n + 1];
+  const double leaps = left * double(from.leaps) + s * double(to.leaps),
+               carried = left * double(from.carried) + s * double(to.carried);
+  if (!(leaps + carried < 0.5 * scale)) return {};
+  path.flatten(n);
+  const FlightElement flown(path, n);
+  const float by_from = float(left * left * (1 + 2 * s)), by_to = float(s * s * (3 - 2 * s)),
+              slope_from = float(h * s * left * left), slope_to = float(-h * s * s * left);
+  Vec3d rows[3], position, velocity;
+  for (int i = 0; i < 3; ++i) {
+    float x[4];
+    for (int j = 0; j < 4; ++j)
+      x[j] = (by_from * from.x[i][j] + slope_from * from.v[i][j]) + (by_to * to.x[i][j] + slope_to * to.v[i][j]);
+    rows[i] = {double(x[0]), double(x[1]), double(x[2])};
+    position[i] = flown.place(i, s) + double(x[3]);
+    if (moving) velocity[i] = flown.velocity(i, s) + left * double(from.v[i][3]) + s * double(to.v[i][3]);
+  }
+  Reach at = reach({Path::at(path.v, 0), time}, scale, target, position, rows);
+  if (moving) {
+    at.velocity = velocity;
+    at.drift = (target_(time + 1e-4 * time) - target) / (1e-4 * time) - velocity;
+    at.rate = math::dot(at.way, at.drift) / (at.radius + at.gap);
+    at.known = at.known && math::is_finite(at.rate);
+  }
+  at.fine = trail.fine;
+  at.owes = leaps + carried;
   return at;
 }
 
@@ -44,52 +95,42 @@ bool AimSolver::bring(const Guess& guess, double allowed, Path& path) const {
   return true;
 }
 
-bool AimSolver::follow(const Guess& guess, double scale, Trail& trail) const {
-  Path& path = trail.path;
-  if (!trail.known || path.count > 40 || !bring(guess, rough_reach * scale, path)) return false;
-  linearize(path, false);
-  if (path.leaps > 0.03 * scale && path.leaps < 0.3 * scale) {
-    move(path, {}, 0);
-    linearize(path, false);
-  }
-  double carried = 0;
-  for (int n = 0; n < path.count; ++n) carried += path.carried(n);
-  trail.owes = path.leaps + carried;
-  return path.leaps < 0.03 * scale && carried < 0.1 * scale;
-}
-
-AimSolver::Reach AimSolver::reach(const Guess& guess, double accuracy, Path& path) const {
-  const double scale = scale_of(guess.time);
+AimSolver::Reach AimSolver::reach(const Guess& guess, Vec3d target, double accuracy, Path& path) const {
+  const double time = guess.time, scale = scale_of(time, target), speed = shooter_.muzzle_speed;
   if (!record(guess, accuracy * scale, path)) return {};
   linearize(path, false);
-  return reach(guess, scale, std::as_const(path));
-}
-
-AimSolver::Reach AimSolver::reach(const Guess& guess, double scale, const Path& path) const {
-  const double speed = shooter_.muzzle_speed, time = guess.time;
-  const Vec3d target = target_(time);
-  Reach at;
-  at.guess = guess;
-  at.scale = scale;
-  at.inverse = inverse_of(path.by_velocity);
-  // Changes of u across the barrel move the arrival within the surface. The ball's curvature is the surface's mean one.
-  const Vec3d across = at.inverse.apply_transposed((guess.u - shooter_.velocity) / speed);
-  const double steep = math::length(across);
-  const Vec3d *rows = path.by_velocity, miss = target - path.arrival.position;
-  at.normal = across / steep;
-  at.radius = speed * math::sqrt(math::abs(math::dot(rows[0], math::cross(rows[1], rows[2]))) * steep);
-  at.way = miss + at.radius * at.normal;
-  const double distance = math::length(at.way);
-  const Vec3d to = at.way / distance, later = target_(time + 1e-2 * time),
-              velocity = (target_(time + 1e-4 * time) - target) / (1e-4 * time);
-  at.drift = velocity - path.arrival.velocity;
-  at.gap = distance - at.radius;
-  at.bulge = math::abs(at.gap - math::dot(at.normal, miss));
+  Reach at = reach(guess, scale, target, path.arrival.position, path.by_velocity);
+  const Vec3d later = target_(time + 1e-2 * time), velocity = (target_(time + 1e-4 * time) - target) / (1e-4 * time);
+  const double distance = at.radius + at.gap;
+  const Vec3d to = at.way / distance;
+  at.velocity = path.arrival.velocity;
+  at.drift = velocity - at.velocity;
   at.rate = math::dot(to, at.drift);
   const Vec3d pull = ((later - target) / (1e-2 * time) - velocity) / (0.5e-2 * time) - Path::at(path.k, path.count);
   at.bend = math::max(math::dot(to, pull) + math::length_squared(at.drift - at.rate * to) / distance,
                       math::max(0.3 * conditions_.gravity, 1e-4 * speed * speed / at.scale));
-  at.known = math::is_finite(at.gap) && math::is_finite(at.bend) && math::is_finite(at.rate);
+  at.known = at.known && math::is_finite(at.bend) && math::is_finite(at.rate);
+  return at;
+}
+
+AimSolver::Reach AimSolver::reach(const Guess& guess, double scale, Vec3d target, Vec3d position,
+                                  const Vec3d* rows) const {
+  const double speed = shooter_.muzzle_speed;
+  Reach at;
+  at.guess = guess;
+  at.scale = scale;
+  at.inverse = inverse_of(rows);
+  // Changes of u across the barrel move the arrival within the surface. The ball's curvature is the surface's mean one.
+  const Vec3d across = at.inverse.apply_transposed((guess.u - shooter_.velocity) / speed);
+  const double steep = math::length(across);
+  const Vec3d miss = target - position;
+  at.normal = across / steep;
+  at.radius = speed * math::sqrt(math::abs(math::dot(rows[0], math::cross(rows[1], rows[2]))) * steep);
+  at.way = miss + at.radius * at.normal;
+  at.gap = math::length(at.way) - at.radius;
+  at.plane = math::dot(at.normal, miss);
+  at.bulge = math::abs(at.gap - at.plane);
+  at.known = math::is_finite(at.gap);
   return at;
 }
 
@@ -100,9 +141,10 @@ AimSolver::Guess AimSolver::toward(const Reach& at, double time) const {
   return {shooter_.velocity + shooter_.muzzle_speed * math::normalize(barrel), time};
 }
 
-AimSolver::Reach AimSolver::reach_nearest(Guess guess, Trail* trail) const {
-  Reach at = reach(guess, trail);
-  for (int i = 0; i < 6 && at.known && !at.settled(); ++i) at = reach(toward(at, guess.time), trail);
+AimSolver::Reach AimSolver::reach_nearest(const Guess& guess, Trail* trail) const {
+  const Vec3d target = target_(guess.time);
+  Reach at = reach(guess, target, trail);
+  for (int i = 0; i < 6 && at.known && !at.settled(); ++i) at = reach(toward(at, guess.time), target, trail);
   return at;
 }
 
@@ -135,7 +177,7 @@ AimSolver::Nearest AimSolver::nearest_from(Guess guess) const {
   double early = 0, late = 1e300, closing = 0, opening = 0;  // s, m/s: between them the gap is least
   double before = 1e300;
   for (int i = 0; i < 16; ++i) {
-    const Reach at = reach(guess);
+    const Reach at = reach(guess, target_(guess.time));
     if (!at.known) return found;
     const double time = guess.time;
     (at.rate < 0 ? early : late) = time;

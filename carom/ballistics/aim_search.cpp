@@ -126,16 +126,16 @@ bool AimSolver::two_arcs(const Target& target, Aims& aims) const {
 bool AimSolver::two_arcs(Aims& aims) const { return slow_target() && arcs(0.1, aims); }
 
 bool AimSolver::arcs(double apart, Aims& aims) const {
-  const Guess flat = flat_guess();
+  bool far = false;
+  const Guess flat = flat_guess(far);
   Nearest near;
-  // On such a flight it would fall by more than the shots that go farthest do (.3 to .55 of the way).
-  if (0.5 * conditions_.gravity * flat.time * flat.time > 0.65 * math::length(target_(flat.time) - shooter_.muzzle)) {
-    near = nearest(flat.time);
+  if (far) {
+    near = nearest(options_.longest_time);
     if (near.sure && near.gap > math::max(apart, 1e-3) * near.at.scale) return true;
   }
   Root late;
-  // At the edge of reach guesses lead nowhere.
-  const bool at_edge = near.sure && near.gap > -0.1 * near.at.scale;
+  // Near the edge of reach guesses lead nowhere.
+  const bool at_edge = near.sure && near.gap > (apart > 0 ? -0.1 : -0.3) * near.at.scale;
   if (!at_edge && by_guesses(flat, apart, aims, late)) return true;
   if (apart > 0) return false;
   if (!near.sure) near = nearest(flat.time);

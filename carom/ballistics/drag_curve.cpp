@@ -72,6 +72,7 @@ void DragCurve::prepare(Interpolation interpolation) {
       pieces_[i + 1].turns = before.turns + math::abs(2 * after.square - (2 * before.square + 6 * x * before.cube));
     }
     prepare_squares();
+    prepare_rows();
   };
   for (std::size_t i = 0; i < intervals; ++i)
     between[i] = {points_[i].mach, points_[i].coefficient,
@@ -95,6 +96,32 @@ void DragCurve::prepare(Interpolation interpolation) {
     between[i].cube = (slope[i] + slope[i + 1] - 2 * line) / (h * h);
   }
   finish();
+}
+
+// The usual tables have their nodes at multiples of a fortieth.
+void DragCurve::prepare_rows() {
+  constexpr double most = 2000;
+  rows_.reset();
+  const double last = points_.back().mach;
+  for (const double by_mach : {20.0, 40.0, 50.0, 100.0, 200.0}) {
+    bool fits = points_.size() > 1 && last * by_mach < most;
+    for (const DragPoint& point : points_) {
+      const double place = point.mach * by_mach;
+      fits = fits && math::abs(place - math::floor(place + 0.5)) < 1e-9;
+    }
+    if (!fits) continue;
+    rows_per_mach_ = by_mach;
+    last_row_ = int(math::floor(last * by_mach + 0.5));
+    const std::shared_ptr<Row[]> rows(new Row[std::size_t(last_row_) + 1]);
+    for (int i = 0; i <= last_row_; ++i) {
+      const Piece& p = piece((i + 0.5) / by_mach);
+      const double x = double(i) / by_mach - p.start;
+      rows[std::size_t(i)] = {p.constant + x * (p.slope + x * (p.square + x * p.cube)),
+                              p.slope + x * (2 * p.square + x * (3 * p.cube)), p.square + 3 * x * p.cube, p.cube};
+    }
+    rows_ = rows;
+    return;
+  }
 }
 
 void DragCurve::prepare_squares() {
@@ -131,6 +158,7 @@ DragCurve DragCurve::scaled(double factor) const {
   for (Piece& p : curve.pieces_)
     p = {p.start, factor * p.constant, factor * p.slope, factor * p.square, factor * p.cube, p.bends, factor * p.turns};
   curve.prepare_squares();
+  curve.prepare_rows();
   return curve;
 }
 

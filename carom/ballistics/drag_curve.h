@@ -96,14 +96,24 @@ class CAROM_API DragCurve {
     bool bends = false;  // at its start
     double turns = 0;    // by how much second derivatives jump at starts up to this one, in all
   };
+  /// Likewise, for one cell of a grid that all nodes lie on.
+  struct Row {
+    double constant = 0, slope = 0, square = 0, cube = 0;
+  };
   /// For kernels in lanes: the pieces, one beyond all at the end, and for each of so many cells the first that can hold
-  /// its Mach numbers.
+  /// its Mach numbers; the rows where there is such a grid, the last one for all Mach numbers beyond.
   struct Table {
     const Piece* pieces;
     const std::uint16_t* first;
     double cells_per_mach;
+    const Row* rows;
+    double rows_per_mach, last_row;
+    bool varies;  // over the Mach number
   };
-  Table table() const { return {pieces_.data(), first_.data(), cells_per_mach_}; }
+  Table table() const {
+    return {pieces_.data(), first_.data(),     cells_per_mach_,   rows_.get(),
+            rows_per_mach_, double(last_row_), points_.size() > 1};
+  }
 
  private:
   const Piece& piece(double mach) const {
@@ -123,11 +133,14 @@ class CAROM_API DragCurve {
   static constexpr std::uint64_t first_square = std::bit_cast<std::uint64_t>(lowest_square) >> square_shift;
   void prepare(Interpolation interpolation);
   void prepare_squares();
+  void prepare_rows();
   std::vector<DragPoint> points_;
   std::vector<Piece> pieces_;  // before the first node, from each to the next, after the last, and one beyond all
   std::array<std::uint16_t, cells> first_{};
   std::shared_ptr<const SquareCell[]> squares_;  // shared by copies
-  double cells_per_mach_ = 0, farthest_ = 0;
+  std::shared_ptr<const Row[]> rows_;            // likewise
+  double cells_per_mach_ = 0, farthest_ = 0, rows_per_mach_ = 0;
+  int last_row_ = 0;
   bool bends_ = false;
 };
 

@@ -18,28 +18,6 @@ TEST(Aim, AnyMotion) {
   }
 }
 
-/// How a target moves: it weaves about its way, circles, or patrols five seconds there and five back.
-struct Motion {
-  Target target;
-  Vec3d one, other;
-  double rate = 0, radius = 0;  // rad/s, m
-  int kind = 0;
-  Motion(math::Random& random, const Target& along, double fastest, double most_rate)
-      : target(along), rate(random.uniform(0.05, most_rate)) {
-    radius = random.uniform(0.0, fastest) / rate;
-    one = random.on_sphere();
-    other = random.on_sphere();
-    kind = int(random.uniform(0.0, 3.0));
-  }
-  Vec3d operator()(double t) const {
-    const Vec3d along = target.position + t * target.velocity;
-    if (kind == 0) return along + radius * math::sin(rate * t) * one;
-    if (kind == 1) return along + radius * (math::sin(rate * t) * one + math::cos(rate * t) * other);
-    const double leg = t - 10 * math::floor(t / 10);
-    return target.position + math::min(leg, 10 - leg) * target.velocity;
-  }
-};
-
 // Where targets of any motion are slow enough to be aimed at by guesses, no root of the walks is earlier, later or
 // missed, and shots hit.
 TEST(Aim, SlowTargetsOfAnyMotionAgreeWithTheScan) {

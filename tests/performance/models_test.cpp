@@ -13,6 +13,7 @@
 #include "carom/particles/fluid.h"
 #include "carom/particles/granular.h"
 #include "carom/particles/system.h"
+#include "tests/ballistics/aim_cases.h"
 
 namespace models_bar_test {
 using namespace carom;
@@ -133,6 +134,31 @@ TEST(ModelsBar, TakingAim) {
   EXPECT_LT(both(projectile_from_size(DragCurve(.14), 13.585, .11956), 250, {3500, 50, 300}), 2 * 20e-6);
   const auto circles = [](double t) { return Vec3d{800 + 30 * math::cos(.5 * t), 20, 30 * math::sin(.5 * t)}; };
   EXPECT_LT(fastest(200, [&] { EXPECT_TRUE(aim(bullet, windy, {.muzzle_speed = 400}, circles).value()); }), 2 * 20e-6);
+}
+
+// Both arcs of random targets, those that keep their velocity and fast ones that move as they like (up to eight tenths
+// of the muzzle speed): the median and nineteen of twenty.
+TEST(ModelsBar, TakingAimAtRandomTargets) {
+  using namespace ballistics_aim_test;
+  math::Random random(8);
+  const AimOptions options{.longest_time = 60};
+  std::vector<double> steady, fast;
+  while (steady.size() < 400 || fast.size() < 400) {
+    const Case c = draw(random);
+    const Motion place(random, c.target, .4 * c.shooter.muzzle_speed, 2);
+    steady.push_back(fastest(5, [&] { (void)aim(c.projectile, c.conditions, c.shooter, c.target, options).value(); }));
+    Aims guessed;
+    if (detail::AimSolver(c.projectile, c.conditions, c.shooter, place, options).two_arcs(guessed)) continue;
+    fast.push_back(fastest(5, [&] { (void)aim(c.projectile, c.conditions, c.shooter, place, options).value(); }));
+  }
+  const auto share = [](std::vector<double>& times, double part) {
+    std::sort(times.begin(), times.end());
+    return times[std::size_t(part * double(times.size()))];
+  };
+  EXPECT_LT(share(steady, .5), 2 * 8e-6);
+  EXPECT_LT(share(steady, .95), 2 * 20e-6);
+  EXPECT_LT(share(fast, .5), 2 * 20e-6);
+  EXPECT_LT(share(fast, .95), 2 * 45e-6);
 }
 
 TEST(ModelsBar, CellsAndPieces) {

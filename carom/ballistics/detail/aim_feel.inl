@@ -114,12 +114,17 @@ template <bool Plain, bool Slopes>
 CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v, Vector* rise = nullptr) {
   Felt f;
   const D height = smaller(x[1], 1e9);
-  const Cell cell(
-      smaller(larger((height - D::splat(m.air.lowest)) * D::splat(m.air.per_metre), 0), m.air.last * (1 - 1e-15)));
-  static_assert(sizeof(environment::AirColumn::Air) == 2 * sizeof(double));
-  const Columns<lanes> air([&](int i) { return &m.air.nodes[cell[i]].density; });
-  const D denser = air.x[2] - air.x[0], faster = air.x[3] - air.x[1];
-  const D density = air.x[0] + cell.part * denser, sound = air.x[1] + cell.part * faster;
+  D density = D::splat(m.air.nodes[0].density), sound = D::splat(m.air.nodes[0].speed_of_sound), denser{}, faster{};
+  if (m.air.per_metre != 0) {
+    const Cell cell(
+        smaller(larger((height - D::splat(m.air.lowest)) * D::splat(m.air.per_metre), 0), m.air.last * (1 - 1e-15)));
+    static_assert(sizeof(environment::AirColumn::Air) == 2 * sizeof(double));
+    const Columns<lanes> air([&](int i) { return &m.air.nodes[cell[i]].density; });
+    denser = air.x[2] - air.x[0];
+    faster = air.x[3] - air.x[1];
+    density = air.x[0] + cell.part * denser;
+    sound = air.x[1] + cell.part * faster;
+  }
 
   Vector shear{};
   if (!math::any_of<lanes>(D::splat(m.sheared_up_to) > height)) {
@@ -147,19 +152,32 @@ CAROM_SIMD_INLINE Felt feel(const AimMedium& m, const Vector& x, const Vector& v
 
   const D weight = D::splat(m.half_area) * density, slowness = D::splat(1) / sound;
   const D speed = math::sqrt(dot(f.w, f.w)), mach = smaller(speed * slowness, 1e9);
-  const Cell part_of_curve(smaller(mach * D::splat(m.drag.cells_per_mach), double(DragCurve::cells) - 1));
-  const DragCurve::Piece* piece[lanes];
+  D coefficient = D::splat(m.drag.pieces[0].constant), past{}, c1{}, c2{}, c3{};
+  if (m.drag.rows != nullptr) {
+    const Cell cell(smaller(mach * D::splat(m.drag.rows_per_mach), m.drag.last_row + 0.5));
+    const Columns<lanes> row([&](int i) { return &m.drag.rows[cell[i]].constant; });
+    past = D::splat(1 / m.drag.rows_per_mach) * cell.part;
+    c1 = row.x[1];
+    c2 = row.x[2];
+    c3 = row.x[3];
+    coefficient = larger(row.x[0] + past * (c1 + past * (c2 + past * c3)), 0);
+  } else if (m.drag.varies) {
+    const Cell cell(smaller(mach * D::splat(m.drag.cells_per_mach), double(DragCurve::cells) - 1));
+    const DragCurve::Piece* piece[lanes];
 #pragma GCC unroll 8
-  for (int i = 0; i < lanes; ++i) {
-    const double here = mach.v[i];
-    piece[i] = m.drag.pieces + m.drag.first[part_of_curve[i]];
-    piece[i] += piece[i][1].start < here;  // nobody foresees that one
-    while (piece[i][1].start < here) ++piece[i];
+    for (int i = 0; i < lanes; ++i) {
+      const double here = mach.v[i];
+      piece[i] = m.drag.pieces + m.drag.first[cell[i]];
+      piece[i] += piece[i][1].start < here;  // nobody foresees that one
+      while (piece[i][1].start < here) ++piece[i];
+    }
+    const Columns<lanes> curve([&](int i) { return &piece[i]->start; });
+    past = mach - curve.x[0];
+    c1 = curve.x[2];
+    c2 = curve.x[3];
+    c3 = gather([&](int i) { return piece[i]->cube; });
+    coefficient = larger(curve.x[1] + past * (c1 + past * (c2 + past * c3)), 0);
   }
-  const Columns<lanes> curve([&](int i) { return &piece[i]->start; });
-  const D past = mach - curve.x[0], c1 = curve.x[2], c2 = curve.x[3],
-          c3 = gather([&](int i) { return piece[i]->cube; });
-  const D coefficient = larger(curve.x[1] + past * (c1 + past * (c2 + past * c3)), 0);
   const D by_speed = weight * speed;
   f.drag = by_speed * coefficient;
   for (int j = 0; j < 3; ++j) f.a[j] = D::splat(0) - f.drag * f.w[j];

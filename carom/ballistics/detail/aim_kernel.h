@@ -46,6 +46,8 @@ struct AimPart {
 struct AimKernel {
   /// By how much a path is off, to first order, and how: `finely` by five points within every element, else by three.
   void (*linearize)(const AimMedium& medium, FlightPath& path, bool finely);
+  /// The same forward, for every node, by three points.
+  void (*spread)(const AimMedium& medium, FlightPath& path);
   void (*measure)(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count);
   /// Where the path arrives by what its elements owe now.
   void (*settle)(FlightPath& path);

@@ -294,6 +294,37 @@ void owe(FlightPath& path) {
   }
 }
 
+/// What a change of the start, and what the elements owe, do to every node, forward along the path.
+void spread_out(FlightPath& path) {
+  const FlightPath::Elements& of = path.elements;
+  Four x[3]{}, v[3]{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  float carried = 0, defect = 0, leaps = 0, leap = 0;  // m, m/s
+  for (int n = 0;; ++n) {
+    FlightPath::Spread& out = path.spread[n];
+    __builtin_memcpy(out.x, x, sizeof x);
+    __builtin_memcpy(out.v, v, sizeof v);
+    out.carried = carried;
+    out.leaps = leaps;
+    if (n == path.count) return;
+    const float half = 0.5f * of.h[n], a = of.a[n], c = of.c[n];
+    const Four ahead = of.e[0][n] * v[0] + of.e[1][n] * v[1] + of.e[2][n] * v[2];
+    const Four height = x[1] + half * v[1], sunk = half * (x[1] + (2.0f / 3 * half) * v[1]);
+    const Four d = of.d[n] * ahead, b = of.b[n] * ahead;
+    defect += of.defect[n];
+    carried += c * defect;
+    defect *= a;
+    leaps += c * leap;
+    leap *= a;
+    for (int i = 0; i < 3; ++i) {
+      const float e = of.e[i][n], q = of.q[i][n], more_x = of.x[i][n], more_v = of.v[i][n];
+      x[i] = x[i] + c * v[i] + e * d + q * sunk + Four{0, 0, 0, more_x};
+      v[i] = a * v[i] + e * b + q * height + Four{0, 0, 0, more_v};
+      leaps += __builtin_fabsf(more_x);
+      leap += __builtin_fabsf(more_v);
+    }
+  }
+}
+
 /// By six of Gauss's points in parts of elements: their fifth and third Legendre coefficients say what they
 /// mistake.
 struct Gauss {
@@ -348,7 +379,7 @@ void measure_parts(const AimMedium& medium, const FlightPath& path, AimPart* par
   }
 }
 
-void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
+void pad(FlightPath& path) {
   const int last = path.count;
   for (int i = 1; i <= lanes; ++i) {  // what lanes read beyond the end
     path.t[last + i] = path.t[last] + i;
@@ -360,6 +391,10 @@ void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
     path.drag[last + i] = path.along[last + i] = 0;
     path.flatten(last + i - 1);
   }
+}
+
+void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
+  pad(path);
   const bool plain = medium.beside == nullptr;
   plain ? feel_nodes<true>(medium, path) : feel_nodes<false>(medium, path);
   if (finely)
@@ -367,6 +402,14 @@ void linearize(const AimMedium& medium, FlightPath& path, bool finely) {
   else
     plain ? feel_elements<FewPoints, true>(medium, path) : feel_elements<FewPoints, false>(medium, path);
   owe<false>(path);
+}
+
+void spread(const AimMedium& medium, FlightPath& path) {
+  pad(path);
+  const bool plain = medium.beside == nullptr;
+  plain ? feel_nodes<true>(medium, path) : feel_nodes<false>(medium, path);
+  plain ? feel_elements<FewPoints, true>(medium, path) : feel_elements<FewPoints, false>(medium, path);
+  spread_out(path);
 }
 
 void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, int count) {
@@ -378,6 +421,6 @@ void measure(const AimMedium& medium, const FlightPath& path, AimPart* parts, in
 
 }  // namespace
 
-const AimKernel kernel{linearize, measure, owe<true>};
+const AimKernel kernel{linearize, spread, measure, owe<true>};
 
 }  // namespace carom::ballistics::detail::CAROM_AIM_NAMESPACE

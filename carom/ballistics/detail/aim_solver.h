@@ -87,8 +87,14 @@ class AimSolver {
   }
   /// 1/m, the share of the speed that drag takes by way.
   double drag_by_way(double speed, double height) const;
-  /// Straight at the target, but for what it falls.
-  Guess flat_guess() const;
+  /// s, m, of a straight way that rises by `up` of its length (m), in steps each with a drag of its own.
+  struct Straight {
+    double time = 0, fall = 0;
+  };
+  Straight fly_straight(double speed, double length, double up) const;
+  /// Straight at the target, but for what it falls. `far`: that is more than shots that go farthest do (.3 to .55 of
+  /// the way).
+  Guess flat_guess(bool& far) const;
   /// Nearly straight up, and down on the target.
   Guess steep_guess() const;
   void keep(Aims& aims, const Root& root) const;
@@ -108,38 +114,53 @@ class AimSolver {
     bool known = false;
     Guess guess{};
     double gap = 0;             // m, from the surface to the target; < 0: within
+    bool fine = true;           // flown so well that it owes next to nothing
+    double owes = 0;            // m, by how much the path has still to move; the gap may err by a quarter of that
+    double plane = 0;           // m, likewise to the plane that touches it
     double rate = 0, bend = 0;  // m/s, m/s², of the gap over the flight time
     double scale = 0;           // m
     double radius = 0;          // m
     double bulge = 0;           // m, how much of the gap is the ball's doing: none where the target is straight ahead
     Vec3d normal{}, way{};      // outward; m, from the centre to the target
     Vec3d drift{};              // m/s, of the target past the shot
+    Vec3d velocity{};           // m/s, of the shot
     Inverse inverse{};
+    /// The path is known well enough for the gap.
+    bool told() const {
+      return fine || (math::abs(gap) > 3e-3 * scale && owes < math::max(1.5e-3 * scale, math::abs(gap)));
+    }
     /// It is where the surface comes nearest to the target, or the ball tells little of the gap.
     bool settled() const { return bulge <= math::max(0.2 * math::abs(gap), 1e-4 * scale); }
   };
-  Vec3d velocity_of_shot(const Reach& at) const { return velocity_of_target(at.guess.time) - at.drift; }
-  static constexpr double rough_reach = 2e-2;  // of the scale
-  /// The path of the last look at the surface, which is moved to the next instead of a flight of its own.
+  static constexpr double rough_reach = 1e-2;  // of the scale
+  /// The path of the last look at the surface, which is moved to the next instead of a flight of its own. It tells of
+  /// the surfaces at all times that it passes.
   struct Trail {
     bool known = false;
-    double owes = 0;  // m, by how much its elements and the leaps between them move the arrival
+    bool spread = false;  // FlightPath::Spread is of the path as it is
+    bool fine = false;    // flown so well that it owes next to nothing
+    double horizon = 0;   // s, so far paths are flown at least
     Path path;
   };
-  Reach reach(const Guess& guess, Trail* trail = nullptr) const;
+  Reach reach(const Guess& guess, Vec3d target, Trail* trail = nullptr) const;
   /// By a flight that may be so far off, a share of the scale, before it is known by how much.
-  Reach reach(const Guess& guess, double accuracy, Path& path) const;
-  /// By a path that is linearized.
-  Reach reach(const Guess& guess, double scale, const Path& path) const;
-  double scale_of(double time) const {
-    return math::max(math::length(target_(time) - shooter_.muzzle), 0.1 * shooter_.muzzle_speed * time);
+  Reach reach(const Guess& guess, Vec3d target, double accuracy, Path& path) const;
+  /// By where the target and a flight are then, and how that hangs on its start (rows); without rate, bend and drift.
+  Reach reach(const Guess& guess, double scale, Vec3d target, Vec3d position, const Vec3d* rows) const;
+  /// Where the path of a trail is at a time, of the target's place then; without bend, and without rate and drift
+  /// unless `moving`. Not known where it does not pass that, or is too far off then.
+  Reach along(Trail& trail, double time, Vec3d target, bool moving = true) const;
+  /// Moves the path of a trail to where it should be, until it tells the gap.
+  void settle(Trail& trail, Vec3d target, Reach& at) const;
+  double scale_of(double time, Vec3d target) const {
+    return math::max(math::length(target - shooter_.muzzle), 0.1 * shooter_.muzzle_speed * time);
   }
   /// A path with another start to another time: cut off, or flown on. False: too many steps.
   bool bring(const Guess& guess, double allowed, Path& path) const;
-  /// False: too far for a path that is moved.
-  bool follow(const Guess& guess, double scale, Trail& trail) const;
+  /// Not known either where the path of the trail is too far from the nearest point, or not known well enough.
+  Reach on_the_way(Trail& trail, double time) const;
   /// The same where it is nearest to the target, about, at the time of the guess.
-  Reach reach_nearest(Guess guess, Trail* trail = nullptr) const;
+  Reach reach_nearest(const Guess& guess, Trail* trail = nullptr) const;
   /// The shot that comes nearest to the target at another flight time, by the ball.
   Guess toward(const Reach& at, double time) const;
   /// Where over all flight times the surface comes nearest to the target, or the target deepest into it.
@@ -161,8 +182,12 @@ class AimSolver {
   Root refine_along(const Guess& guess, double scale, Trail& trail, int most, bool eager) const;
   /// s, before it no shot comes to the target.
   double before_any(Looks& at_looks) const;
+  /// After it none does. Leaves the path of a shot that is as high as any then.
+  Guess after_any(Looks& at_looks, Trail& trail) const;
+  /// s, for which neither the target nor shots of a speed (m/s) pass a room (m); 0 where that is less than `least`.
+  double safe_step(double time, double side, double room, double shots, double least, Looks& at_looks) const;
   /// Keeps the first root that it comes to.
-  void walk(double from, double to, Looks& at_looks, Aims& aims) const;
+  void walk(const Guess& from, double to, Looks& at_looks, Trail& trail, Aims& aims) const;
   /// The root at about a time at which the gap would close, as far as it is looked at on the way.
   bool soon(const Reach& at, double time, Trail& trail, Aims& aims) const;
   /// The shot at a target in vacuum, by muzzle speed.
@@ -171,6 +196,7 @@ class AimSolver {
   /// How the arrival depends on the start and by how much it is off, to first order in the defects of the elements and
   /// the leaps between them. `finely`: but for what is bent within elements, to about the tolerance.
   void linearize(Path& path, bool finely) const;
+  void spread(Path& path) const { (path.count > 4 ? lanes_ : few_lanes_).spread(medium_, path); }
   /// m, what errors within elements may do beside what the moments of their defects say: they fade on the way to its
   /// end, and wind may change with height. And whether the path lands.
   double unsettled(Path& path) const;

@@ -33,6 +33,13 @@ struct FlightPath {
   double drag[padded], along[padded], w[3][padded], rise[3][padded];  ///< how k hangs on the velocity and the height
   Elements elements;
   Debt debt[most + 1];
+  /// How the place and the velocity at a node hang on the velocity at the first one, and in the fourth lane by how much
+  /// they are off. `carried`, `leaps`: m, by which what is off within and between elements may move it.
+  struct Spread {
+    alignas(16) float x[3][4], v[3][4];
+    float carried, leaps;
+  };
+  Spread spread[most + 1];
   bool lands = false;          ///< it passes where profiles of wind begin
   bool bends = false;          ///< wind or drag bends sharply within an element
   double leaps = 0;            ///< m, of what the leaps between all elements do
