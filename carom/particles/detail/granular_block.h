@@ -54,16 +54,22 @@ template <int N>
 struct GrainColumns {
   const float* column[N + 1];
 };
-/// Where the neighbours of a cell's grains lie, which are begin … end − 1: runs of cells; the first run begins behind
-/// each grain itself. Grains outside of `low` … `high` reach none of a run. Where one run goes on from another in
-/// memory they are read as one.
+/// Where a cell's grains, which are begin … end − 1, and their neighbours lie: runs of cells, the first with the cell's
+/// own in front. Of the others those count that are within `low` … `high`.
 template <int N>
 struct GrainRuns {
   static constexpr int most = (2 * grain_rings<N> + 1) * (N == 2 ? grain_rings<N> + 1 : 2);
-  static constexpr int room = (most + grain_lanes - 1) / grain_lanes * grain_lanes;
   int begin = 0, end = 0, count = 0;
   int from[most], to[most];
-  float low[N][room] = {}, high[N][room] = {};  ///< m
+  float low[N], high[N];  ///< m
+};
+
+/// Room for what is near a cell's grains, and for what of it one of them waits for: for a block of lanes more than
+/// there can be.
+template <int N>
+struct GrainRoom {
+  int *number, *later;
+  float *column[N + 1], *wait[3];  ///< `wait`: squared distance, the way it goes with, distance where they touch
 };
 
 /// m: how far two grains may close by axis, what is added in any direction, and no more than `most` in all.
@@ -85,8 +91,8 @@ struct GrainKernels {
   using Block = GrainBlock<N>;
   /// Neighbours that may come to touch: their numbers and stages go to found[at …], for each grain where they begin to
   /// first[grain]. Returns where they end.
-  int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first,
-              int* found, int* later, int at);
+  int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach,
+              const GrainRoom<N>& room, int* first, int* found, int at);
   /// In how many stages from now on pairs may first touch, to `stages`, which has room for a block of lanes more:
   /// grain_stages or more is never. `pace` has by grain, as many floats as a place, how far another may close on it
   /// until the next search.

@@ -1,7 +1,7 @@
 // Which grains touch each other, walls and bodies.
 #pragma once
 
-#include <bit>
+#include <utility>
 
 #include "carom/math/simd.h"
 #include "carom/particles/detail/fluid_distance.h"
@@ -161,18 +161,22 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   GrainRuns<N> runs;
   runs.begin = begin;
   runs.end = end;
+  for (int k = 0, at[3] = {x, y, z}; k < N; ++k) {
+    runs.low[k] = float(at[k]) * width - far[k];
+    runs.high[k] = float(at[k] + 1) * width + far[k];
+  }
   const auto add = [&](int x0, int x1, int row, int across) {
     if (row < 0 || row >= cells[1] || across >= cells[2]) return;
     x0 = math::max(x0, 0);
     x1 = math::min(x1, cells[0] - 1);
     if (x0 > x1) return;
-    const int run = runs.count++, low[3] = {x0, row, across}, high[3] = {x1, row, across};
-    runs.from[run] = cell_start[cell_at(x0, row, across)];
-    runs.to[run] = cell_start[cell_at(x1, row, across) + 1];
-    for (int k = 0; k < N; ++k) {
-      runs.low[k][run] = float(low[k]) * width - far[k];
-      runs.high[k][run] = float(high[k] + 1) * width + far[k];
+    const int from = cell_start[cell_at(x0, row, across)], to = cell_start[cell_at(x1, row, across) + 1];
+    if (runs.count > 0 && runs.to[runs.count - 1] == from) {
+      runs.to[runs.count - 1] = to;
+      return;
     }
+    runs.from[runs.count] = from;
+    runs.to[runs.count++] = to;
   };
   if constexpr (N == 2) {
     for (int k = 0; k <= 2 * near; ++k) {  // its own row first
@@ -186,13 +190,20 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
-  if (most + grain_lanes > slab.waiting.size()) slab.waiting.resize(2 * most + grain_lanes);
+  const std::size_t room_for = most + grain_lanes;
+  if (2 * room_for > slab.numbers.size()) slab.numbers.resize(4 * room_for);
+  if ((N + 4) * room_for > slab.near.size()) slab.near.resize(2 * (N + 4) * room_for);
+  GrainRoom<N> room;
+  float* next = slab.near.data();
+  for (float*& column : room.column) column = std::exchange(next, next + room_for);
+  for (float*& column : room.wait) column = std::exchange(next, next + room_for);
+  room.number = slab.numbers.data();
+  room.later = slab.numbers.data() + room_for;
   most = most * std::size_t(end - begin) + std::size_t(slab.pair_count) + grain_lanes;
   if (most > slab.pairs.size()) slab.pairs.resize(2 * most);
   GrainColumns<N> columns;
   for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
-  slab.pair_count =
-      kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.waiting.data(), slab.pair_count);
+  slab.pair_count = kernels->find(columns, runs, reach, room, first_pair.data(), slab.pairs.data(), slab.pair_count);
 }
 
 /// One more, empty; `none`: a grain that is none.

@@ -148,72 +148,95 @@ CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lan
   }
 }
 
-/// What lanes have that `chosen` has bits for, to to[at …], in which a block of lanes more is written; returns where it
-/// ends.
-CAROM_SIMD_INLINE int append(math::WideInt<width> lanes, std::uint32_t chosen, int* to, int at) {
+/// What lanes have that `chosen` has bits for, to the numbers and columns behind the first `at`, where a block of lanes
+/// may be written; returns where it ends.
+template <int K>
+CAROM_SIMD_INLINE int pack(std::uint32_t chosen, math::WideInt<width> number, const F* column, int* numbers,
+                           float* const* columns, int at) {
 #if defined(__AVX512F__)
   if constexpr (width == 16) {
-    const __m512i packed = _mm512_maskz_compress_epi32(__mmask16(chosen), __m512i(lanes.v));
-    _mm512_storeu_si512(to + at, packed);
+    _mm512_storeu_si512(numbers + at, _mm512_maskz_compress_epi32(__mmask16(chosen), __m512i(number.v)));
+    for (int k = 0; k < K; ++k)
+      _mm512_storeu_ps(columns[k] + at, _mm512_maskz_compress_ps(__mmask16(chosen), __m512(column[k].v)));
     return at + __builtin_popcount(chosen);
   }
 #endif
-  std::int32_t number[width];
-  lanes.store(number);
-  for (; chosen != 0; chosen &= chosen - 1) to[at++] = number[__builtin_ctz(chosen)];
+  if (chosen == 0) return at;
+  std::int32_t lanes[width];
+  number.store(lanes);
+  float rows[K > 0 ? K : 1][width];
+  for (int k = 0; k < K; ++k) column[k].store(rows[k]);
+  for (; chosen != 0; chosen &= chosen - 1, ++at) {
+    const int lane = __builtin_ctz(chosen);
+    numbers[at] = lanes[lane];
+    for (int k = 0; k < K; ++k) columns[k][at] = rows[k][lane];
+  }
   return at;
 }
 
+/// Bits of as many lanes.
+CAROM_SIMD_INLINE std::uint32_t first_lanes(int count) { return count < width ? (1u << count) - 1 : (1u << width) - 1; }
+
+CAROM_SIMD_INLINE math::WideInt<width> lane_numbers(int first) {
+  return math::WideInt<width>::lanes() + math::WideInt<width>::splat(first);
+}
+
+/// Those of the runs that are near, side by side; returns how many.
 template <int N>
-int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first, int* found,
-         int* later, int at) {
-  for (int i = runs.begin; i < runs.end; ++i) {
-    first[i] = at;
+CAROM_SIMD_INLINE int draw_near(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRoom<N>& room) {
+  int count = 0;
+  for (int run = 0; run < runs.count; ++run)
+    for (int j = runs.from[run]; j < runs.to[run]; j += width) {
+      F x[N + 1];
+      for (int k = 0; k <= N; ++k) x[k] = F::load(grains.column[k] + j);
+      M inside = (x[0] >= splat(runs.low[0])) & (x[0] <= splat(runs.high[0]));
+      for (int k = 1; k < N; ++k) inside = inside & (x[k] >= splat(runs.low[k])) & (x[k] <= splat(runs.high[k]));
+      count = pack<N + 1>(math::bitmask(inside) & first_lanes(runs.to[run] - j), lane_numbers(j), x, room.number,
+                          room.column, count);
+    }
+  return count;
+}
+
+template <int N>
+int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, const GrainRoom<N>& room,
+         int* first, int* found, int at) {
+  const int count = draw_near(grains, runs, room), own_count = runs.end - runs.begin;
+  for (int i = 0; i < own_count; ++i) {
+    first[runs.begin + i] = at;
+    F x[N], ways[N];
+    for (int k = 0; k < N; ++k) {
+      x[k] = splat(room.column[k][i]);
+      ways[k] = splat(reach.way[k]);
+    }
+    const F own = splat(room.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
     int waits = 0;
-    F x[N];
-    for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
-    const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
-    F ways[N];
-    for (int k = 0; k < N; ++k) ways[k] = splat(reach.way[k]);
-    int from[GrainRuns<N>::most], to[GrainRuns<N>::most], last = 0;
-    from[0] = i + 1;
-    to[0] = runs.to[0];
-    std::uint32_t reached = 0;
-    for (int run = 0; run < runs.count; run += width) {
-      M near = (x[0] >= F::load(runs.low[0] + run)) & (x[0] <= F::load(runs.high[0] + run));
-      for (int k = 1; k < N; ++k)
-        near = near & (x[k] >= F::load(runs.low[k] + run)) & (x[k] <= F::load(runs.high[k] + run));
-      reached |= math::bitmask(near) << run;
-    }
-    for (reached &= (1u << runs.count) - 2; reached != 0; reached &= reached - 1) {
-      const int run = __builtin_ctz(reached);
-      if (to[last] != runs.from[run]) from[++last] = runs.from[run];
-      to[last] = runs.to[run];
-    }
-    for (int run = 0; run <= last; ++run)
-      for (int j = from[run]; j < to[run]; j += width) {
-        // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
-        // slack: then d² < u² + 2 |d| s too, which asks for no root.
-        F square, way;
-        for (int k = 0; k < N; ++k) {
-          const F d = F::load(grains.column[k] + j) - x[k], far = math::abs(d) * ways[k];
-          square = k == 0 ? d * d : square + d * d;
-          way = k == 0 ? far : way + far;
-        }
-        const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
-        std::uint32_t hits = math::bitmask((square - touch * touch < way + way) & (square < farthest * farthest));
-        if (to[run] - j < width) hits &= (1u << (to[run] - j)) - 1;
-        if (hits == 0) continue;
-        const F open = square - touch * math::sqrt(square), all = splat(grain_stages) * open;
-        hits &= math::bitmask(open < way);
-        const std::uint32_t soon = math::bitmask(all < way) & hits;
-        const auto others = math::WideInt<width>::lanes() + math::WideInt<width>::splat(j);
-        at = append(others, soon, found, at);
-        if (hits == soon) continue;
-        const F stage = math::max(math::min(all / math::max(way, splat(1e-30f)), splat(grain_stages - 1)), splat(1));
-        waits = append(others | (math::to_int(stage) << grain_stage_bit), hits ^ soon, later, waits);
+    for (int j = i + 1; j < count; j += width) {
+      // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
+      // slack: where |d|² − |d| s is below u |d|, which asks for no root.
+      F square, way;
+      for (int k = 0; k < N; ++k) {
+        const F d = F::load(room.column[k] + j) - x[k], far = math::abs(d) * ways[k];
+        square = k == 0 ? d * d : square + d * d;
+        way = k == 0 ? far : way + far;
       }
-    for (int k = 0; k < waits; k += width) math::WideInt<width>::load(later + k).store(found + at + k);
+      const F touch = own + F::load(room.column[N] + j), farthest = touch + more, most = touch * touch * square;
+      const F late = math::max(square - way, F::zero()),
+              early = math::max(square - splat(1.0f / grain_stages) * way, F::zero());
+      const std::uint32_t hits =
+          math::bitmask(late * late <= most) & math::bitmask(square < farthest * farthest) & first_lanes(count - j);
+      const std::uint32_t soon = math::bitmask(early * early <= most) & hits;
+      const auto others = math::WideInt<width>::load(room.number + j);
+      at = pack<0>(soon, others, nullptr, found, nullptr, at);
+      if (hits == soon) continue;
+      const F wait[3] = {square, way, touch};
+      waits = pack<3>(hits ^ soon, others, wait, room.later, room.wait, waits);
+    }
+    for (int k = 0; k < waits; k += width) {
+      const F square = F::load(room.wait[0] + k), open = square - F::load(room.wait[2] + k) * math::sqrt(square);
+      const F stage = splat(grain_stages) * open / math::max(F::load(room.wait[1] + k), splat(1e-30f));
+      const auto whole = math::to_int(math::max(math::min(stage, splat(grain_stages - 1)), splat(1)));
+      (math::WideInt<width>::load(room.later + k) | (whole << grain_stage_bit)).store(found + at + k);
+    }
     at += waits;
   }
   return at;

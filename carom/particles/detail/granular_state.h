@@ -102,8 +102,9 @@ struct Haste {
 /// Neighbouring columns of cells: their pairs are found and placed by one thread, without a look at other slabs'.
 template <int N>
 struct GrainSlab {
-  std::vector<int> waiting;  ///< those of a grain that GrainKernels::find sets aside
-  std::vector<int> pairs;    ///< its grains' pairs, as GrainKernels::find leaves them: room for more than pair_count
+  std::vector<float> near;  ///< what is near a cell's grains (GrainRoom)
+  std::vector<int> numbers;
+  std::vector<int> pairs;  ///< its grains' pairs, as GrainKernels::find leaves them: room for more than pair_count
   int pair_count = 0;
   // Where they are solved, in the order of the slab's layers.
   std::vector<GrainBlock<N>> blocks;  ///< room for more than block_count, which is not made anew
