@@ -65,13 +65,16 @@ CAROM_SIMD_INLINE Lanes<2> vector_of(const Lanes<1>& grip, const Lanes<2>& n) {
 }
 CAROM_SIMD_INLINE Lanes<3> twist_of(const Lanes<3>& grip, const Lanes<3>& n) { return cross(n, grip); }
 CAROM_SIMD_INLINE Lanes<1> twist_of(const Lanes<1>& grip, const Lanes<2>& /*n*/) { return grip; }
-/// Cut off at a size.
+/// Cut off at a size; nought at none, even where squares vanish: whether such a lane is looked at hangs on those
+/// beside.
 template <int K>
 CAROM_SIMD_INLINE Lanes<K> limited(const Lanes<K>& v, F limit) {
   const F square = dot(v, v);
-  const M over = square > limit * limit;
-  if (math::none(over)) return v;
-  return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * v;
+  const M over = square > limit * limit, held = limit > F::zero();
+  Lanes<K> r;
+  for (int i = 0; i < K; ++i) r.k[i] = math::select(held, v.k[i], F::zero());
+  if (math::none(over)) return r;
+  return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * r;
 }
 
 CAROM_SIMD_INLINE Lanes<1> limited(const Lanes<1>& v, F limit) {
