@@ -232,12 +232,12 @@ void GrainSlab<N>::add_block(std::uint32_t none) {
 }
 
 /// Gives a pair a lane in the first block that has room after the last in which one of the two is: solved block by
-/// block the pairs give what they would one after the other. The slab's grains end at `end`.
+/// block the pairs give what they would one after the other. The slab's grains end at `end`. `last_of_a`: last_block of
+/// the grain, which may be at hand.
 template <class D>
-[[gnu::always_inline]] inline int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int pair) {
+[[gnu::always_inline]] inline int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int& last_of_a, int pair) {
   const int b = pairs[pair];
-  int *const open = slab.open_block.data(), &last_of_a = last_block[grain],
-             &last_of_b = b < end ? last_block[b] : last_across[b];
+  int *const open = slab.open_block.data(), &last_of_b = b < end ? last_block[b] : last_across[b];
   int block = math::max(last_of_a, last_of_b) + 1;
   while (block < slab.block_count && open[block] != block) {
     const int after = open[block];
@@ -309,9 +309,12 @@ template <class D>
 void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
   const int* const first = first_pair.data();
   const std::uint8_t* const stage_of = stages.data();
-  for (int grain = begin; grain < end; ++grain)
+  for (int grain = begin; grain < end; ++grain) {
+    int last = last_block[grain];
     for (int k = first[grain], to = first[grain + 1]; k < to && stage_of[k] == 0; ++k)
-      slab.was[place_pair(slab, end, grain, k)] = was[k];
+      slab.was[place_pair(slab, end, grain, last, k)] = was[k];
+    last_block[grain] = last;
+  }
 }
 
 /// At the begin of a stage: pairs that may touch within it get a lane, the others wait on.
@@ -331,7 +334,7 @@ void GranularState<D>::place_later(GrainSlab<N>& slab, int end, int stage) {
       continue;
     }
     const int grain = int(waiting[k].a / grain_place), other = int(waiting[k].b / grain_place), pair = waiting[k].pair;
-    const int at = place_pair(slab, end, grain, pair), lane = at % grain_lanes;
+    const int at = place_pair(slab, end, grain, last_block[grain], pair), lane = at % grain_lanes;
     stages[pair] = 0;
     GrainBlock<N>& block = slab.blocks[at / grain_lanes];
     const Grain<D>&ga = grains[grain], &gb = grains[other];

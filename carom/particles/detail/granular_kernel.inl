@@ -78,7 +78,7 @@ CAROM_SIMD_INLINE Lanes<K> limited(const Lanes<K>& v, F limit) {
 }
 
 CAROM_SIMD_INLINE Lanes<1> limited(const Lanes<1>& v, F limit) {
-  return {{math::min(math::max(v.k[0], splat(0) - limit), limit)}};
+  return {{math::max(math::min(v.k[0], limit), splat(0) - limit)}};
 }
 
 /// Where the grains' records begin, of Size floats each. To be made again where they are written: so many addresses do
@@ -358,25 +358,26 @@ CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place, c
   math::gather_records<width>(Places(place, c.b + lane).row, b);
   Lanes<N> d;
   for (int i = 0; i < N; ++i) d.k[i] = b[i] - a[i];
-  const F distance = math::sqrt(dot(d, d));
-  const M apart = distance > F::zero();
-  const F over = splat(1) / math::select(apart, distance, splat(1));
-  for (int i = 0; i < N; ++i) d.k[i] = math::select(apart, over * d.k[i], splat(i == 1 ? 1 : 0));
-  store(d, c.normal, lane);
+  const F square = dot(d, d);
+  const M apart = square > F::zero();
+  const F distance = math::sqrt(square), far = math::select(apart, distance, splat(1));
+  for (int i = 0; i < N; ++i) d.k[i] = math::select(apart, d.k[i], splat(i == 1 ? 1 : 0));
   F gap = distance - a[3] - b[3];
   const F deep = splat(-pass.slop) - gap;
+  const auto n = (splat(1) / far) * d;
+  store(n, c.normal, lane);
   if (math::any(deep > F::zero())) {
     const F out = splat(pass.part) * math::max(deep, F::zero());
     // Masses of one density go with r² and r³; a grain that is none has no radius.
     F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
-    F upward = F::zero();  // b above a
+    F upward = F::zero();  // of b above a, times their distance
     for (int k = 0; k < N; ++k) upward = upward + splat(pass.up[k]) * d.k[k];
-    ma = ma * (splat(1) + math::max(upward, F::zero()));
-    mb = mb * (splat(1) - math::min(upward, F::zero()));
+    ma = ma * (far + math::max(upward, F::zero()));
+    mb = mb * (far - math::min(upward, F::zero()));
     const F masses = ma + mb, each = out / math::select(masses > F::zero(), masses, splat(1));
     for (int k = 0; k < N; ++k) {
-      a[k] = a[k] - (mb * each) * d.k[k];
-      b[k] = b[k] + (ma * each) * d.k[k];
+      a[k] = a[k] - (mb * each) * n.k[k];
+      b[k] = b[k] + (ma * each) * n.k[k];
     }
     gap = gap + out;
     math::scatter_records<width>(Places(place, c.a + lane).row, a);
@@ -420,16 +421,15 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
   const F easy = pair ? F::load(c.ease + lane) : splat(1) / a.inverse_mass;
   const F before = F::load(c.push + lane), last = F::load(c.gain + lane);
   const F bias = math::max(F::load(c.gap + lane), F::zero()) * splat(pass.inverse_h);
+  const F over = splat(over_relaxation) * easy, start = before + splat(heavy_ball) * last - bias * over;
   auto across = splat(-1) * a.v;
   auto u = a.u;
   if constexpr (pair) {
     across = b.v - a.v;
     u = a.u + b.u;
   }
-  const F along = dot(across, n),
-          push = math::max(before + splat(heavy_ball) * last - (along + bias) * (splat(over_relaxation) * easy),
-                           F::zero());
-  if (math::none((push > F::zero()) | (before > F::zero()) | (last < F::zero()))) return;
+  const F along = dot(across, n), push = math::max(start - along * over, F::zero());
+  if (math::none(math::max(math::max(push, before), F::zero() - last) > F::zero())) return;
   push.store(c.push + lane);
   const F gain = push - before;
   gain.store(c.gain + lane);
@@ -446,7 +446,7 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
     const F lever = pair ? F::load(c.lever + lane) : splat(0.5f) / a.curve;
     const F inertia =
         pair ? F::load(c.give_way + lane) : splat(1 / turning<N>) / (a.inverse_mass * (a.curve * a.curve));
-    const auto rolled = limited(roll + inertia * rolling, splat(2 * pass.rolling) * push * lever);
+    const auto rolled = limited(roll + inertia * rolling, push * (splat(2 * pass.rolling) * lever));
     store(rolled, c.roll, lane);
     more_roll = rolled - roll;
   }

@@ -192,7 +192,7 @@ struct GranularState {
   float time_to_search(float dt) const;
   bool astray(float time);
   void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
-  int place_pair(GrainSlab<N>& slab, int end, int grain, int pair);
+  int place_pair(GrainSlab<N>& slab, int end, int grain, int& last_of_a, int pair);
   void match_pairs(GrainSlab<N>& slab, int begin, int end);
   void place_pairs(GrainSlab<N>& slab, int begin, int end);
   void place_later(GrainSlab<N>& slab, int end, int stage);
