@@ -17,7 +17,6 @@ inline constexpr int grain_held = N == 2 ? 4 : 8;
 
 /// Of the time until the next search: pairs are solved from that stage on in which the two may first touch.
 inline constexpr int grain_stages = 8;
-inline constexpr int grain_stage_bit = 24;  ///< of what is found of a pair: its stage, above the other's number
 
 /// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
 /// twice a grain that is none.
@@ -64,12 +63,19 @@ struct GrainRuns {
   float low[N], high[N];  ///< m
 };
 
+/// A pair that does not touch yet: of both grains grain_place × the number.
+struct GrainWait {
+  std::uint32_t a = 0, b = 0;
+};
+
 /// Room for what is near a cell's grains, and for what of it one of them waits for: for a block of lanes more than
-/// there can be.
+/// there can be. And lists, by stage, to which pairs that wait are added.
 template <int N>
 struct GrainRoom {
-  int *number, *later;
+  int *number, *other;
   float *column[N + 1], *wait[3];  ///< `wait`: squared distance, the way it goes with, distance where they touch
+  GrainWait* later[grain_stages];
+  int* waiting;  ///< how many, by stage
 };
 
 /// m: how far two grains may close by axis, what is added in any direction, and no more than `most` in all.
@@ -79,18 +85,12 @@ struct GrainReach {
   float slack = 0, most = 0;
 };
 
-/// A pair that does not touch yet: of both grains grain_place × the number.
-struct GrainWait {
-  std::uint32_t a = 0, b = 0;
-  int pair = 0;
-};
-
 /// All but `find`, `wait` and `move` go through the blocks first … last − 1 in turn, or back from the last.
 template <int N>
 struct GrainKernels {
   using Block = GrainBlock<N>;
-  /// Neighbours that may come to touch: their numbers and stages go to found[at …], for each grain where they begin to
-  /// first[grain]. Returns where they end.
+  /// Neighbours that may touch at once: their numbers go to found[at …], for each grain where they begin to
+  /// first[grain]. Returns where they end. Those that may come to touch are added to the room's lists.
   int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach,
               const GrainRoom<N>& room, int* first, int* found, int at);
   /// In how many stages from now on pairs may first touch, to `stages`, which has room for a block of lanes more:

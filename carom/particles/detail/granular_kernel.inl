@@ -232,15 +232,18 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
       at = pack<0>(soon, others, nullptr, found, nullptr, at);
       if (hits == soon) continue;
       const F wait[3] = {square, way, touch};
-      waits = pack<3>(hits ^ soon, others, wait, room.later, room.wait, waits);
+      waits = pack<3>(hits ^ soon, others, wait, room.other, room.wait, waits);
     }
     for (int k = 0; k < waits; k += width) {
       const F square = F::load(room.wait[0] + k), open = square - F::load(room.wait[2] + k) * math::sqrt(square);
       const F stage = splat(grain_stages) * open / math::max(F::load(room.wait[1] + k), splat(1e-30f));
       const auto whole = math::to_int(math::max(math::min(stage, splat(grain_stages - 1)), splat(1)));
-      (math::WideInt<width>::load(room.later + k) | (whole << grain_stage_bit)).store(found + at + k);
+      std::int32_t stages[width];
+      whole.store(stages);
+      for (int lane = 0; lane < width && k + lane < waits; ++lane)
+        room.later[stages[lane]][room.waiting[stages[lane]]++] = {std::uint32_t(runs.begin + i) * grain_place,
+                                                                  std::uint32_t(room.other[k + lane]) * grain_place};
     }
-    at += waits;
   }
   return at;
 }
