@@ -68,12 +68,14 @@ struct GrainWait {
   std::uint32_t a = 0, b = 0;
 };
 
-/// Room for what is near a cell's grains, and for what of it one of them waits for: for a block of lanes more than
-/// there can be. And lists, by stage, to which pairs that wait are added.
+/// Room for what is near a cell's grains, and for pairs of them that wait: for a block of lanes more than there can be.
+/// And lists, by stage, to which these are added.
 template <int N>
 struct GrainRoom {
-  int *number, *other;
-  float *column[N + 1], *wait[3];  ///< `wait`: squared distance, the way it goes with, distance where they touch
+  int* number;
+  float* column[N + 1];
+  int *own, *other;
+  float* wait[3];  ///< squared distance, the way it goes with, distance where they touch
   GrainWait* later[grain_stages];
   int* waiting;  ///< how many, by stage
 };
@@ -94,7 +96,7 @@ struct GrainKernels {
   int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach,
               const GrainRoom<N>& room, int* first, int* found, int at);
   /// In how many stages from now on pairs may first touch, to `stages`, which has room for a block of lanes more:
-  /// grain_stages or more is never. `pace` has by grain, as many floats as a place, how far another may close on it
+  /// grain_stages, the most, is never. `pace` has by grain, as many floats as a place, how far another may close on it
   /// until the next search.
   void (*wait)(const GrainWait* waiting, int count, float* place, float* pace, float slack, int* stages);
   /// Grains first … last − 1 go on by `time` and then gain velocity: of four floats, that begin a row, each its own.

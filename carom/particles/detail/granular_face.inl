@@ -102,8 +102,8 @@ void GranularState<D>::reserve() {
   for (GrainSlab<N>& slab : slabs) {
     const std::size_t share = contacts / slabs.size() + 1, share_of_blocks = share / grain_lanes + 1;
     slab.pairs.resize(share);
-    slab.numbers.resize(2048);  // several times what cells of grains of one size have around them
-    slab.near.resize((N + 4) * 1024);
+    slab.numbers.resize(1 << 14);  // several times what cells of grains of one size have around them
+    slab.near.resize(1 << 15);
     slab.blocks.reserve(share_of_blocks);
     slab.open_block.resize(share_of_blocks);
     slab.filled.resize(share_of_blocks);

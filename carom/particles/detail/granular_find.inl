@@ -190,24 +190,25 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
-  const std::size_t room_for = most + grain_lanes;
-  if (2 * room_for > slab.numbers.size()) slab.numbers.resize(4 * room_for);
-  if ((N + 4) * room_for > slab.near.size()) slab.near.resize(2 * (N + 4) * room_for);
+  const std::size_t near_count = most + grain_lanes, pair_room = most * std::size_t(end - begin) + grain_lanes;
+  if (near_count + 2 * pair_room > slab.numbers.size()) slab.numbers.resize(2 * (near_count + 2 * pair_room));
+  const std::size_t floats = (N + 1) * near_count + 3 * pair_room;
+  if (floats > slab.near.size()) slab.near.resize(2 * floats);
   GrainRoom<N> room;
-  float* next = slab.near.data();
-  for (float*& column : room.column) column = std::exchange(next, next + room_for);
-  for (float*& column : room.wait) column = std::exchange(next, next + room_for);
   room.number = slab.numbers.data();
-  room.other = slab.numbers.data() + room_for;
+  room.own = room.number + near_count;
+  room.other = room.own + pair_room;
+  float* next = slab.near.data();
+  for (float*& column : room.column) column = std::exchange(next, next + near_count);
+  for (float*& column : room.wait) column = std::exchange(next, next + pair_room);
   room.waiting = slab.waiting;
-  most = most * std::size_t(end - begin) + grain_lanes;
   for (int k = 1; k < grain_stages; ++k) {
-    if (most + std::size_t(slab.waiting[k]) > slab.later[k].size())
-      slab.later[k].resize(2 * (most + std::size_t(slab.waiting[k])));
+    const std::size_t wanted = std::size_t(slab.waiting[k]) + pair_room;
+    if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
     room.later[k] = slab.later[k].data();
   }
-  most += std::size_t(slab.pair_count);
-  if (most > slab.pairs.size()) slab.pairs.resize(2 * most);
+  const std::size_t wanted = std::size_t(slab.pair_count) + pair_room;
+  if (wanted > slab.pairs.size()) slab.pairs.resize(2 * wanted);
   GrainColumns<N> columns;
   for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
   slab.pair_count = kernels->find(columns, runs, reach, room, first_pair.data(), slab.pairs.data(), slab.pair_count);
@@ -333,28 +334,33 @@ template <class D>
 void GranularState<D>::place_later(GrainSlab<N>& slab, int end, int stage) {
   constexpr int some = 64;
   int stages_more[some + grain_lanes];
-  const GrainWait* const waiting = slab.later[stage].data();
-  for (int k = 0, count = slab.waiting[stage]; k < count; ++k) {
-    if (k % some == 0)
-      kernels->wait(waiting + k, math::min(count - k, some), place.data(), pace.data(), 0.02f * definition.radius,
-                    stages_more);
-    const int next = stage + stages_more[k % some];
-    if (next >= grain_stages) continue;
-    if (next > stage) {
-      std::vector<GrainWait>& list = slab.later[next];
-      if (std::size_t(slab.waiting[next]) == list.size()) list.resize(2 * list.size() + 16);
-      list[slab.waiting[next]++] = waiting[k];
-      continue;
-    }
-    const int a = int(waiting[k].a / grain_place), b = int(waiting[k].b / grain_place);
-    const int at = place_pair(slab, end, a, b, last_block[a]), lane = at % grain_lanes;
-    slab.late.push_back({a, b, at});
-    GrainBlock<N>& block = slab.blocks[at / grain_lanes];
-    const Grain<D>&ga = grains[a], &gb = grains[b];
-    block.ease[lane] = 1 / (ga.inverse_mass + gb.inverse_mass);
-    block.give_way[lane] = 1 / (ga.inverse_inertia + gb.inverse_inertia);
-    block.lever[lane] = 1 / (ga.curve + gb.curve);
+  GrainWait now[some], never[some];
+  GrainWait* to[2 * grain_stages];
+  const int count = slab.waiting[stage];
+  for (int k = stage + 1; k < grain_stages; ++k) {
+    const std::size_t wanted = std::size_t(slab.waiting[k] + count);
+    if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
+    to[k] = slab.later[k].data() + slab.waiting[k];
   }
+  for (int begin = 0; begin < count; begin += some) {
+    const GrainWait* const waiting = slab.later[stage].data() + begin;
+    const int asked = math::min(count - begin, some);
+    kernels->wait(waiting, asked, place.data(), pace.data(), 0.02f * definition.radius, stages_more);
+    to[stage] = now;
+    for (int k = grain_stages; k < 2 * grain_stages; ++k) to[k] = never;
+    for (int k = 0; k < asked; ++k) *to[stage + stages_more[k]]++ = waiting[k];
+    for (const GrainWait* pair = now; pair < to[stage]; ++pair) {
+      const int a = int(pair->a / grain_place), b = int(pair->b / grain_place);
+      const int at = place_pair(slab, end, a, b, last_block[a]), lane = at % grain_lanes;
+      slab.late.push_back({a, b, at});
+      GrainBlock<N>& block = slab.blocks[at / grain_lanes];
+      const Grain<D>&ga = grains[a], &gb = grains[b];
+      block.ease[lane] = 1 / (ga.inverse_mass + gb.inverse_mass);
+      block.give_way[lane] = 1 / (ga.inverse_inertia + gb.inverse_inertia);
+      block.lever[lane] = 1 / (ga.curve + gb.curve);
+    }
+  }
+  for (int k = stage + 1; k < grain_stages; ++k) slab.waiting[k] = int(to[k] - slab.later[k].data());
 }
 
 /// Pairs that were placed later come behind the others.

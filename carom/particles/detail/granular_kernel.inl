@@ -204,6 +204,7 @@ template <int N>
 int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, const GrainRoom<N>& room,
          int* first, int* found, int at) {
   const int count = draw_near(grains, runs, room), own_count = runs.end - runs.begin;
+  int waits = 0;
   for (int i = 0; i < own_count; ++i) {
     first[runs.begin + i] = at;
     F x[N], ways[N];
@@ -212,7 +213,6 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
       ways[k] = splat(reach.way[k]);
     }
     const F own = splat(room.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
-    int waits = 0;
     for (int j = i + 1; j < count; j += width) {
       // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
       // slack: where |d|² − |d| s is below u |d|, which asks for no root.
@@ -230,20 +230,19 @@ int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRea
       const std::uint32_t soon = math::bitmask(early * early <= most) & hits;
       const auto others = math::WideInt<width>::load(room.number + j);
       at = pack<0>(soon, others, nullptr, found, nullptr, at);
-      if (hits == soon) continue;
       const F wait[3] = {square, way, touch};
+      math::WideInt<width>::splat(runs.begin + i).store(room.own + waits);
       waits = pack<3>(hits ^ soon, others, wait, room.other, room.wait, waits);
     }
-    for (int k = 0; k < waits; k += width) {
-      const F square = F::load(room.wait[0] + k), open = square - F::load(room.wait[2] + k) * math::sqrt(square);
-      const F stage = splat(grain_stages) * open / math::max(F::load(room.wait[1] + k), splat(1e-30f));
-      const auto whole = math::to_int(math::max(math::min(stage, splat(grain_stages - 1)), splat(1)));
-      std::int32_t stages[width];
-      whole.store(stages);
-      for (int lane = 0; lane < width && k + lane < waits; ++lane)
-        room.later[stages[lane]][room.waiting[stages[lane]]++] = {std::uint32_t(runs.begin + i) * grain_place,
-                                                                  std::uint32_t(room.other[k + lane]) * grain_place};
-    }
+  }
+  for (int k = 0; k < waits; k += width) {
+    const F square = F::load(room.wait[0] + k), open = square - F::load(room.wait[2] + k) * math::sqrt(square);
+    const F stage = splat(grain_stages) * open / math::max(F::load(room.wait[1] + k), splat(1e-30f));
+    std::int32_t stages[width];
+    math::to_int(math::max(math::min(stage, splat(grain_stages - 1)), splat(1))).store(stages);
+    for (int lane = 0; lane < width && k + lane < waits; ++lane)
+      room.later[stages[lane]][room.waiting[stages[lane]]++] = {std::uint32_t(room.own[k + lane]) * grain_place,
+                                                                std::uint32_t(room.other[k + lane]) * grain_place};
   }
   return at;
 }
