@@ -53,8 +53,8 @@ template <int N>
 struct GrainColumns {
   const float* column[N + 1];
 };
-/// Where a cell's grains, which are begin … end − 1, and their neighbours lie: runs of cells, the first with the cell's
-/// own in front. Of the others those count that are within `low` … `high`.
+/// Where grains of a cell, which are begin … end − 1, and their neighbours lie: runs of cells, the first with those
+/// grains in front. Of the others those count that are within `low` … `high`.
 template <int N>
 struct GrainRuns {
   static constexpr int most = (2 * grain_rings<N> + 1) * (N == 2 ? grain_rings<N> + 1 : 2);

@@ -159,8 +159,6 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   const int near = farthest > width ? rings : 1;
   GrainRuns<N> runs;
-  runs.begin = begin;
-  runs.end = end;
   for (int k = 0, at[3] = {x, y, z}; k < N; ++k) {
     runs.low[k] = float(at[k]) * width - far[k];
     runs.high[k] = float(at[k] + 1) * width + far[k];
@@ -190,7 +188,9 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
-  const std::size_t near_count = most + grain_lanes, pair_room = most * std::size_t(end - begin) + grain_lanes;
+  // As many of the cell's grains at a time as leave room for all pairs: mostly all, few where a cell holds hundreds.
+  const int some = math::max(1, math::min(end - begin, (1 << 14) / int(most)));
+  const std::size_t near_count = most + grain_lanes, pair_room = most * std::size_t(some) + grain_lanes;
   if (near_count + 2 * pair_room > slab.numbers.size()) slab.numbers.resize(2 * (near_count + 2 * pair_room));
   const std::size_t floats = (N + 1) * near_count + 3 * pair_room;
   if (floats > slab.near.size()) slab.near.resize(2 * floats);
@@ -202,16 +202,20 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   for (float*& column : room.column) column = std::exchange(next, next + near_count);
   for (float*& column : room.wait) column = std::exchange(next, next + pair_room);
   room.waiting = slab.waiting;
-  for (int k = 1; k < grain_stages; ++k) {
-    const std::size_t wanted = std::size_t(slab.waiting[k]) + pair_room;
-    if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
-    room.later[k] = slab.later[k].data();
-  }
-  const std::size_t wanted = std::size_t(slab.pair_count) + pair_room;
-  if (wanted > slab.pairs.size()) slab.pairs.resize(2 * wanted);
   GrainColumns<N> columns;
   for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
-  slab.pair_count = kernels->find(columns, runs, reach, room, first_pair.data(), slab.pairs.data(), slab.pair_count);
+  for (int from = begin; from < end; from += some) {
+    runs.begin = runs.from[0] = from;
+    runs.end = math::min(from + some, end);
+    for (int k = 1; k < grain_stages; ++k) {
+      const std::size_t wanted = std::size_t(slab.waiting[k]) + pair_room;
+      if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
+      room.later[k] = slab.later[k].data();
+    }
+    const std::size_t wanted = std::size_t(slab.pair_count) + pair_room;
+    if (wanted > slab.pairs.size()) slab.pairs.resize(2 * wanted);
+    slab.pair_count = kernels->find(columns, runs, reach, room, first_pair.data(), slab.pairs.data(), slab.pair_count);
+  }
 }
 
 /// One more, empty; `none`: a grain that is none.
