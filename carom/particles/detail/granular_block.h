@@ -17,7 +17,6 @@ inline constexpr int grain_held = N == 2 ? 4 : 8;
 
 /// Of the time until the next search: pairs are solved from that stage on in which the two may first touch.
 inline constexpr int grain_stages = 8;
-inline constexpr int grain_stage_bit = 24;  ///< of what is found of a pair: its stage, above the other's number
 
 /// Pairs of grains, or grains and a surface that does not move (there `b` is not read). A lane without a contact has
 /// twice a grain that is none.
@@ -54,16 +53,31 @@ template <int N>
 struct GrainColumns {
   const float* column[N + 1];
 };
-/// Where the neighbours of a cell's grains lie, which are begin … end − 1: runs of cells; the first run begins behind
-/// each grain itself. Grains outside of `low` … `high` reach none of a run. Where one run goes on from another in
-/// memory they are read as one.
+/// Where grains of a cell, which are begin … end − 1, and their neighbours lie: runs of cells, the first with those
+/// grains in front. Of the others those count that are within `low` … `high`.
 template <int N>
 struct GrainRuns {
   static constexpr int most = (2 * grain_rings<N> + 1) * (N == 2 ? grain_rings<N> + 1 : 2);
-  static constexpr int room = (most + grain_lanes - 1) / grain_lanes * grain_lanes;
   int begin = 0, end = 0, count = 0;
   int from[most], to[most];
-  float low[N][room] = {}, high[N][room] = {};  ///< m
+  float low[N], high[N];  ///< m
+};
+
+/// A pair that does not touch yet: of both grains grain_place × the number.
+struct GrainWait {
+  std::uint32_t a = 0, b = 0;
+};
+
+/// Room for what is near a cell's grains, and for pairs of them that wait: for a block of lanes more than there can be.
+/// And lists, by stage, to which these are added.
+template <int N>
+struct GrainRoom {
+  int* number;
+  float* column[N + 1];
+  int *own, *other;
+  float* wait[3];  ///< squared distance, the way it goes with, distance where they touch
+  GrainWait* later[grain_stages];
+  int* waiting;  ///< how many, by stage
 };
 
 /// m: how far two grains may close by axis, what is added in any direction, and no more than `most` in all.
@@ -73,22 +87,16 @@ struct GrainReach {
   float slack = 0, most = 0;
 };
 
-/// A pair that does not touch yet: of both grains grain_place × the number.
-struct GrainWait {
-  std::uint32_t a = 0, b = 0;
-  int pair = 0;
-};
-
 /// All but `find`, `wait` and `move` go through the blocks first … last − 1 in turn, or back from the last.
 template <int N>
 struct GrainKernels {
   using Block = GrainBlock<N>;
-  /// Neighbours that may come to touch: their numbers and stages go to found[at …], for each grain where they begin to
-  /// first[grain]. Returns where they end.
-  int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first,
-              int* found, int* later, int at);
+  /// Neighbours that may touch at once: their numbers go to found[at …], for each grain where they begin to
+  /// first[grain]. Returns where they end. Those that may come to touch are added to the room's lists.
+  int (*find)(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach,
+              const GrainRoom<N>& room, int* first, int* found, int at);
   /// In how many stages from now on pairs may first touch, to `stages`, which has room for a block of lanes more:
-  /// grain_stages or more is never. `pace` has by grain, as many floats as a place, how far another may close on it
+  /// grain_stages, the most, is never. `pace` has by grain, as many floats as a place, how far another may close on it
   /// until the next search.
   void (*wait)(const GrainWait* waiting, int count, float* place, float* pace, float slack, int* stages);
   /// Grains first … last − 1 go on by `time` and then gain velocity: of four floats, that begin a row, each its own.

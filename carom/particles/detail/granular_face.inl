@@ -96,17 +96,20 @@ void GranularState<D>::reserve() {
   for (auto* list : {&first_pair, &old_first_pair, &first_touch, &old_first_touch}) list->reserve(n + 1);
   for (auto& list : near_by) list.reserve(n + grain_lanes);
   for (auto* list : {&pairs, &old_pairs, &was}) list->resize(contacts);
-  for (auto* list : {&stages, &old_stages}) list->resize(contacts);
+  first_late.reserve(n);
+  late.reserve(contacts / 4);
   held.reserve(contacts * grain_held<N>);
   for (GrainSlab<N>& slab : slabs) {
     const std::size_t share = contacts / slabs.size() + 1, share_of_blocks = share / grain_lanes + 1;
     slab.pairs.resize(share);
-    slab.waiting.resize(1024);  // several times what cells of grains of one size have around them
+    slab.numbers.resize(1 << 14);  // several times what cells of grains of one size have around them
+    slab.near.resize(1 << 15);
     slab.blocks.reserve(share_of_blocks);
     slab.open_block.resize(share_of_blocks);
     slab.filled.resize(share_of_blocks);
     for (auto* list : {&slab.pair_of, &slab.was}) list->resize(share_of_blocks * grain_lanes);
-    for (auto& list : slab.later) list.reserve(share / 2);
+    for (auto& list : slab.later) list.resize(share / 2);
+    slab.late.reserve(share / 4);
   }
   for (auto* list : {&touches, &old_touches}) list->reserve(n + 16);
   for (auto* list : {&wall_blocks, &old_wall_blocks}) list->reserve(n / grain_lanes + 64);

@@ -1,7 +1,7 @@
 // Which grains touch each other, walls and bodies.
 #pragma once
 
-#include <bit>
+#include <utility>
 
 #include "carom/math/simd.h"
 #include "carom/particles/detail/fluid_distance.h"
@@ -159,20 +159,22 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   const int near = farthest > width ? rings : 1;
   GrainRuns<N> runs;
-  runs.begin = begin;
-  runs.end = end;
+  for (int k = 0, at[3] = {x, y, z}; k < N; ++k) {
+    runs.low[k] = float(at[k]) * width - far[k];
+    runs.high[k] = float(at[k] + 1) * width + far[k];
+  }
   const auto add = [&](int x0, int x1, int row, int across) {
     if (row < 0 || row >= cells[1] || across >= cells[2]) return;
     x0 = math::max(x0, 0);
     x1 = math::min(x1, cells[0] - 1);
     if (x0 > x1) return;
-    const int run = runs.count++, low[3] = {x0, row, across}, high[3] = {x1, row, across};
-    runs.from[run] = cell_start[cell_at(x0, row, across)];
-    runs.to[run] = cell_start[cell_at(x1, row, across) + 1];
-    for (int k = 0; k < N; ++k) {
-      runs.low[k][run] = float(low[k]) * width - far[k];
-      runs.high[k][run] = float(high[k] + 1) * width + far[k];
+    const int from = cell_start[cell_at(x0, row, across)], to = cell_start[cell_at(x1, row, across) + 1];
+    if (runs.count > 0 && runs.to[runs.count - 1] == from) {
+      runs.to[runs.count - 1] = to;
+      return;
     }
+    runs.from[runs.count] = from;
+    runs.to[runs.count++] = to;
   };
   if constexpr (N == 2) {
     for (int k = 0; k <= 2 * near; ++k) {  // its own row first
@@ -186,13 +188,34 @@ void GranularState<D>::find_neighbours(GrainSlab<N>& slab, int x, int y, int z, 
   }
   std::size_t most = 0;
   for (int k = 0; k < runs.count; ++k) most += std::size_t(runs.to[k] - runs.from[k]);
-  if (most + grain_lanes > slab.waiting.size()) slab.waiting.resize(2 * most + grain_lanes);
-  most = most * std::size_t(end - begin) + std::size_t(slab.pair_count) + grain_lanes;
-  if (most > slab.pairs.size()) slab.pairs.resize(2 * most);
+  // As many of the cell's grains at a time as leave room for all pairs: mostly all, few where a cell holds hundreds.
+  const int some = math::max(1, math::min(end - begin, (1 << 14) / int(most)));
+  const std::size_t near_count = most + grain_lanes, pair_room = most * std::size_t(some) + grain_lanes;
+  if (near_count + 2 * pair_room > slab.numbers.size()) slab.numbers.resize(2 * (near_count + 2 * pair_room));
+  const std::size_t floats = (N + 1) * near_count + 3 * pair_room;
+  if (floats > slab.near.size()) slab.near.resize(2 * floats);
+  GrainRoom<N> room;
+  room.number = slab.numbers.data();
+  room.own = room.number + near_count;
+  room.other = room.own + pair_room;
+  float* next = slab.near.data();
+  for (float*& column : room.column) column = std::exchange(next, next + near_count);
+  for (float*& column : room.wait) column = std::exchange(next, next + pair_room);
+  room.waiting = slab.waiting;
   GrainColumns<N> columns;
   for (int k = 0; k <= N; ++k) columns.column[k] = near_by[k].data();
-  slab.pair_count =
-      kernels->find(columns, runs, reach, first_pair.data(), slab.pairs.data(), slab.waiting.data(), slab.pair_count);
+  for (int from = begin; from < end; from += some) {
+    runs.begin = runs.from[0] = from;
+    runs.end = math::min(from + some, end);
+    for (int k = 1; k < grain_stages; ++k) {
+      const std::size_t wanted = std::size_t(slab.waiting[k]) + pair_room;
+      if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
+      room.later[k] = slab.later[k].data();
+    }
+    const std::size_t wanted = std::size_t(slab.pair_count) + pair_room;
+    if (wanted > slab.pairs.size()) slab.pairs.resize(2 * wanted);
+    slab.pair_count = kernels->find(columns, runs, reach, room, first_pair.data(), slab.pairs.data(), slab.pair_count);
+  }
 }
 
 /// One more, empty; `none`: a grain that is none.
@@ -221,12 +244,12 @@ void GrainSlab<N>::add_block(std::uint32_t none) {
 }
 
 /// Gives a pair a lane in the first block that has room after the last in which one of the two is: solved block by
-/// block the pairs give what they would one after the other. The slab's grains end at `end`.
+/// block the pairs give what they would one after the other. The slab's grains end at `end`. `last_of_a`: last_block of
+/// the grain, which may be at hand.
 template <class D>
-[[gnu::always_inline]] inline int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int grain, int pair) {
-  const int b = pairs[pair];
-  int *const open = slab.open_block.data(), &last_of_a = last_block[grain],
-             &last_of_b = b < end ? last_block[b] : last_across[b];
+[[gnu::always_inline]] inline int GranularState<D>::place_pair(GrainSlab<N>& slab, int end, int a, int b,
+                                                               int& last_of_a) {
+  int *const open = slab.open_block.data(), &last_of_b = b < end ? last_block[b] : last_across[b];
   int block = math::max(last_of_a, last_of_b) + 1;
   while (block < slab.block_count && open[block] != block) {
     const int after = open[block];
@@ -240,31 +263,36 @@ template <class D>
   last_of_a = last_of_b = block;
   const int lane = slab.filled[block]++;
   if (lane == grain_lanes - 1) slab.open_block[block] = block + 1;
-  slab.blocks[block].a[lane] = std::uint32_t(grain * grain_place);
+  slab.blocks[block].a[lane] = std::uint32_t(a * grain_place);
   slab.blocks[block].b[lane] = std::uint32_t(b * grain_place);
-  slab.pair_of[block * grain_lanes + lane] = pair;
   return block * grain_lanes + lane;
 }
 
-/// Finds which the pairs of the slab's grains that may touch at once were when last looked for: mostly the same in
-/// turn. The others wait for their stage.
+/// The number that a pair had when last looked for, listed with the one of its grains; −1: none. Both as they were.
+template <class D>
+int GranularState<D>::old_pair(int grain, int other) const {
+  for (int k = old_first_pair[grain]; k < old_first_pair[grain + 1]; ++k)
+    if (old_pairs[k] == other) return k;
+  for (int k = first_late[grain]; k >= 0; k = late[k].next)
+    if (late[k].other == other) return old_first_pair.back() + k;
+  return -1;
+}
+
+/// Finds which the pairs of the slab's grains were when last looked for: mostly the same in turn.
 template <class D>
 void GranularState<D>::match_pairs(GrainSlab<N>& slab, int begin, int end) {
   const int known = int(old_first_pair.size()) - 1;
   const int *const old_first = old_first_pair.data(), *const others = old_pairs.data(),
                    *const places = old_place.data(), *const first = first_pair.data(), *const mine = pairs.data();
-  const std::uint8_t *const stage_of = stages.data(), *const old_stage_of = old_stages.data();
   const float* const motions = motion.data();
   int* const old_of = was.data();
-  for (auto& list : slab.later) list.clear();
   float fastest = 0;
   for (int grain = begin; grain < end; ++grain) {
     const int own = places[grain];
     const float* const ours = motions + std::size_t(grain) * grain_motion<N>;
-    const int old_begin = own < known ? old_first[own] : 0, old_end = own < known ? old_first[own + 1] : 0;
-    const int to = first[grain + 1];
-    int k = first[grain], next = old_begin;
-    for (; k < to && stage_of[k] == 0; ++k) {
+    int next = own < known ? old_first[own] : 0;
+    const int old_end = own < known ? old_first[own + 1] : 0;
+    for (int k = first[grain], to = first[grain + 1]; k < to; ++k) {
       const float* const theirs = motions + std::size_t(mine[k]) * grain_motion<N>;
       float square = 0;
       for (int axis = 0; axis < N; ++axis) {
@@ -273,91 +301,110 @@ void GranularState<D>::match_pairs(GrainSlab<N>& slab, int begin, int end) {
       }
       fastest = math::max(fastest, square);
       const int other = places[mine[k]];
-      int old = next, found = -1;
-      if (old >= old_end || others[old] != other) {
-        old = old_begin;
-        while (old < old_end && others[old] != other) ++old;
+      if (next < old_end && others[next] == other) {
+        old_of[k] = 2 * next++;
+        continue;
       }
-      if (old < old_end) {
-        next = old + 1;
-        found = old_stage_of[old] == 0 ? 2 * old : -1;
+      int old = own < known ? old_pair(own, other) : -1;
+      old_of[k] = old < 0 ? -1 : 2 * old;
+      if (old >= 0) {
+        if (old < old_end) next = old + 1;
       } else if (other < known) {
-        for (old = old_first[other]; old < old_first[other + 1]; ++old)
-          if (others[old] == own && old_stage_of[old] == 0) found = 2 * old + 1;
+        old = old_pair(other, own);
+        if (old >= 0) old_of[k] = 2 * old + 1;
       }
-      old_of[k] = found;
     }
-    for (; k < to; ++k)
-      slab.later[stage_of[k]].push_back({std::uint32_t(grain * grain_place), std::uint32_t(mine[k] * grain_place), k});
   }
   slab.fastest = math::sqrt(fastest);
 }
 
-/// Gives the pairs of the slab's grains that may touch at once their blocks.
+/// Gives the pairs of the slab's grains their blocks.
 template <class D>
 void GranularState<D>::place_pairs(GrainSlab<N>& slab, int begin, int end) {
-  const int* const first = first_pair.data();
-  const std::uint8_t* const stage_of = stages.data();
-  for (int grain = begin; grain < end; ++grain)
-    for (int k = first[grain], to = first[grain + 1]; k < to && stage_of[k] == 0; ++k)
-      slab.was[place_pair(slab, end, grain, k)] = was[k];
+  const int *const first = first_pair.data(), *const others = pairs.data();
+  for (int grain = begin; grain < end; ++grain) {
+    int last = last_block[grain];
+    for (int k = first[grain], to = first[grain + 1]; k < to; ++k) {
+      const int at = place_pair(slab, end, grain, others[k], last);
+      slab.pair_of[at] = k;
+      slab.was[at] = was[k];
+    }
+    last_block[grain] = last;
+  }
 }
 
 /// At the begin of a stage: pairs that may touch within it get a lane, the others wait on.
 template <class D>
 void GranularState<D>::place_later(GrainSlab<N>& slab, int end, int stage) {
-  constexpr std::size_t some = 64;
+  constexpr int some = 64;
   int stages_more[some + grain_lanes];
-  const GrainWait* const waiting = slab.later[stage].data();
-  for (std::size_t k = 0, count = slab.later[stage].size(); k < count; ++k) {
-    if (k % some == 0)
-      kernels->wait(waiting + k, int(math::min(count - k, some)), place.data(), pace.data(), 0.02f * definition.radius,
-                    stages_more);
-    const int more = stages_more[k % some];
-    if (stage + more >= grain_stages) continue;
-    if (more > 0) {
-      slab.later[stage + more].push_back(waiting[k]);
-      continue;
-    }
-    const int grain = int(waiting[k].a / grain_place), other = int(waiting[k].b / grain_place), pair = waiting[k].pair;
-    const int at = place_pair(slab, end, grain, pair), lane = at % grain_lanes;
-    stages[pair] = 0;
-    GrainBlock<N>& block = slab.blocks[at / grain_lanes];
-    const Grain<D>&ga = grains[grain], &gb = grains[other];
-    block.ease[lane] = 1 / (ga.inverse_mass + gb.inverse_mass);
-    block.give_way[lane] = 1 / (ga.inverse_inertia + gb.inverse_inertia);
-    block.lever[lane] = 1 / (ga.curve + gb.curve);
+  GrainWait now[some], never[some];
+  GrainWait* to[2 * grain_stages];
+  const int count = slab.waiting[stage];
+  for (int k = stage + 1; k < grain_stages; ++k) {
+    const std::size_t wanted = std::size_t(slab.waiting[k] + count);
+    if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
+    to[k] = slab.later[k].data() + slab.waiting[k];
   }
+  for (int begin = 0; begin < count; begin += some) {
+    const GrainWait* const waiting = slab.later[stage].data() + begin;
+    const int asked = math::min(count - begin, some);
+    kernels->wait(waiting, asked, place.data(), pace.data(), 0.02f * definition.radius, stages_more);
+    to[stage] = now;
+    for (int k = grain_stages; k < 2 * grain_stages; ++k) to[k] = never;
+    for (int k = 0; k < asked; ++k) *to[stage + stages_more[k]]++ = waiting[k];
+    for (const GrainWait* pair = now; pair < to[stage]; ++pair) {
+      const int a = int(pair->a / grain_place), b = int(pair->b / grain_place);
+      const int at = place_pair(slab, end, a, b, last_block[a]), lane = at % grain_lanes;
+      slab.late.push_back({a, b, at});
+      GrainBlock<N>& block = slab.blocks[at / grain_lanes];
+      const Grain<D>&ga = grains[a], &gb = grains[b];
+      block.ease[lane] = 1 / (ga.inverse_mass + gb.inverse_mass);
+      block.give_way[lane] = 1 / (ga.inverse_inertia + gb.inverse_inertia);
+      block.lever[lane] = 1 / (ga.curve + gb.curve);
+    }
+  }
+  for (int k = stage + 1; k < grain_stages; ++k) slab.waiting[k] = int(to[k] - slab.later[k].data());
+}
+
+/// Pairs that were placed later come behind the others.
+template <class D>
+void GranularState<D>::number_late() {
+  late.clear();
+  first_late.assign(grains.size(), -1);
+  for (GrainSlab<N>& slab : slabs)
+    for (const GrainLate& pair : slab.late) {
+      slab.pair_of[pair.at] = pair_count + int(late.size());
+      late.push_back({pair.b, std::exchange(first_late[pair.a], int(late.size()))});
+    }
 }
 
 template <class D>
 void GranularState<D>::find_pairs(float dt) {
   const int count = int(grains.size());
   old_pairs.swap(pairs);
-  old_stages.swap(stages);
   old_first_pair.swap(first_pair);
   first_pair.resize(std::size_t(count) + 1);
   last_block.assign(std::size_t(count), -1);
   last_across.assign(std::size_t(count), -1);
   for_slabs([&](GrainSlab<N>& slab, int index) {
     slab.pair_count = slab.block_count = 0;
+    slab.late.clear();
+    std::fill_n(slab.waiting, grain_stages, 0);
     for_cells(index, [&](int x, int y, int z) { find_neighbours(slab, x, y, z, dt); });
   });
-  pair_count = 0;
-  for (const GrainSlab<N>& slab : slabs) pair_count += slab.pair_count;
+  pair_count = watched = 0;
+  for (const GrainSlab<N>& slab : slabs) {
+    pair_count += slab.pair_count;
+    for (const int count : slab.waiting) watched += count;
+  }
+  watched += pair_count;
   if (std::size_t(pair_count) > pairs.size()) pairs.resize(2 * std::size_t(pair_count));
-  if (stages.size() < pairs.size()) stages.resize(pairs.size());
   first_pair[count] = pair_count;
   for (int k = 0, before = 0; k < int(slabs.size()); ++k) {
-    const GrainSlab<N>& slab = slabs[k];
-    const int* const from = slab.pairs.data();
-    int* const to = pairs.data() + before;
-    std::uint8_t* const to_stage = stages.data() + before;
-    const int found_here = slab.pair_count;
-    for (int i = 0; i < found_here; ++i) to[i] = from[i] & ((1 << grain_stage_bit) - 1);
-    for (int i = 0; i < found_here; ++i) to_stage[i] = std::uint8_t(from[i] >> grain_stage_bit);
+    std::copy_n(slabs[k].pairs.data(), slabs[k].pair_count, pairs.data() + before);
     for (int i = slab_begin(k); i < slab_begin(k + 1); ++i) first_pair[i] += before;
-    before += found_here;
+    before += slabs[k].pair_count;
   }
   if (was.size() < pairs.size()) was.resize(pairs.size());
   for_slabs([&](GrainSlab<N>& slab, int index) {

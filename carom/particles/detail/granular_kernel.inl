@@ -65,17 +65,20 @@ CAROM_SIMD_INLINE Lanes<2> vector_of(const Lanes<1>& grip, const Lanes<2>& n) {
 }
 CAROM_SIMD_INLINE Lanes<3> twist_of(const Lanes<3>& grip, const Lanes<3>& n) { return cross(n, grip); }
 CAROM_SIMD_INLINE Lanes<1> twist_of(const Lanes<1>& grip, const Lanes<2>& /*n*/) { return grip; }
-/// Cut off at a size.
+/// Cut off at a size; nought at none, even where squares vanish: whether such a lane is looked at hangs on those
+/// beside.
 template <int K>
 CAROM_SIMD_INLINE Lanes<K> limited(const Lanes<K>& v, F limit) {
   const F square = dot(v, v);
-  const M over = square > limit * limit;
-  if (math::none(over)) return v;
-  return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * v;
+  const M over = square > limit * limit, held = limit > F::zero();
+  Lanes<K> r;
+  for (int i = 0; i < K; ++i) r.k[i] = math::select(held, v.k[i], F::zero());
+  if (math::none(over)) return r;
+  return math::select(over, limit / math::sqrt(math::select(over, square, splat(1))), splat(1)) * r;
 }
 
 CAROM_SIMD_INLINE Lanes<1> limited(const Lanes<1>& v, F limit) {
-  return {{math::min(math::max(v.k[0], splat(0) - limit), limit)}};
+  return {{math::max(math::min(v.k[0], limit), splat(0) - limit)}};
 }
 
 /// Where the grains' records begin, of Size floats each. To be made again where they are written: so many addresses do
@@ -148,73 +151,98 @@ CAROM_SIMD_INLINE void give(Side<N>& a, Side<N>& b, const Lanes<N>& n, const Lan
   }
 }
 
-/// What lanes have that `chosen` has bits for, to to[at …], in which a block of lanes more is written; returns where it
-/// ends.
-CAROM_SIMD_INLINE int append(math::WideInt<width> lanes, std::uint32_t chosen, int* to, int at) {
+/// What lanes have that `chosen` has bits for, to the numbers and columns behind the first `at`, where a block of lanes
+/// may be written; returns where it ends.
+template <int K>
+CAROM_SIMD_INLINE int pack(std::uint32_t chosen, math::WideInt<width> number, const F* column, int* numbers,
+                           float* const* columns, int at) {
 #if defined(__AVX512F__)
   if constexpr (width == 16) {
-    const __m512i packed = _mm512_maskz_compress_epi32(__mmask16(chosen), __m512i(lanes.v));
-    _mm512_storeu_si512(to + at, packed);
+    _mm512_storeu_si512(numbers + at, _mm512_maskz_compress_epi32(__mmask16(chosen), __m512i(number.v)));
+    for (int k = 0; k < K; ++k)
+      _mm512_storeu_ps(columns[k] + at, _mm512_maskz_compress_ps(__mmask16(chosen), __m512(column[k].v)));
     return at + __builtin_popcount(chosen);
   }
 #endif
-  std::int32_t number[width];
-  lanes.store(number);
-  for (; chosen != 0; chosen &= chosen - 1) to[at++] = number[__builtin_ctz(chosen)];
+  if (chosen == 0) return at;
+  std::int32_t lanes[width];
+  number.store(lanes);
+  float rows[K > 0 ? K : 1][width];
+  for (int k = 0; k < K; ++k) column[k].store(rows[k]);
+  for (; chosen != 0; chosen &= chosen - 1, ++at) {
+    const int lane = __builtin_ctz(chosen);
+    numbers[at] = lanes[lane];
+    for (int k = 0; k < K; ++k) columns[k][at] = rows[k][lane];
+  }
   return at;
 }
 
+/// Bits of as many lanes.
+CAROM_SIMD_INLINE std::uint32_t first_lanes(int count) { return count < width ? (1u << count) - 1 : (1u << width) - 1; }
+
+CAROM_SIMD_INLINE math::WideInt<width> lane_numbers(int first) {
+  return math::WideInt<width>::lanes() + math::WideInt<width>::splat(first);
+}
+
+/// Those of the runs that are near, side by side; returns how many.
 template <int N>
-int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, int* first, int* found,
-         int* later, int at) {
-  for (int i = runs.begin; i < runs.end; ++i) {
-    first[i] = at;
-    int waits = 0;
-    F x[N];
-    for (int k = 0; k < N; ++k) x[k] = splat(grains.column[k][i]);
-    const F own = splat(grains.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
-    F ways[N];
-    for (int k = 0; k < N; ++k) ways[k] = splat(reach.way[k]);
-    int from[GrainRuns<N>::most], to[GrainRuns<N>::most], last = 0;
-    from[0] = i + 1;
-    to[0] = runs.to[0];
-    std::uint32_t reached = 0;
-    for (int run = 0; run < runs.count; run += width) {
-      M near = (x[0] >= F::load(runs.low[0] + run)) & (x[0] <= F::load(runs.high[0] + run));
-      for (int k = 1; k < N; ++k)
-        near = near & (x[k] >= F::load(runs.low[k] + run)) & (x[k] <= F::load(runs.high[k] + run));
-      reached |= math::bitmask(near) << run;
+CAROM_SIMD_INLINE int draw_near(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainRoom<N>& room) {
+  int count = 0;
+  for (int run = 0; run < runs.count; ++run)
+    for (int j = runs.from[run]; j < runs.to[run]; j += width) {
+      F x[N + 1];
+      for (int k = 0; k <= N; ++k) x[k] = F::load(grains.column[k] + j);
+      M inside = (x[0] >= splat(runs.low[0])) & (x[0] <= splat(runs.high[0]));
+      for (int k = 1; k < N; ++k) inside = inside & (x[k] >= splat(runs.low[k])) & (x[k] <= splat(runs.high[k]));
+      count = pack<N + 1>(math::bitmask(inside) & first_lanes(runs.to[run] - j), lane_numbers(j), x, room.number,
+                          room.column, count);
     }
-    for (reached &= (1u << runs.count) - 2; reached != 0; reached &= reached - 1) {
-      const int run = __builtin_ctz(reached);
-      if (to[last] != runs.from[run]) from[++last] = runs.from[run];
-      to[last] = runs.to[run];
+  return count;
+}
+
+template <int N>
+int find(const GrainColumns<N>& grains, const GrainRuns<N>& runs, const GrainReach<N>& reach, const GrainRoom<N>& room,
+         int* first, int* found, int at) {
+  const int count = draw_near(grains, runs, room), own_count = runs.end - runs.begin;
+  int waits = 0;
+  for (int i = 0; i < own_count; ++i) {
+    first[runs.begin + i] = at;
+    F x[N], ways[N];
+    for (int k = 0; k < N; ++k) {
+      x[k] = splat(room.column[k][i]);
+      ways[k] = splat(reach.way[k]);
     }
-    for (int run = 0; run <= last; ++run)
-      for (int j = from[run]; j < to[run]; j += width) {
-        // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
-        // slack: then d² < u² + 2 |d| s too, which asks for no root.
-        F square, way;
-        for (int k = 0; k < N; ++k) {
-          const F d = F::load(grains.column[k] + j) - x[k], far = math::abs(d) * ways[k];
-          square = k == 0 ? d * d : square + d * d;
-          way = k == 0 ? far : way + far;
-        }
-        const F touch = own + F::load(grains.column[N] + j), farthest = touch + more;
-        std::uint32_t hits = math::bitmask((square - touch * touch < way + way) & (square < farthest * farthest));
-        if (to[run] - j < width) hits &= (1u << (to[run] - j)) - 1;
-        if (hits == 0) continue;
-        const F open = square - touch * math::sqrt(square), all = splat(grain_stages) * open;
-        hits &= math::bitmask(open < way);
-        const std::uint32_t soon = math::bitmask(all < way) & hits;
-        const auto others = math::WideInt<width>::lanes() + math::WideInt<width>::splat(j);
-        at = append(others, soon, found, at);
-        if (hits == soon) continue;
-        const F stage = math::max(math::min(all / math::max(way, splat(1e-30f)), splat(grain_stages - 1)), splat(1));
-        waits = append(others | (math::to_int(stage) << grain_stage_bit), hits ^ soon, later, waits);
+    const F own = splat(room.column[N][i] + reach.slack), more = splat(reach.most - reach.slack);
+    for (int j = i + 1; j < count; j += width) {
+      // They close by no more than s = Σ |d| way / |d| and may touch where |d| < u + s, with u the sum of radii and
+      // slack: where |d|² − |d| s is below u |d|, which asks for no root.
+      F square, way;
+      for (int k = 0; k < N; ++k) {
+        const F d = F::load(room.column[k] + j) - x[k], far = math::abs(d) * ways[k];
+        square = k == 0 ? d * d : square + d * d;
+        way = k == 0 ? far : way + far;
       }
-    for (int k = 0; k < waits; k += width) math::WideInt<width>::load(later + k).store(found + at + k);
-    at += waits;
+      const F touch = own + F::load(room.column[N] + j), farthest = touch + more, most = touch * touch * square;
+      const F late = math::max(square - way, F::zero()),
+              early = math::max(square - splat(1.0f / grain_stages) * way, F::zero());
+      const std::uint32_t hits =
+          math::bitmask(late * late <= most) & math::bitmask(square < farthest * farthest) & first_lanes(count - j);
+      const std::uint32_t soon = math::bitmask(early * early <= most) & hits;
+      const auto others = math::WideInt<width>::load(room.number + j);
+      at = pack<0>(soon, others, nullptr, found, nullptr, at);
+      const F wait[3] = {square, way, touch};
+      math::WideInt<width>::splat(runs.begin + i).store(room.own + waits);
+      waits = pack<3>(hits ^ soon, others, wait, room.other, room.wait, waits);
+    }
+  }
+  for (int k = 0; k < waits; k += width) {
+    const F square = F::load(room.wait[0] + k), open = square - F::load(room.wait[2] + k) * math::sqrt(square);
+    const F stage = splat(grain_stages) * open / math::max(F::load(room.wait[1] + k), splat(1e-30f));
+    std::int32_t stages[width];
+    math::to_int(math::max(math::min(stage, splat(grain_stages - 1)), splat(1))).store(stages);
+    for (int lane = 0; lane < width && k + lane < waits; ++lane)
+      room.later[stages[lane]][room.waiting[stages[lane]]++] = {std::uint32_t(room.own[k + lane]) * grain_place,
+                                                                std::uint32_t(room.other[k + lane]) * grain_place};
   }
   return at;
 }
@@ -332,25 +360,26 @@ CAROM_SIMD_INLINE void measure_lanes(GrainBlock<N>& c, int lane, float* place, c
   math::gather_records<width>(Places(place, c.b + lane).row, b);
   Lanes<N> d;
   for (int i = 0; i < N; ++i) d.k[i] = b[i] - a[i];
-  const F distance = math::sqrt(dot(d, d));
-  const M apart = distance > F::zero();
-  const F over = splat(1) / math::select(apart, distance, splat(1));
-  for (int i = 0; i < N; ++i) d.k[i] = math::select(apart, over * d.k[i], splat(i == 1 ? 1 : 0));
-  store(d, c.normal, lane);
+  const F square = dot(d, d);
+  const M apart = square > F::zero();
+  const F distance = math::sqrt(square), far = math::select(apart, distance, splat(1));
+  for (int i = 0; i < N; ++i) d.k[i] = math::select(apart, d.k[i], splat(i == 1 ? 1 : 0));
   F gap = distance - a[3] - b[3];
   const F deep = splat(-pass.slop) - gap;
+  const auto n = (splat(1) / far) * d;
+  store(n, c.normal, lane);
   if (math::any(deep > F::zero())) {
     const F out = splat(pass.part) * math::max(deep, F::zero());
     // Masses of one density go with r² and r³; a grain that is none has no radius.
     F ma = N == 2 ? a[3] * a[3] : a[3] * a[3] * a[3], mb = N == 2 ? b[3] * b[3] : b[3] * b[3] * b[3];
-    F upward = F::zero();  // b above a
+    F upward = F::zero();  // of b above a, times their distance
     for (int k = 0; k < N; ++k) upward = upward + splat(pass.up[k]) * d.k[k];
-    ma = ma * (splat(1) + math::max(upward, F::zero()));
-    mb = mb * (splat(1) - math::min(upward, F::zero()));
+    ma = ma * (far + math::max(upward, F::zero()));
+    mb = mb * (far - math::min(upward, F::zero()));
     const F masses = ma + mb, each = out / math::select(masses > F::zero(), masses, splat(1));
     for (int k = 0; k < N; ++k) {
-      a[k] = a[k] - (mb * each) * d.k[k];
-      b[k] = b[k] + (ma * each) * d.k[k];
+      a[k] = a[k] - (mb * each) * n.k[k];
+      b[k] = b[k] + (ma * each) * n.k[k];
     }
     gap = gap + out;
     math::scatter_records<width>(Places(place, c.a + lane).row, a);
@@ -394,16 +423,15 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
   const F easy = pair ? F::load(c.ease + lane) : splat(1) / a.inverse_mass;
   const F before = F::load(c.push + lane), last = F::load(c.gain + lane);
   const F bias = math::max(F::load(c.gap + lane), F::zero()) * splat(pass.inverse_h);
+  const F over = splat(over_relaxation) * easy, start = before + splat(heavy_ball) * last - bias * over;
   auto across = splat(-1) * a.v;
   auto u = a.u;
   if constexpr (pair) {
     across = b.v - a.v;
     u = a.u + b.u;
   }
-  const F along = dot(across, n),
-          push = math::max(before + splat(heavy_ball) * last - (along + bias) * (splat(over_relaxation) * easy),
-                           F::zero());
-  if (math::none((push > F::zero()) | (before > F::zero()) | (last < F::zero()))) return;
+  const F along = dot(across, n), push = math::max(start - along * over, F::zero());
+  if (math::none(math::max(math::max(push, before), F::zero() - last) > F::zero())) return;
   push.store(c.push + lane);
   const F gain = push - before;
   gain.store(c.gain + lane);
@@ -420,7 +448,7 @@ CAROM_SIMD_INLINE void sweep_lanes(GrainBlock<N>& c, int lane, float* motion, co
     const F lever = pair ? F::load(c.lever + lane) : splat(0.5f) / a.curve;
     const F inertia =
         pair ? F::load(c.give_way + lane) : splat(1 / turning<N>) / (a.inverse_mass * (a.curve * a.curve));
-    const auto rolled = limited(roll + inertia * rolling, splat(2 * pass.rolling) * push * lever);
+    const auto rolled = limited(roll + inertia * rolling, push * (splat(2 * pass.rolling) * lever));
     store(rolled, c.roll, lane);
     more_roll = rolled - roll;
   }

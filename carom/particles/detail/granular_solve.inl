@@ -395,11 +395,12 @@ float GranularState<D>::round(float dt, float whole) {
     move(still, gained);
   }
   from_rows();
-  held.resize(std::size_t(pair_count) * grain_held<N>);
+  number_late();
+  held.resize((std::size_t(pair_count) + late.size()) * grain_held<N>);
   for_slabs([&](GrainSlab<N>& slab, int) {
     kernels->keep(slab.blocks.data(), 0, slab.block_count, slab.pair_of.data(), held.data());
   });
-  statistics.contacts = pair_count;
+  statistics.contacts = watched;
   statistics.wall_contacts = int(touches.size());
   return dt;
 }

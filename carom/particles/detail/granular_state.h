@@ -99,11 +99,21 @@ struct Haste {
   }
 };
 
+/// A pair that is solved since a later stage: its grains, and its block and lane.
+struct GrainLate {
+  int a = 0, b = 0, at = 0;
+};
+/// The same, as the next search looks for it.
+struct GrainLink {
+  int other = 0, next = -1;  ///< `next`: the next one of the same first grain
+};
+
 /// Neighbouring columns of cells: their pairs are found and placed by one thread, without a look at other slabs'.
 template <int N>
 struct GrainSlab {
-  std::vector<int> waiting;  ///< those of a grain that GrainKernels::find sets aside
-  std::vector<int> pairs;    ///< its grains' pairs, as GrainKernels::find leaves them: room for more than pair_count
+  std::vector<float> near;  ///< what is near a cell's grains (GrainRoom)
+  std::vector<int> numbers;
+  std::vector<int> pairs;  ///< its grains' pairs that may touch at once: room for more than pair_count
   int pair_count = 0;
   // Where they are solved, in the order of the slab's layers.
   std::vector<GrainBlock<N>> blocks;  ///< room for more than block_count, which is not made anew
@@ -111,9 +121,11 @@ struct GrainSlab {
   std::vector<int> pair_of, was;               ///< by block and lane: the pair's number, and its old one (GrainKernels)
   std::vector<int> filled;                     ///< lanes by block
   std::vector<int> open_block;                 ///< the next that has room, by block
-  std::vector<GrainWait> later[grain_stages];  ///< pairs that do not touch at once
-  float fastest = 0;                           ///< m/s, that two pass each other that may touch at once
-  bool astray = false;                         ///< one of its grains has gone another way than was foreseen
+  std::vector<GrainWait> later[grain_stages];  ///< pairs that do not touch at once: room for more than `waiting`
+  int waiting[grain_stages] = {};
+  std::vector<GrainLate> late;  ///< what of them has been placed
+  float fastest = 0;            ///< m/s, that two pass each other that may touch at once
+  bool astray = false;          ///< one of its grains has gone another way than was foreseen
 
   void add_block(std::uint32_t none);
 };
@@ -148,13 +160,13 @@ struct GranularState {
   AlignedFloats place, motion;
   AlignedFloats origin;  ///< in the plane: places when contacts were last looked for
   AlignedFloats pace;    ///< m, rows by grain: how far another may close on it until the next search, by axis
-  // Pairs that may touch: by grain the numbers of others, and what each pair held when last looked for.
+  // Pairs that may touch at once: by grain the numbers of others, and what each pair held when last looked for. Behind
+  // them come those that were placed later.
   std::vector<int> pairs, old_pairs, first_pair, old_first_pair;
-  std::vector<int>
-      was;  ///< twice the old number of a pair that may touch at once, and 1 where its grains are swapped; or −1
-  /// By pair: in which stage of the time until the next search it may first touch; 0 once it is solved.
-  std::vector<std::uint8_t> stages, old_stages;
-  int pair_count = 0;
+  std::vector<int> was;             ///< twice the old number of a pair, and 1 where its grains are swapped; or −1
+  int pair_count = 0, watched = 0;  ///< `watched`: with those that wait
+  std::vector<GrainLink> late;
+  std::vector<int> first_late;  ///< by grain, −1: none
   std::vector<float> held;
   std::vector<GrainSlab<N>> slabs;
   std::vector<int> last_block, last_across;  ///< the last block that a grain is in: of its slab, of the one before
@@ -191,10 +203,12 @@ struct GranularState {
   float time_to_search(float dt) const;
   bool astray(float time);
   void find_neighbours(GrainSlab<N>& slab, int x, int y, int z, float dt);
-  int place_pair(GrainSlab<N>& slab, int end, int grain, int pair);
+  int place_pair(GrainSlab<N>& slab, int end, int a, int b, int& last_of_a);
+  int old_pair(int grain, int other) const;
   void match_pairs(GrainSlab<N>& slab, int begin, int end);
   void place_pairs(GrainSlab<N>& slab, int begin, int end);
   void place_later(GrainSlab<N>& slab, int end, int stage);
+  void number_late();
   int slab_begin(int slab) const { return cell_start[std::size_t(slab) * (std::size_t(size) / slabs.size())]; }
   void find_surfaces(float dt);
   void touch(int grain, int surface, std::uint32_t key);
