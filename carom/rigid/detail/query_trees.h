@@ -34,9 +34,13 @@ class QueryTrees {
     if (copy.version.load(std::memory_order_acquire) == version) return &copy.tree;
     if (copy.asked_version.load(std::memory_order_relaxed) != version) {
       copy.asked_version.store(version, std::memory_order_relaxed);
-      copy.asked.store(0, std::memory_order_relaxed);
+      copy.asked_before.store(copy.asked.exchange(0, std::memory_order_relaxed), std::memory_order_relaxed);
     }
-    if (copy.asked.fetch_add(1, std::memory_order_relaxed) < tree.size()) return nullptr;
+    // Where that would have come late in the version before, as of characters that look around once a step, it will
+    // now.
+    const int size = tree.size(), before = copy.asked_before.load(std::memory_order_relaxed);
+    const int enough = before >= size && before < 2 * size ? 2 * size : size;
+    if (copy.asked.fetch_add(1, std::memory_order_relaxed) < enough) return nullptr;
     if (copy.building.exchange(true, std::memory_order_acquire)) return nullptr;
     QueryTree<Position>& made = copy.tree;
     if (copy.version.load(std::memory_order_relaxed) != version) {
@@ -70,7 +74,7 @@ class QueryTrees {
  private:
   struct Copy {
     std::atomic<std::uint64_t> version{0}, asked_version{0};
-    std::atomic<int> asked{0};
+    std::atomic<int> asked{0}, asked_before{0};
     std::atomic<bool> building{false};  // one thread makes it; WebAssembly without threads has no mutex
     QueryTree<Position> tree;
     std::vector<geometry::detail::BuildItem<Position>> order;  ///< of a build
