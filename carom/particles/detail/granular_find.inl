@@ -342,7 +342,7 @@ void GranularState<D>::place_later(GrainSlab<N>& slab, int end, int stage) {
   GrainWait* to[2 * grain_stages];
   const int count = slab.waiting[stage];
   for (int k = stage + 1; k < grain_stages; ++k) {
-    const std::size_t wanted = std::size_t(slab.waiting[k] + count);
+    const std::size_t wanted = std::size_t(slab.waiting[k]) + std::size_t(count);
     if (wanted > slab.later[k].size()) slab.later[k].resize(2 * wanted);
     to[k] = slab.later[k].data() + slab.waiting[k];
   }
