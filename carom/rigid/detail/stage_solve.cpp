@@ -10,8 +10,8 @@ constexpr int body_grain = 256;
 template <class D>
 constexpr int few_blocks = D::dimension == 2 ? 12 : 8;
 
-/// So few manifolds and joints are solved sooner by one thread than handed to and fro.
-constexpr std::size_t few_rows = 300;
+/// So few manifolds and joints of so few bodies are solved sooner by one thread than handed to and fro.
+constexpr std::size_t few_rows = 300, few_bodies = 512;
 
 /// Colours in the order of a sweep: the overflow first, because what is solved last holds best.
 int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
@@ -196,7 +196,8 @@ void solve_constraints(StepContext<D>& context) {
   std::size_t rows = 0;
   for (const GraphColor& color : context.world.graph.colors) rows += color.manifolds.size() + color.joints.size();
   core::SerialScheduler alone;
-  core::TaskScheduler& scheduler = rows <= few_rows ? alone : context.scheduler;
+  const bool few = rows <= few_rows && context.world.bodies.awake.size() <= few_bodies;
+  core::TaskScheduler& scheduler = few ? alone : context.scheduler;
   scheduler.run_stages(context.world.scratch.solver_loops,
                        [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
 }
