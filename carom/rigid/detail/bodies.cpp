@@ -404,7 +404,6 @@ typename D::Position bounds_ahead(const WorldImplementation<D>& world, const Sha
 
 template <class D>
 typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape) {
-  using P = typename D::Position;
   const SolverBody<D>& s = world.bodies.solver[std::size_t(shape.body)];
   typename D::Bounds box;
   const bool far = turns_far(s.angular_velocity, world.last_dt) && world.bodies.is_dynamic(shape.body);
@@ -418,8 +417,7 @@ typename D::Bounds fat_bounds(const WorldImplementation<D>& world, const ShapeRe
   const bool bullet = is_quick_bullet(world, shape.body);
   if (bullet && !turns_far(s.angular_velocity, world.last_dt)) box = merge(box, bounds_of_turn(world, shape));
   box = geometry::grow(box, double(shape.margin));
-  const P ahead = bounds_ahead(world, shape, bullet);
-  return on_grid(typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})});
+  return on_grid(box_along(box, bounds_ahead(world, shape, bullet)));
 }
 
 template <class D>
@@ -450,10 +448,6 @@ void remove_from_tree(WorldImplementation<D>& world, std::int32_t s) {
 
 template <class D>
 void refresh_bounds(WorldImplementation<D>& world, std::int32_t body, const typename D::Position& way) {
-  using P = typename D::Position;
-  const auto and_ahead = [](const typename D::Bounds& box, const P& ahead) {
-    return typename D::Bounds{box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})};
-  };
   learn_bounce(world);
   BodyMotion<D>& motion = world.bodies.motion[std::size_t(body)];
   look_at_bounds(motion);
@@ -466,10 +460,10 @@ void refresh_bounds(WorldImplementation<D>& world, std::int32_t body, const type
     if (shape.leaf == none) continue;
     auto& tree = world.shapes.trees[shape.tree];
     if (goes_on &&
-        geometry::contains(tree.bounds(shape.leaf), and_ahead(shape_bounds(world, shape), bounds_ahead(world, shape))))
+        geometry::contains(tree.bounds(shape.leaf), box_along(shape_bounds(world, shape), bounds_ahead(world, shape))))
       continue;
     const typename D::Bounds box = fat_bounds(world, shape);
-    tree.update(shape.leaf, goes_on ? on_grid(and_ahead(box, way * ways)) : box);
+    tree.update(shape.leaf, goes_on ? on_grid(box_along(box, way * ways)) : box);
     if ((shape.flags & shape_moved) == 0) {
       shape.flags |= shape_moved;
       world.scratch.moved.push_back(s);

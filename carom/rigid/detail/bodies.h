@@ -64,6 +64,11 @@ BodyState<D> state_of(const WorldImplementation<D>& world, std::int32_t body) {
   s.user_data = word_of(world.bodies.user_data, body);
   return s;
 }
+/// A box and all that it passes over on a straight way.
+template <class P>
+geometry::Bounds<P> box_along(const geometry::Bounds<P>& box, const P& way) {
+  return {box.low + math::min(way, P{}), box.high + math::max(way, P{})};
+}
 /// Tight bounds of a shape where it stands.
 template <class D>
 typename D::Bounds shape_bounds(const WorldImplementation<D>& world, const ShapeRecord<D>& shape);

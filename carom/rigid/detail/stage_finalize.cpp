@@ -159,7 +159,7 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
     if (boxes.stay_within(shape, fat, least_below, least_above)) continue;
     const typename D::Bounds box = shape_bounds(world, shape);
     const P ahead = quick ? way_ahead(world, shape) : P{};
-    if (geometry::contains(fat, {box.low + math::min(ahead, P{}), box.high + math::max(ahead, P{})})) {
+    if (geometry::contains(fat, box_along(box, ahead))) {
       least_below = math::min(least_below, box.low - fat.low);
       least_above = math::min(least_above, fat.high - box.high);
       continue;
