@@ -197,12 +197,23 @@ core::Result<std::vector<double>> parse_settings(const host::Declaration& declar
     }
     const std::size_t i = std::size_t(found - known.begin());
     const host::Parameter& p = declaration.parameters[i];
+    if (const auto named = std::find(p.choices.begin(), p.choices.end(), text); named != p.choices.end()) {
+      values[i] = p.minimum + double(named - p.choices.begin());
+      continue;
+    }
     const math::QuantityResult unit = math::parse_quantity(p.unit.empty() ? "1" : "1 " + p.unit);
     const math::QuantityResult any = math::parse_quantity(text);
     // A bare number is taken in SI; with a unit its dimension must fit.
     const bool bare = any.ok && text.find_first_not_of("0123456789.eE+- ") == std::string::npos;
     const math::QuantityResult value = bare || !unit.ok ? any : math::parse_quantity(text, unit.dimension);
-    if (!value.ok) return core::Error{"--set " + setting + ": " + value.error};
+    if (!value.ok || (!p.choices.empty() && !(value.si >= p.minimum && value.si <= p.maximum))) {
+      std::string message = "--set " + setting + ": ";
+      if (p.choices.empty()) return core::Error{message + value.error};
+      message += "expected one of";
+      for (const std::string& choice : p.choices)
+        message += (&choice == p.choices.data() ? " \"" : ", \"") + choice + "\"";
+      return core::Error{message};
+    }
     if (!(value.si >= p.minimum && value.si <= p.maximum)) {
       // In the unit that the demo shows.
       const std::string& shown = p.display_unit.empty() ? p.unit : p.display_unit;

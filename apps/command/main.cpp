@@ -37,7 +37,9 @@ int main(int count, char** arguments) {
   bool no_record = false, no_pictures = false;
   run_command->add_option("scene", run_options.scene, "a scene file, or a name that `carom list` shows")->required();
   run_command->add_option("--out,-o", run_options.out, "folder for what is written (out/SCENE)");
-  run_command->add_option("--set,-s", run_options.settings, "a parameter: name=value with its unit; may be repeated")
+  run_command
+      ->add_option("--set,-s", run_options.settings,
+                   "a parameter: name=value with its unit, or a name of its choices; may be repeated")
       ->take_all();
   run_command
       ->add_option("--threads,-t", run_options.threads,

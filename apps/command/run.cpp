@@ -160,10 +160,11 @@ class Runner {
     report_.message = simulation_->base().state.message;
     const host::Declaration& d = simulation_->declaration();
     for (std::size_t i = 0; i < d.parameters.size(); ++i) {
-      char value[64];
-      std::snprintf(value, sizeof value, "%.9g%s%s", simulation_->values()[i], d.parameters[i].unit.empty() ? "" : " ",
-                    d.parameters[i].unit.c_str());
-      report_.parameters.push_back({d.parameters[i].name, value});
+      const host::Parameter& p = d.parameters[i];
+      const double value = simulation_->values()[i];
+      char number[64];
+      std::snprintf(number, sizeof number, "%.9g%s%s", value, p.unit.empty() ? "" : " ", p.unit.c_str());
+      report_.parameters.push_back({p.name, p.choices.empty() ? number : p.choices[std::size_t(value - p.minimum)]});
     }
     report_.checked = check && !report_.interrupted && report_.stopped.empty();
     if (report_.checked) simulation_->expectations(report_.expectations);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "carom/math/vec.h"
@@ -24,8 +25,21 @@ struct Parameter {
   double minimum = 0, maximum = 1;
   double step = 0;  ///< 0: continuous
   double value = 0;
-  bool live = false;  ///< acts at once; the others restart the demo
+  bool live = false;                   ///< acts at once; the others restart the demo
+  std::vector<std::string> choices{};  ///< names of minimum, minimum + 1, … to maximum; empty: any number between
 };
+/// One of several that have names: the values 0, 1, …
+inline Parameter choice(std::string name, std::string label, std::string description, std::vector<std::string> choices,
+                        double value = 0, bool live = false) {
+  const double last = double(choices.size()) - 1;
+  return {std::move(name),   std::move(label), "", "", std::move(description), 0, last, 1, value, live,
+          std::move(choices)};
+}
+/// Yes (1) or no (0).
+inline Parameter yes_or_no(std::string name, std::string label, std::string description, bool value,
+                           bool live = false) {
+  return choice(std::move(name), std::move(label), std::move(description), {"no", "yes"}, value ? 1 : 0, live);
+}
 
 struct Axis {
   std::string label, unit;

@@ -41,18 +41,20 @@ DisplayScale display_scale(const std::string& unit) {
 
 Json parameter_json(const Parameter& p) {
   const DisplayScale display = display_scale(p.display_unit);
-  return {{"name", p.name},
-          {"label", p.label},
-          {"unit", p.unit},
-          {"display_unit", p.display_unit.empty() ? p.unit : p.display_unit},
-          {"display_factor", display.factor},
-          {"display_offset", display.offset},
-          {"description", p.description},
-          {"minimum", p.minimum},
-          {"maximum", p.maximum},
-          {"step", p.step},
-          {"value", p.value},
-          {"live", p.live}};
+  Json json = {{"name", p.name},
+               {"label", p.label},
+               {"unit", p.unit},
+               {"display_unit", p.display_unit.empty() ? p.unit : p.display_unit},
+               {"display_factor", display.factor},
+               {"display_offset", display.offset},
+               {"description", p.description},
+               {"minimum", p.minimum},
+               {"maximum", p.maximum},
+               {"step", p.step},
+               {"value", p.value},
+               {"live", p.live}};
+  if (!p.choices.empty()) json["choices"] = p.choices;
+  return json;
 }
 
 std::string color_text(std::uint32_t rgb) {

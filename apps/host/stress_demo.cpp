@@ -100,8 +100,8 @@ Declaration declaration_of(const SceneInfo& info) {
       "of everything are fixed, so the state hash below is the same for any number of threads.";
   if (info.missing != nullptr) d.text += std::string("\n\n") + info.missing;
   d.duration = info.steps / 60.0;
-  d.parameters = {{"sleep", "Sleep", "", "",
-                   "1: what has come to rest costs nothing any more; some benchmarks forbid it", 0, 1, 1, 1, false}};
+  d.parameters = {
+      yes_or_no("sleep", "Sleep", "what has come to rest costs nothing any more; some benchmarks forbid it", true)};
   d.plots = {
       {"Time of a step", {"time", "s"}, {"time", "ms"}, {{"whole step"}, {"solve"}, {"narrow phase"}, {"broad phase"}}},
       {"What is awake", {"time", "s"}, {"count", ""}, {{"bodies"}, {"touching contacts"}}}};

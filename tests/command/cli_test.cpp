@@ -68,8 +68,8 @@ TEST_F(Cli, BadUsageIsTwo) {
   for (const char* bad :
        {"", "fly", "run", "run pyramids --threads many", "run pyramids --threads 1000", "run pyramids --steps 0",
         "run pyramids --steps 5 --duration 1", "run pyramids --duration nan", "run pyramids --set friction",
-        "run pyramids --set friction=9", "run pyramids --set 'friction=2 m'", "run pyramids --set 'nothing=2'",
-        "serve --port 70000", "bench nothing"})
+        "run pyramids --set friction=9", "run golf-hole --set club=putter", "run golf-hole --set club=99",
+        "run pyramids --set 'friction=2 m'", "run pyramids --set 'nothing=2'", "serve --port 70000", "bench nothing"})
     EXPECT_EQ(carom(bad), 2) << bad;
   carom("run pyramids --set fricton=0.5");
   EXPECT_NE(err_.find("did you mean \"friction\""), std::string::npos) << err_;
@@ -215,6 +215,11 @@ TEST_F(Cli, SettingsTakeUnitsAndChangeTheRun) {
   EXPECT_EQ(report["parameters"]["mass_a"], "3 kg");
   EXPECT_EQ(report["parameters"]["speed_a"], "5.55555556 m/s");
   EXPECT_TRUE(report["expectations"].empty()) << "they are facts about the default values";
+  ASSERT_EQ(carom("run golf-hole --json --no-record --no-pictures --steps 2 --set club=7-iron --set stimp='9 ft'"), 0)
+      << err_;
+  EXPECT_EQ(Json::parse(out_, nullptr, false)["parameters"]["club"], "7-iron");
+  EXPECT_EQ(carom("run golf-hole --set club=putter"), 2);
+  EXPECT_NE(err_.find("\"driver\", \"3-wood\""), std::string::npos) << err_;
 }
 
 TEST_F(Cli, ThreadsDoNotChangeTheBits) {

@@ -38,7 +38,7 @@ class CollisionLab2 final : public Repeatable<CollisionLab2, Demo2> {
         {"offset", "Off centre by", "m", "m", "how far the right one stands above the line of the left", -1.4, 1.4, 0,
          0, false},
         {"spin", "Spin of the left", "rad/s", "rad/s", "", -20, 20, 0, 0, false},
-        {"shape", "Shape", "", "", "0: discs, 1: boxes, 2: hexagons", 0, 2, 1, 0, false},
+        choice("shape", "Shape", "", {"discs", "boxes", "hexagons"}),
     };
     d.plots = {{"Momentum along x", {"time", "s"}, {"momentum", "kg·m/s"}, {{"left"}, {"right"}, {"both"}}},
                {"Energy", {"time", "s"}, {"energy", "J"}, {{"translation"}, {"rotation"}, {"all"}}},

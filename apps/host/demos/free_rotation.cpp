@@ -157,7 +157,7 @@ class IntermediateAxis final : public Repeatable<IntermediateAxis, Demo3> {
     d.parameters = {
         {"spin", "Spin", "rad/s", "rpm", "about the middle axis", 1, 15, 0, 6, false},
         {"wobble", "Wobble at the start", "rad/s", "rad/s", "about the other two axes", 0, 0.5, 0, 0.02, false},
-        {"shape", "Shape", "", "", "0: T-handle, 1: brick", 0, 1, 1, 0, false}};
+        choice("shape", "Shape", "", {"T-handle", "brick"})};
     d.plots = {{"Body rates",
                 {"time", "s"},
                 {"rate", "rad/s"},

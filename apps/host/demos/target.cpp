@@ -37,7 +37,7 @@ class Target final : public Repeatable<Target, Demo3> {
         {"target_y", "Target: how high", "m", "m", "its centre", 10, 300, 1, 75, false},
         {"target_z", "Target: to the side", "m", "m", "", -400, 400, 5, 0, false},
         {"size", "Size of the target", "m", "m", "edge of the cube", 4, 80, 1, 30, false},
-        {"assist", "Aim assist", "", "", "1: draw the arcs that hit", 0, 1, 1, 1, true},
+        yes_or_no("assist", "Aim assist", "draw the arcs that hit", true, true),
     };
     d.plots = {{"Side view", {"distance", "m"}, {"height", "m"}, {{"shell"}, {"formula", Series::Style::points}}},
                {"Height", {"time since the shot", "s"}, {"height", "m"}, {{"shell"}}}};

@@ -5,6 +5,12 @@ import {fromDisplay, short, toDisplay, unitOf} from './quantities';
 
 interface Lesson { formulas?: string[]; symbols: Record<string, string>; try: string[]; ends: string }
 
+/** A scene file may name its parameters as a program does. */
+const labelOf = (p: Parameter) => {
+  const plain = p.label.replace(/_/g, ' ');
+  return plain.charAt(0).toUpperCase() + plain.slice(1);
+};
+
 const LONG = 40000;  // characters of a scene file that the panel shows
 
 export class Panel {
@@ -19,7 +25,7 @@ export class Panel {
     about.append(this.source(demo.demo), this.sceneFile());
     const list = document.getElementById('parameters')!;
     this.shown.clear();
-    list.replaceChildren(...demo.parameters.map((p) => this.slider(p)));
+    list.replaceChildren(...demo.parameters.map((p) => p.choices ? this.choice(p, p.choices) : this.slider(p)));
     list.parentElement!.hidden = demo.parameters.length === 0;
     document.getElementById('plot-heading')!.parentElement!.hidden = demo.plots.length === 0;
     this.inputs(demo);
@@ -80,10 +86,22 @@ export class Panel {
     for (const [name, value] of Object.entries(values)) this.shown.get(name)?.(value);
   }
 
+  /** A list of names; of no and yes a box to tick. */
+  private choice(p: Parameter, choices: string[]): HTMLElement {
+    const id = `parameter-${p.name}`, label = labelOf(p), ticks = choices.join() === 'no,yes';
+    const box = element('input', {type: 'checkbox', id, title: p.description});
+    const list = element('select', {id, title: p.description}, ...choices.map((name, i) => element('option', {value: String(p.minimum + i), textContent: name})));
+    const show = (si: number) => { p.value = si; box.checked = si !== p.minimum; list.value = String(Math.round(si)); };
+    const change = (value: number) => { p.value = value; this.send({type: 'set', name: p.name, value}); };
+    box.addEventListener('change', () => change(p.minimum + Number(box.checked)));
+    list.addEventListener('change', () => change(Number(list.value)));
+    this.shown.set(p.name, show);
+    show(p.value);
+    return element('div', {className: `parameter choice${ticks ? ' ticks' : ''}`, title: p.description}, element('label', {htmlFor: id, textContent: label}), ticks ? box : list);
+  }
+
   private slider(p: Parameter): HTMLElement {
-    const id = `parameter-${p.name}`, unit = unitOf(p);
-    // A scene file may name its parameters as a program does.
-    const plain = p.label.replace(/_/g, ' '), label = plain.charAt(0).toUpperCase() + plain.slice(1);
+    const id = `parameter-${p.name}`, unit = unitOf(p), label = labelOf(p);
     const shownStep = Math.abs(p.step * p.display_factor) || 'any';
     const range = element('input', {type: 'range', id, min: String(toDisplay(p, p.minimum)), max: String(toDisplay(p, p.maximum)), title: p.description});
     range.step = String(shownStep);

@@ -3,7 +3,7 @@
 export interface DemoSummary { id: string; title: string; summary: string; group: string; chapter: string; dimension: number }
 export interface Parameter {
   name: string; label: string; unit: string; display_unit: string; display_factor: number; display_offset: number;
-  description: string; minimum: number; maximum: number; step: number; value: number; live: boolean;
+  description: string; minimum: number; maximum: number; step: number; value: number; live: boolean; choices?: string[];
 }
 export interface Axis { label: string; unit: string }
 export interface Series { name: string; style: 'line' | 'points'; color?: string; latest?: boolean; points?: [number, number][] }

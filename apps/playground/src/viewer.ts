@@ -11,6 +11,9 @@ import {surroundings} from './light';
 import {Cloud, Surfaces} from './particles';
 import type {Body, Camera, Frame, Mesh, Points, Surface} from './protocol';
 
+/** m: as far away as it may be; the depth buffer then tells apart what lies close together. */
+const nearPlane = (distance: number) => Math.max(0.02, distance / 150);
+
 export class Viewer {
   readonly renderer: THREE.WebGLRenderer;
   camera: THREE.PerspectiveCamera | THREE.OrthographicCamera = new THREE.PerspectiveCamera();
@@ -111,7 +114,7 @@ export class Viewer {
       away.multiplyScalar(back);
       if (away.y < 0) away.y /= back;  // who looks up from the ground steps back on it, not under it
       const distance = away.length();
-      this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, Math.max(0.02, distance / 500), Math.max(2000, 40 * distance));
+      this.camera = new THREE.PerspectiveCamera((this.home.field_of_view ?? 0.8) * 180 / Math.PI, aspect, nearPlane(distance), Math.max(2000, 40 * distance));
       this.camera.position.set(target[0], target[1], target[2]).add(away);
       this.controls = new OrbitControls(this.camera, this.canvas);
       this.controls.target.set(target[0], target[1], target[2]);
@@ -371,8 +374,7 @@ export class Viewer {
     if (!this.controls.update() && !this.stale) return;
     this.stale = false;
     if (this.camera instanceof THREE.PerspectiveCamera) {
-      // As far away as it may be: the depth buffer then tells apart what lies close together.
-      const near = Math.max(0.02, this.camera.position.distanceTo(this.controls.target) / 500);
+      const near = nearPlane(this.camera.position.distanceTo(this.controls.target));
       if (Math.abs(near / this.camera.near - 1) > 0.1) { this.camera.near = near; this.camera.updateProjectionMatrix(); }
     }
     const reach = this.sun.userData.reach ?? 20;

@@ -109,6 +109,20 @@ test('a slider changes its parameter and the plot fills', async () => {
   await page.done();
 });
 
+test('what has names is chosen by them, a yes or no is ticked', async () => {
+  const page = await open('golf-hole');
+  const first = await page.textContent('#verdict');
+  await page.selectOption('#parameter-club', {label: '7-iron'});
+  await page.waitForFunction((before) => { const now = document.querySelector('#verdict').textContent; return now !== '' && now !== before; }, first);
+  await page.done();
+  const turret = await open('hit-the-target');
+  const assist = turret.locator('#parameter-assist');
+  assert.ok(await assist.isChecked());
+  await assist.uncheck();
+  await turret.waitForFunction(() => !document.querySelector('#parameter-assist').checked);
+  await turret.done();
+});
+
 test('the hovercraft is driven by keys', async () => {
   const page = await open('hovercraft');
   await page.focus('#view');

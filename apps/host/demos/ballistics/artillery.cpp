@@ -32,7 +32,7 @@ class Artillery final : public Repeatable<Artillery, Demo3> {
         {"charge", "Charge", "", "", "4: 337 m/s, 6: 474 m/s at the muzzle", 4, 6, 2, 6, false},
         {"elevation", "Elevation in mils", "", "", "of 6 400 to the circle", 40, 1250, 0.1, 258.4, false},
         {"wind", "Wind across", "m/s", "m/s", "positive: to the right", -20, 20, 0.5, 0, false},
-        {"six", "Six degrees of freedom", "", "", "1: the axis swings", 0, 1, 1, 0, false},
+        yes_or_no("six", "Six degrees of freedom", "the axis swings", false),
         {"pace", "Pace", "", "", "seconds of flight for one of ours", 1, 10, 0.5, 3, true},
     };
     d.plots = {{"Side view",

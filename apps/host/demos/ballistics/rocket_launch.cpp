@@ -40,8 +40,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     d.ground = 0;
     d.parameters = {
         {"stages", "Stages", "", "", "1 or 2", 1, 2, 1, 2, false},
-        {"motor", "Motor", "", "", "of each stage: 1 A8, 2 B6, 3 C6, 4 D12", 1, double(std::size(certified)), 1, 3,
-         false},
+        choice("motor", "Motor", "of each stage", {"A8", "B6", "C6", "D12"}, 2),
         {"fuel", "Propellant", "", "%", "of what the motors hold", 0.2, 1, 0, 1, false},
         {"payload", "Payload", "kg", "g", "", 0, 0.15, 0, 0.02, false},
         {"wind", "Wind", "m/s", "m/s", "from the left", -10, 10, 0.5, 3, false},
@@ -65,7 +64,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     stage.start({});
     auto motors = ballistics::read_rasp(black_powder_motors(), "presets/motor/black_powder.eng");
     if (!motors.ok()) return stage.fail(motors.error());
-    certificate_ = certified[std::size_t(stage.count("motor") - 1)];
+    certificate_ = certified[std::size_t(stage.count("motor"))];
     const auto chosen = std::find_if(motors->begin(), motors->end(),
                                      [&](const ballistics::Motor& m) { return m.name == certificate_.name; });
     if (chosen == motors->end())

@@ -58,14 +58,14 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
     d.duration = 24;
     d.camera = {{0, 1.5, 0}, {1, 1.5, 0}};
     d.parameters = {
-        {"weapon", "Weapon", "", "", "0: .308, 1: 5.56, 2: .22, 3: 9 mm pistol", 0, 3, 1, 0, false},
+        choice("weapon", "Weapon", "", {".308", "5.56", ".22", "9 mm pistol"}),
         {"distance", "Distance", "m", "m", "of the target", 25, 400, 5, 100, false},
         {"zero", "Zero of the sights", "m", "m", "", 25, 400, 5, 100, false},
         {"clicks_up", "Clicks up", "", "", "of a quarter minute of arc", -120, 120, 1, 0, false},
         {"clicks_right", "Clicks right", "", "", "", -120, 120, 1, 0, false},
         {"cant", "Cant", "rad", "deg", "the gun leaning to the right", -0.7, 0.7, 0, 0, false},
         {"wind", "Wind across", "m/s", "m/s", "from the left", -10, 10, 0.5, 2, false},
-        {"stance", "Stance", "", "", "0 standing, 1 kneeling, 2 sitting, 3 lying, 4 with a rest", 0, 4, 1, 3, false},
+        choice("stance", "Stance", "", {"standing", "kneeling", "sitting", "lying", "with a rest"}, 3),
         {"skill", "Skill", "", "%", "", 0, 1, 0, 0.7, false},
         {"fatigue", "Fatigue", "", "%", "", 0, 1, 0, 0.1, false},
         {"spread", "Spread of gun and ammunition", "rad", "mrad", "σ of each axis", 0, 1e-3, 0, 1e-4, true},
@@ -218,8 +218,10 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
     stage.sample(1, 0, t, 1000 * now.y);
     stage.sample(1, 1, t, 1000 * now.x);
     stage.say(count_ == 0 ? std::string("take aim")
-                          : format("%.0f holes; the last one %.0f mm right, %.0f mm high, at %.0f m/s", double(count_),
-                                   1000 * last_.x, 1000 * last_.y, told_) +
+                          : format("%.0f holes; the last one ", double(count_)) +
+                                format("%.0f mm ", 1000 * abs(last_.x)) + (last_.x < 0 ? "left, " : "right, ") +
+                                format("%.0f mm ", 1000 * abs(last_.y)) + (last_.y < 0 ? "low, " : "high, ") +
+                                format("at %.0f m/s", told_) +
                                 format("; a steady gun hits the smallest ring with %.0f %%", 100 * smallest_));
   }
 

@@ -47,12 +47,10 @@ class TrajectoryLab final : public Repeatable<TrajectoryLab, Demo3> {
         {"spin", "Backspin", "rad/s", "rpm", "of a ball with 37 mm radius", -400, 400, 0, 190, false},
         {"wind", "Wind along", "m/s", "m/s", "positive: from behind", -30, 30, 0.5, -8, false},
         {"cross", "Wind across", "m/s", "m/s", "positive: toward the viewer", -30, 30, 0.5, 6, false},
-        {"ball", "Ball", "", "",
-         "0 by its terminal speed, 1 golf, 2 baseball, 3 soccer, 4 tennis, 5 table tennis, 6 basketball, 7 cricket, "
-         "8 bowling, 9 arrow, 10 shuttlecock",
-         0, 10, 1, 0, false},
-        {"curve", "Drag curve", "", "", "0 G1, 1 G2, 2 G5, 3 G6, 4 G7, 5 G8, 6 GI, 7 GS, 8 RA4", 0,
-         double(ballistics::drag_function_names.size() - 1), 1, 0, false},
+        choice("ball", "Ball", "",
+               {"by its terminal speed", "golf", "baseball", "soccer", "tennis", "table tennis", "basketball",
+                "cricket", "bowling", "arrow", "shuttlecock"}),
+        choice("curve", "Drag curve", "", {"G1", "G2", "G5", "G6", "G7", "G8", "GI", "GS", "RA4"}),
     };
     Plot side{"Side view", {"distance", "m"}, {"height", "m"}, {}}, speed{"Speed", {"time", "s"}, {"speed", "m/s"}, {}};
     for (int k = 0; k < laws; ++k) {  // in the colors of the trails

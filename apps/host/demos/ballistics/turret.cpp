@@ -40,7 +40,7 @@ class Turret final : public Repeatable<Turret, Demo3> {
         {"wind", "Wind across", "m/s", "m/s", "", -20, 20, 0.5, 8, false},
         {"range", "Distance of the target", "m", "m", "of the middle of its path", 100, 1500, 10, 420, true},
         {"pace", "Speed of the target", "m/s", "m/s", "at most", 0, 60, 1, 30, false},
-        {"high", "High arc", "", "", "1: fire the high one", 0, 1, 1, 0, true},
+        choice("high", "Arc", "that is fired", {"low", "high"}, 0, true),
         {"rate", "Time between shots", "s", "s", "", 0.5, 5, 0.1, 1.5, true},
         {"own", "Speed of the gun", "m/s", "m/s", "at most, to and fro on 120 m of rail", 0, 40, 1, 0, false},
     };

@@ -42,7 +42,7 @@ class Masse final : public Repeatable<Masse, Demo3> {
         {"side", "English (side)", "", "", "tip offset in ball radii", -0.6, 0.6, 0, 0.25, true},
         {"height", "Follow and draw", "", "", "tip offset in ball radii", -0.6, 0.6, 0, -0.4, true},
         {"elevation", "Elevation of the cue", "rad", "deg", "", 0, radians(85.0), 0, radians(50.0), true},
-        {"hold", "The cue holds the ball down", "", "", "0: it may hop", 0, 1, 1, 1, true},
+        yes_or_no("hold", "The cue holds the ball down", "or it may hop", true, true),
         {"friction", "Friction of the cloth μ_s", "", "", "", 0.1, 0.5, 0, 0.2, false},
     };
     d.plots = {{"Seen from above", {"x", "m"}, {"−z", "m"}, {{"cue ball"}, {"before the shot", Series::Style::points}}},

@@ -53,9 +53,10 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         {"side", "English (side)", "", "", "tip offset in ball radii, right is positive", -0.6, 0.6, 0, 0, true},
         {"height", "Follow and draw", "", "", "tip offset in ball radii, up is follow", -0.6, 0.6, 0, 0.1, true},
         {"elevation", "Elevation of the cue", "rad", "deg", "", 0, radians(75.0), 0, 0, true},
-        {"preview", "Preview", "", "", "0: none, 1: to the first ball, 2 and 3: by more cushions", 0, 3, 1, 2, true},
-        {"table", "Table", "", "", "0: 7 ft, 1: 8 ft, 2: 9 ft pool, 3: snooker, 4: Russian pyramid, 5: carom", 0, 5, 1,
-         2, false},
+        choice("preview", "Preview", "of the way of the cue ball",
+               {"none", "to the first ball", "one cushion more", "two cushions more"}, 2, true),
+        choice("table", "Table", "", {"pool, 7 ft", "pool, 8 ft", "pool, 9 ft", "snooker", "Russian pyramid", "carom"},
+               2),
     };
     d.plots = {{"Energy", {"time", "s"}, {"energy of the balls", "J"}, {{"all"}}},
                {"Speed of the cue ball",

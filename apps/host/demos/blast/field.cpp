@@ -39,8 +39,8 @@ class Field final : public Repeatable<Field, Demo3> {
         {"slow", "Slow motion", "", "", "while the wave passes", 1, 200, 1, 60, true},
         {"height", "Height of the wall", "m", "m", "", 0.2, 4, 0.1, 2, false},
         {"shelter", "Shelter", "", "", "share of the pressure that comes round an obstacle", 0, 1, 0.05, 0.4, false},
-        {"air", "Where it bursts", "", "",
-         "0: on the ground, 1: in free air, a weaker wave, 2: in the air over the ground", 0, 2, 1, 0, false},
+        choice("air", "Where it bursts", "the wave is weaker in free air",
+               {"on the ground", "in free air", "in the air over the ground"}),
         {"burst", "Height of the burst", "m", "m", "over the ground", 0.5, 8, 0.1, 2.5, false},
     };
     d.plots = {

@@ -29,7 +29,7 @@ class Shatter final : public Repeatable<Shatter, Demo3> {
     d.camera = {{3.9, 2.4, 4.6}, {0.1, 0.9, -0.4}};
     d.ground = 0;
     d.parameters = {
-        {"pattern", "Pattern", "", "", "0: bricks, 1: Voronoi cells, 2: slabs", 0, 2, 1, 0, false},
+        choice("pattern", "Pattern", "", {"bricks", "Voronoi cells", "slabs"}),
         {"parts", "Cells", "", "", "of the Voronoi wall", 20, 400, 1, 180, false},
         {"tension", "Strength in tension", "Pa", "MPa", "of the bonds", 2e4, 5e6, 0, 1.5e5, false},
         {"speed", "Speed of the ball", "m/s", "m/s", "", 1, 80, 0.5, 32, true},

@@ -49,7 +49,7 @@ class Solid final : public Repeatable<Solid, Demo3> {
       d.parameters.push_back({"neck", "Neck", "m", "cm", "narrowest radius", 0.03, 0.15, 0.01, 0.06, false});
       d.parameters.push_back({"wall", "Thickness", "m", "mm", "of the wall", 0.006, 0.03, 0.001, 0.014, false});
     } else {
-      d.parameters.push_back({"form", "Form", "", "", "0: star, 1: ring, 2: ball", 0, 2, 1, 0, false});
+      d.parameters.push_back(choice("form", "Form", "", {"star", "ring", "ball"}));
       d.parameters.push_back({"points", "Points", "", "", "of the star", 3, 12, 1, 5, false});
       d.parameters.push_back({"deep", "How deep", "", "", "inner radius by outer", 0.2, 0.9, 0.05, 0.45, false});
       d.parameters.push_back(

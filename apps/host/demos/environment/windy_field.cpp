@@ -41,7 +41,7 @@ class WindyField final : public Repeatable<WindyField, Demo3> {
          true},
         {"sigma", "Turbulence σ", "m/s", "m/s", "", 0, 5, 0, 1.4, true},
         {"length", "Size of the eddies L", "m", "m", "", 5, 200, 0, 25, true},
-        {"dryden", "Dryden instead of von Kármán", "", "", "1: Dryden", 0, 1, 1, 0, true},
+        choice("dryden", "Spectrum", "of the eddies", {"von Kármán", "Dryden"}, 0, true),
         {"thermal", "Rise in the thermal", "m/s", "m/s", "", 0, 8, 0, 3, true},
         {"gust", "Strength of a gust", "m/s", "m/s", "", 0, 20, 0, 8, true},
         {"seed", "Seed", "", "", "of the eddies", 1, 99, 1, 3, true},

@@ -36,8 +36,8 @@ class RobotArm final : public Repeatable<RobotArm, Demo3> {
         {"period", "Period of the path", "s", "s", "", 0.8, 6, 0.1, 2, true},
         {"hertz", "Frequency of the muscles", "Hz", "Hz", "f", 0.2, 8, 0.1, 2, true},
         {"damping", "Damping ratio", "", "", "ζ", 0.1, 2, 0.05, 1, true},
-        {"feed", "Feed-forward", "", "", "1: speeds and accelerations of the path are known, 0: only the place", 0, 1,
-         1, 1, true},
+        yes_or_no("feed", "Feed-forward", "speeds and accelerations of the path are known, or only the place", true,
+                  true),
         {"limit", "Greatest torque", "N·m", "N·m", "of each joint", 20, 2000, 10, 600, true},
         {"load", "Load in the hand", "kg", "kg", "", 0.5, 40, 0.5, 10, false},
     };

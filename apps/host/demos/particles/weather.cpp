@@ -324,7 +324,7 @@ class Hail final : public Repeatable<Hail, Demo2> {
         {"rate", "Hailstones a second", "1/s", "1/s", "", 5, 150, 5, 40, true},
         {"diameter", "Diameter", "m", "cm", "", 0.03, 0.09, 0, 0.05, false},
         {"restitution", "Restitution e", "", "", "", 0, 0.9, 0, 0.35, false},
-        {"two_way", "Bodies feel it", "", "", "0: no, 1: yes", 0, 1, 1, 1, false},
+        yes_or_no("two_way", "Bodies feel it", "", true),
     };
     Series law{"binomial"};
     double share = 1.0 / (1 << rows);

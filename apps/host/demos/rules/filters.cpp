@@ -29,10 +29,9 @@ class Filters final : public Repeatable<Filters, Demo2> {
     d.camera.height = 11;
     d.camera.width = 14;
     d.ground = 0;
-    d.parameters = {
-        {"balls", "Balls of a kind", "", "", "", 3, 40, 1, 14, false},
-        {"upper", "Upper tray holds green too", "", "", "1: its mask names two categories", 0, 1, 1, 0, true},
-        {"group", "Ghosts are one group", "", "", "0: they meet one another", 0, 1, 1, 1, false}};
+    d.parameters = {{"balls", "Balls of a kind", "", "", "", 3, 40, 1, 14, false},
+                    yes_or_no("upper", "Upper tray holds green too", "its mask names two categories", false, true),
+                    yes_or_no("group", "Ghosts are one group", "or they meet one another", true)};
     d.plots = {{"Held",
                 {"time", "s"},
                 {"balls", ""},

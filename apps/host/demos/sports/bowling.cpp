@@ -35,9 +35,8 @@ class Bowling final : public Repeatable<Bowling, Demo3> {
     d.camera = {{9.6, 2.5, 1.9}, {16.6, 0.1, 0.02}, 0.62};
     d.ground = -0.7;
     d.parameters = {
-        {"player", "Player", "", "",
-         "0: as set below; 1 straight, 2 stroker, 3 tweener, 4 cranker, 5 two-handed, 6 backup, 7 spinner", 0, 7, 1, 0,
-         false},
+        choice("player", "Player", "",
+               {"as set below", "straight", "stroker", "tweener", "cranker", "two-handed", "backup", "spinner"}),
         {"speed", "Speed", "m/s", "mph", "", 4, 12, 0, 8, false},
         {"spin", "Spin", "rad/s", "rpm", "", 0, 60, 0, 300 * pi / 30, false},
         {"axis", "Axis rotation", "rad", "deg", "0: end over end, 90°: all side spin", -1.5708, 1.5708, 0,
@@ -48,7 +47,7 @@ class Bowling final : public Repeatable<Bowling, Demo3> {
         {"oil_friction", "Friction on oil", "", "", "", 0.01, 0.3, 0, 0.04, false},
         {"dry_friction", "Friction on dry boards", "", "", "at most .32 by the rules", 0.05, 0.32, 0, 0.20, false},
         {"gyration", "Radius of gyration", "m", "mm", "62.5 to 71.1 by the rules", 0.0625, 0.0711, 0, 0.0635, false},
-        {"pins", "Pins", "", "", "1: on, 0: the lane alone", 0, 1, 1, 1, false},
+        yes_or_no("pins", "Pins", "or the lane alone", true),
     };
     d.plots = {{"From above", {"down the lane", "m"}, {"to the left", "m"}, {{"ball in the world"}, {"formula"}}},
                {"Slip", {"time", "s"}, {"slip at the lane", "m/s"}, {{"ball in the world"}, {"formula"}}},

@@ -36,8 +36,9 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
     d.camera = {{-11, 2.7, 2.2}, {60, 4, 0}, 0.62};
     d.ground = -0.5;
     d.parameters = {
-        {"club", "Club", "", "", "0 driver, 1 3-wood, 2 5-wood, 3 hybrid, 4 to 10 3-iron to 9-iron, 11 wedge", 0, 11, 1,
-         0, false},
+        choice("club", "Club", "",
+               {"driver", "3-wood", "5-wood", "hybrid", "3-iron", "4-iron", "5-iron", "6-iron", "7-iron", "8-iron",
+                "9-iron", "wedge"}),
         {"speed", "Head speed", "", "%", "of a tour player's", 0.5, 1.2, 0.01, 1, false},
         {"face", "Face", "rad", "deg", "to the right of the target", -0.12, 0.12, 0, 0, false},
         {"path", "Path", "rad", "deg", "of the head, to the right", -0.12, 0.12, 0, 0, false},
@@ -224,9 +225,9 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
       body.position = at;
       stage.add(body, shape, look, color);
     };
-    add("rough", {150, -0.26, 0}, geometry::Box{{190, 0.25f, 70}}, 0x55803f);
+    add("rough", {150, -0.27, 0}, geometry::Box{{190, 0.25f, 70}}, 0x55803f);
     for (int i = 0; i < 24; ++i)
-      add("fairway", {15 + 12.0 * i, -0.04 + 0.001 * (i % 2), bend(15 + 12.0 * i)}, geometry::Box{{6.05f, 0.045f, 17}},
+      add("fairway", {15 + 12.0 * i, -0.04, bend(15 + 12.0 * i)}, geometry::Box{{6, 0.045f, 17}},
           i % 2 ? 0x74a84f : 0x6b9f49);
     add("tee", {0, -0.02, 0}, geometry::Box{{3, 0.02f, 2}}, 0x86b95e);
     add("green", {green_x, -0.02, 0}, geometry::Cylinder{0.04f, float(green_radius)}, 0x9ccc74);

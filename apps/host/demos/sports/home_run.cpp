@@ -38,9 +38,9 @@ class HomeRun final : public Repeatable<HomeRun, Demo3> {
     d.camera = {{-20, 10, 6}, {45, 12, -2}, 0.8};
     d.ground = -0.05;
     d.parameters = {
-        {"kind", "Kind of pitch", "", "",
-         "0: as set below; 1 four-seam, 2 sinker, 3 cutter, 4 slider, 5 sweeper, 6 curveball, 7 changeup, 8 splitter",
-         0, 8, 1, 0, false},
+        choice("kind", "Kind of pitch", "",
+               {"as set below", "four-seam", "sinker", "cutter", "slider", "sweeper", "curveball", "changeup",
+                "splitter"}),
         {"pitch", "Pitch", "m/s", "mph", "at release", 25, 47, 0, 92 * ball_mph, false},
         {"pitch_spin", "Its spin", "rad/s", "rpm", "", 0, 320, 0, 2200 * pi / 30, false},
         {"tilt", "Tilt of its axis", "rad", "deg", "0 backspin (fastball), 180 topspin (curve), 90 sideways", -3.1416,

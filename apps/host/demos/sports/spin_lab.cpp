@@ -54,9 +54,8 @@ class SpinLab final : public Repeatable<SpinLab, Demo3> {
     d.camera = {{-7, 2.6, 1.6}, {14, 1.2, 0}, 0.6};
     d.ground = 0;
     d.parameters = {
-        {"scene", "Sport", "", "",
-         "0 free kick, 1 floating ball, 2 topspin, 3 curve ball, 4 knuckleball, 5 swing bowling, 6 table tennis", 0, 6,
-         1, 0, false},
+        choice("scene", "Sport", "",
+               {"free kick", "floating ball", "topspin", "curve ball", "knuckleball", "swing bowling", "table tennis"}),
         {"speed", "Speed", "", "%", "of what a good player reaches", 0.4, 1.5, 0.01, 1, false},
         {"spin", "Spin", "", "%", "of a good player's; negative turns it round", -2, 2, 0.01, 1, false},
         {"tilt", "Turn the axis by", "rad", "deg", "", -3.1416, 3.1416, 0, 0, false},
