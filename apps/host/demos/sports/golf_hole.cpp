@@ -225,9 +225,11 @@ class GolfHole final : public Repeatable<GolfHole, Demo3> {
       body.position = at;
       stage.add(body, shape, look, color);
     };
-    add("rough", {150, -0.27, 0}, geometry::Box{{190, 0.25f, 70}}, 0x55803f);
+    // Each strip of ground lies a little over the next one: no edge is seen from the tee.
+    add("rough", {150, -0.31, 0}, geometry::Box{{190, 0.25f, 70}}, 0x55803f);
+    add("rough", {-15.4, -0.257, 0}, geometry::Box{{24.6f, 0.25f, 70}}, 0x55803f);
     for (int i = 0; i < 24; ++i)
-      add("fairway", {15 + 12.0 * i, -0.04, bend(15 + 12.0 * i)}, geometry::Box{{6, 0.045f, 17}},
+      add("fairway", {15.1 + 12.0 * i, -0.055 - 0.002 * i, bend(15 + 12.0 * i)}, geometry::Box{{6.1f, 0.045f, 17}},
           i % 2 ? 0x74a84f : 0x6b9f49);
     add("tee", {0, -0.02, 0}, geometry::Box{{3, 0.02f, 2}}, 0x86b95e);
     add("green", {green_x, -0.02, 0}, geometry::Cylinder{0.04f, float(green_radius)}, 0x9ccc74);
