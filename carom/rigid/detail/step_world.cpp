@@ -267,6 +267,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
     solve_constraints(group);
     profile.solve += watch.lap("solve");
     restitute_contacts(group);
+    if constexpr (D::dimension == 3) bound_spins(group);
     profile.restitution += watch.lap("restitution");
     store_joints(group);
     store_contacts(group);
