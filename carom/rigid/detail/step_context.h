@@ -25,6 +25,11 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
   return {omega / a1, a2 * a3, a3};
 }
 
+/// Joints swing by at most so many turns in a substep; couplings by fewer. Rows that see little of the mass that they
+/// move, as a thread sees of its nut, agree slowly: Δλ adds up over many substeps, and such a sum only comes to rest
+/// where (ωh)² < (1 + 2a₂)/(1 + a₂), a₂ as in make_softness, which .22 turns are.
+inline constexpr float most_joint_turns = 0.25f, most_coupling_turns = 0.2f;
+
 /// Of contacts between two bodies that impulses move, and of those with one that they do not.
 struct ContactSoftness {
   Softness free, firm;
@@ -46,7 +51,8 @@ struct alignas(16) BodyDrive {
   std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint; flies_through: so, in
                                             ///< space and without locks, all substeps at once; carries: nothing but
                                             ///< contacts moves it, whose impulses go on by their sum (list_stages);
-                                            ///< bounded: contacts may give its spin no more energy than they know of
+                                            ///< bounded: slender, so that contacts may give its spin more energy than
+                                            ///< they know of
   float linear_keep = 1, angular_keep = 1;  ///< what damping leaves of velocities
   typename D::Vector linear_gain{};         ///< m/s, of gravity and forces
   typename D::Angular angular_gain{};       ///< rad/s
@@ -83,7 +89,7 @@ struct StepContext {
   int substeps = 1;
   float contact_stiffness = 0;  ///< 1/s²: ω² of contacts between moving bodies
   ContactSoftness contact_softness{};
-  Softness joint_softness{};
+  Softness joint_softness{}, coupling_softness{};
   float rest_speed = 0;                  ///< m/s between bodies at rest with each other (load.h)
   float push_speed = 0;                  ///< m/s, limit of the speed at which overlaps separate
   Flight<D>* flights = nullptr;          ///< by place in BodyStore::awake
