@@ -259,6 +259,103 @@ TYPED_TEST(JointTrees, ImpossibleSpanStaysBounded) {
   }
 }
 
+/// A carriage of 1 kg on an upright rail with a motor; from it hang ten links and a ball of `load` kg.
+template <class D>
+struct Hoist {
+  World<D> world;
+  JointId rail;
+  Hoist(double load, const JointMotor& motor) : world(restless<D>()) {
+    BodyId above = add_mass(world, 0, 0, 1, 0.1);
+    SliderJointDef<D> slider;
+    slider.body_b = above;
+    slider.frame_a.q = slider.frame_b.q = turned<D>(pi / 2);
+    slider.motor = motor;
+    rail = world.create_joint(slider).value();
+    for (int i = 0; i <= 10; ++i) {
+      BallJointDef<D> joint;
+      joint.body_a = above;
+      joint.body_b =
+          i < 10 ? add_mass(world, 0, -0.25f - 0.5f * float(i), 1, 0.05) : add_mass(world, 0, -5.5f, load, 0.1 * load);
+      joint.frame_a.p = vec<D>(0, i > 0 ? -0.25f : 0);
+      joint.frame_b.p = vec<D>(0, i < 10 ? 0.25f : 0.5f);
+      world.create_joint(joint).value();
+      above = joint.body_b;
+    }
+  }
+};
+
+TYPED_TEST(JointTrees, AMotorLiftsAllThatHangsOnIt) {
+  using D = TypeParam;
+  for (const double load : {1.0, 30.0, 1000.0}) {
+    const float weight = float((11 + load) * 9.81);
+    Hoist<D> lifts(load, {true, 1, 2 * weight});
+    for (int i = 0; i < 300; ++i) lifts.world.step(frame).value();
+    const JointState<D> state = lifts.world.joint_state(lifts.rail).value();
+    EXPECT_TRUE(state.direct);
+    EXPECT_NEAR(state.speed, 1, 1e-3f) << load;
+    EXPECT_NEAR(math::length(state.force), weight, 1e-3f * weight) << load;
+
+    Hoist<D> brakes(load, {true, 0, 2 * weight});
+    for (int i = 0; i < 600; ++i) brakes.world.step(frame).value();
+    EXPECT_NEAR(brakes.world.joint_state(brakes.rail).value().coordinate, 0, 1e-3f) << load;
+
+    // With half of the weight it slips at g/2.
+    Hoist<D> slips(load, {true, 0, 0.5f * weight});
+    for (int i = 0; i < 60; ++i) slips.world.step(frame).value();
+    EXPECT_NEAR(slips.world.joint_state(slips.rail).value().speed, -0.5f * 9.81f, 0.01f) << load;
+  }
+}
+
+enum class Held { by_stop, by_motor, by_friction, by_spring };
+/// The angle of an arm of ten welded beams of 1 m and 10 kg after a minute, at a hinge (a ball joint for friction).
+template <class D>
+double arm_angle(Held held, float hertz = 0) {
+  World<D> world(restless<D>());
+  BodyId before{};
+  for (int i = 0; i < 10; ++i) {
+    BodyDef<D> def;
+    def.position = pos<D>(i + 0.5, 0);
+    const BodyId beam = world.create_body(def).value();
+    world.set_mass_properties(beam, rod<D>(10, 1)).value();
+    const auto hang = [&](auto joint) {
+      joint.body_a = before;
+      joint.body_b = beam;
+      joint.frame_a.p = vec<D>(i > 0 ? 0.5f : 0, 0);
+      joint.frame_b.p = vec<D>(-0.5f, 0);
+      world.create_joint(joint).value();
+    };
+    HingeJointDef<D> hinge;
+    if (held == Held::by_stop) hinge.limit = {true, 0, 1};
+    if (held == Held::by_motor) hinge.motor = {true, 0, 1e4f};
+    if (held == Held::by_spring) hinge.spring = {hertz, 1};
+    BallJointDef<D> ball;
+    ball.friction_torque = 1e4f;
+    if (i > 0)
+      hang(WeldJointDef<D>{});
+    else if (held == Held::by_friction)
+      hang(ball);
+    else
+      hang(hinge);
+    before = beam;
+  }
+  for (int i = 0; i < 3600; ++i) world.step(frame).value();
+  return math::asin(state_of(world, before).pose.position.y / 9.5);
+}
+
+TYPED_TEST(JointTrees, StopsMotorsFrictionAndSpringsHoldALongArm) {
+  using D = TypeParam;
+  EXPECT_NEAR(arm_angle<D>(Held::by_stop), 0, 1e-3);
+  EXPECT_NEAR(arm_angle<D>(Held::by_motor), 0, 1e-3);
+  EXPECT_NEAR(arm_angle<D>(Held::by_friction), 0, 1e-3);
+  // k = ω² m l²/3 of the first beam, to which the spring's frequency belongs: k θ = M g L/2 cos θ.
+  for (const float hertz : {10.0f, 20.0f}) {
+    const double k = math::square(2 * pi * double(hertz)) * 10.0 / 3;
+    double theta = 0;
+    for (int i = 0; i < 50; ++i) theta = 100 * 9.81 * 5 * math::cos(theta) / k;
+    EXPECT_NEAR(arm_angle<D>(Held::by_spring, hertz), -theta, 0.03 * theta) << hertz;
+  }
+}
+
 TYPED_TEST(JointTrees, SameBitsForAnyThreads) {
   using D = TypeParam;
   std::uint64_t hashes[2];

@@ -370,5 +370,43 @@ TEST(JointTypes3, ScrewAdvancesByItsPitch) {
   EXPECT_LT(world.joint_state(joint).value().linear_error, 1e-3f);
 }
 
+// A thread sees 1/1200 of what turns against its jammed nut, a gear 1/1000 of what its braked wheel holds: their
+// impulses agree slowly, and must not swing up meanwhile.
+TEST(JointTypes3, AJammedThreadComesToRest) {
+  World3 world(weightless<Dim3>());
+  GenericJointDef<Dim3> guide = make_cylindrical_joint<Dim3>({});
+  guide.body_b = add_mass(world, 0, 0, 2, 0.3);
+  guide.linear[0].friction = 1e5f;
+  world.create_joint(guide).value();
+  ScrewJointDef<Dim3> screw;
+  screw.body_b = guide.body_b;
+  screw.pitch = 0.1f;
+  const JointId joint = world.create_joint(screw).value();
+  for (int i = 0; i < 1800; ++i) {
+    world.add_torque(guide.body_b, {math::min(2.0f, float(i) / 60), 0, 0}).value();
+    world.step(frame).value();
+  }
+  EXPECT_LT(math::length(state_of(world, guide.body_b).angular_velocity), 1e-4f);
+  EXPECT_NEAR(world.joint_state(joint).value().torque.x, -2, 0.01f);
+  EXPECT_NEAR(world.joint_state(joint).value().force.x, 2 * 2 * pi_f / 0.1f, 1);
+}
+TYPED_TEST(JointTypes, AGearOnABrakeComesToRest) {
+  using D = TypeParam;
+  World<D> world(weightless<D>());
+  GearJointDef<D> gear;
+  gear.body_a = add_mass(world, 0, 0, 1, 3);
+  gear.body_b = add_mass(world, 2, 0, 1, 0.003);
+  gear.ratio = 1;
+  pin(world, gear.body_a);
+  world.set_motor(pin(world, gear.body_b), JointMotor{true, 0, 1e6f}).value();
+  const JointId joint = world.create_joint(gear).value();
+  for (int i = 0; i < 1800; ++i) {
+    world.add_torque(gear.body_a, about_z<D>(2)).value();
+    world.step(frame).value();
+  }
+  EXPECT_LT(math::abs(z_of(state_of(world, gear.body_a).angular_velocity)), 1e-4f);
+  EXPECT_NEAR(z_of(world.joint_state(joint).value().torque), 2, 0.01f);
+}
+
 }  // namespace joint_types_test
 }  // namespace carom::rigid::test

@@ -24,6 +24,7 @@ struct JointPass {
   float inverse_h = 0;
   bool use_bias = true;  ///< false: the relaxing pass
   Response rigid{};      ///< of rigid rows in this pass: the relaxing pass removes speed and nothing else
+  Response coupling{};   ///< of couplings, likewise
 };
 
 template <class V>
@@ -148,10 +149,15 @@ struct AngularBlock {
   }
   template <class Pair>
   void solve(Pair& pair, const JointPass& pass) {
+    pair.apply_angular(solve(pair, pair.inverse_inertia_a + pair.inverse_inertia_b, pass));
+  }
+  /// Returns the impulse to add. `mobility`: of what moves.
+  template <class Pair, class Mobility>
+  Angular solve(const Pair& pair, const Mobility& mobility, const JointPass& pass) {
     const Angular spin = relative_spin(pair);
     if (!rigid && !friction && !pass.use_bias) {
       before = spin;
-      return;
+      return {};
     }
     const Response& r = friction ? velocity_only : (rigid ? pass.rigid : response);
     Angular residual = r.velocity * spin;
@@ -163,11 +169,11 @@ struct AngularBlock {
       }
     }
     if (!rigid) residual += r.previous * before;
-    const Angular wanted = solve_mobility(pair.inverse_inertia_a + pair.inverse_inertia_b, residual);
+    const Angular wanted = solve_mobility(mobility, residual);
     const Angular old = impulse;
     impulse = old - wanted - r.memory * old;
     if (max_impulse < 1e29f) impulse = clamp_magnitude(impulse, max_impulse);
-    pair.apply_angular(impulse - old);
+    return impulse - old;
   }
 };
 

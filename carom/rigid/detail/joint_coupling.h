@@ -99,7 +99,7 @@ struct CouplingBlock {
     if (kind == CouplingKind::pulley && r.error < 0) {
       impulse = old - (rate + r.error * pass.inverse_h) / mobility;  // slack: it may be taken up within the substep
     } else {
-      const Response& response = pass.rigid;
+      const Response& response = pass.coupling;
       impulse = old - (response.velocity * rate + response.position * r.error) / mobility - response.memory * old;
     }
     if (kind == CouplingKind::pulley) impulse = min(impulse, 0.0f);

@@ -10,6 +10,7 @@ namespace carom::rigid::detail {
 struct Clock {
   float h = 0;                                      ///< s
   float pace = 1;                                   ///< s of its own in a second
+  bool in_tree = false;                             ///< tell_spring says how springs respond
   float push() const { return h * (pace * pace); }  ///< impulse in the world's time of a force of 1 N
 };
 /// Of the two bodies' clocks the geometric mean; the ground has none.
@@ -43,6 +44,7 @@ inline float mass_ratio_root(float row_mobility, float held_mobility) {
 }
 /// `stiffer`: mass_ratio_root.
 inline Response stiffened_response(const JointSpring& spring, const Clock& t, float stiffer) {
+  if (t.in_tree) return {t.pace * stiffer * spring.hertz, stiffer * spring.damping_ratio};
   return spring_response(t.pace * stiffer * spring.hertz, stiffer * spring.damping_ratio, t.h);
 }
 inline void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, const Clock& t, float stiffer = 1) {
@@ -50,6 +52,13 @@ inline void fill_spring(AxisLaw& law, const JointSpring& spring, float rest, con
   law.flags |= AxisLaw::spring;
   law.rest = rest;
   law.response = stiffened_response(spring, t, stiffer);
+}
+
+/// The spring of a joint in a tree, once it is known what moves on it: its stiffness is that for the two bodies by
+/// themselves (1/`own`), and the motion that of 1/`mobility`.
+inline void tell_spring(Response& response, float mobility, float own, float h) {
+  const float slower = own > 0 ? math::sqrt(max(mobility, 0.0f) / own) : 1;
+  response = spring_response(slower * response.velocity, slower * response.position, h);
 }
 
 template <class Axis>

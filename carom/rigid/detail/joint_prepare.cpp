@@ -257,7 +257,7 @@ void fill_angular(AngularBlock<D>& block, const JointData<D>& data, const JointP
       block.drive = rotate(at.frame_a, t.pace * motor->target_spin);
   }
   block.rigid = !(spring.hertz > 0);
-  if (!block.rigid) block.response = spring_response(t.pace * spring.hertz, spring.damping_ratio, t.h);
+  if (!block.rigid) block.response = stiffened_response(spring, t, 1);
 }
 
 template <class D>
@@ -308,7 +308,8 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   };
   fill_masses(record.dynamic_a, record.body_a, record.inverse_mass_a, record.inverse_inertia_a, 0);
   fill_masses(record.dynamic_b, record.body_b, record.inverse_mass_b, record.inverse_inertia_b, 1);
-  const Clock t = clock_of(world.bodies, header, h);
+  Clock t = clock_of(world.bodies, header, h);
+  t.in_tree = record.direct != Direct::nothing;
   const JointPlacement<D> at = place_joint(world.bodies, header, data);
   const JointMemory<D>& memory = data.memory;
   const auto moving = [&] { return pair_of(record, world.bodies.solver.data()); };
@@ -475,7 +476,7 @@ void prepare_joints(StepContext<D>& context) {
       record.joint = joints.order[std::size_t(i)];
       record.isotropic = is_isotropic(world, record.joint);
       record.parts = joints.at(record.joint).parts;
-      record.direct = joints.tree_of(record.joint) != none;
+      record.direct = joints.tree_of(record.joint) != none ? Direct::rows : Direct::nothing;
       fill_record(record, world, context.h);
     }
   });

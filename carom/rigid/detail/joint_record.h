@@ -17,6 +17,9 @@ struct WorldImplementation;
 template <class D>
 struct StepContext;
 
+/// What a tree solves of a joint that is in it: the rows that hold, or its motors, springs and stops too.
+enum class Direct : std::uint8_t { nothing, rows, all };
+
 /// In space two tensors follow where the bodies do not turn alike about every axis (not `isotropic`).
 template <class D>
 struct JointRecord {
@@ -25,7 +28,7 @@ struct JointRecord {
   std::uint32_t parts = 0;
   bool dynamic_a = false, dynamic_b = false;  ///< only dynamic bodies are written to
   bool isotropic = true;
-  bool direct = false;  ///< its rigid rows are solved by the tree it is in
+  Direct direct = Direct::nothing;
   float inverse_mass_a = 0, inverse_mass_b = 0;
   float inverse_inertia_a = 0, inverse_inertia_b = 0;
 

@@ -3,8 +3,19 @@
 #pragma once
 
 #include "carom/rigid/detail/joint_record.h"
+#include "carom/rigid/detail/step_context.h"
 
 namespace carom::rigid::detail {
+
+inline Response response_of(const Softness& soft) {
+  return {soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
+}
+template <class D>
+JointPass joint_pass(const StepContext<D>& context, bool use_bias) {
+  if (!use_bias) return {context.h, context.inverse_h, false, velocity_only, velocity_only};
+  return {context.h, context.inverse_h, true, response_of(context.joint_softness),
+          response_of(context.coupling_softness)};
+}
 
 /// Does this block hold its rows rigidly, with any impulse that it takes?
 template <class Block>
@@ -15,6 +26,15 @@ bool is_rigid(const Block& block) {
     return block.law.has(AxisLaw::rigid);
   else
     return !requires { block.response; } && !requires { block.ratio; };
+}
+
+/// Has it motors, springs, friction or stops, which a tree solves along or about an axis, or about three?
+template <class D, class Block>
+bool is_driven(const Block& block) {
+  if constexpr (std::is_same_v<Block, AngularBlock<D>> || requires { block.law; })
+    return !is_rigid(block);
+  else
+    return false;
 }
 
 /// Calls visit(n, lever_a, lever_b, error, impulse) for each rigid row.
@@ -63,6 +83,19 @@ void visit_rows(Block& block, const Pair& pair, Visit&& visit) {
     block.directions(pair, u, v, error);
     visit(Vector{}, u, u, error.x, block.impulse.x);
     visit(Vector{}, v, v, error.y, block.impulse.y);
+  }
+}
+
+/// Calls visit(n, lever_a, lever_b, coordinate, law) for the axis of a block that is driven.
+template <class D, class Block, class Pair, class Visit>
+void visit_axis(Block& block, const Pair& pair, Visit&& visit) {
+  if constexpr (std::is_same_v<Block, AngularAxis<D>>) {
+    float coordinate;
+    const auto n = block.row(pair, block.law.needs_coordinate(), coordinate);
+    visit(typename D::Vector{}, n, n, coordinate, block.law);
+  } else if constexpr (requires { block.law; }) {
+    const auto row = block.row(pair);
+    visit(row.n, row.lever_a, row.lever_b, row.coordinate, block.law);
   }
 }
 

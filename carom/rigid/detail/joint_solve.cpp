@@ -42,12 +42,14 @@ inline void turn_inertias(JointRecord<Dim3>& record, const StepContext<Dim3>& co
     turn_inertia(record.tensors()[1], motion[std::size_t(record.body_b)], context.bodies[record.body_b].delta_rotation);
 }
 
-template <class I, class D, class Act>
+template <class I, bool first_of_substep, class D, class Act>
 void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
   BodyPair<D, I> pair;
   load_pair(pair, record, bodies);
   for_each_block(record, [&](JointPart, auto& block) {
-    if (!record.direct || !is_rigid(block)) act(pair, block);
+    if (record.direct != Direct::nothing && is_rigid(block)) return;
+    if (!first_of_substep && record.direct == Direct::all && is_driven<D>(block)) return;
+    act(pair, block);
   });
   save_pair(pair, record, bodies);
 }
@@ -78,11 +80,11 @@ void for_each_record(StepContext<D>& context, const JointUnits& units, ThreadSha
     if constexpr (D::dimension == 3) {
       if (!record.isotropic) {
         if constexpr (first_of_substep) turn_inertias(record, context);
-        act_on<Mat3f>(record, context.bodies, act);
+        act_on<Mat3f, first_of_substep>(record, context.bodies, act);
         continue;
       }
     }
-    act_on<float>(record, context.bodies, act);
+    act_on<float, first_of_substep>(record, context.bodies, act);
   }
 }
 
@@ -114,9 +116,8 @@ void warm_start_joints(StepContext<D>& context, int color, ThreadShare share) {
 
 template <class D>
 void solve_joints(StepContext<D>& context, int color, bool use_bias, ThreadShare share) {
-  const Softness& soft = context.joint_softness;
-  const Response biased{soft.mass_scale, soft.mass_scale * soft.bias_rate, soft.impulse_scale};
-  const JointPass pass{context.h, context.inverse_h, use_bias, use_bias ? biased : velocity_only};
+  const Response biased = response_of(context.joint_softness);
+  const JointPass pass = joint_pass(context, use_bias);
   const JointStore<D>& joints = context.world.joints;
   const LaneKernels<D>& kernels = context.world.kernels;
   const JointUnits units(joints, color);

@@ -1,6 +1,7 @@
 // The arithmetic of joint_tree.h.
 #include "carom/rigid/detail/joint_tree.h"
 
+#include "carom/rigid/detail/joint_law.h"
 #include "carom/rigid/detail/joint_rows.h"
 #include "carom/rigid/detail/joint_tree_energy.h"
 #include "carom/rigid/detail/move_body.h"
@@ -19,12 +20,14 @@ constexpr double calm_swing = 0.25;
 constexpr double swing_damping = 1;     ///< share of that stiffness, per substep, that damps links against each other
 constexpr double rod_damping = 0.2;     ///< of a rod's cross motion in the same way: also of its swing as a whole
 constexpr double account_share = 1e-3;  ///< of a free tree's energy that its joints may have lost and give back
+constexpr int most_drives = 4096;       ///< axes times bodies of a tree whose motors and stops are solved through it
 constexpr double tension_decay = 0.8;   ///< a tension is remembered for some substeps, because it may flicker
 
 template <class D>
 class Tree {
  public:
-  static constexpr int dofs = TreeBody<D>::dofs, dimension = D::dimension;
+  static constexpr int dofs = TreeBody<D>::dofs, dimension = D::dimension, turning = dofs - dimension;
+  using Row = double[dofs];
 
   Tree(StepContext<D>& context, TreeRange& range)
       : context_(context),
@@ -108,7 +111,61 @@ class Tree {
     }
   }
 
-  /// Where a substep begins: contacts shall meet a tree that hangs together.
+  /// How the axes that are driven move, held by the whole tree.
+  void measure_drives() {
+    int drives = 0;
+    for (int j = range_.first_joint; j < range_.joint_end; ++j)
+      for_each_block(record_of(trees_.joints[std::size_t(j)]),
+                     [&](JointPart, const auto& block) { drives += is_driven<D>(block) ? 1 : 0; });
+    range_.drives = drives > 0 && drives * (range_.body_end - range_.first_body) <= most_drives;
+    const float h = context_.h;
+    for_each_drive(
+        [&](TreeJoint<D>& joint, int axis, const Row& child, const Row& parent, float, AxisLaw& law) {
+          double own = mobility_of(trees_.bodies[std::size_t(joint.child)], child);
+          if (joint.parent != none) own += mobility_of(trees_.bodies[std::size_t(joint.parent)], parent);
+          double mobility = own;
+          if (range_.drives) {
+            record_of(joint).direct = Direct::all;
+            push(joint, child, parent, 1);
+            respond<false>();
+            mobility = inner_product(child, trees_.bodies[std::size_t(joint.child)].load);
+            if (joint.parent != none) mobility += inner_product(parent, trees_.bodies[std::size_t(joint.parent)].load);
+            joint.axis_mobility[axis] = mobility;
+          }
+          if (law.has(AxisLaw::spring)) tell_spring(law.response, float(mobility), float(own), h);
+        },
+        [&](TreeJoint<D>& joint, const BodyPair<D>&, AngularBlock<D>& block) {
+          const auto trace = [](const TreeBody<D>& body) {
+            double sum = 0;
+            for (int i = 0; i < turning; ++i) sum += body.inverse_inertia[i][i];
+            return sum;
+          };
+          double own = trace(trees_.bodies[std::size_t(joint.child)]);
+          if (joint.parent != none) own += trace(trees_.bodies[std::size_t(joint.parent)]);
+          if (!range_.drives) {
+            if (!block.friction) tell_spring(block.response, float(own), float(own), h);
+            return;
+          }
+          record_of(joint).direct = Direct::all;
+          double mobility = 0;
+          for (int axis = 0; axis < turning; ++axis) {
+            Row child = {}, parent = {};
+            child[dimension + axis] = 1, parent[dimension + axis] = -1;
+            push(joint, child, parent, 1);
+            respond<false>();
+            double change[turning];
+            for (int i = 0; i < turning; ++i) {
+              change[i] = trees_.bodies[std::size_t(joint.child)].load[dimension + i];
+              if (joint.parent != none) change[i] -= trees_.bodies[std::size_t(joint.parent)].load[dimension + i];
+            }
+            set_column(joint.turn_mobility, axis, change);
+            mobility += change[axis];
+          }
+          if (!block.friction) tell_spring(block.response, float(mobility), float(own), h);
+        });
+  }
+
+  /// Where a substep begins, with the impulses of the last one: contacts shall meet a tree that hangs together.
   void begin() {
     for (int j = range_.first_joint; j < range_.joint_end; ++j)
       for (double& x : trees_.joints[std::size_t(j)].impulse) x = 0;
@@ -117,6 +174,7 @@ class Tree {
 
   /// Before positions move: the errors at the end of the substep shall be a share of those now.
   void solve_positions() {
+    drive(true);
     const double before = energy_.kinetic();
     approach();
     const double after = energy_.kinetic();
@@ -164,9 +222,84 @@ class Tree {
       account = float(max(min(excess, 0.0), -account_share * (after + turning)));
     }
     if (excess > 0) energy_.take(excess, after);
+    drive(false);
   }
 
  private:
+  /// Calls on_axis(joint, number of its axis, the row of the child, that of the parent, coordinate, law) and
+  /// on_turn(joint, turns of its bodies, block).
+  template <class OnAxis, class OnTurn>
+  void for_each_drive(OnAxis&& on_axis, OnTurn&& on_turn) {
+    for (int j = range_.first_joint; j < range_.joint_end; ++j) {
+      TreeJoint<D>& joint = trees_.joints[std::size_t(j)];
+      JointRecord<D>& record = record_of(joint);
+      int axis = 0;
+      for_each_block(record, [&](JointPart, auto& block) {
+        if (!is_driven<D>(block)) return;
+        BodyPair<D> pair;
+        load_turns(pair, record, context_.bodies);
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(block)>, AngularBlock<D>>)
+          return on_turn(joint, pair, block);
+        visit_axis<D>(block, pair, [&](auto n, auto lever_a, auto lever_b, float coordinate, AxisLaw& law) {
+          Row child, parent;
+          const double sign = joint.child_is_b ? 1 : -1;
+          fill_row(child, sign, n, joint.child_is_b ? lever_b : lever_a);
+          fill_row(parent, -sign, n, joint.child_is_b ? lever_a : lever_b);
+          on_axis(joint, axis++, child, parent, coordinate, law);
+        });
+      });
+    }
+  }
+  /// Motors, springs, friction and stops, one after the other.
+  void drive(bool use_bias) {
+    if (!range_.drives) return;
+    if (use_bias) solve_velocities(false);  // what contacts did to some is felt by all
+    const JointPass pass = joint_pass(context_, use_bias);
+    for_each_drive(
+        [&](TreeJoint<D>& joint, int axis, const Row& child, const Row& parent, float coordinate, AxisLaw& law) {
+          double v[dofs];
+          velocity_of(v, context_.bodies[trees_.bodies[std::size_t(joint.child)].body]);
+          double speed = inner_product(child, v);
+          const JointRecord<D>& record = record_of(joint);
+          if (const std::int32_t other = joint.child_is_b ? record.body_a : record.body_b; other != none) {
+            velocity_of(v, context_.bodies[other]);
+            speed += inner_product(parent, v);
+          }
+          const float impulse = law.solve(float(joint.axis_mobility[axis]), coordinate, float(speed), pass);
+          if (impulse == 0) return;
+          push(joint, child, parent, double(impulse));
+          respond<true>();
+        },
+        [&](TreeJoint<D>& joint, BodyPair<D>& pair, AngularBlock<D>& block) {
+          const JointRecord<D>& record = record_of(joint);
+          if (record.body_a != none) pair.spin_a = context_.bodies[record.body_a].angular_velocity;
+          pair.spin_b = context_.bodies[record.body_b].angular_velocity;
+          const typename D::Angular impulse = block.solve(pair, joint.turn_mobility, pass);
+          Row child = {}, parent = {};
+          for (int i = 0; i < turning; ++i) {
+            child[dimension + i] = (joint.child_is_b ? 1 : -1) * double(component(impulse, i));
+            parent[dimension + i] = -child[dimension + i];
+          }
+          push(joint, child, parent, 1);
+          respond<true>();
+        });
+  }
+  static float component(float x, int) { return x; }
+  static float component(const Vec3f& x, int i) { return x[i]; }
+  static void set_column(float& m, int, const double (&column)[1]) { m = float(column[0]); }
+  static void set_column(Mat3f& m, int i, const double (&column)[3]) {
+    (i == 0 ? m.cx : i == 1 ? m.cy : m.cz) = {float(column[0]), float(column[1]), float(column[2])};
+  }
+  /// An impulse along a row, for `respond`.
+  void push(const TreeJoint<D>& joint, const Row& child, const Row& parent, double impulse) {
+    for (int i = range_.first_body; i < range_.body_end; ++i)
+      for (double& x : trees_.bodies[std::size_t(i)].load) x = 0;
+    for (int j = range_.first_joint; j < range_.joint_end; ++j)
+      for (double& x : trees_.joints[std::size_t(j)].residual) x = 0;
+    for (int c = 0; c < dofs; ++c) trees_.bodies[std::size_t(joint.child)].load[c] = child[c] * impulse;
+    for (int c = 0; joint.parent != none && c < dofs; ++c)
+      trees_.bodies[std::size_t(joint.parent)].load[c] = parent[c] * impulse;
+  }
   void approach() {
     for (int pass = 0; pass < refinements; ++pass) {
       look_ahead();
@@ -253,7 +386,6 @@ class Tree {
   }
   /// Links that swing against each other faster than the substeps can follow are damped, both alike.
   void add_damping(TreeJoint<D>& joint, double stiffness) {
-    constexpr int turning = dofs - dimension;
     const double h = double(context_.h), swing = h * h * stiffness;
     const TreeBody<D>& child = trees_.bodies[std::size_t(joint.child)];
     double inertia = 0;
@@ -301,7 +433,6 @@ class Tree {
     }
   }
   void stiffen(TreeBody<D>& body) const {
-    constexpr int turning = dofs - dimension;
     double trace = 0, product = 0;  // of K, of K I
     for (int i = 0; i < turning; ++i) {
       trace += body.stiffness[i][i];
@@ -357,6 +488,11 @@ class Tree {
   void solve() {
     for (int i = range_.first_body; i < range_.body_end; ++i)
       for (double& x : trees_.bodies[std::size_t(i)].load) x = 0;
+    respond<true>();
+  }
+  /// What impulses on the bodies (their `load`) and the residuals change. Not `to_bodies`: only tells it, in `load`.
+  template <bool to_bodies>
+  void respond() {
     for (int j = range_.closing; j < range_.joint_end; ++j) {
       TreeJoint<D>& joint = trees_.joints[std::size_t(j)];
       double* const load = trees_.bodies[std::size_t(joint.child)].load;
@@ -383,12 +519,13 @@ class Tree {
           double change = -joint.residual[k];
           if (joint.parent != none)
             change -= inner_product(joint.share[k], trees_.bodies[std::size_t(joint.parent)].load);
-          joint.impulse[k] += change;
+          if (to_bodies) joint.impulse[k] += change;
           for (int c = 0; c < dofs; ++c) body.load[c] += joint.reach[k][c] * change;
         }
       }
-      add_velocity(context_.bodies[body.body], body.load);
+      if (to_bodies) add_velocity(context_.bodies[body.body], body.load);
     }
+    if (!to_bodies) return;
     for (int j = range_.closing; j < range_.joint_end; ++j) {
       TreeJoint<D>& joint = trees_.joints[std::size_t(j)];
       const TreeBody<D>& child = trees_.bodies[std::size_t(joint.child)];
@@ -421,6 +558,7 @@ void prepare_trees(StepContext<D>& context) {
   for_each_tree(context, [](Tree<D>& tree) {
     tree.load_impulses();
     tree.factorise();
+    tree.measure_drives();
   });
 }
 template <class D>

@@ -9,8 +9,10 @@
 // Bodies are eliminated before the joint to their parent, from the leaves on; each leaves its inertia as seen through
 // the joint on the parent's block. Before positions move, r asks that the *positions at the end of the substep* meet
 // the joint; after it, that the velocities do: the constrained symplectic scheme of Andersen ("Rattle", 1983), which
-// keeps energy. Contacts, limits, motors and springs stay with the iterative solver; the tree has the last word in
-// each pass. Where a component has loops, the joints that close them stay with the iterative solver too.
+// keeps energy. Limits, motors and springs are solved one after the other, each with the
+// mass that moves with it through the tree, and what each gives goes to all bodies at once. Contacts and whatever else
+// pushes the bodies stay with the iterative solver; the tree has the last word in each pass. Where a component has
+// loops, the joints that close them stay with the iterative solver too.
 #pragma once
 
 #include <vector>
@@ -56,10 +58,12 @@ struct TreeJoint {
   double share[dofs][dofs];                              ///< S⁻¹ J of the parent, S = J M̂⁻¹ Jᵀ + E
   double pivot[dofs][dofs], inverse[dofs];               ///< factor of S
   double compliance[dofs], error[dofs], residual[dofs];
-  double impulse[dofs];  ///< of this substep so far
-  double settled[dofs];  ///< of the last one
-  double tension = 0;    ///< N·s a substep
-  double damping = 0;    ///< share of their speed that the rows that only resist take
+  double impulse[dofs];        ///< of this substep so far
+  double settled[dofs];        ///< of the last one
+  double tension = 0;          ///< N·s a substep
+  double damping = 0;          ///< share of their speed that the rows that only resist take
+  double axis_mobility[dofs];  ///< of its driven axes in their order, with all that hangs on them: 1/kg or 1/(kg·m²)
+  typename D::Inertia turn_mobility;  ///< likewise about all axes, 1/(kg·m²)
 };
 
 /// Bodies from the root outward; joints: those to the parents in the order of the bodies, then further ones to the
@@ -68,6 +72,7 @@ struct TreeRange {
   std::int32_t first_body = 0, body_end = 0, first_joint = 0, closing = 0, joint_end = 0;
   bool free = false;           ///< no joint to the ground
   bool moving_ground = false;  ///< hangs on a kinematic body
+  bool drives = false;         ///< solves the motors, springs and stops of its joints
   double work = 0;             ///< J, of the joints in this substep
 };
 

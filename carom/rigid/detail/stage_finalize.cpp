@@ -181,6 +181,22 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   return any;
 }
 
+/// Does something overlap with the body by more than half the thickness of the thinner one? Bodies that are wedged in
+/// each other press by their overlap and not by a load: were they given more mass for it, they would press the more.
+template <class D>
+static bool is_wedged(const WorldImplementation<D>& world, const BodyRecord& record) {
+  for (std::int32_t key = record.first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+      const typename D::Manifold& manifold = world.contacts.manifold(m).manifold;
+      for (int i = 0; i < manifold.count; ++i)
+        if (manifold.points[i].separation < -c.inner) return true;
+    }
+    key = c.next[key & 1];
+  }
+  return false;
+}
+
 /// Sleep, loads and bounds of the body at a place of the awake list, which has come to the end of the step. Returns
 /// BodyChange.
 template <class D>
@@ -209,9 +225,11 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
     change = body_flew;
   }
   const float pace = world.bodies.pace(body);
-  m.load_level = record.type == BodyType::dynamic && record.joint_count == 0
-                     ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
-                     : 0;
+  const std::uint16_t level =
+      record.type == BodyType::dynamic && record.joint_count == 0
+          ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
+          : std::uint16_t(0);
+  if (level <= m.load_level || !is_wedged(world, record)) m.load_level = level;
   m.force = {};
   m.torque = {};
   float speed = ends.speed[lane];

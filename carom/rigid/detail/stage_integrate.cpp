@@ -8,6 +8,28 @@
 namespace carom::rigid::detail {
 namespace {
 
+constexpr float still_turn = 0.99999f;  ///< less than half a degree
+
+/// Constraints see a body's inertia as it was when the step began. Of what is slender and turns far within a step they
+/// would so make energy: a blow that the long axis takes easily is then one on the others. What they gave to the spin
+/// since the body last turned is cut back until it holds no more energy than they reckoned with.
+void bound_spin(StepContext<Dim3>& context, int place) {
+  const std::int32_t body = context.drives[place].body;
+  SolverBody<Dim3>& s = context.bodies[body];
+  if (s.delta_rotation.w > still_turn) return;
+  const Vec3f before = context.spins[place], gain = s.angular_velocity - before;
+  const Mat3f& tensor = context.world.bodies.motion[std::size_t(body)].inertia;
+  const Quatf start = context.world.bodies.pose[std::size_t(body)].rotation, now = s.delta_rotation * start;
+  const auto momentum = [&](const Quatf& q, const Vec3f& w) { return rotate(q, tensor * inverse_rotate(q, w)); };
+  const Vec3f believed = momentum(start, gain), real = momentum(now, gain);
+  const float b = dot(real, before), a = dot(real, gain);
+  const float allowed = dot(believed, before) + 0.5f * dot(believed, gain);
+  if (!(a > 0) || b + 0.5f * a <= allowed) return;
+  const float square = b * b + 2 * a * allowed;
+  const float share = clamp((square > 0 ? math::sqrt(square) - b : -b) / a, 0.0f, 1.0f);
+  s.angular_velocity = before + share * gain;
+}
+
 /// Gathers bodies of space that constraints push about, and turns as many as there are lanes at once.
 template <int W>
 class PushedBodies {
@@ -20,6 +42,8 @@ class PushedBodies {
   /// By its place in the list of awake bodies.
   void add(int place) {
     const BodyDrive<Dim3>& drive = context_.drives[place];
+    if ((drive.flags & BodyDrive<Dim3>::bounded) != 0) bound_spin(context_, place);
+    place_[count_] = place;
     body_[count_++] = drive.body;
     if ((drive.flags & BodyDrive<Dim3>::carries) != 0) {
       carrying_[carry_count_++] = place;
@@ -34,11 +58,13 @@ class PushedBodies {
     turn_(context_.bodies, bodies.pose.data(), bodies.motion.data(), body_, count_, context_.h);
     for (int k = 0; k < carry_count_; ++k)
       context_.flights[carrying_[k]].spin += context_.bodies[context_.drives[carrying_[k]].body].angular_velocity;
+    for (int k = 0; k < count_; ++k) context_.spins[place_[k]] = context_.bodies[body_[k]].angular_velocity;
     count_ = carry_count_ = 0;
   }
   StepContext<Dim3>& context_;
   decltype(MoveKernels::turn) turn_;
   std::int32_t body_[W] = {};
+  int place_[W] = {};
   int carrying_[W] = {};  ///< places of those whose spin turns with them (Flight)
   int count_ = 0, carry_count_ = 0;
 };
@@ -95,6 +121,7 @@ class FreeBodies {
         spin = spin - s.angular_velocity + Vec3f(w);
       }
       s.angular_velocity = Vec3f(w);
+      context_.spins[places_[k]] = s.angular_velocity;
       const Vec3f rest(w - Vec3d(s.angular_velocity));
       s.spin_rest_x = rest.x, s.spin_rest_y = rest.y, s.spin_rest_z = rest.z;
     }
@@ -149,6 +176,8 @@ void prepare_drives(StepContext<D>& context) {
   const typename D::Vector gravity = context.world.definition.gravity;
   const bool touches = any_contacts(context.world);
   context.drives = context.arena.template allocate<BodyDrive<D>>(bodies.awake.size()).data();
+  if (D::dimension == 3)
+    context.spins = context.arena.template allocate<typename D::Angular>(bodies.awake.size()).data();
   context.scheduler.parallel_for(int(bodies.awake.size()), 256, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       BodyDrive<D>& drive = *::new (static_cast<void*>(&context.drives[i])) BodyDrive<D>{};
@@ -168,7 +197,14 @@ void prepare_drives(StepContext<D>& context) {
       again = 0;
       if (carries) drive.flags |= BodyDrive<D>::carries;
       if (record.locks == 0) drive.kind = record.constraint_count == 0 ? 3.0f : carries ? 2.0f : 1.0f;
-      if (may_turn_freely(m, record)) drive.flags |= BodyDrive<D>::gyroscopic;
+      if (may_turn_freely(m, record)) {
+        drive.flags |= BodyDrive<D>::gyroscopic;
+        // Joints see the inertia of every substep.
+        if (D::dimension == 3 && m.slender != 0 && record.constraint_count > 0 && record.joint_count == 0) {
+          drive.flags |= BodyDrive<D>::bounded;
+          context.spins[i] = bodies.solver[std::size_t(drive.body)].angular_velocity;
+        }
+      }
       const float pace = bodies.pace(drive.body), share = h * load_share(m) * (pace * pace);
       drive.linear_gain = share * (m.gravity_scale * gravity + m.inverse_mass * m.force);
       drive.angular_gain = share * (m.world_inverse_inertia * m.torque);
@@ -295,6 +331,13 @@ void fly_bodies(StepContext<Dim3>& context, int begin, int end) {
 }
 
 }  // namespace
+
+void bound_spins(StepContext<Dim3>& context) {
+  context.scheduler.parallel_for(int(context.world.bodies.awake.size()), 256, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      if ((context.drives[i].flags & BodyDrive<Dim3>::bounded) != 0) bound_spin(context, i);
+  });
+}
 
 void fly_through(StepContext<Dim3>& context, int begin, int end) {
   const int width = context.world.kernels.width;

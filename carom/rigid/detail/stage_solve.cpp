@@ -104,8 +104,8 @@ void list_stages(StepContext<D>& context) {
     const bool carry_on = substep > 0 && context.world.scratch.impacts.empty();
     add_body_stage(context, SolverPass::velocities, carry_on ? 1 : 0);
     add_impact_stage(context, ImpactMoment::after_forces);
-    add_tree_stage(context, SolverPass::begin_trees);
     add_color_stages(context, carry_on ? SolverPass::warm_start_again : SolverPass::warm_start);
+    add_tree_stage(context, SolverPass::begin_trees);
     add_color_stages(context, SolverPass::solve, order);
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);

@@ -75,6 +75,7 @@ template <class D>
 void prepare_drives(StepContext<D>& context);
 /// All substeps of those bodies in places [begin, end) of the list of awake bodies that nothing touches.
 void fly_through(StepContext<Dim3>& context, int begin, int end);
+void bound_spins(StepContext<Dim3>& context);
 /// Of the others there, by one substep.
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on);

@@ -25,6 +25,11 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
   return {omega / a1, a2 * a3, a3};
 }
 
+/// Joints swing by at most so many turns in a substep; couplings by fewer. Rows that see little of the mass that they
+/// move, as a thread sees of its nut, agree slowly: Δλ adds up over many substeps, and such a sum only comes to rest
+/// where (ωh)² < (1 + 2a₂)/(1 + a₂), a₂ as in make_softness, which .22 turns are.
+inline constexpr float most_joint_turns = 0.25f, most_coupling_turns = 0.2f;
+
 /// Of contacts between two bodies that impulses move, and of those with one that they do not.
 struct ContactSoftness {
   Softness free, firm;
@@ -34,11 +39,20 @@ struct ContactSoftness {
 /// cold parts of bodies are read once a step.
 template <class D>
 struct alignas(16) BodyDrive {
-  enum Flag : std::uint8_t { dynamic = 1, in_flight = 2, gyroscopic = 4, flies_through = 8, carries = 16 };
+  enum Flag : std::uint8_t {
+    dynamic = 1,
+    in_flight = 2,
+    gyroscopic = 4,
+    flies_through = 8,
+    carries = 16,
+    bounded = 32
+  };
   std::int32_t body = none;                 ///< slot
   std::uint8_t flags = 0, locks = 0;        ///< in_flight: dynamic and without a constraint; flies_through: so, in
                                             ///< space and without locks, all substeps at once; carries: nothing but
-                                            ///< contacts moves it, whose impulses go on by their sum (list_stages)
+                                            ///< contacts moves it, whose impulses go on by their sum (list_stages);
+                                            ///< bounded: slender, so that contacts may give its spin more energy than
+                                            ///< they know of
   float linear_keep = 1, angular_keep = 1;  ///< what damping leaves of velocities
   typename D::Vector linear_gain{};         ///< m/s, of gravity and forces
   typename D::Angular angular_gain{};       ///< rad/s
@@ -75,12 +89,13 @@ struct StepContext {
   int substeps = 1;
   float contact_stiffness = 0;  ///< 1/s²: ω² of contacts between moving bodies
   ContactSoftness contact_softness{};
-  Softness joint_softness{};
-  float rest_speed = 0;             ///< m/s between bodies at rest with each other (load.h)
-  float push_speed = 0;             ///< m/s, limit of the speed at which overlaps separate
-  Flight<D>* flights = nullptr;     ///< by place in BodyStore::awake
-  SolverBody<D>* bodies = nullptr;  ///< by slot; never write to fixed or kinematic ones
-  BodyDrive<D>* drives = nullptr;   ///< in the order of BodyStore::awake
+  Softness joint_softness{}, coupling_softness{};
+  float rest_speed = 0;                  ///< m/s between bodies at rest with each other (load.h)
+  float push_speed = 0;                  ///< m/s, limit of the speed at which overlaps separate
+  Flight<D>* flights = nullptr;          ///< by place in BodyStore::awake
+  SolverBody<D>* bodies = nullptr;       ///< by slot; never write to fixed or kinematic ones
+  BodyDrive<D>* drives = nullptr;        ///< in the order of BodyStore::awake
+  typename D::Angular* spins = nullptr;  ///< of those that are `bounded`, likewise: rad/s when they last turned
 };
 
 }  // namespace carom::rigid::detail

@@ -164,8 +164,12 @@ StepContext<D> make_context(WorldImplementation<D>& world, float dt, int substep
   context.contact_stiffness = 4 * pi_f * pi_f * contact_hertz * contact_hertz;
   context.contact_softness.free = make_softness(contact_hertz, definition.contact_damping_ratio, context.h);
   context.contact_softness.firm = make_softness(2 * contact_hertz, definition.contact_damping_ratio, context.h);
-  context.joint_softness = make_softness(min(stiffer * definition.joint_hertz, 0.25f * context.inverse_h),
-                                         definition.joint_damping_ratio, context.h);
+  const auto joint_softness = [&](float most_turns) {
+    return make_softness(min(stiffer * definition.joint_hertz, most_turns * context.inverse_h),
+                         definition.joint_damping_ratio, context.h);
+  };
+  context.joint_softness = joint_softness(most_joint_turns);
+  context.coupling_softness = joint_softness(most_coupling_turns);
   context.push_speed = definition.contact_push_speed;
   context.rest_speed = rest_speed(definition, dt);
   context.bodies = world.bodies.solver.data();
@@ -267,6 +271,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
     solve_constraints(group);
     profile.solve += watch.lap("solve");
     restitute_contacts(group);
+    if constexpr (D::dimension == 3) bound_spins(group);
     profile.restitution += watch.lap("restitution");
     store_joints(group);
     store_contacts(group);

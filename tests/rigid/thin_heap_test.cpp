@@ -1,0 +1,64 @@
+// Heaps of thin pieces, which whirl as they fall and wedge themselves into each other, come to rest and do not burst.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/rigid/scene_pieces.h"
+
+namespace carom::rigid::test {
+namespace thin_heap_test {
+
+struct Burst {
+  double fastest = 0;  ///< m/s
+  double gain = 0;     ///< of the energy of all in a step, over what there was at first
+};
+
+/// Thirty pieces fall one after the other from up to 24 m, at 21 m/s.
+Burst drop(const geometry::Shape3& shape, std::uint32_t seed) {
+  World3 world(world_with<Dim3>());
+  add_ground(world);
+  std::uint32_t r = seed;
+  const auto draw = [&] {
+    r = 1664525u * r + 1013904223u;
+    return float(r >> 8) / 8388608.0f - 1;
+  };
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 30; ++i) {
+    BodyDef<Dim3> body;
+    const float x = draw(), z = draw(), w = draw(), a = draw(), b = draw(), c = draw();
+    body.position = {0.1 * double(x), 0.5 + 0.8 * i, 0.1 * double(z)};
+    body.rotation = normalize(Quatf{w, a, b, c});
+    bodies.push_back(world.create_body(body).value());
+    world.add_shape(bodies.back(), shape).value();
+  }
+  Burst out;
+  double before = 0, most = 0;
+  for (int i = 0; i < 300; ++i) {
+    world.step(frame).value();
+    const Totals<Dim3> t = world.totals();
+    const double now = t.kinetic_energy + t.potential_energy;
+    most = std::max(most, now);
+    if (i > 0) out.gain = std::max(out.gain, (now - before) / most);
+    before = now;
+    for (const BodyId body : bodies) out.fastest = std::max(out.fastest, double(speed(world, body)));
+  }
+  return out;
+}
+
+// A stick's moments of inertia are as 1 : 312. One of 30 such heaps threw its sticks apart at 200 m/s and more, while
+// contacts took the inertia of the step's beginning for what turned by a radian meanwhile; one in 20 of boards, discs
+// and cards did, while what is wedged got more mass the harder it was pressed.
+TEST(ThinHeap, DoesNotBurst) {
+  const geometry::Shape3 shapes[] = {geometry::Box{{0.5f, 0.02f, 0.02f}}, geometry::Box{{0.3f, 0.02f, 0.2f}},
+                                     geometry::Box{{0.3f, 0.002f, 0.2f}}, geometry::Cylinder{0.01f, 0.3f},
+                                     geometry::Cylinder{0.5f, 0.03f},     geometry::Capsule3{0.5f, 0.03f}};
+  for (std::size_t kind = 0; kind < std::size(shapes); ++kind)
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+      const Burst burst = drop(shapes[kind], seed);
+      EXPECT_LT(burst.fastest, 25) << "kind " << kind << " seed " << seed;
+      EXPECT_LT(burst.gain, 0.05) << "kind " << kind << " seed " << seed;
+    }
+}
+
+}  // namespace thin_heap_test
+}  // namespace carom::rigid::test
