@@ -281,6 +281,7 @@ void find_again(StepContext<D>& context, bool any_strikes) {
 template <class D, int W>
 void prepare_and_mark(StepContext<D>& context) {
   context.world.scratch.again.resize(context.world.bodies.record.size());
+  context.world.scratch.wedged.resize(context.world.bodies.record.size());
   const bool any_strikes = prepare_blocks<D, W>(context);
   mark_settling<D, W>(context);
   find_again<D, W>(context, any_strikes);

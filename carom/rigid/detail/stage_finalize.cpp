@@ -181,22 +181,6 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   return any;
 }
 
-/// Does something overlap with the body by more than half the thickness of the thinner one? Bodies that are wedged in
-/// each other press by their overlap and not by a load: were they given more mass for it, they would press the more.
-template <class D>
-static bool is_wedged(const WorldImplementation<D>& world, const BodyRecord& record) {
-  for (std::int32_t key = record.first_contact; key != none;) {
-    const ContactRecord<D>& c = world.contacts.at(key >> 1);
-    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
-      const typename D::Manifold& manifold = world.contacts.manifold(m).manifold;
-      for (int i = 0; i < manifold.count; ++i)
-        if (manifold.points[i].separation < -c.inner) return true;
-    }
-    key = c.next[key & 1];
-  }
-  return false;
-}
-
 /// Sleep, loads and bounds of the body at a place of the awake list, which has come to the end of the step. Returns
 /// BodyChange.
 template <class D>
@@ -229,7 +213,9 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
       record.type == BodyType::dynamic && record.joint_count == 0
           ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
           : std::uint16_t(0);
-  if (level <= m.load_level || !is_wedged(world, record)) m.load_level = level;
+  // Bodies that are wedged in each other press by their overlap and not by a load: were they given more mass for it,
+  // they would press the more.
+  if (level <= m.load_level || world.scratch.wedged[std::size_t(body)] == 0) m.load_level = level;
   m.force = {};
   m.torque = {};
   float speed = ends.speed[lane];
@@ -265,6 +251,7 @@ void finalize_bodies(StepContext<D>& context) {
   scratch.swept.resize(count);
   const float gravity = math::length(world.definition.gravity);
   const int width = world.kernels.width;
+  if (scratch.wedged.size() < world.bodies.record.size()) scratch.wedged.resize(world.bodies.record.size());
   context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int) {
     for (int first = begin; first < end; first += width) {
       const int lanes = min(width, end - first);
@@ -294,6 +281,8 @@ void finalize_bodies(StepContext<D>& context) {
       }
     }
   });
+  if (std::exchange(scratch.any_wedged, std::uint8_t(0)) != 0)
+    std::fill(scratch.wedged.begin(), scratch.wedged.end(), std::uint8_t(0));
   for (std::size_t i = 0; i < count; ++i)
     if (scratch.body_changes[i] == body_broke) {
       const std::int32_t body = world.bodies.awake[i];

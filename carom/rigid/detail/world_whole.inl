@@ -96,6 +96,7 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.moved_place.reserve(shapes);
   s.loads.reserve(bodies);
   s.again.reserve(bodies);
+  s.wedged.reserve(bodies);
   s.flights.reserve(bodies);
   s.placed.reserve(manifolds);
   s.impacts.reserve(manifolds);
