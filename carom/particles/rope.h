@@ -87,6 +87,7 @@ struct Rope;
 struct RopeAnswer;
 struct RopeBody;
 struct RopeCross;
+struct RopeFast;
 struct RopeMemory;
 struct RopeShape;
 struct RopeSolver;
@@ -157,7 +158,9 @@ class CAROM_API RopeSet {
   std::vector<detail::RopeMemory> memory_;
   std::vector<double> matrix_, right_;
   std::vector<int> first_block_;
-  std::vector<rigid::ShapeId> found_, found_far_;
+  std::vector<rigid::ShapeId> found_, of_body_;
+  std::vector<rigid::BodyId> fast_bodies_;
+  std::vector<detail::RopeFast> fast_;
   std::vector<rigid::JointId> joints_;
   std::vector<RopeBreakEvent> breaks_;
   std::vector<detail::RopeCross> crossings_, crossings_before_;

@@ -224,6 +224,8 @@ class CAROM_API World {
   Result<RayHit<D>> shape_cast(const Shape& shape, const Pose& pose, Vector translation, QueryFilter filter = {}) const;
   Status overlap(const Shape& shape, const Pose& pose, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
   Status overlap_bounds(const typename D::Bounds& bounds, std::vector<ShapeId>& found, QueryFilter filter = {}) const;
+  /// Awake bodies of which some point may move faster than `speed` (m/s): they come from afar within a step.
+  void fast_bodies(float speed, std::vector<BodyId>& found) const;
 
   // Many queries at once, on the world's threads: the same answers as one by one, to the bit. Errors: a bad query,
   // which the message names by its number, and then none is answered; results that are not as many as queries.

@@ -310,5 +310,40 @@ TYPED_TEST(Queries, SensorsAreNotSeenAndBadNumbersAreRefused) {
   EXPECT_FALSE(world.shape_cast(bad, {}, vec<D>(1, 0)).ok());
 }
 
+// Whose centre or farthest point is faster; who sleeps and who is fixed is not.
+TYPED_TEST(Queries, FastBodiesAreThoseWhosePointsAre) {
+  using D = TypeParam;
+  World<D>& world = this->world;
+  std::vector<BodyId> found, expected;
+  const auto ball = [&](double x) {
+    BodyDef<D> def;
+    def.type = BodyType::dynamic;
+    def.position = pos<D>(x, 0);
+    const BodyId body = world.create_body(def).value();
+    if constexpr (D::dimension == 2)
+      world.add_shape(body, geometry::Circle{0.5f}, {}).value();
+    else
+      world.add_shape(body, geometry::Sphere{0.5f}, {}).value();
+    return body;
+  };
+  for (const float speed : {0.f, 19.f, 21.f, 300.f}) {
+    const BodyId body = ball(3 * double(speed));
+    world.set_velocity(body, vec<D>(0, -speed), {}).value();
+    if (speed > 20) expected.push_back(body);
+  }
+  const BodyId turning = ball(-40);
+  if constexpr (D::dimension == 2)
+    world.set_velocity(turning, {}, -41).value();
+  else
+    world.set_velocity(turning, {}, {0, 0, 41}).value();
+  expected.push_back(turning);
+  world.fast_bodies(20, found);
+  EXPECT_EQ(found, expected);
+  world.set_awake(turning, false).value();
+  expected.pop_back();
+  world.fast_bodies(20, found);
+  EXPECT_EQ(found, expected);
+}
+
 }  // namespace query_test
 }  // namespace carom::rigid::test

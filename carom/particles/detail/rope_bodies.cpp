@@ -86,13 +86,16 @@ int RopeSolver::body_index(rigid::BodyId id) {
   body.spin = Vec3d(state->angular_velocity);
   body.mass = double(state->mass);
   body.local_center = inverse_rotate(body.rotation, body.center - body.position);
+  body.center += elapsed * body.velocity;  // of what is found late
+  if (elapsed > 0) body.rotation = integrate(body.rotation, elapsed * body.spin);
   set.bodies_.push_back(body);
   return int(set.bodies_.size()) - 1;
 }
 
-void RopeSolver::find_mobility() {
+void RopeSolver::find_mobility(std::size_t first) {
   bool any = false;
-  for (RopeBody& body : set.bodies_) {
+  for (std::size_t b = first; b < set.bodies_.size(); ++b) {
+    RopeBody& body = set.bodies_[b];
     if (body.type != BodyType::dynamic || !body.awake || !(body.mass > 0)) continue;
     const auto properties = world.mass_properties3(body.id);
     const auto definition = world.body_definition(body.id);
@@ -112,16 +115,17 @@ void RopeSolver::find_mobility() {
     body.gravity = double(definition->gravity_scale) * gravity;
     body.moves = any = true;
   }
-  if (any && world.counters().joints > 0) find_joints();
-  find_support();
+  if (any && world.counters().joints > 0) find_joints(first);
+  find_support(first);
 }
 
-void RopeSolver::find_joints() {
+void RopeSolver::find_joints(std::size_t first) {
   world.joints(set.joints_);
   for (const rigid::JointId joint : set.joints_) {
     const auto state = world.joint_state(joint);
     if (!state) continue;
-    for (RopeBody& body : set.bodies_) {
+    for (std::size_t b = first; b < set.bodies_.size(); ++b) {
+      RopeBody& body = set.bodies_[b];
       if (!body.moves || (body.id != state->body_a && body.id != state->body_b)) continue;
       const bool is_a = body.id == state->body_a;
       const rigid::BodyId other = is_a ? state->body_b : state->body_a;
@@ -142,8 +146,9 @@ void RopeSolver::find_joints() {
 
 // A body that lies on something does not fall as the ropes' step would have it. How much of its weight it felt in the
 // last step, beside what the ropes did, is how much it is taken to feel in this one.
-void RopeSolver::find_support() {
-  for (RopeBody& body : set.bodies_) {
+void RopeSolver::find_support(std::size_t first) {
+  for (std::size_t b = first; b < set.bodies_.size(); ++b) {
+    RopeBody& body = set.bodies_[b];
     if (!body.moves) continue;
     for (const RopeMemory& memory : set.memory_) {
       if (memory.id != body.id) continue;
@@ -180,10 +185,12 @@ void RopeSolver::move_bodies() {
 // such a share comes at the start that the body goes as far as it did in the ropes' step.
 double RopeSolver::share_at_start(const RopeBody& body) const {
   constexpr double least_blow = 1;  // m/s
-  const double size = length_squared(body.impulse);
-  if (!body.moves || substeps == 1 || !(length(body.linear * body.impulse) > least_blow)) return 0;
+  constexpr double hard_blow = 10;  // m/s: one that comes late is begun the other way
+  const double size = length_squared(body.impulse), blow = length(body.linear * body.impulse);
+  if (!body.moves || substeps == 1 || !(blow > least_blow)) return 0;
   constexpr double even = 0.5;  // of dt, how long a steady force has acted
-  return math::clamp((dot(body.carried, body.impulse) / (size * dt) - even) / (1 - even), 0.0, 1.0);
+  return math::clamp((dot(body.carried, body.impulse) / (size * dt) - even) / (1 - even), blow > hard_blow ? -1.0 : 0.0,
+                     1.0);
 }
 
 void RopeSolver::hand_over() {
@@ -202,7 +209,7 @@ void RopeSolver::hand_over() {
     if (!body.awake && length(body.impulse) < 0.02 * body.mass * length(gravity) * dt) continue;
     const double start = share_at_start(body);
     const float per_step = float((1 - start) / dt);
-    if (start > 0) {
+    if (start != 0) {
       (void)world.add_impulse(body.id, Vec3f(start * body.impulse));
       (void)world.add_angular_impulse(body.id, Vec3f(start * body.turn));
     }

@@ -4,7 +4,6 @@
 #include "carom/math/elementary.h"
 #include "carom/particles/detail/checks.h"
 #include "carom/particles/detail/rope_solver.h"
-#include "carom/particles/detail/soft_obstacles.h"
 
 namespace carom::particles::detail {
 
@@ -13,9 +12,12 @@ namespace {
 constexpr double rope_slip = 0.01;       // m/s: friction grows up to here
 constexpr int friction_iterations = 15;  // in which how things rub is found anew
 constexpr double meet_depth = 0.25;      // radii: where a motion within a substep enters a shape
-constexpr double usual_body = 20;     // m/s: up to there what comes to a rope is looked for without a look at its speed
-constexpr double fastest_body = 100;  // m/s: what comes to a rope faster than that may be found late
+constexpr double usual_body = 20;  // m/s: up to there what comes to a rope is looked for without a look at its speed
 constexpr int meet_steps = 24;
+constexpr double most_way = 0.5;      // of half a body, that it may come in a substep in which it is met
+constexpr double most_turn = 0.3;     // rad, by which such a substep may change its turn
+constexpr double most_stray = 0.2;    // of half a body: four times as far a way in its frame may bend off its chord
+constexpr double least_turn = 0.005;  // rad in a substep: less is none
 
 }  // namespace
 
@@ -30,27 +32,69 @@ double RopeSolver::reach_at(const Rope& rope, double speed) const {
   return 0.25 * rope.segment + 1.5 * dt * (speed + dt * length(gravity));
 }
 
+double RopeSolver::pace(const Rope& rope, std::size_t i, bool solved) const {
+  const double speed = length(rope.velocity[i]);
+  return solved ? math::max(speed, length(rope.solution[i])) : speed;
+}
+
 /// A blow may throw a particle beyond where it was to be in this step.
-bool RopeSolver::strayed(const Rope& rope) const {
+bool RopeSolver::strayed(const Rope& rope, bool solved) const {
   if (!rope.collide) return false;
   for (std::size_t i = 0; i < rope.position.size(); ++i)
-    if (rope.room[i] < h * length(rope.velocity[i])) return true;
+    if (rope.room[i] < h * pace(rope, i, solved)) return true;
   return false;
+}
+
+bool RopeSolver::search(bool solved) {
+  const std::size_t known = set.bodies_.size();
+  bool any = false;
+  for (Rope& rope : set.ropes_) {
+    if (!strayed(rope, solved)) continue;
+    find_contacts(rope, solved);
+    any = true;
+  }
+  if (!any) return false;
+  find_mobility(known);
+  for (Rope& rope : set.ropes_) find_touched(rope);
+  return true;
+}
+
+/// Of what is faster than what is looked for anyway, where it goes.
+void RopeSolver::find_fast() {
+  set.fast_.clear();
+  world.fast_bodies(float(usual_body), set.fast_bodies_);
+  for (const rigid::BodyId id : set.fast_bodies_) {
+    const auto state = world.state(id);
+    if (!state) continue;
+    const Vec3d center = state->center_of_mass, way = dt * Vec3d(state->linear_velocity);
+    const bool turns = length(state->angular_velocity) > 0;
+    world.shapes(id, set.of_body_);
+    for (const rigid::ShapeId shape : set.of_body_) {
+      const auto definition = world.shape_definition(shape);
+      const auto geometry = world.shape_geometry(shape);
+      if (!definition || !geometry || definition->sensor) continue;
+      const geometry::Bounds3f tight = geometry::bounds(*geometry, definition->local);
+      const Vec3d from = state->pose.position - center;
+      const Vec3f extents = tight.extents();
+      const double outer = length(Vec3d(extents));
+      const Vec3d middle = from + rotate(Quatd(state->pose.rotation), Vec3d(tight.center()));
+      const double reach = outer + (turns ? length(middle) : 0), slack = 0.5 * dt * dt * length(gravity);
+      const Vec3d at = turns ? center : center + middle;
+      set.fast_.push_back({shape, grow(geometry::Bounds3d{min(at, at + way), max(at, at + way)}, reach + slack)});
+    }
+  }
 }
 
 void RopeSolver::find_shapes(const geometry::Bounds3d& bounds) {
   (void)world.overlap_bounds(grow(bounds, dt * usual_body), set.found_);
-  (void)world.overlap_bounds(grow(bounds, dt * fastest_body), set.found_far_);
-  for (const rigid::ShapeId id : set.found_far_) {
-    const auto owner = world.body_of(id);
-    if (!owner) continue;
-    const auto state = world.state(*owner);
-    if (!state || length(state->linear_velocity) <= float(usual_body)) continue;
-    if (std::find(set.found_.begin(), set.found_.end(), id) == set.found_.end()) set.found_.push_back(id);
+  for (const RopeFast& fast : set.fast_) {
+    if (!overlaps(fast.way, bounds)) continue;
+    alert = true;
+    if (std::find(set.found_.begin(), set.found_.end(), fast.id) == set.found_.end()) set.found_.push_back(fast.id);
   }
 }
 
-void RopeSolver::find_contacts(Rope& rope) {
+void RopeSolver::find_contacts(Rope& rope, bool solved) {
   const std::size_t n = rope.position.size();
   if (!rope.collide) return;
   const double radius = rope.material.radius;
@@ -59,15 +103,18 @@ void RopeSolver::find_contacts(Rope& rope) {
   for (std::size_t i = 0; i < n; ++i) {
     bounds.low = min(bounds.low, rope.position[i]);
     bounds.high = max(bounds.high, rope.position[i]);
-    const double speed = length(rope.velocity[i]);
+    const double speed = pace(rope, i, solved);
     fastest = math::max(fastest, speed);
     rope.room[i] = reach_at(rope, speed);
   }
   const double reach = reach_at(rope, fastest);
   find_shapes(grow(bounds, radius + reach));
 
-  for (RopeContact& contact : rope.contacts) contact.separation = 1e30;
-  for (RopeEdge& edge : rope.edges) edge.contact.separation = 1e30;
+  const auto forget = [](RopeContact& contact) {
+    contact.separation = contact.comes_in = 1e30, contact.near = contact.coming = -1;
+  };
+  for (RopeContact& contact : rope.contacts) forget(contact);
+  for (RopeEdge& edge : rope.edges) forget(edge.contact);
   for (const rigid::ShapeId id : set.found_) {
     const auto definition = world.shape_definition(id);
     const auto owner = world.body_of(id);
@@ -80,39 +127,101 @@ void RopeSolver::find_contacts(Rope& rope) {
     const int index = body_index(*owner);
     if (!shape || index < 0) continue;
     const int number = int(set.shapes_.size());
-    set.shapes_.push_back({*shape, id, index, Quatd(definition->local.q), Vec3d(definition->local.p)});
-    const double friction = math::sqrt(rope.material.friction * double(definition->material.friction));
     const geometry::Bounds3f tight = geometry::bounds(*shape, {});
+    const Vec3f extents = tight.extents();
+    const bool fast = length(set.bodies_[std::size_t(index)].velocity) > usual_body;
+    set.shapes_.push_back({fast, *shape, id, index, double(math::min(extents.x, math::min(extents.y, extents.z))),
+                           double(definition->material.friction), Quatd(definition->local.q),
+                           Vec3d(definition->local.p)});
+    const RopeBody& body = set.bodies_[std::size_t(index)];
     for (std::size_t i = 0; i < n; ++i) {
-      const double speed = length(rope.velocity[i] - set.bodies_[std::size_t(index)].velocity_at(rope.position[i]));
+      double speed = length(rope.velocity[i] - body.velocity_at(rope.position[i]));
+      if (solved) speed = math::max(speed, length(rope.solution[i] - body.velocity_at(rope.position[i])));
       const double margin = reach_at(rope, speed);
       const Vec3f local(shape_point(set.shapes_.back(), rope.position[i]));
       if (!contains(grow(tight, float(radius + margin)), geometry::Bounds3f{local, local})) continue;
-      RopeContact& contact = rope.contacts[i];
       Vec3f normal;
       float separation = 0;
-      if (!nearest_plane(*shape, local, float(radius), float(margin), normal, separation)) continue;
-      if (double(separation) >= contact.separation) continue;
-      if (contact.shape != id) contact.state = RopeHold::none;
-      contact.separation = double(separation);
-      contact.shape = id;
-      contact.near = number;
-      contact.body = index;
-      contact.friction = friction;
+      if (!nearest_surface(set.shapes_.back(), local, float(radius), float(margin), normal, separation)) continue;
+      offer(rope.contacts[i], number, double(separation), length(body.velocity));
     }
-    find_edges(rope, set.shapes_.back(), number, friction, tight);
+    find_edges(rope, number, tight, solved);
   }
-  for (RopeContact& contact : rope.contacts)
-    if (contact.separation == 1e30) contact = RopeContact{};
-  for (RopeEdge& edge : rope.edges)
-    if (edge.contact.separation == 1e30) edge = RopeEdge{};
+  const auto take = [&](RopeContact& contact) {
+    const RopeHold state = contact.state;
+    const rigid::ShapeId before = contact.shape;
+    if (contact.near < 0) {
+      const int coming = contact.coming;
+      contact = RopeContact{};
+      contact.coming = coming;
+      return;
+    }
+    touch(contact, rope, contact.near);
+    contact.state = contact.shape == before ? state : RopeHold::none;
+  };
+  for (RopeContact& contact : rope.contacts) take(contact);
+  for (RopeEdge& edge : rope.edges) {
+    take(edge.contact);
+    if (edge.contact.near < 0) edge = RopeEdge{.contact = edge.contact};
+  }
+}
+
+/// What is nearest, and beside it what comes fast and may be met before the step ends.
+void RopeSolver::offer(RopeContact& contact, int number, double separation, double speed) const {
+  if (speed > usual_body) {
+    if (separation / speed >= contact.comes_in) return;
+    contact.comes_in = separation / speed;
+    contact.coming = number;
+    return;
+  }
+  if (separation >= contact.separation) return;
+  contact.separation = separation;
+  contact.near = number;
+}
+
+void RopeSolver::touch(RopeContact& contact, const Rope& rope, int number) const {
+  const RopeShape& near = set.shapes_[std::size_t(number)];
+  contact.near = number;
+  contact.shape = near.id;
+  contact.body = near.body;
+  contact.friction = math::sqrt(rope.material.friction * near.friction);
+}
+
+/// What comes fast and may be here within the substep takes the place of what does not touch.
+void RopeSolver::choose(Rope& rope) {
+  const auto look = [&](RopeContact& contact, Vec3d at, Vec3d velocity, double reach) {
+    if (contact.coming < 0 || contact.state != RopeHold::none || contact.near == contact.coming) return;
+    const RopeShape& near = set.shapes_[std::size_t(contact.coming)];
+    const RopeBody& body = set.bodies_[std::size_t(near.body)];
+    if (contact.near >= 0) {
+      // Not before it can be here.
+      const double way = h * length(velocity - body.velocity_at(at));
+      const Vec3d local = shape_point(near, at);
+      if (nearest(near, {{local, local}}, rope.material.radius).separation > 1.5 * way + reach) return;
+    }
+    touch(contact, rope, contact.coming);
+  };
+  for (std::size_t i = 0; i < rope.position.size(); ++i) look(rope.contacts[i], rope.position[i], rope.velocity[i], 0);
+  for (std::size_t e = 0; e < rope.edges.size(); ++e)
+    look(rope.edges[e].contact, 0.5 * (rope.position[e] + rope.position[e + 1]),
+         0.5 * (rope.velocity[e] + rope.velocity[e + 1]), 0.5 * distance(rope.position[e], rope.position[e + 1]));
 }
 
 Vec3d RopeSolver::shape_point_after(const RopeShape& shape, Vec3d point, Vec3d velocity, bool solved) const {
   const RopeBody& body = set.bodies_[std::size_t(shape.body)];
   Vec3d drift = velocity - body.velocity_at(point);
   if (solved) drift -= change_at(shape.body, point - body.center);
-  return shape_point(shape, point + h * drift);
+  // What stays by the surface goes round with it. What comes from afar keeps its line while the body turns.
+  if (h * length(drift) < 0.5 * shape.half) return shape_point(shape, point + h * drift);
+  drift = velocity - body.velocity;
+  Vec3d spin = body.spin;
+  if (solved) {
+    drift -= change_at(shape.body, {});
+    spin += spin_change(shape.body);
+  }
+  const Quatd rotation = length_squared(spin) > 0 ? integrate(body.rotation, h * spin) : body.rotation;
+  const Vec3d local = inverse_rotate(rotation, point + h * drift - body.center) + body.local_center;
+  return inverse_rotate(shape.turn, local - shape.place);
 }
 
 RopePlace RopeSolver::edge_place(const Rope& rope, std::size_t e, const RopeShape& shape) const {
@@ -129,7 +238,7 @@ RopeNearest RopeSolver::nearest(const RopeShape& shape, const RopePlace& place, 
   RopeNearest found;
   const auto separation = [&](double share) {
     float out = 1e30f;
-    (void)nearest_plane(shape.shape, Vec3f(place.at(share)), float(radius), 1e3f, found.normal, out);
+    (void)nearest_surface(shape, Vec3f(place.at(share)), float(radius), 1e3f, found.normal, out);
     return double(out);
   };
   if (place.end[0] != place.end[1]) found.share = nearest_share(separation);
@@ -157,8 +266,80 @@ RopeNearest RopeSolver::meet(const RopeShape& shape, const RopePlace& now, const
   return at;
 }
 
+/// Something that moves is to be met that comes farther in this substep than through half of a half of itself.
+bool RopeSolver::comes_far() const {
+  const auto far = [&](const RopeContact& contact, const RopeNode& node, Vec3d velocity, double radius) {
+    if (contact.near < 0 || node.body < 0 || node.hold == RopeHold::attached) return false;
+    const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+    if (!body.moves && body.type != rigid::BodyType::kinematic) return false;
+    if (dot(node.normal, velocity - node.target) >= 0) return false;
+    const double closing = dot(node.normal, body.velocity + cross(body.spin, node.arm) - velocity);
+    return h * closing > most_way * (set.shapes_[std::size_t(contact.near)].half + radius);
+  };
+  for (const Rope& rope : set.ropes_) {
+    if (!rope.collide) continue;
+    const double radius = rope.material.radius;
+    for (std::size_t i = 0; i < rope.position.size(); ++i)
+      if (far(rope.contacts[i], rope.nodes[i], rope.start[i], radius)) return true;
+    for (std::size_t e = 0; e < rope.edges.size(); ++e) {
+      const RopeEdge& edge = rope.edges[e];
+      if (far(edge.contact, edge.point, lerp(rope.start[e], rope.start[e + 1], edge.share), radius)) return true;
+    }
+  }
+  return false;
+}
+
+/// What was solved turns something by more than its arms and planes are good for, or goes through a plane, since who
+/// holds what was not settled.
+bool RopeSolver::goes_wrong() const {
+  const auto wrong = [&](const RopeContact& contact, const RopeNode& node, Vec3d solved, double radius) {
+    if (contact.near < 0 || node.body < 0 || node.hold == RopeHold::attached) return false;
+    const RopeBody& body = set.bodies_[std::size_t(contact.body)];
+    if (node.hold == RopeHold::none)
+      return length(solved - body.velocity) > 0.5 * usual_body &&
+             h * dot(node.normal, solved - node.target - change_at(node.body, node.arm)) < -radius;
+    const Vec3d spin = spin_change(contact.body);
+    return h * length(spin) > most_turn || h * length(body.spin + spin) > 2 * most_turn;
+  };
+  for (const Rope& rope : set.ropes_) {
+    if (!rope.collide) continue;
+    const double radius = rope.material.radius;
+    for (std::size_t i = 0; i < rope.position.size(); ++i)
+      if (wrong(rope.contacts[i], rope.nodes[i], rope.solution[i], radius)) return true;
+    for (std::size_t e = 0; e < rope.edges.size(); ++e) {
+      const RopeEdge& edge = rope.edges[e];
+      if (wrong(edge.contact, edge.point, lerp(rope.solution[e], rope.solution[e + 1], edge.share), radius))
+        return true;
+    }
+  }
+  return false;
+}
+
+/// Something turns so much in this substep while it comes or is come by that its way in its own frame is no line.
+bool RopeSolver::turns_on_its_way() const {
+  for (const RopeShape& near : set.shapes_) {
+    const RopeBody& body = set.bodies_[std::size_t(near.body)];
+    const double turn = h * length(body.spin);
+    if (turn < least_turn) continue;
+    const Vec3f extents = geometry::bounds(near.shape, {}).extents();
+    const Vec3d middle = body.place(near.place);
+    for (const Rope& rope : set.ropes_) {
+      if (!rope.collide) continue;
+      const double reach = length(Vec3d(extents)) + rope.material.radius + rope.segment;
+      for (std::size_t i = 0; i < rope.position.size(); ++i) {
+        const double way = h * length(rope.velocity[i] - body.velocity);
+        if (turn * way > most_stray * (near.half + rope.material.radius) &&
+            distance(rope.position[i], middle) < reach + way)
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
 void RopeSolver::place_contacts(Rope& rope) {
   if (!rope.collide) return;
+  choose(rope);
   for (std::size_t i = 0; i < rope.position.size(); ++i) {
     if (rope.contacts[i].near < 0 || rope.nodes[i].hold == RopeHold::attached) continue;
     place_contact(rope, i, false);
@@ -253,6 +434,13 @@ Vec3d RopeSolver::change_at(int index, Vec3d arm) const {
   if (body.column < 0) return {};
   const double* change = &set.right_[std::size_t(body.column) * 6];
   return Vec3d{change[0], change[1], change[2]} + cross(Vec3d{change[3], change[4], change[5]}, arm);
+}
+
+Vec3d RopeSolver::spin_change(int index) const {
+  const RopeBody& body = set.bodies_[std::size_t(index)];
+  if (body.column < 0) return {};
+  const double* change = &set.right_[std::size_t(body.column) * 6];
+  return {change[3], change[4], change[5]};
 }
 
 // Coulomb's friction as an implicit resistance whose coefficient follows the normal force and the slip of the last

@@ -45,17 +45,28 @@ enum class RopeHold : std::uint8_t { none, attached, stick, slide };
 
 /// A shape near a rope.
 struct RopeShape {
+  bool fast = false;  ///< its body is: how far it is has to be told beside its edges, too
   geometry::Shape3 shape{};
   rigid::ShapeId id{};
   int body = -1;
-  Quatd turn{};  ///< shape → body
+  double half = 0;      ///< m, from its middle to the nearest side of its bounds
+  double friction = 0;  ///< of the shape
+  Quatd turn{};         ///< shape → body
   Vec3d place{};
+};
+
+/// A shape of a body that comes fast, and the room that it goes through in the step.
+struct RopeFast {
+  rigid::ShapeId id{};
+  geometry::Bounds3d way{};
 };
 
 /// A plane that a particle may touch, fixed in a body.
 struct RopeContact {
   rigid::ShapeId shape{};
-  int near = -1;  ///< of this step's shapes
+  int near = -1;           ///< of this step's shapes
+  int coming = -1;         ///< of them the fast one that may be met first, until it is `near`
+  double comes_in = 1e30;  ///< s
   int body = -1;
   double friction = 0;
   double separation = 0;  ///< m, at the start of the substep
@@ -105,9 +116,10 @@ inline Mat3d project(const RopeNode& node, const Mat3d& m) {
 struct RopeEdge {
   RopeContact contact{};
   RopeNode point{};
-  double share = 0.5;           ///< of the second end
-  double nearest = -1e30;       ///< m: no less is its separation at the start of the substep
-  Mat3d stiff = Mat3d::zero();  ///< kg: impulse = stiff (target − velocity) + grip
+  double share = 0.5;                ///< of the second end
+  RopeHold before = RopeHold::none;  ///< in the substep before
+  double nearest = -1e30;            ///< m: no less is its separation at the start of the substep
+  Mat3d stiff = Mat3d::zero();       ///< kg: impulse = stiff (target − velocity) + grip
 };
 
 /// The room that a segment may need in a step.

@@ -2,7 +2,6 @@
 // nearest point, held by a stiffness far above the row's own.
 #include "carom/math/elementary.h"
 #include "carom/particles/detail/rope_solver.h"
-#include "carom/particles/detail/soft_obstacles.h"
 
 namespace carom::particles::detail {
 
@@ -20,28 +19,25 @@ constexpr int free_steps = 32;
 
 }  // namespace
 
-void RopeSolver::find_edges(Rope& rope, const RopeShape& near, int number, double friction,
-                            const geometry::Bounds3f& tight) {
+void RopeSolver::find_edges(Rope& rope, int number, const geometry::Bounds3f& tight, bool solved) {
   const double radius = rope.material.radius;
+  const RopeShape& near = set.shapes_[std::size_t(number)];
   const RopeBody& body = set.bodies_[std::size_t(near.body)];
   for (std::size_t e = 0; e < rope.edges.size(); ++e) {
     if (rope.broken[e]) continue;
-    const double fastest = math::max(length(rope.velocity[e] - body.velocity_at(rope.position[e])),
-                                     length(rope.velocity[e + 1] - body.velocity_at(rope.position[e + 1])));
+    double fastest = 0;
+    for (const std::size_t i : {e, e + 1}) {
+      const Vec3d there = body.velocity_at(rope.position[i]);
+      fastest = math::max(fastest, length(rope.velocity[i] - there));
+      if (solved) fastest = math::max(fastest, length(rope.solution[i] - there));
+    }
     const double margin = 0.5 * distance(rope.position[e], rope.position[e + 1]) + reach_at(rope, fastest);
     const Vec3f middle(shape_point(near, 0.5 * (rope.position[e] + rope.position[e + 1])));
     if (!contains(grow(tight, float(radius + margin)), geometry::Bounds3f{middle, middle})) continue;
-    RopeContact& contact = rope.edges[e].contact;
     Vec3f normal;
     float separation = 0;
-    if (!nearest_plane(near.shape, middle, float(radius), float(margin), normal, separation)) continue;
-    if (double(separation) >= contact.separation) continue;
-    if (contact.shape != near.id) contact.state = RopeHold::none;
-    contact.separation = double(separation);
-    contact.shape = near.id;
-    contact.near = number;
-    contact.body = near.body;
-    contact.friction = friction;
+    if (!nearest_surface(near, middle, float(radius), float(margin), normal, separation)) continue;
+    offer(rope.edges[e].contact, number, double(separation), length(body.velocity));
   }
 }
 
@@ -53,6 +49,7 @@ void RopeSolver::place_edges(Rope& rope) {
 bool RopeSolver::place_edge(Rope& rope, std::size_t e, bool solved) {
   RopeEdge& edge = rope.edges[e];
   RopeContact& contact = edge.contact;
+  if (!solved) edge.before = contact.state;
   const RopeHold before = contact.state;
   if (!solved) {
     edge.point = RopeNode{};

@@ -12,6 +12,10 @@ double nearest_share(const Distance& distance) {
   return math::least_place(distance, 0, 1, 16);
 }
 
+/// The nearest plane of a shape to a ball at `center` (shape's frame) and how far it is; false where that is more than
+/// `margin`.
+bool nearest_surface(const RopeShape& near, Vec3f center, float radius, float margin, Vec3f& normal, float& separation);
+
 /// A segment's two ends, or a particle twice, in the frame of a shape.
 struct RopePlace {
   Vec3d end[2];
@@ -37,6 +41,8 @@ struct RopeSolver {
   double dt;
   double h = 0;
   int substeps = 1;
+  double elapsed = 0;  ///< s, of the step
+  bool alert = false;  ///< a body is fast that may meet a rope
   Vec3d gravity{};
 
   Status run();
@@ -44,23 +50,31 @@ struct RopeSolver {
   // rope_bodies.cpp
   int body_index(rigid::BodyId id);  ///< −1: not there
   void gather();
-  void find_mobility();
-  void find_joints();
-  void find_support();
+  void find_mobility(std::size_t first);  ///< of the bodies from there on
+  void find_joints(std::size_t first);
+  void find_support(std::size_t first);
   /// The bodies' changes of velocity from all ropes' rows; `answers`: and what crossings answer to each other.
   void couple(bool answers);
   void commit_bodies();
   Vec3d change_at(int body, Vec3d arm) const;  ///< of the velocity of what holds a particle, by the solve
+  Vec3d spin_change(int body) const;           ///< likewise of its spin
   void move_bodies();
   void hand_over();
   double share_at_start(const RopeBody& body) const;
 
   // rope_contact.cpp
   double reach_at(const Rope& rope, double speed) const;
+  void find_fast();
   /// Shapes in the bounds, and those that may come there within the step.
   void find_shapes(const geometry::Bounds3d& bounds);
-  void find_contacts(Rope& rope);
-  bool strayed(const Rope& rope) const;                          ///< from where things near it were looked for
+  /// m/s, of a particle at the start of the substep, or as it is solved if that is faster.
+  double pace(const Rope& rope, std::size_t i, bool solved) const;
+  void find_contacts(Rope& rope, bool solved);
+  void offer(RopeContact& contact, int number, double separation, double speed) const;
+  void touch(RopeContact& contact, const Rope& rope, int number) const;
+  bool strayed(const Rope& rope, bool solved) const;             ///< from where things near it were looked for
+  bool search(bool solved);                                      ///< anew round the ropes that strayed; true: some did
+  void choose(Rope& rope);                                       ///< what each particle and segment meets next
   Vec3d shape_point(const RopeShape& shape, Vec3d point) const;  ///< in the shape's frame
   /// The same at the end of the substep, for a velocity; `solved`: with what the solve changes of the body's.
   Vec3d shape_point_after(const RopeShape& shape, Vec3d point, Vec3d velocity, bool solved) const;
@@ -85,7 +99,7 @@ struct RopeSolver {
   void keep_contact(RopeContact& contact, const RopeNode& node, bool gone) const;
 
   // rope_edges.cpp
-  void find_edges(Rope& rope, const RopeShape& near, int number, double friction, const geometry::Bounds3f& tight);
+  void find_edges(Rope& rope, int number, const geometry::Bounds3f& tight, bool solved);
   void place_edges(Rope& rope);
   bool place_edge(Rope& rope, std::size_t e, bool solved);
   void add_edges(Rope& rope) const;  ///< to the rows
@@ -118,9 +132,14 @@ struct RopeSolver {
   void hold_grips(Rope& rope);
   void assemble(Rope& rope);
   void solve(Rope& rope);
+  void refine(Rope& rope);
   void react(Rope& rope, bool coupled);  ///< impulses on the particles that the solution asks for
   double change(Rope& rope);             ///< the greatest strain by which the last iteration was off, squared; tensions
-  void substep(double duration, int halvings);
+  bool comes_far() const;
+  bool goes_wrong() const;
+  bool turns_on_its_way() const;
+  void undo();
+  void substep(double duration, int halvings, bool searched);
   void take_part();
   void advance(Rope& rope, int index);
 };

@@ -11,8 +11,9 @@ constexpr int most_iterations = 60;
 constexpr int settled = 10, last_placing = 36;  // when planes of contacts are looked at again
 constexpr double unsettled_strain = 0.1;        // of the last iteration: what was found is no solution
 constexpr int most_halvings = 4;
-constexpr int turn_iterations = 7;   // in which segments still turn by little
-constexpr int cross_iterations = 6;  // in which what ropes push on each other is still found anew
+constexpr int most_fast_halvings = 9;  // of a substep in which something fast is met
+constexpr int turn_iterations = 7;     // in which segments still turn by little
+constexpr int cross_iterations = 6;    // in which what ropes push on each other is still found anew
 constexpr int most_substeps = 256;
 constexpr double gap_rate = 0.4;  // share of a gap between a particle and its anchor that is closed in a step
 
@@ -74,8 +75,12 @@ void RopeSolver::find_touched(Rope& rope) {
   for (int i = 0; i < n; ++i) {
     for (const RopeGrip& grip : rope.grips)
       if (grip.attachment.node == i) touch(grip.body);
-    if (rope.contacts[std::size_t(i)].shape != rigid::ShapeId{}) touch(rope.contacts[std::size_t(i)].body);
-    if (i + 1 < n) touch(rope.edges[std::size_t(i)].contact.body);
+    const auto touch_both = [&](const RopeContact& contact) {
+      touch(contact.body);
+      if (contact.coming >= 0) touch(set.shapes_[std::size_t(contact.coming)].body);
+    };
+    touch_both(rope.contacts[std::size_t(i)]);
+    if (i + 1 < n) touch_both(rope.edges[std::size_t(i)].contact);
   }
   rope.columns.resize(rope.touched.size() * 6 * std::size_t(n));
 }
@@ -238,6 +243,32 @@ void RopeSolver::solve(Rope& rope) {
   }
 }
 
+/// What rounding left of the rows that nothing holds, by the same elimination: beside a stiffness of a million masses
+/// it is a part of a blow's impulse.
+void RopeSolver::refine(Rope& rope) {
+  const std::size_t n = rope.position.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    Vec3d left{};
+    if (rope.nodes[i].hold == RopeHold::none) {
+      left = rope.momentum[i] - rope.diagonal[i] * rope.solution[i];
+      if (i > 0) left -= rope.lower[i] * rope.solution[i - 1];
+      if (i + 1 < n) left -= rope.upper[i] * rope.solution[i + 1];
+      for (const std::size_t e : {i - 1, i}) {
+        if (e >= rope.edges.size() || rope.edges[e].point.hold == RopeHold::none) continue;
+        const RopeEdge& edge = rope.edges[e];
+        left += (e == i ? 1 - edge.share : edge.share) * (edge.stiff * change_at(edge.point.body, edge.point.arm));
+      }
+    }
+    if (i > 0) left -= project(rope.nodes[i], rope.lower[i]) * rope.right[i - 1];
+    rope.right[i] = rope.factor[i] * left;
+  }
+  rope.solution[n - 1] += rope.right[n - 1];
+  for (std::size_t i = n - 1; i-- > 0;) {
+    rope.right[i] -= rope.held[i] * rope.right[i + 1];
+    rope.solution[i] += rope.right[i];
+  }
+}
+
 void RopeSolver::react(Rope& rope, bool coupled) {
   const std::size_t n = rope.position.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -330,9 +361,26 @@ void RopeSolver::take_part() {
   for (double& change : set.right_) change *= share;
 }
 
-/// A share of the step. Of what does not settle, two of half its length.
-void RopeSolver::substep(double duration, int halvings) {
+/// The start of the substep again.
+void RopeSolver::undo() {
+  set.bodies_ = set.bodies_before_;
+  for (Rope& rope : set.ropes_) {
+    rope.rest.front() = rope.before[0];
+    rope.rest.back() = rope.before[1];
+    for (RopeEdge& edge : rope.edges) edge.contact.state = edge.before;
+  }
+}
+
+/// A share of the step. Of what does not settle, two of half its length; so of what comes or turns so fast that planes
+/// and arms of the start tell nothing of its end.
+void RopeSolver::substep(double duration, int halvings, bool searched) {
   h = duration;
+  (void)search(false);
+  if (alert && halvings > 0 && turns_on_its_way()) {
+    substep(0.5 * duration, halvings - 1, false);
+    substep(0.5 * duration, halvings - 1, false);
+    return;
+  }
   set.bodies_before_ = set.bodies_;
   for (RopeBody& body : set.bodies_) {
     if (!body.moves) continue;
@@ -348,6 +396,12 @@ void RopeSolver::substep(double duration, int halvings) {
     hold_grips(rope);
     place_contacts(rope);
     place_edges(rope);
+  }
+  if (alert && halvings > 0 && comes_far()) {
+    undo();
+    substep(0.5 * duration, halvings - 1, false);
+    substep(0.5 * duration, halvings - 1, false);
+    return;
   }
   place_crossings();
   double unsettled = 0;
@@ -365,6 +419,8 @@ void RopeSolver::substep(double duration, int halvings) {
     const bool push = !set.crossing_now_.empty() && settling < cross_iterations;
     couple(push);
     bool again = push && push_crossings();
+    for (Rope& rope : set.ropes_)
+      for (int k = 0; alert && k < 2; ++k) refine(rope);
     for (Rope& rope : set.ropes_) {
       react(rope, true);
       if (iteration + 1 == most_iterations) {
@@ -387,14 +443,20 @@ void RopeSolver::substep(double duration, int halvings) {
     }
     if (!again) break;
   }
-  if (unsettled > math::square(unsettled_strain) && halvings > 0) {
-    set.bodies_ = set.bodies_before_;
-    for (Rope& rope : set.ropes_) {
-      rope.rest.front() = rope.before[0];
-      rope.rest.back() = rope.before[1];
-    }
-    substep(0.5 * duration, halvings - 1);
-    substep(0.5 * duration, halvings - 1);
+  // What goes farther than it was looked round for may meet what is not known.
+  bool far = false;
+  for (const Rope& rope : set.ropes_) far |= alert && strayed(rope, true);
+  if (far && !searched) {
+    undo();
+    (void)search(true);
+    substep(duration, halvings, true);
+    return;
+  }
+  if ((unsettled > math::square(unsettled_strain) && halvings > most_fast_halvings - most_halvings) ||
+      (alert && halvings > 0 && goes_wrong())) {
+    undo();
+    substep(0.5 * duration, halvings - 1, false);
+    substep(0.5 * duration, halvings - 1, false);
     return;
   }
   if (unsettled > math::square(unsettled_strain)) take_part();
@@ -403,6 +465,7 @@ void RopeSolver::substep(double duration, int halvings) {
   for (Rope& rope : set.ropes_) hold_back(rope);
   for (std::size_t r = 0; r < set.ropes_.size(); ++r) advance(set.ropes_[r], int(r));
   move_bodies();
+  elapsed += h;
 }
 
 Status RopeSolver::run() {
@@ -419,28 +482,18 @@ Status RopeSolver::run() {
   }
   h = dt / substeps;
   gather();
+  find_fast();
   for (Rope& rope : set.ropes_) {
     wind_winches(rope);
-    find_contacts(rope);
+    find_contacts(rope, false);
   }
   find_crossings();
-  find_mobility();
+  find_mobility(0);
   for (Rope& rope : set.ropes_) {
     prepare(rope);
     find_touched(rope);
   }
-  for (int s = 0; s < substeps; ++s) {
-    h = dt / substeps;
-    for (Rope& rope : set.ropes_) {
-      if (s == 0 || !strayed(rope)) continue;
-      const std::size_t known = set.bodies_.size();
-      find_contacts(rope);
-      for (std::size_t b = known; b < set.bodies_.size(); ++b)
-        set.bodies_[b].center += (s * h) * set.bodies_[b].velocity;
-      find_touched(rope);
-    }
-    substep(dt / substeps, most_halvings);
-  }
+  for (int s = 0; s < substeps; ++s) substep(dt / substeps, most_fast_halvings, false);
   for (Rope& rope : set.ropes_)
     for (RopeGrip& grip : rope.grips) grip.force = grip.impulse / dt;
   tell_crossings();

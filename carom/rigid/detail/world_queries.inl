@@ -424,4 +424,21 @@ Status World<D>::overlap_bounds(const typename D::Bounds& bounds, std::vector<Sh
   return {};
 }
 
+template <class D>
+void World<D>::fast_bodies(float speed, std::vector<BodyId>& found) const {
+  found.clear();
+  const auto& bodies = self_->bodies;
+  for (const std::int32_t slot : bodies.awake) {
+    const detail::SolverBody<D>& body = bodies.solver[std::size_t(slot)];
+    float fastest = math::length(body.linear_velocity), turn = 0;
+    if constexpr (D::dimension == 2)
+      turn = math::abs(body.angular_velocity);
+    else
+      turn = math::length(body.angular_velocity);
+    if (turn > 0) fastest += turn * bodies.motion[std::size_t(slot)].outer_extent;
+    if (fastest > speed) found.push_back(bodies.slots.handle_at(slot));
+  }
+  std::sort(found.begin(), found.end(), [](BodyId a, BodyId b) { return a.index < b.index; });
+}
+
 }  // namespace carom::rigid
