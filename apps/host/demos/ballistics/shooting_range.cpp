@@ -217,12 +217,12 @@ class ShootingRange final : public Repeatable<ShootingRange, Demo3> {
     cross_at(stage, card_, steel, 0.05);
     stage.sample(1, 0, t, 1000 * now.y);
     stage.sample(1, 1, t, 1000 * now.x);
-    stage.say(count_ == 0 ? std::string("take aim")
-                          : format("%.0f holes; the last one ", double(count_)) +
-                                format("%.0f mm ", 1000 * abs(last_.x)) + (last_.x < 0 ? "left, " : "right, ") +
-                                format("%.0f mm ", 1000 * abs(last_.y)) + (last_.y < 0 ? "low, " : "high, ") +
-                                format("at %.0f m/s", told_) +
-                                format("; a steady gun hits the smallest ring with %.0f %%", 100 * smallest_));
+    stage.say(count_ == 0
+                  ? std::string("take aim")
+                  : format("%.0f holes; the last one ", double(count_)) + format("%.0f mm ", 1000 * abs(last_.x)) +
+                        (last_.x < 0 ? "left, " : "right, ") + format("%.0f mm ", 1000 * abs(last_.y)) +
+                        (last_.y < 0 ? "low, " : "high, ") + format("at %.0f m/s", told_) +
+                        format("; a steady gun hits the smallest ring with %.0f %%", 100 * smallest_));
   }
 
   void expectations(Stage3&, std::vector<Expectation>& out) override {
