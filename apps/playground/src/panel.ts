@@ -97,7 +97,7 @@ export class Panel {
     list.addEventListener('change', () => change(Number(list.value)));
     this.shown.set(p.name, show);
     show(p.value);
-    return element('div', {className: `parameter choice${ticks ? ' ticks' : ''}`, title: p.description}, element('label', {htmlFor: id, textContent: label}), ticks ? box : list);
+    return element('div', {className: 'parameter choice', title: p.description}, element('label', {htmlFor: id, textContent: label}), ticks ? box : list);
   }
 
   private slider(p: Parameter): HTMLElement {
