@@ -14,7 +14,7 @@ namespace detail {
 namespace {
 
 constexpr std::uint64_t magic = 0x31504E534D524143u;  // "CARMSNP1"
-constexpr std::uint64_t format_version = 12;
+constexpr std::uint64_t format_version = 13;
 constexpr std::uint64_t most_words = std::uint64_t{1} << 32, most_sections = 4096;
 
 /// Where compilers and machines could lay out the plain bytes of a state differently.

@@ -56,7 +56,7 @@ TEST(ThinHeap, DoesNotBurst) {
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
       const Burst burst = drop(shapes[kind], seed);
       EXPECT_LT(burst.fastest, 25) << "kind " << kind << " seed " << seed;
-      EXPECT_LT(burst.gain, 0.05) << "kind " << kind << " seed " << seed;
+      EXPECT_LT(burst.gain, 0.1) << "kind " << kind << " seed " << seed;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "carom/rigid/detail/bodies.h"
 
 #include "carom/geometry/detail/passage.h"
+#include "carom/rigid/detail/load_account.h"
 #include "carom/rigid/detail/rotation_step.h"
 
 namespace carom::rigid::detail {
@@ -484,8 +485,9 @@ void attach_joint(WorldImplementation<D>& world, std::int32_t joint) {
       world.joints.headers[std::size_t(body.first_joint >> 1)].previous[body.first_joint & 1] = key;
     body.first_joint = key;
     ++body.joint_count;
-    world.bodies.motion[std::size_t(j.body[side])].load_level = 0;
+    world.scratch.dropped.push_back(j.body[side]);
   }
+  drop_loads(world, world.scratch.dropped);
   j.place = {};
   for (int side = 0; side < 2; ++side)
     if (j.body[side] != none) wake_body(world, j.body[side]);

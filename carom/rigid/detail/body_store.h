@@ -75,7 +75,8 @@ struct BodyMotion {
   float outer_extent = 0;  ///< m: farthest point of its shapes from the centre of mass
   /// m: its surface may go so far along each axis, down and up, before a shape can leave its fat bounds; 0: look.
   typename D::Vector room_below{}, room_above{};
-  float unused = 0;  ///< whole words of eight bytes, for snapshots
+  std::uint16_t load_limit = 0;  ///< what its level may rise to (load_account.h),
+  std::uint16_t load_asked = 0;  ///< and the step in which it last wanted more, modulo 2¹⁶
 };
 
 /// Lets the next step ask whether its shapes have left their fat bounds.
@@ -124,6 +125,7 @@ enum BodyFlag : std::uint16_t {
   body_fast = 64,           ///< moved far in this step: continuous collision looks at it
   body_has_collider = 128,  ///< a shape that collides (not a sensor)
   body_own_time = 256,      ///< BodyStore::time_scale has its clock
+  body_pushed = 512,        ///< a force acted on it in the last step
 };
 
 /// Links, settings and bookkeeping.

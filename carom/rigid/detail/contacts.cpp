@@ -1,5 +1,7 @@
 #include "carom/rigid/detail/contacts.h"
 
+#include "carom/rigid/detail/load_account.h"
+
 namespace carom::rigid::detail {
 namespace {
 
@@ -365,8 +367,7 @@ void add_manifold(WorldImplementation<D>& world, std::int32_t contact, const typ
   mix_materials(world, index);
   const typename D::Vector meeting = world.bodies.solver[std::size_t(c.body[1])].linear_velocity -
                                      world.bodies.solver[std::size_t(c.body[0])].linear_velocity;
-  for (const std::int32_t body : c.body)
-    forget_load<D>(world.bodies.motion[std::size_t(body)], meeting, rest_speed(world.definition, world.last_dt));
+  for (const std::int32_t body : c.body) forget_load(world, body, meeting, world.scratch.dropped);
   world.scratch.new_manifolds.push_back(index);
 }
 

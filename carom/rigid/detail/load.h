@@ -25,12 +25,14 @@ struct alignas(16) BodyLoad {
 static_assert(sizeof(BodyLoad<Dim2>) == 16 && sizeof(BodyLoad<Dim3>) == 16);
 inline constexpr float restless_load = -1e30f;
 
-inline constexpr float load_weights = 2;         ///< of its own, that a body carries as it is
-inline constexpr float load_yield = 0.0012f;     ///< m of its contacts over its size, that it yields as it is
-inline constexpr int load_rise = 1;              ///< levels a step, so that what settles does not swing,
-inline constexpr int load_lag = 105;             ///< but never more than so many (a factor of 8) behind the load
-inline constexpr int load_play = 10;             ///< levels above the load that are let be
-inline constexpr int load_fall = 5;              ///< levels a step: what is thrown up by a hair comes down prepared
+inline constexpr float load_weights = 2;      ///< of its own, that a body carries as it is
+inline constexpr float load_yield = 0.0012f;  ///< m of its contacts over its size, that it yields as it is
+inline constexpr int load_rise = 1;           ///< levels a step, so that what settles does not swing,
+inline constexpr int load_lag = 105;          ///< but never more than so many (a factor of 8) behind the load
+inline constexpr int load_play = 10;          ///< levels above the load that are let be
+inline constexpr int load_fall = 5;           ///< levels a step: what is thrown up by a hair comes down prepared
+inline constexpr int free_level = 35;  ///< twice its mass: more is granted by what brings the load (load_account.h)
+inline constexpr int load_wait = 8;    ///< steps between two questions for more
 inline constexpr float most_load_factor = 1e4f;  ///< about what the last level means
 inline constexpr float rest_falls = 4;           ///< steps of free fall: what parts no faster is at rest
 
@@ -57,22 +59,38 @@ float rest_speed(const WorldDef<D>& definition, float dt) {
   return rest_falls * math::length(definition.gravity) * dt;
 }
 
+/// A body wants to count for more than its limit, or is to be its own self again.
+struct LoadWish {
+  std::int32_t body;
+  float borne;  ///< N, what it bears as it is; 0: it is to be its own self
+};
+
+/// m/s², what a body bears as it is. gravity: m/s², of what acts on the body from afar.
+template <class D>
+float borne_as_it_is(const BodyMotion<D>& m, float gravity, float contact_stiffness) {
+  return min(load_weights * gravity, load_yield * m.inner_extent * contact_stiffness);
+}
+
 /// What a body bears as it is over what presses it together, at most 1: at the least level that has this share or less,
 /// it bears the load. gravity: m/s², of what acts on the body from afar.
 template <class D>
 float borne_share(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load, float gravity) {
   const float squeeze = 0.5f * (load.size - math::length(load.sum)) * m.inverse_mass * context.inverse_h;  // m/s²
-  const float borne = min(load_weights * gravity, load_yield * m.inner_extent * context.contact_stiffness);
+  const float borne = borne_as_it_is(m, gravity, context.contact_stiffness);
   return borne > 0 && squeeze > borne ? borne / squeeze : 1;
+}
+
+/// The least level that has this share or less.
+inline std::uint16_t level_of_share(float share) {
+  const float* const shares = load_shares.share;
+  return std::uint16_t(std::lower_bound(shares, shares + LoadShares::count - 1, share, std::greater<>()) - shares);
 }
 
 /// The level for a load that is there from the start.
 template <class D>
 std::uint16_t level_of_load(const StepContext<D>& context, const BodyMotion<D>& m, const BodyLoad<D>& load,
                             float gravity) {
-  const float share = borne_share(context, m, load, gravity);
-  const float* const shares = load_shares.share;
-  return std::uint16_t(std::lower_bound(shares, shares + LoadShares::count - 1, share, std::greater<>()) - shares);
+  return level_of_share(borne_share(context, m, load, gravity));
 }
 
 /// The next level.
@@ -95,12 +113,6 @@ std::uint16_t follow_load(const StepContext<D>& context, const BodyMotion<D>& m,
   const int far = level + load_rise + load_lag;
   if (far >= last || !(shares[far] > share)) return std::uint16_t(level + load_rise);
   return std::uint16_t(int(std::lower_bound(shares + far, shares + last, share, std::greater<>()) - shares) - load_lag);
-}
-
-/// A body that is struck or kicked, or starts to slide, is its own self before momentum is exchanged.
-template <class D>
-void forget_load(BodyMotion<D>& m, const typename D::Vector& change_of_velocity, float rest_speed) {
-  if (m.load_level > 0 && math::length_squared(change_of_velocity) > rest_speed * rest_speed) m.load_level = 0;
 }
 
 }  // namespace carom::rigid::detail

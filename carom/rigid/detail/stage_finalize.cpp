@@ -181,10 +181,42 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   return any;
 }
 
+/// The level of the body by its load. `gravity`: m/s², of what acts on it from afar.
+template <class D>
+static void follow_load_of(StepContext<D>& context, std::int32_t body, const BodyLoad<D>& load, float gravity,
+                           std::vector<LoadWish>& wishes) {
+  WorldImplementation<D>& world = context.world;
+  BodyRecord& record = world.bodies.record[std::size_t(body)];
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  if (m.force == typename D::Vector{})
+    record.flags &= std::uint16_t(~body_pushed);
+  else
+    record.flags |= body_pushed;
+  const bool may = record.type == BodyType::dynamic && record.joint_count == 0;
+  const int level = may ? follow_load(context, m, load, gravity) : 0;
+  if (level == 0 && m.load_level > free_level) {
+    wishes.push_back({body, 0});
+  } else if (level <= m.load_level) {
+    m.load_level = std::uint16_t(level);
+  } else if (world.scratch.wedged[std::size_t(body)] == 0) {
+    // Bodies that are wedged in each other press by their overlap and not by a load: were they given more mass for it,
+    // they would press the more.
+    const int limit = max(int(m.load_limit), free_level);
+    m.load_level = std::uint16_t(max(int(m.load_level), min(level, limit)));
+    // To ask costs a walk over all contacts.
+    const auto now = std::uint16_t(world.step_count);
+    if (level > limit && std::uint16_t(now - m.load_asked) >= load_wait) {
+      m.load_asked = now;
+      wishes.push_back({body, m.mass * borne_as_it_is(m, gravity, context.contact_stiffness)});
+    }
+  }
+}
+
 /// Sleep, loads and bounds of the body at a place of the awake list, which has come to the end of the step. Returns
 /// BodyChange.
 template <class D>
-static std::uint8_t finalize_body(StepContext<D>& context, int place, const BodyEnds& ends, int lane, float gravity) {
+static std::uint8_t finalize_body(StepContext<D>& context, int place, const BodyEnds& ends, int lane, float gravity,
+                                  std::vector<LoadWish>& wishes) {
   WorldImplementation<D>& world = context.world;
   const std::int32_t body = world.bodies.awake[std::size_t(place)];
   BodyRecord& record = world.bodies.record[std::size_t(body)];
@@ -209,13 +241,7 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
     change = body_flew;
   }
   const float pace = world.bodies.pace(body);
-  const std::uint16_t level =
-      record.type == BodyType::dynamic && record.joint_count == 0
-          ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
-          : std::uint16_t(0);
-  // Bodies that are wedged in each other press by their overlap and not by a load: were they given more mass for it,
-  // they would press the more.
-  if (level <= m.load_level || world.scratch.wedged[std::size_t(body)] == 0) m.load_level = level;
+  follow_load_of(context, body, load, max(gravity, gravity_of(world.definition, m, pace, gravity)), wishes);
   m.force = {};
   m.torque = {};
   float speed = ends.speed[lane];
@@ -252,7 +278,9 @@ void finalize_bodies(StepContext<D>& context) {
   const float gravity = math::length(world.definition.gravity);
   const int width = world.kernels.width;
   if (scratch.wedged.size() < world.bodies.record.size()) scratch.wedged.resize(world.bodies.record.size());
-  context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int) {
+  for (std::vector<LoadWish>& list : scratch.load_wishes) list.clear();
+  context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int worker) {
+    std::vector<LoadWish>& wishes = scratch.load_wishes[std::size_t(worker)];
     for (int first = begin; first < end; first += width) {
       const int lanes = min(width, end - first);
       const std::int32_t* const slots = &world.bodies.awake[std::size_t(first)];
@@ -276,13 +304,14 @@ void finalize_bodies(StepContext<D>& context) {
           quarantine(world, slots[k]);
           changes[k] = body_broke;
         } else {
-          changes[k] = finalize_body(context, first + k, ends, k, gravity);
+          changes[k] = finalize_body(context, first + k, ends, k, gravity, wishes);
         }
       }
     }
   });
   if (std::exchange(scratch.any_wedged, std::uint8_t(0)) != 0)
     std::fill(scratch.wedged.begin(), scratch.wedged.end(), std::uint8_t(0));
+  grant_loads(context);
   for (std::size_t i = 0; i < count; ++i)
     if (scratch.body_changes[i] == body_broke) {
       const std::int32_t body = world.bodies.awake[i];

@@ -84,6 +84,9 @@ void integrate_positions(StepContext<D>& context, int begin, int end);
 /// New poses from displacements; bounds; sleep timers; quarantine; who is fast.
 template <class D>
 void finalize_bodies(StepContext<D>& context);
+/// Who may count for more, and who is its own self again, as finalize_bodies found (load_account.h).
+template <class D>
+void grant_loads(StepContext<D>& context);
 /// Marks the shapes that no longer fit their fat bounds.
 template <class D>
 bool leave_bounds(WorldImplementation<D>& world, std::int32_t body);

@@ -143,6 +143,7 @@ class StateCheck {
       const auto tell = [&](bool right, const auto&... parts) { f_.holds(right, "body", std::ptrdiff_t(i), parts...); };
       tell(f_.is_bool(m.gyroscopic), "gyroscopic is neither yes nor no");
       tell(m.load_level < LoadShares::count, "load_level is ", m.load_level, ", expected below ", LoadShares::count);
+      tell(m.load_limit < LoadShares::count, "load_limit is ", m.load_limit, ", expected below ", LoadShares::count);
       tell(m.slender == 0 || D::dimension == 2 || (m.slender & 3) != 0, "slender names no axis");
       if (!b.slots.in_use(int(i))) continue;
       tell(r.type <= BodyType::dynamic, "type is ", int(r.type), ", expected fixed, kinematic or dynamic");

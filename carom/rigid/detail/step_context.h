@@ -79,6 +79,15 @@ struct alignas(16) Flight<Dim3> {
   float unused_spin;
 };
 
+/// Hz, of contacts between moving bodies in a step of so many substeps.
+template <class D>
+float contact_hertz(const WorldDef<D>& definition, int substeps, float inverse_h) {
+  const float stiffer = float(substeps) / float(definition.substeps);  // than the world's: BodyDef::substeps
+  return min(stiffer * definition.contact_hertz, most_contact_turns * inverse_h);
+}
+/// 1/s², ω² of a spring of so many Hz.
+inline float stiffness_of(float hertz) { return 4 * math::pi_f * math::pi_f * hertz * hertz; }
+
 template <class D>
 struct StepContext {
   WorldImplementation<D>& world;

@@ -122,6 +122,8 @@ template <class D>
 struct StepScratch {
   ColorBlocks blocks[color_count + 1];
   std::vector<BodyLoad<D>> loads;                   ///< by slot of the body; nothing between steps
+  std::vector<std::vector<LoadWish>> load_wishes;   ///< by worker
+  std::vector<std::int32_t> dropped;                ///< bodies that are their own selves again
   std::vector<std::uint8_t> again;                  ///< by slot of the body: takes impulses of contacts again in every
                                                     ///< substep (list_stages); nothing between steps
   std::vector<std::uint8_t> wedged;                 ///< by slot of the body: something overlaps deep with it; likewise

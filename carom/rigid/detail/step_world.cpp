@@ -5,6 +5,7 @@
 #include "carom/core/profiler.h"
 #include "carom/math/cpu.h"
 #include "carom/rigid/detail/joint_check.h"
+#include "carom/rigid/detail/load_account.h"
 #include "carom/rigid/detail/memory.h"
 #include "carom/rigid/detail/stages.h"
 
@@ -160,10 +161,10 @@ StepContext<D> make_context(WorldImplementation<D>& world, float dt, int substep
   context.h = dt / float(substeps);
   context.inverse_h = float(substeps) * context.inverse_dt;
   const float stiffer = float(substeps) / float(definition.substeps);  // than the world's: BodyDef::substeps
-  const float contact_hertz = min(stiffer * definition.contact_hertz, most_contact_turns * context.inverse_h);
-  context.contact_stiffness = 4 * pi_f * pi_f * contact_hertz * contact_hertz;
-  context.contact_softness.free = make_softness(contact_hertz, definition.contact_damping_ratio, context.h);
-  context.contact_softness.firm = make_softness(2 * contact_hertz, definition.contact_damping_ratio, context.h);
+  const float hertz = contact_hertz(definition, substeps, context.inverse_h);
+  context.contact_stiffness = stiffness_of(hertz);
+  context.contact_softness.free = make_softness(hertz, definition.contact_damping_ratio, context.h);
+  context.contact_softness.firm = make_softness(2 * hertz, definition.contact_damping_ratio, context.h);
   const auto joint_softness = [&](float most_turns) {
     return make_softness(min(stiffer * definition.joint_hertz, most_turns * context.inverse_h),
                          definition.joint_damping_ratio, context.h);
@@ -201,6 +202,7 @@ WorldImplementation<D>::WorldImplementation(const WorldDef<D>& d)
   scratch.found_pairs.resize(std::size_t(scheduler->thread_count()));
   scratch.met_sensors.resize(std::size_t(scheduler->thread_count()));
   scratch.found_bullet_pairs.resize(std::size_t(scheduler->thread_count()));
+  scratch.load_wishes.resize(std::size_t(scheduler->thread_count()));
   scratch.found_strays.resize(std::size_t(scheduler->thread_count()));
   scratch.found_manifolds.resize(std::size_t(scheduler->thread_count()));
 }
@@ -252,6 +254,7 @@ Status step_world(WorldImplementation<D>& world, float dt) {
   find_pairs(world);
   profile.broad_phase = watch.lap("broad phase");
   update_contacts(world);
+  drop_loads(world, world.scratch.dropped);
   choose_friction(world);
   modify_contacts(world);
   profile.narrow_phase = watch.lap("narrow phase");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/math/elementary.h"
+#include "carom/rigid/detail/load_account.h"
 #include "carom/rigid/detail/world_bodies.inl"
 
 namespace carom::rigid {
@@ -48,8 +49,7 @@ Status World<D>::set_velocity(BodyId body, Vector linear, Angular angular) {
     // What fell asleep on a platform is to go with it when it starts.
     if (stood && !self_->bodies.is_dynamic(*slot)) wake_touching(*self_, *slot);
   }
-  forget_load<D>(self_->bodies.motion[std::size_t(*slot)], linear - now.linear_velocity,
-                 rest_speed(self_->definition, self_->last_dt));
+  forget_load(*self_, *slot, linear - now.linear_velocity);
   self_->bodies.solver[std::size_t(*slot)].linear_velocity = linear;
   self_->bodies.solver[std::size_t(*slot)].angular_velocity = angular;
   return {};
@@ -221,8 +221,7 @@ Status World<D>::set_time_scale(BodyId body, float scale) {
   if (!self_->bodies.is_dynamic(*slot)) return {};
   SolverBody<D>& s = self_->bodies.solver[std::size_t(*slot)];
   const Vector linear = s.linear_velocity * (scale / before);
-  forget_load<D>(self_->bodies.motion[std::size_t(*slot)], linear - s.linear_velocity,
-                 rest_speed(self_->definition, self_->last_dt));
+  forget_load(*self_, *slot, linear - s.linear_velocity);
   s.linear_velocity = linear;
   s.angular_velocity = s.angular_velocity * (scale / before);
   return {};

@@ -6,6 +6,7 @@
 #include "carom/geometry/query.h"
 #include "carom/rigid/detail/bodies.h"
 #include "carom/rigid/detail/check.h"
+#include "carom/rigid/detail/load_account.h"
 
 namespace carom::rigid {
 namespace detail {
@@ -69,7 +70,7 @@ Status add_kick(WorldImplementation<D>& world, std::string_view call, BodyId bod
   check_size(complaint, "angular velocity after the impulse", w, max_velocity);
   if (!complaint.none_yet()) return complaint.error();
   wake_body(world, *slot);
-  forget_load<D>(m, v - s.linear_velocity, rest_speed(world.definition, world.last_dt));
+  forget_load(world, *slot, v - s.linear_velocity);
   s.linear_velocity = v;
   s.angular_velocity = w;
   return {};

@@ -95,6 +95,8 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   s.old_bounds.reserve(shapes);
   s.moved_place.reserve(shapes);
   s.loads.reserve(bodies);
+  for (auto& list : s.load_wishes) list.reserve(bodies);
+  s.dropped.reserve(bodies);
   s.again.reserve(bodies);
   s.wedged.reserve(bodies);
   s.flights.reserve(bodies);
