@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "carom/rigid/detail/coarse.h"
+#include "carom/rigid/detail/joint_figure.h"
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
 #include "carom/rigid/detail/step_end_lanes.h"
@@ -181,6 +182,21 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   return any;
 }
 
+/// The next level of a body with joints (load.h): it rises slowly, because joints that gave way would throw up what
+/// they carry, and falls fast once nothing presses.
+template <class D>
+std::uint16_t follow_jointed_load(const StepContext<D>& context, std::int32_t body, const BodyMotion<D>& m,
+                                  const BodyLoad<D>& load, float pace, float gravity) {
+  if (load.size < 0) return 0;
+  if (load.size == 0) return std::uint16_t(max(int(m.load_level) - jointed_fall, 0));
+  const WorldImplementation<D>& world = context.world;
+  const typename D::Vector weight =
+      (context.h * pace * pace) * (m.mass * m.gravity_scale * world.definition.gravity + m.force);
+  const int level =
+      min(int(follow_load(context, m, jointed_load<D>(load, weight), gravity)), int(m.load_level) + load_rise);
+  return level > 0 ? min(std::uint16_t(level), Figure<D>(world, body).most_level(body)) : std::uint16_t(0);
+}
+
 /// Sleep, loads and bounds of the body at a place of the awake list, which has come to the end of the step. Returns
 /// BodyChange.
 template <class D>
@@ -209,10 +225,12 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
     change = body_flew;
   }
   const float pace = world.bodies.pace(body);
-  const std::uint16_t level =
-      record.type == BodyType::dynamic && record.joint_count == 0
-          ? follow_load(context, m, load, max(gravity, gravity_of(world.definition, m, pace, gravity)))
-          : std::uint16_t(0);
+  std::uint16_t level = 0;
+  if (record.type == BodyType::dynamic) {
+    const float own_gravity = max(gravity, gravity_of(world.definition, m, pace, gravity));
+    level = record.joint_count == 0 ? follow_load(context, m, load, own_gravity)
+                                    : follow_jointed_load(context, body, m, load, pace, own_gravity);
+  }
   // Bodies that are wedged in each other press by their overlap and not by a load: were they given more mass for it,
   // they would press the more.
   if (level <= m.load_level || world.scratch.wedged[std::size_t(body)] == 0) m.load_level = level;
