@@ -12,7 +12,7 @@ void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const ty
   put(to.q, lane, local.q);
 }
 
-constexpr float settling_push = 0.6f;  ///< of the push speed, above which what pushes is taken back
+constexpr float settling_push = 0.6f;  ///< of the push speed, above which what pushes without gravity is taken back
 
 template <class D>
 ContactSources<D> sources_of(const StepContext<D>& context) {
@@ -29,7 +29,8 @@ ContactSources<D> sources_of(const StepContext<D>& context) {
   s.softness = context.contact_softness;
   s.gravity = world.definition.gravity;
   s.restitution_threshold = world.definition.restitution_threshold;
-  s.push_speed = settling_push * context.push_speed;
+  s.push_speed = context.push_speed;
+  if (is_weightless(context)) s.push_speed *= settling_push;
   s.rest_speed_squared = context.rest_speed * context.rest_speed;
   s.restless_load = restless_load;
   s.still_way = still_way(world, context.dt);
@@ -128,16 +129,6 @@ void mark_wedged(WorldImplementation<D>& world, const float (&thin)[W], int lane
           if (body >= 0) mark(world.scratch.wedged[std::size_t(body)]), mark(world.scratch.any_wedged);
 }
 
-/// With the push speed itself?
-template <class D, int W>
-bool is_pushed_fast(const StepContext<D>& context, const ContactBlock<D, W>& block, int lane) {
-  const bool firm = block.body_a[lane] < 0 || block.body_b[lane] < 0;
-  const Softness& soft = firm ? context.contact_softness.firm : context.contact_softness.free;
-  float deepest = 0;
-  for (const auto& point : block.point) deepest = min(deepest, point.separation[lane]);
-  return deepest * soft.bias_rate < -context.push_speed;
-}
-
 /// The lanes of a block from the records of `list`, and their marks.
 template <class D, int W>
 void gather_block(const StepContext<D>& context, const ContactSources<D>& sources, std::span<const std::int32_t> list,
@@ -168,8 +159,6 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   for (; pushed != 0; pushed &= pushed - 1) {
     const int lane = std::countr_zero(pushed);
     const std::int32_t a = block.body_a[lane], b = block.body_b[lane];
-    // What bears a load yields to it: it is pushed out of that.
-    if (raw.squeezed[lane] > 0 && !is_pushed_fast(context, block, lane)) continue;
     if (!parts_in_flight(context, slot_of(a), slot_of(b))) marks[lane] |= mark_pushed;
   }
   for (; meets != 0; meets &= meets - 1) {

@@ -98,7 +98,8 @@ void make_room_to_keep(StepContext<D>& context) {
 template <class D>
 void list_stages(StepContext<D>& context) {
   const int settling = any_pushed(context.world) ? settle_passes : 0;
-  if (settling > 0) make_room_to_keep(context);
+  const bool takes_back = settling > 0 && is_weightless(context);
+  if (takes_back) make_room_to_keep(context);
   StepScratch<D>& scratch = context.world.scratch;
   scratch.solver_stages.clear();
   scratch.solver_loops.clear();
@@ -125,7 +126,7 @@ void list_stages(StepContext<D>& context) {
     const bool last = substep + 1 == context.substeps;
     add_impact_stage(context, last ? ImpactMoment::end_of_step : ImpactMoment::end_of_substep);
     add_tree_stage(context, SolverPass::factorise_trees);
-    if (settling > 0) add_color_stages(context, SolverPass::take_back);
+    if (takes_back) add_color_stages(context, SolverPass::take_back);
     for (int i = 0; i < settling; ++i) add_color_stages(context, SolverPass::settle);
     add_color_stages(context, SolverPass::relax);
     add_tree_stage(context, SolverPass::settle_trees);
