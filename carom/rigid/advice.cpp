@@ -79,7 +79,8 @@ class Adviser {
       : world_(world), definition_(world.definition()), options_(options), dt_(double(dt)) {
     h_ = dt_ / definition_.substeps;
     contact_hertz_ = std::min(double(definition_.contact_hertz), double(detail::most_contact_turns) / h_);
-    joint_hertz_ = std::min(double(definition_.joint_hertz), 0.25 / h_);
+    joint_turns_ = double(detail::most_turns_of_joints(definition_.joint_solver));
+    joint_hertz_ = std::min(double(definition_.joint_hertz), joint_turns_ / h_);
     const double g = double(math::length(definition_.gravity));
     if (g > 0) up_ = definition_.gravity / float(-g);
     gravity_ = g;
@@ -149,7 +150,7 @@ class Adviser {
                  wanted, used, definition_.substeps, 1e3 * h_, substeps));
     };
     look("contact_hertz", double(definition_.contact_hertz), contact_hertz_, double(detail::most_contact_turns));
-    look("joint_hertz", double(definition_.joint_hertz), joint_hertz_, 0.25);
+    look("joint_hertz", double(definition_.joint_hertz), joint_hertz_, joint_turns_);
   }
 
   /// Springs are exact up to ω h = .7 and implicit, which damps, from there on.
@@ -401,8 +402,8 @@ class Adviser {
     const Part<D>& part = parts_[std::size_t(i)];
     const bool sag = kind == AdviceKind::sag;
     const double wanted = share * length / part.sag;
-    const int substeps =
-        substeps_for(sag ? contact_hertz_ : joint_hertz_, sag ? double(detail::most_contact_turns) : 0.25, wanted);
+    const int substeps = substeps_for(sag ? contact_hertz_ : joint_hertz_,
+                                      sag ? double(detail::most_contact_turns) : joint_turns_, wanted);
     const double hertz = (sag ? contact_hertz_ : joint_hertz_) / std::sqrt(wanted);
     std::string text = format("%s will %s by %.3g m (%.2g %% of %.3g m)", part.name.c_str(), sag ? "sink" : "hang low",
                               part.sag, 100 * part.sag / length, length);
@@ -418,7 +419,7 @@ class Adviser {
   const World<D>& world_;
   const WorldDef<D>& definition_;
   AdviceOptions options_;
-  double dt_, h_ = 0, contact_hertz_ = 0, joint_hertz_ = 0, gravity_ = 0;
+  double dt_, h_ = 0, contact_hertz_ = 0, joint_hertz_ = 0, joint_turns_ = 0, gravity_ = 0;
   typename D::Vector up_{};
   std::vector<Part<D>> parts_;
   std::vector<int> place_;

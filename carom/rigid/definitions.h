@@ -51,7 +51,7 @@ struct WorldDef {
   float contact_hertz = 36.0f;         ///< stiffness of contacts, capped at .15 of the substep rate
   float contact_damping_ratio = 10.0f;
   float contact_push_speed = 3.0f;  ///< m/s: overlapping bodies separate no faster
-  float joint_hertz = 60.0f;        ///< stiffness of joints, capped at 1/4 of the substep rate
+  float joint_hertz = 60.0f;        ///< stiffness of joints, capped at 1/4 of the substep rate (iterative: 1/5)
   float joint_damping_ratio = 2.0f;
   JointSolver joint_solver = JointSolver::automatic;
   float maximum_linear_speed = 4.0e3f;  ///< m/s

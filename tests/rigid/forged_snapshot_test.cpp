@@ -92,12 +92,11 @@ TYPED_TEST(ForgedSnapshotOf, IsRefusedOrTheStateOfAWorld) {
     Snapshot<D> forged = sound;
     for (std::uint32_t k = draw() % 3; k <= 2; ++k) forge(forged, draw);
     const auto decoded = Snapshot<D>::decode(forged.encode());
-    ASSERT_TRUE(decoded.ok()) << decoded.error().message;
-    const Status status = world.restore(*decoded);
+    const Status status = decoded.ok() ? world.restore(*decoded) : Status(decoded.error());
     if (!status.ok()) {
       ++refused;
-      ASSERT_NE(status.error().message.find("World::restore: the snapshot"), std::string::npos)
-          << status.error().message;
+      const char* const who = decoded.ok() ? "World::restore: the snapshot" : "Snapshot::decode: the contacts";
+      ASSERT_EQ(status.error().message.find(who), 0u) << status.error().message;
       if (i % 50 == 0) ASSERT_EQ(world.state_hash(), hash) << "a refused snapshot leaves the world as it was";
       continue;
     }
@@ -143,8 +142,10 @@ TYPED_TEST(ForgedSnapshotOf, DifferencesAreReadAsTheyWereWritten) {
     Snapshot<D> from = base, to = later;
     for (int k = 0; k < 20; ++k) forge(i % 2 == 0 ? from : to, draw);
     const auto decoded = Snapshot<D>::decode(to.encode(from), from);
-    ASSERT_TRUE(decoded.ok()) << decoded.error().message;
-    EXPECT_EQ(decoded->digest(), to.digest());
+    if (decoded.ok())
+      EXPECT_EQ(decoded->digest(), to.digest());
+    else
+      EXPECT_EQ(decoded.error().message.find("Snapshot::decode: the contacts"), 0u) << decoded.error().message;
     std::vector<std::byte> bytes = sound;
     bytes[32 + draw() % (bytes.size() - 40)] ^= std::byte(std::uint8_t(1 + draw() % 255));
     sign(bytes);

@@ -19,6 +19,8 @@ inline constexpr float most_middle_way = 0.03f;   ///< of `extent`
 
 /// ContactBlock::struck: a hard blow fell on it; it was pushed out of an overlap.
 inline constexpr float block_struck = 1, block_pushed = 2;
+/// ContactBlock::again: a mass follows its load, so that what presses there is not taken back.
+inline constexpr std::int32_t block_bears = 4;
 
 /// Masses in 1/kg and 1/(kg·m²); r are vectors from the centres of mass to the contact, world axes at the step's start.
 /// Passes over many blocks wait for memory: what follows from other rows is not stored.
@@ -47,7 +49,7 @@ struct alignas(64) ContactBlock<Dim2, W> {
   float tangent_mass[W], tangent_target[W], tangent_impulse[W], tangent_total[W];
   float settles[W];       ///< 1: takes part in the passes that settle what is pushed out
   float struck[W];        ///< its points are solved together in this step: block_struck, block_pushed
-  std::int32_t again[W];  ///< bits 0, 1: A, B takes impulses again in every substep
+  std::int32_t again[W];  ///< bits 0, 1: A, B takes impulses again in every substep; block_bears
 };
 
 template <int W>
@@ -121,7 +123,7 @@ struct ContactSources {
   ContactSoftness softness;
   typename D::Vector gravity{};     ///< m/s²
   float restitution_threshold = 0;  ///< m/s
-  float push_speed = 0;             ///< m/s
+  float push_speed = 0;             ///< m/s: what is pushed out of an overlap faster is `pushed`
   float rest_speed_squared = 0;     ///< (m/s)², of what is at rest,
   float restless_load = 0;          ///< and what others count for (load.h)
   float still_way = 0;              ///< m
@@ -131,7 +133,7 @@ struct ContactSources {
 struct GatheredLanes {
   std::uint32_t placed =
       0;  ///< a shape stands elsewhere than its body: ContactRaw::shape_a and shape_b are not right yet
-  std::uint32_t pushed = 0;              ///< so deep that it is pushed out with the push speed
+  std::uint32_t pushed = 0;              ///< so deep that it is pushed out fast
   std::uint32_t anchored = 0, open = 0;  ///< mark_anchored, mark_open
   std::uint32_t turns = 0;               ///< is to be solved as it is in the middle of the step (contact_middle.h)
 };
@@ -179,6 +181,10 @@ struct ContactKernels {
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).
   void (*solve)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h, float push_speed,
                 const ContactSoftness& softness, int order) = nullptr;
+  /// What the soft rows let be of the normal impulses is kept, `points` times as many floats as there are lanes for
+  /// each block; where something settles, what they have become more since is taken back.
+  void (*keep)(Blocks blocks, float* kept, int begin, int end, const ContactSoftness& softness) = nullptr;
+  void (*take_back)(SolverBody<D>* bodies, Blocks blocks, const float* kept, int begin, int end) = nullptr;
   /// Relaxing of the lanes that settle, before the pass that counts.
   void (*settle)(SolverBody<D>* bodies, Blocks blocks, int begin, int end, float inverse_h) = nullptr;
   void (*relax)(SolverBody<D>* bodies, Blocks blocks, void* extra, int begin, int end, float inverse_h) = nullptr;

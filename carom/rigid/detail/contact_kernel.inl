@@ -222,6 +222,46 @@ std::uint32_t strikes(const SolverBody<D>* bodies, const void* block) {
   return bitmask(apart & (parting < F::splat(-least_blow)));
 }
 
+template <class D, int W>
+void keep_impulses(void* blocks, float* kept, int begin, int end, const ContactSoftness& softness) {
+  using Block = ContactBlock<D, W>;
+  for (int k = begin; k < end; ++k) {
+    const Block& c = static_cast<const Block*>(blocks)[k];
+    const WideFloat<W> share = WideSoftness<W>(softness, c).mass_scale;
+    for (int i = 0; i < Block::points; ++i)
+      (share * WideFloat<W>::load(c.point[i].impulse)).store(kept + (k * Block::points + i) * W);
+  }
+}
+template <class D, int W>
+void take_impulses_back(SolverBody<D>* bodies, void* blocks, const float* kept, int begin, int end) {
+  using F = WideFloat<W>;
+  using Block = ContactBlock<D, W>;
+  for (int k = begin; k < end; ++k) {
+    Block& c = static_cast<Block*>(blocks)[k];
+    auto a = read_velocity<W>(bodies, Slots<W>(c.body_a).of), b = read_velocity<W>(bodies, Slots<W>(c.body_b).of);
+    const auto n = load_vector(c.normal), offset_turn = cross(load_vector(c.center_offset), n);
+    const auto bearless = (WideInt<W>::load(c.again) & WideInt<W>::splat(block_bears)) == WideInt<W>::zero();
+    F sum = F::zero();
+    decltype(a.w) on_a{}, on_b{};
+    for (int i = 0; i < Block::points; ++i) {
+      const F now = F::load(c.point[i].impulse), before = F::load(kept + (k * Block::points + i) * W);
+      const F change = keep(bearless, F::load(c.settles) * (before - now));
+      const auto turn = cross(load_vector(c.point[i].r_a), n);
+      (now + change).store(c.point[i].impulse);
+      sum += change;
+      on_a = add(on_a, multiply(turn, change));
+      on_b = add(on_b, multiply(add(turn, offset_turn), change));
+    }
+    push_back(a, F::load(c.inverse_mass_a), load_inertia(c.inverse_inertia_a), multiply(n, sum), on_a);
+    push(b, F::load(c.inverse_mass_b), load_inertia(c.inverse_inertia_b), multiply(n, sum), on_b);
+    std::int32_t to_a[W], to_b[W];
+    who_settles<W>(c.settles, c.body_a, to_a);
+    who_settles<W>(c.settles, c.body_b, to_b);
+    write_velocity<W>(bodies, to_a, a);
+    write_velocity<W>(bodies, to_b, b);
+  }
+}
+
 #if CAROM_CONTACT_WIDTH <= 8
 PairKernels<Dim2> pair_kernels(Dim2) {
   constexpr int W = CAROM_CONTACT_WIDTH;
@@ -244,6 +284,8 @@ ContactKernels<Dim2> kernels(Dim2) {
   k.strikes = strikes<Dim2, W>;
   k.warm_start = warm_start2<W>;
   k.solve = solve2<W>;
+  k.keep = keep_impulses<Dim2, W>;
+  k.take_back = take_impulses_back<Dim2, W>;
   k.settle = settle2<W>;
   k.relax = relax2<W>;
   k.restitute = restitute2<W>;
@@ -263,6 +305,8 @@ ContactKernels<Dim3> kernels(Dim3) {
   k.strikes = strikes<Dim3, W>;
   k.warm_start = warm_start3<W>;
   k.solve = solve3<W>;
+  k.keep = keep_impulses<Dim3, W>;
+  k.take_back = take_impulses_back<Dim3, W>;
   k.settle = settle3<W>;
   k.relax = relax3<W>;
   k.restitute = restitute3<W>;

@@ -12,6 +12,8 @@ void put_shape(const WorldImplementation<D>& world, std::int32_t shape, const ty
   put(to.q, lane, local.q);
 }
 
+constexpr float settling_push = 0.6f;  ///< of the push speed, above which what pushes without gravity is taken back
+
 template <class D>
 ContactSources<D> sources_of(const StepContext<D>& context) {
   WorldImplementation<D>& world = context.world;
@@ -28,6 +30,7 @@ ContactSources<D> sources_of(const StepContext<D>& context) {
   s.gravity = world.definition.gravity;
   s.restitution_threshold = world.definition.restitution_threshold;
   s.push_speed = context.push_speed;
+  if (is_weightless(context)) s.push_speed *= settling_push;
   s.rest_speed_squared = context.rest_speed * context.rest_speed;
   s.restless_load = restless_load;
   s.still_way = still_way(world, context.dt);
@@ -155,7 +158,8 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   std::uint32_t pushed = found.pushed & lane_bits(lanes), turns = found.turns & ~meets;
   for (; pushed != 0; pushed &= pushed - 1) {
     const int lane = std::countr_zero(pushed);
-    if (!parts_in_flight(context, slot_of(block.body_a[lane]), slot_of(block.body_b[lane]))) marks[lane] |= mark_pushed;
+    const std::int32_t a = block.body_a[lane], b = block.body_b[lane];
+    if (!parts_in_flight(context, slot_of(a), slot_of(b))) marks[lane] |= mark_pushed;
   }
   for (; meets != 0; meets &= meets - 1) {
     const int lane = std::countr_zero(meets);

@@ -54,8 +54,10 @@ void put_joint(Lanes& out, BodyTurns<D, W>& turns, auto& inertia_a, auto& inerti
     set_lane(rotation, lane, bodies.pose[std::size_t(body)].rotation);
     if (!bodies.is_dynamic(body)) return;
     write[lane] = body;
-    mass[lane] = bodies.motion[std::size_t(body)].inverse_mass;
-    set_lane(inertia, lane, bodies.motion[std::size_t(body)].world_inverse_inertia);
+    const BodyMotion<D>& motion = bodies.motion[std::size_t(body)];
+    const float share = load_share(motion);
+    mass[lane] = motion.inverse_mass * share;
+    set_lane(inertia, lane, motion.world_inverse_inertia * share);
   };
   put(b, out.read_b, out.write_b, out.inverse_mass_b, inertia_b, turns.b);
   const BodyMotion<D>& motion_b = bodies.motion[std::size_t(b)];

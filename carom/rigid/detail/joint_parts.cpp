@@ -62,6 +62,29 @@ bool holds_axes(const JointData<D>& data) {
 }
 
 template <class D>
+bool is_springy(const JointData<D>& data) {
+  if (data.internal) return true;
+  return data.visit([](const auto& d) {
+    using Def = std::remove_cvref_t<decltype(d)>;
+    if constexpr (std::is_same_v<Def, WeldJointDef<D>>) {
+      return d.linear.hertz > 0 || d.angular.hertz > 0;
+    } else if constexpr (std::is_same_v<Def, MotorJointDef<D>> || std::is_same_v<Def, MouseJointDef<D>>) {
+      return true;
+    } else if constexpr (std::is_same_v<Def, GenericJointDef<D>>) {
+      for (const JointAxis& axis : d.linear)
+        if (axis.free && axis.spring.hertz > 0) return true;
+      for (const JointAxis& axis : d.angular)
+        if (axis.free && axis.spring.hertz > 0) return true;
+      return false;
+    } else if constexpr (requires { d.spring; }) {
+      return d.spring.hertz > 0;
+    } else {
+      return false;
+    }
+  });
+}
+
+template <class D>
 void test_joints(WorldImplementation<D>& world) {
   JointStore<D>& joints = world.joints;
   if (joints.breakable_count == 0) return;
@@ -109,6 +132,8 @@ template bool turns_rigidly(const JointData<Dim2>&);
 template bool turns_rigidly(const JointData<Dim3>&);
 template bool holds_axes(const JointData<Dim2>&);
 template bool holds_axes(const JointData<Dim3>&);
+template bool is_springy(const JointData<Dim2>&);
+template bool is_springy(const JointData<Dim3>&);
 template void test_joints(WorldImplementation<Dim2>&);
 template void test_joints(WorldImplementation<Dim3>&);
 template void break_joints(WorldImplementation<Dim2>&);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/rigid/detail/joint_record.h"
+#include "carom/rigid/detail/load.h"
 #include "carom/rigid/detail/world_implementation.h"
 
 namespace carom::rigid::detail {

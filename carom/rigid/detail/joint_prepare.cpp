@@ -296,14 +296,15 @@ void fill_record(JointRecord<D>& record, const WorldImplementation<D>& world, fl
   record.dynamic_b = world.bodies.is_dynamic(record.body_b);
   const auto fill_masses = [&](bool dynamic, std::int32_t body, float& inverse_mass, float& inverse_inertia, int side) {
     const BodyMotion<D>* motion = dynamic ? &world.bodies.motion[std::size_t(body)] : nullptr;
-    inverse_mass = dynamic ? motion->inverse_mass : 0;
+    const float share = dynamic ? load_share(*motion) : 0;
+    inverse_mass = dynamic ? motion->inverse_mass * share : 0;
     if constexpr (D::dimension == 2) {
-      inverse_inertia = dynamic ? motion->world_inverse_inertia : 0;
+      inverse_inertia = dynamic ? motion->world_inverse_inertia * share : 0;
     } else if (record.isotropic) {
-      inverse_inertia = dynamic ? motion->world_inverse_inertia.cx.x : 0;
+      inverse_inertia = dynamic ? motion->world_inverse_inertia.cx.x * share : 0;
     } else {
       ::new (static_cast<void*>(record.tensors() + side))
-          Mat3f(dynamic ? motion->world_inverse_inertia : Mat3f::zero());
+          Mat3f(dynamic ? motion->world_inverse_inertia * share : Mat3f::zero());
     }
   };
   fill_masses(record.dynamic_a, record.body_a, record.inverse_mass_a, record.inverse_inertia_a, 0);

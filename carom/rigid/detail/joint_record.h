@@ -124,6 +124,9 @@ bool is_rod(const JointData<D>& data);
 /// Does its part_angular hold the frames' attitude without a spring?
 template <class D>
 bool turns_rigidly(const JointData<D>& data);
+/// Has it a spring, whose stiffness goes by the masses of its bodies?
+template <class D>
+bool is_springy(const JointData<D>& data);
 
 /// Is it a generic joint that holds some axis?
 template <class D>

@@ -1,5 +1,6 @@
 // The joints' passes of a substep.
 #include "carom/rigid/detail/joint_rows.h"
+#include "carom/rigid/detail/load.h"
 #include "carom/rigid/detail/world_implementation.h"
 
 namespace carom::rigid::detail {
@@ -31,7 +32,7 @@ void save_pair(const BodyPair<D, I>& pair, const JointRecord<D>& record, SolverB
 inline void turn_inertia(Mat3f& inverse_inertia, const BodyMotion<Dim3>& motion, const Quatf& turn) {
   if (!motion.gyroscopic || turn.w > 0.99999f) return;  // less than half a degree
   const Mat3f r = to_matrix(turn);
-  inverse_inertia = r * motion.world_inverse_inertia * transpose(r);
+  inverse_inertia = r * (motion.world_inverse_inertia * load_share(motion)) * transpose(r);
 }
 /// Space only: brings the record's tensors to the attitude of this substep.
 inline void turn_inertias(JointRecord<Dim3>& record, const StepContext<Dim3>& context) {

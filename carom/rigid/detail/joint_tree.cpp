@@ -66,9 +66,10 @@ class Tree {
         for (int c = 0; c < dofs; ++c) body.mass[r][c] = 0;
       for (auto& row : body.stiffness)
         for (double& x : row) x = 0;
-      for (int k = 0; k < dimension; ++k)
-        body.mass[k][k] = double(motion.mass) * ((locks >> k & 1) != 0 ? locked_mass : 1);
-      body.inverse_mass = double(motion.inverse_mass);
+      const double factor = mass_factor(motion);
+      body.own_mass = factor * double(motion.mass);
+      body.inverse_mass = double(motion.inverse_mass) / factor;
+      for (int k = 0; k < dimension; ++k) body.mass[k][k] = body.own_mass * ((locks >> k & 1) != 0 ? locked_mass : 1);
       fill_inertia(body, motion, context_.bodies[slot].delta_rotation * store.pose[slot].rotation, locks);
     }
     for (int j = range_.first_joint; j < range_.joint_end; ++j) fill_rows(trees_.joints[std::size_t(j)]);

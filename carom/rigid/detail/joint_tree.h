@@ -33,11 +33,11 @@ struct TreeBody {
   std::int32_t body = none;   ///< slot
   std::int32_t joint = none;  ///< to the parent, place in JointTrees::joints; `none` at the root of a free tree
   // Of a step:
-  SolverBody<D> ahead{};    ///< where the body will be at the end of the substep
-  double mass[dofs][dofs];  ///< its own, then with what hangs on it; then factorised
-  double inverse[dofs];     ///< 1/D of the factor
-  double load[dofs];        ///< right-hand side, then the change of velocity
-  double inverse_mass = 0;
+  SolverBody<D> ahead{};                  ///< where the body will be at the end of the substep
+  double mass[dofs][dofs];                ///< its own, then with what hangs on it; then factorised
+  double inverse[dofs];                   ///< 1/D of the factor
+  double load[dofs];                      ///< right-hand side, then the change of velocity
+  double own_mass = 0, inverse_mass = 0;  ///< kg, 1/kg
   double inverse_inertia[dofs - D::dimension][dofs - D::dimension];
   double inertia[dofs - D::dimension][dofs - D::dimension];    ///< kg·m², world axes
   double stiffness[dofs - D::dimension][dofs - D::dimension];  ///< N·m/rad against turning, from the joints' forces

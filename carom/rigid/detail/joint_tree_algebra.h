@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carom/rigid/detail/joint_tree.h"
+#include "carom/rigid/detail/load.h"
 
 namespace carom::rigid::detail {
 
@@ -71,11 +72,18 @@ inline void add_velocity(SolverBody<Dim3>& s, const double (&change)[6]) {
   }
 }
 
+/// How many times its own mass a body has for what presses it together (load.h).
+template <class D>
+double mass_factor(const BodyMotion<D>& m) {
+  return 1 / double(load_share(m));
+}
+
 inline void fill_inertia(TreeBody<Dim2>& out, const BodyMotion<Dim2>& m, const Rot2f&, std::uint8_t locks) {
   const bool turns = m.inertia > 0 && (locks & 32) == 0;
-  out.inertia[0][0] = double(m.inertia);
-  out.mass[2][2] = turns ? double(m.inertia) : locked_mass * double(max(m.inertia, m.mass));
-  out.inverse_inertia[0][0] = turns ? 1 / double(m.inertia) : 0;
+  const double inertia = mass_factor(m) * double(m.inertia);
+  out.inertia[0][0] = inertia;
+  out.mass[2][2] = turns ? inertia : locked_mass * double(max(m.inertia, m.mass));
+  out.inverse_inertia[0][0] = turns ? 1 / inertia : 0;
 }
 inline void fill_inertia(TreeBody<Dim3>& out, const BodyMotion<Dim3>& m, const Quatf& rotation, std::uint8_t locks) {
   const Vec3f size{m.inertia.cx.x, m.inertia.cy.y, m.inertia.cz.z};
@@ -86,9 +94,10 @@ inline void fill_inertia(TreeBody<Dim3>& out, const BodyMotion<Dim3>& m, const Q
     const Mat3d r = Mat3d(to_matrix(rotation));
     inertia = r * Mat3d(m.inertia) * transpose(r);
   }
+  const double half = 0.5 * mass_factor(m);
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
-      out.inertia[i][k] = out.mass[3 + i][3 + k] = 0.5 * (inertia.column(k)[i] + inertia.column(i)[k]);
+      out.inertia[i][k] = out.mass[3 + i][3 + k] = half * (inertia.column(k)[i] + inertia.column(i)[k]);
   for (int i = 0; i < 3; ++i)
     if (!(mean > 0) || (locks >> (3 + i) & 1) != 0) out.mass[3 + i][3 + i] += heavy;
   double factor[3][3], inverse[3];

@@ -44,14 +44,13 @@ struct TreeEnergy {
   /// J, of the tree when it moves at `speed` as a whole.
   double at_speed(double speed) const {
     double mass = 0;
-    for (int i = range.first_body; i < range.body_end; ++i)
-      mass += double(context.world.bodies.motion[std::size_t(trees.bodies[std::size_t(i)].body)].mass);
+    for (int i = range.first_body; i < range.body_end; ++i) mass += trees.bodies[std::size_t(i)].own_mass;
     return 0.5 * mass * speed * speed;
   }
   double energy_of(const TreeBody<D>& body, const double (&v)[dofs]) const {
     double sum = 0;
     for (int c = 0; c < dimension; ++c) sum += v[c] * v[c];
-    sum *= double(context.world.bodies.motion[std::size_t(body.body)].mass);
+    sum *= body.own_mass;
     for (int r = dimension; r < dofs; ++r)
       for (int c = dimension; c < dofs; ++c) sum += v[r] * body.inertia[r - dimension][c - dimension] * v[c];
     return 0.5 * sum;
@@ -95,13 +94,12 @@ struct TreeEnergy {
   /// The motion of the tree as one body with the same momenta: velocity of its centre of mass, and its turning.
   void rigid_motion(double (&rigid)[dofs], typename D::Position& center) const {
     constexpr int turning = dofs - dimension;
-    const auto& store = context.world.bodies;
     double mass = 0;
     const typename D::Position origin = position_of(trees.bodies[std::size_t(range.first_body)]);
     typename D::Position moment{};
     for (int i = range.first_body; i < range.body_end; ++i) {
       const TreeBody<D>& body = trees.bodies[std::size_t(i)];
-      const double m = double(store.motion[std::size_t(body.body)].mass);
+      const double m = body.own_mass;
       double v[dofs];
       velocity_of(v, context.bodies[body.body]);
       mass += m;
@@ -114,7 +112,7 @@ struct TreeEnergy {
     double* const spin = rigid + dimension;
     for (int i = range.first_body; i < range.body_end; ++i) {
       const TreeBody<D>& body = trees.bodies[std::size_t(i)];
-      const double m = double(store.motion[std::size_t(body.body)].mass);
+      const double m = body.own_mass;
       double v[dofs];
       velocity_of(v, context.bodies[body.body]);
       const typename D::Position r = position_of(body) - center;

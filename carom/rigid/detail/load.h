@@ -6,7 +6,8 @@
 // solver, s times its mass and inertia while its weight and the forces on it stay (its acceleration is divided by s):
 // statics stay exact, its contacts become s times as stiff, and no contact sees a load of more than some bodies'
 // weights. L is what presses from all sides at once, (Σ|λ| − |Σ λ n|)/2 over the contacts of the body: nothing for what
-// lies on top, is struck or pushed from one side. See docs/computation.md, §3.
+// lies on top, is struck or pushed from one side. A body with joints is pressed by these too, as far as contacts tell.
+// See docs/computation.md, §3.
 #pragma once
 
 #include <algorithm>
@@ -35,6 +36,9 @@ inline constexpr int free_level = 35;  ///< twice its mass: more is granted by w
 inline constexpr int load_wait = 8;    ///< steps between two questions for more
 inline constexpr float most_load_factor = 1e4f;  ///< about what the last level means
 inline constexpr float rest_falls = 4;           ///< steps of free fall: what parts no faster is at rest
+inline constexpr float jointed_bearing = 16;     ///< times what others bear, that a body with joints bears as it is
+inline constexpr int jointed_fall = 20;          ///< levels a step of one that nothing touches any more
+inline constexpr float jointed_share = 0.125f;   ///< of the mass that its joints hold, that it has at most for a load
 
 /// 1/s by level: two percent each, to ten thousand.
 struct LoadShares {
@@ -80,7 +84,7 @@ float borne_share(const StepContext<D>& context, const BodyMotion<D>& m, const B
   return borne > 0 && squeeze > borne ? borne / squeeze : 1;
 }
 
-/// The least level that has this share or less.
+/// The least level that has this share of a body's mobility or less.
 inline std::uint16_t level_of_share(float share) {
   const float* const shares = load_shares.share;
   return std::uint16_t(std::lower_bound(shares, shares + LoadShares::count - 1, share, std::greater<>()) - shares);
@@ -113,6 +117,14 @@ std::uint16_t follow_load(const StepContext<D>& context, const BodyMotion<D>& m,
   const int far = level + load_rise + load_lag;
   if (far >= last || !(shares[far] > share)) return std::uint16_t(level + load_rise);
   return std::uint16_t(int(std::lower_bound(shares + far, shares + last, share, std::greater<>()) - shares) - load_lag);
+}
+
+/// The load of a body with joints, whose impulses balance what contacts give it beyond `weight` (N·s in a substep): as
+/// of one that bears as much as others do. What nothing touches hangs, and swings with its own mass.
+template <class D>
+BodyLoad<D> jointed_load(const BodyLoad<D>& load, const typename D::Vector& weight) {
+  if (load.size <= 0) return load;
+  return {(-1 / jointed_bearing) * weight, (load.size + math::length(load.sum + weight)) / jointed_bearing};
 }
 
 }  // namespace carom::rigid::detail

@@ -206,19 +206,23 @@ void mark_settling(StepContext<D>& context) {
         if (world.bodies.is_dynamic(body) && is_pushed[body] == 0) is_pushed[body] = 1, pushed[count++] = body;
     });
   if (count == 0) return;
+  const auto settles = [&](ContactBlock<D, W>& block, int lane, std::uint8_t& mark) {
+    block.settles[lane] = 1;
+    for (const std::int32_t body : {block.body_a[lane], block.body_b[lane]})
+      if (body >= 0 && world.bodies.motion[std::size_t(body)].load_level > 0) block.again[lane] |= block_bears;
+    mark |= mark_settles;
+  };
   if (many_bodies * count > world.bodies.awake.size()) {
     for_blocks<D, W>(context, Overflow::at_once,
                      [&](std::span<const std::int32_t>, std::size_t, int lanes, ContactBlock<D, W>& block,
                          ContactExtra<D, W>*, std::uint8_t* marks) {
-                       for (int lane = 0; lane < lanes; ++lane) block.settles[lane] = 1, marks[lane] |= mark_settles;
+                       for (int lane = 0; lane < lanes; ++lane) settles(block, lane, marks[lane]);
                      });
     return;
   }
   for (const std::int32_t body : pushed.first(count))
-    for_lanes_of<D, W>(world, body, [](ContactBlock<D, W>& block, int lane, std::uint8_t& mark, int) {
-      block.settles[lane] = 1;
-      mark |= mark_settles;
-    });
+    for_lanes_of<D, W>(
+        world, body, [&](ContactBlock<D, W>& block, int lane, std::uint8_t& mark, int) { settles(block, lane, mark); });
 }
 
 /// Finds the contacts of bodies that take impulses again: those of joints and trees, what strikes, and who sleeps
@@ -283,8 +287,8 @@ void prepare_and_mark(StepContext<D>& context) {
   context.world.scratch.again.resize(context.world.bodies.record.size());
   context.world.scratch.wedged.resize(context.world.bodies.record.size());
   const bool any_strikes = prepare_blocks<D, W>(context);
-  mark_settling<D, W>(context);
   find_again<D, W>(context, any_strikes);
+  mark_settling<D, W>(context);
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
   std::vector<std::int32_t>& hits = world.scratch.hits;

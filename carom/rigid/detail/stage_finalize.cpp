@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "carom/rigid/detail/coarse.h"
+#include "carom/rigid/detail/joint_figure.h"
 #include "carom/rigid/detail/rotation_step.h"
 #include "carom/rigid/detail/stages.h"
 #include "carom/rigid/detail/step_end_lanes.h"
@@ -181,10 +182,25 @@ bool leave_bounds(WorldImplementation<D>& world, std::int32_t body) {
   return any;
 }
 
+/// The next level of a body with joints (load.h): it rises slowly, because joints that gave way would throw up what
+/// they carry, and falls fast once nothing presses.
+template <class D>
+std::uint16_t follow_jointed_load(const StepContext<D>& context, std::int32_t body, const BodyMotion<D>& m,
+                                  const BodyLoad<D>& load, float pace, float gravity) {
+  if (load.size < 0) return 0;
+  if (load.size == 0) return std::uint16_t(max(int(m.load_level) - jointed_fall, 0));
+  const WorldImplementation<D>& world = context.world;
+  const typename D::Vector weight =
+      (context.h * pace * pace) * (m.mass * m.gravity_scale * world.definition.gravity + m.force);
+  const int level =
+      min(int(follow_load(context, m, jointed_load<D>(load, weight), gravity)), int(m.load_level) + load_rise);
+  return level > 0 ? min(std::uint16_t(level), Figure<D>(world, body).most_level(body)) : std::uint16_t(0);
+}
+
 /// The level of the body by its load. `gravity`: m/s², of what acts on it from afar.
 template <class D>
-static void follow_load_of(StepContext<D>& context, std::int32_t body, const BodyLoad<D>& load, float gravity,
-                           std::vector<LoadWish>& wishes) {
+static void follow_load_of(StepContext<D>& context, std::int32_t body, const BodyLoad<D>& load, float pace,
+                           float gravity, std::vector<LoadWish>& wishes) {
   WorldImplementation<D>& world = context.world;
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
@@ -192,8 +208,11 @@ static void follow_load_of(StepContext<D>& context, std::int32_t body, const Bod
     record.flags &= std::uint16_t(~body_pushed);
   else
     record.flags |= body_pushed;
-  const bool may = record.type == BodyType::dynamic && record.joint_count == 0;
-  const int level = may ? follow_load(context, m, load, gravity) : 0;
+  const bool jointed = record.joint_count > 0;
+  int level = 0;
+  if (record.type == BodyType::dynamic)
+    level =
+        jointed ? follow_jointed_load(context, body, m, load, pace, gravity) : follow_load(context, m, load, gravity);
   if (level == 0 && m.load_level > free_level) {
     wishes.push_back({body, 0});
   } else if (level <= m.load_level) {
@@ -201,7 +220,7 @@ static void follow_load_of(StepContext<D>& context, std::int32_t body, const Bod
   } else if (world.scratch.wedged[std::size_t(body)] == 0) {
     // Bodies that are wedged in each other press by their overlap and not by a load: were they given more mass for it,
     // they would press the more.
-    const int limit = max(int(m.load_limit), free_level);
+    const int limit = jointed ? level : max(int(m.load_limit), free_level);
     m.load_level = std::uint16_t(max(int(m.load_level), min(level, limit)));
     // To ask costs a walk over all contacts.
     const auto now = std::uint16_t(world.step_count);
@@ -241,7 +260,7 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
     change = body_flew;
   }
   const float pace = world.bodies.pace(body);
-  follow_load_of(context, body, load, max(gravity, gravity_of(world.definition, m, pace, gravity)), wishes);
+  follow_load_of(context, body, load, pace, max(gravity, gravity_of(world.definition, m, pace, gravity)), wishes);
   m.force = {};
   m.torque = {};
   float speed = ends.speed[lane];

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <span>
 
+#include "carom/rigid/detail/joint_figure.h"
 #include "carom/rigid/detail/stages.h"
 
 namespace carom::rigid::detail {
@@ -264,11 +265,56 @@ class SetDown {
   int count_ = 0;
 };
 
+template <class D>
+bool touches(const WorldImplementation<D>& world, std::int32_t body) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    if (c.first_manifold != none) return true;
+    key = c.next[key & 1];
+  }
+  return false;
+}
+
+/// What stands with some of its bodies, held together by joints, presses on these with its weight in even shares until
+/// contacts tell better. They have more mass for it at once: they would give way until they had (load.h).
+template <class D>
+void load_figure(const StepContext<D>& context, std::int32_t body) {
+  WorldImplementation<D>& world = context.world;
+  const Figure<D> figure(world, body);
+  const auto weight_of = [&](std::int32_t member) {
+    const BodyMotion<D>& m = world.bodies.motion[std::size_t(member)];
+    return (context.h * m.mass * m.gravity_scale) * world.definition.gravity;
+  };
+  typename D::Vector weight{};
+  int standing = 0;
+  for (const std::int32_t member : figure.bodies()) weight += weight_of(member), standing += touches(world, member);
+  if (standing == 0) return;
+  weight *= -1 / float(standing);
+  BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
+  const BodyLoad<D> load = jointed_load<D>({weight, math::length(weight)}, weight_of(body));
+  const std::uint16_t level = level_of_load(context, m, load, math::length(world.definition.gravity));
+  if (level > 0) m.load_level = min(level, figure.most_level(body));
+}
+
+template <class D>
+void load_figures(StepContext<D>& context) {
+  WorldImplementation<D>& world = context.world;
+  if (world.joints.slots.size() == 0) return;
+  for (const std::int32_t contact : world.scratch.new_touches) {
+    const ContactRecord<D>& c = world.contacts.at(contact);
+    if (!lies_still(world, c.body[0]) || !lies_still(world, c.body[1])) continue;
+    for (const std::int32_t body : c.body)
+      if (world.bodies.is_dynamic(body) && world.bodies.record[std::size_t(body)].joint_count > 0)
+        load_figure(context, body);
+  }
+}
+
 }  // namespace
 
 template <class D>
 void hand_down_loads(StepContext<D>& context) {
   SetDown<D>(context).run();
+  load_figures(context);
 }
 
 template void hand_down_loads<Dim2>(StepContext<Dim2>&);

@@ -16,10 +16,12 @@ constexpr std::size_t few_rows = 300, few_bodies = 512;
 /// Colours in the order of a sweep: the overflow first, because what is solved last holds best.
 int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
 
+bool is_of_pushes(SolverPass pass) { return pass == SolverPass::take_back || pass == SolverPass::settle; }
+
 /// Pieces of the joints of a colour; what settles leaves them alone.
 template <class D>
 int joint_units_of(const StepContext<D>& context, SolverPass pass, int color) {
-  return pass == SolverPass::settle ? 0 : joint_units(context.world, color);
+  return is_of_pushes(pass) ? 0 : joint_units(context.world, color);
 }
 template <class D>
 int block_count_of(const StepContext<D>& context, SolverPass pass, int color) {
@@ -74,7 +76,7 @@ void add_color_stages(StepContext<D>& context, SolverPass pass, std::uint8_t ord
   }
 }
 
-/// Is something so deep in something else that it is pushed out with the push speed?
+/// Is something so deep in something else that it is pushed out fast?
 template <class D>
 bool any_pushed(const WorldImplementation<D>& world) {
   bool any = false;
@@ -83,9 +85,21 @@ bool any_pushed(const WorldImplementation<D>& world) {
   return any;
 }
 
+/// Room for the impulses of what settles.
+template <class D>
+void make_room_to_keep(StepContext<D>& context) {
+  for (int color = 0; color <= overflow_color; ++color) {
+    ColorBlocks& b = context.world.scratch.blocks[color];
+    const std::size_t lanes = std::size_t(b.count) * std::size_t(context.world.kernels.width);
+    if (b.count > 0) b.kept = context.arena.template allocate<float>(std::size_t(D::max_points) * lanes).data();
+  }
+}
+
 template <class D>
 void list_stages(StepContext<D>& context) {
   const int settling = any_pushed(context.world) ? settle_passes : 0;
+  const bool takes_back = settling > 0 && is_weightless(context);
+  if (takes_back) make_room_to_keep(context);
   StepScratch<D>& scratch = context.world.scratch;
   scratch.solver_stages.clear();
   scratch.solver_loops.clear();
@@ -112,6 +126,7 @@ void list_stages(StepContext<D>& context) {
     const bool last = substep + 1 == context.substeps;
     add_impact_stage(context, last ? ImpactMoment::end_of_step : ImpactMoment::end_of_substep);
     add_tree_stage(context, SolverPass::factorise_trees);
+    if (takes_back) add_color_stages(context, SolverPass::take_back);
     for (int i = 0; i < settling; ++i) add_color_stages(context, SolverPass::settle);
     add_color_stages(context, SolverPass::relax);
     add_tree_stage(context, SolverPass::settle_trees);
@@ -132,6 +147,8 @@ void run_blocks(StepContext<D>& context, SolverStage stage, const ColorBlocks& b
   else if (stage.pass == SolverPass::solve)
     kernels.solve(context.bodies, b.blocks, begin, end, context.inverse_h, context.push_speed, context.contact_softness,
                   stage.order);
+  else if (stage.pass == SolverPass::take_back)
+    kernels.take_back(context.bodies, b.blocks, b.kept, begin, end);
   else if (stage.pass == SolverPass::settle)
     kernels.settle(context.bodies, b.blocks, begin, end, context.inverse_h);
   else
@@ -161,11 +178,13 @@ void run_color(StepContext<D>& context, SolverStage stage, int color, ThreadShar
   const ColorBlocks& blocks = context.world.scratch.blocks[color];
   if (is_warm_start(stage.pass))
     warm_start_joints(context, color, share);
-  else if (stage.pass != SolverPass::settle)
+  else if (!is_of_pushes(stage.pass))
     solve_joints(context, color, stage.pass == SolverPass::solve, share);
   const int count = block_count_of(context, stage.pass, color), first = share.begin(count), last = share.end(count);
   if (first >= last) return;
-  if (stage.pass == SolverPass::settle)
+  if (stage.pass == SolverPass::solve && blocks.kept != nullptr)
+    context.world.kernels.keep(blocks.blocks, blocks.kept, first, last, context.contact_softness);
+  if (is_of_pushes(stage.pass))
     run_marked(context, stage, mark_settles, color, first, last);
   else if (stage.pass == SolverPass::warm_start_again)
     run_marked(context, stage, mark_again, color, first, last);

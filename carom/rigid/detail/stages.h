@@ -23,6 +23,11 @@ bool passes_one_way(const WorldImplementation<D>& world, std::int32_t other, con
 /// First impulses and masses of what was set down at rest in contact.
 template <class D>
 void hand_down_loads(StepContext<D>& context);
+/// Nothing is pressed together by its weight: what pushes bodies out of each other is all that contacts do.
+template <class D>
+bool is_weightless(const StepContext<D>& context) {
+  return context.world.definition.gravity == typename D::Vector{};
+}
 /// Has the solver any contact in this step?
 template <class D>
 bool any_contacts(const WorldImplementation<D>& world) {

@@ -29,6 +29,10 @@ inline Softness make_softness(float hertz, float damping_ratio, float h) {
 /// move, as a thread sees of its nut, agree slowly: Δλ adds up over many substeps, and such a sum only comes to rest
 /// where (ωh)² < (1 + 2a₂)/(1 + a₂), a₂ as in make_softness, which .22 turns are.
 inline constexpr float most_joint_turns = 0.25f, most_coupling_turns = 0.2f;
+/// Where no tree takes over what is far heavier than the bodies of a joint, all joints are such rows.
+inline constexpr float most_turns_of_joints(JointSolver solver) {
+  return solver == JointSolver::iterative ? most_coupling_turns : most_joint_turns;
+}
 
 /// Of contacts between two bodies that impulses move, and of those with one that they do not.
 struct ContactSoftness {

@@ -31,7 +31,7 @@ struct FoundPair {
 
 enum ContactMark : std::uint8_t {
   mark_bounces = 1,    ///< may bounce in this step
-  mark_pushed = 2,     ///< so deep that it is pushed out with the push speed
+  mark_pushed = 2,     ///< so deep that it is pushed out fast
   mark_settles = 4,    ///< that, or beside it: a body of both is the same
   mark_hits = 8,       ///< closes so fast that a hit may have to be told
   mark_anew = 16,      ///< takes an anchor once it bears a load
@@ -44,6 +44,7 @@ struct ColorBlocks {
   void* blocks = nullptr;
   void* extra = nullptr;
   std::uint8_t* marks = nullptr;  ///< ContactMark by place in the colour's list
+  float* kept = nullptr;          ///< impulses before something was pushed out, where something is
   int count = 0;
   bool bounces = false;
   bool again = false;  ///< any with mark_again
@@ -61,7 +62,8 @@ enum class SolverPass : std::uint8_t {
   solve_trees,
   positions,
   factorise_trees,
-  settle,  ///< what is pushed out: relaxing of normals, before the pass that counts
+  take_back,  ///< what pushed something out
+  settle,     ///< what is pushed out: relaxing of normals, before the pass that counts
   relax,
   settle_trees
 };
@@ -72,12 +74,14 @@ struct SolverStage {
                            ///< bodies carry on what contacts did in the substep before
 };
 
-/// Where something is pushed out with the push speed, so many more relaxing passes take that speed from it again: what
-/// many overlaps push from all sides would keep some of it. Contacts of bodies that nothing pushes need none of them.
+/// Where something is pushed out fast, what the solving pass gave is taken back once the bodies have moved: relaxing
+/// alone, row by row, would leave some of it where many overlaps push from all sides, and most of it with what is
+/// light. So many relaxing passes then do what solving did besides. Contacts of bodies that nothing pushes need none of
+/// them.
 inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
-  return 1 + std::size_t(substeps) * std::size_t(8 + (3 + settling) * (color_count + 1));
+  return 1 + std::size_t(substeps) * std::size_t(8 + (settling > 0 ? 4 + settling : 3) * (color_count + 1));
 }
 
 /// How a body came out of a step; body_flew only until continuous collision has looked at it.

@@ -169,7 +169,7 @@ StepContext<D> make_context(WorldImplementation<D>& world, float dt, int substep
     return make_softness(min(stiffer * definition.joint_hertz, most_turns * context.inverse_h),
                          definition.joint_damping_ratio, context.h);
   };
-  context.joint_softness = joint_softness(most_joint_turns);
+  context.joint_softness = joint_softness(most_turns_of_joints(definition.joint_solver));
   context.coupling_softness = joint_softness(most_coupling_turns);
   context.push_speed = definition.contact_push_speed;
   context.rest_speed = rest_speed(definition, dt);
