@@ -79,8 +79,8 @@ Places particles(const Telling& t, DragLaw law) {
   ParticleSystem system = ParticleSystem::create(def).value();
   system.set_air({.wind = {.velocity = t.velocity({4, 1, -6})}}).value();
   for (int i = 0; i < 20; ++i)
-    EXPECT_TRUE(
-        system.add({.position = t.place({0.1 * i, 1, 0}), .velocity = t.velocity({20 - i, 3.0 + i, 0.5 * i})}).value());
+    EXPECT_TRUE(system.add({.position = t.place({0.1 * i, 1, 0}), .velocity = t.velocity({20.0 - i, 3.0 + i, 0.5 * i})})
+                    .value());
   for (int s = 0; s < 180; ++s) system.step(dt * t.time).value();
   Places out;
   for (int i = 0; i < system.size(); ++i) out.push_back(system.position(i));
