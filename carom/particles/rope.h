@@ -83,11 +83,11 @@ struct RopeAir {
 };
 
 namespace detail {
+struct FastShape;
 struct Rope;
 struct RopeAnswer;
 struct RopeBody;
 struct RopeCross;
-struct RopeFast;
 struct RopeMemory;
 struct RopeShape;
 struct RopeSolver;
@@ -160,7 +160,7 @@ class CAROM_API RopeSet {
   std::vector<int> first_block_;
   std::vector<rigid::ShapeId> found_, of_body_;
   std::vector<rigid::BodyId> fast_bodies_;
-  std::vector<detail::RopeFast> fast_;
+  std::vector<detail::FastShape> fast_;
   std::vector<rigid::JointId> joints_;
   std::vector<RopeBreakEvent> breaks_;
   std::vector<detail::RopeCross> crossings_, crossings_before_;

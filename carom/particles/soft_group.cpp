@@ -126,8 +126,7 @@ core::Status SoftGroup::step(std::span<Cloth* const> cloths, std::span<SoftBody*
       continue;
     }
     s.meeting.set_numbers(s.numbers);
-    const int substeps = step_together(s.near, &s.meeting, world, dt);
-    s.tell(float(dt / substeps));
+    s.tell(step_together(s.near, &s.meeting, world, dt));
   }
   return {};
 }

@@ -2,12 +2,10 @@
 // step, goes through none, and takes what it gives.
 #include <gtest/gtest.h>
 
-#include "carom/geometry/compound.h"
-#include "carom/geometry/hull.h"
-#include "carom/geometry/shape3.h"
 #include "carom/math/elementary.h"
 #include "carom/math/random.h"
 #include "carom/particles/rope.h"
+#include "tests/particles/flung.h"
 
 namespace rope_fast_test {
 using namespace carom;
@@ -49,45 +47,20 @@ struct Shot {
   BodyId body{};
 };
 
-geometry::Shape3 shape_of(int kind, double size) {
-  const float r = float(size);
-  if (kind == 0) return geometry::Sphere{r};
-  if (kind == 1) return geometry::Box{{r, r, r}};
-  if (kind == 2) return geometry::Cylinder{r, r};
-  std::vector<Vec3f> corners;
-  for (int k = 0; k < 8; ++k) corners.push_back({k & 1 ? r : -r, k & 2 ? r : -r, k & 4 ? r : -r});
-  if (kind == 3) return geometry::make_hull(corners).value();
-  return geometry::make_compound(
-             {{geometry::Box{{r, r, r}}, {{0.5f * r, 0, 0}, {}}}, {geometry::Box{{r, r, r}}, {{-0.5f * r, 0, 0}, {}}}})
-      .value();
-}
-
 Shot fling(World3& world, math::Random& random, int kind, double mass, double most_off, double dt) {
   Shot shot;
   shot.size = 0.01 * math::exp(random.uniform(0.0, math::log(10.0)));
   shot.speed = 20 * math::exp(random.uniform(0.0, math::log(20.0)));
   shot.mass = mass > 0 ? mass : 300 * 8 * shot.size * shot.size * shot.size;
   shot.off = random.uniform(-most_off, most_off) * shot.size;
-  shot.shape = shape_of(kind, shot.size);
+  shot.shape = flung_shape(kind, shot.size);
   const double roll = random.uniform(0.0, 2 * math::pi), slant = random.uniform(-0.8, 0.8);
   shot.perpendicular = {0, math::cos(roll), math::sin(roll)};
   const Vec3d way = math::cos(slant) * shot.perpendicular + Vec3d{math::sin(slant), 0, 0};
   shot.aside = normalize(cross(way, Vec3d{1, 0, 0}));
-  rigid::BodyDef<Dim3> def;
-  def.type = rigid::BodyType::dynamic;
-  def.position = Vec3d{random.uniform(-0.4, 0.4), 0, 0} - (0.3 + random.uniform(0.0, 1.0) * shot.speed * dt) * way +
-                 shot.off * shot.aside;
-  def.linear_velocity = Vec3f(shot.speed * way);
-  if (kind > 0) {
-    def.rotation = normalize(math::Quatf{random.uniform(-1.f, 1.f), random.uniform(-1.f, 1.f),
-                                         random.uniform(-1.f, 1.f), random.uniform(-1.f, 1.f)});
-    def.angular_velocity = {random.uniform(-20.f, 20.f), random.uniform(-20.f, 20.f), random.uniform(-20.f, 20.f)};
-  }
-  shot.body = world.create_body(def).value();
-  world.add_shape(shot.body, shot.shape, {.density = 1000}).value();
-  auto properties = world.mass_properties3(shot.body).value();
-  const double scale = shot.mass / properties.mass;
-  world.set_mass_properties(shot.body, {shot.mass, properties.center, scale * properties.inertia}).value();
+  const Vec3d position = Vec3d{random.uniform(-0.4, 0.4), 0, 0} -
+                         (0.3 + random.uniform(0.0, 1.0) * shot.speed * dt) * way + shot.off * shot.aside;
+  shot.body = fling_body(world, random, kind, shot.shape, shot.mass, position, shot.speed * way);
   return shot;
 }
 

@@ -154,6 +154,7 @@ TEST(SoftLoad, HeavyBallOnATrampoline) {
 TEST(SoftLoad, ClothKeepsMomentumWithBodiesOfEveryMass) {
   rigid::WorldDef<Dim3> weightless;
   weightless.gravity = {};
+  weightless.allow_sleep = false;  // which would take a slow body's momentum
   for (const double mass : {0.001, 0.25, 250.0}) {
     World3 world(weightless);
     const ClothSheet sheet = make_cloth_sheet({-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1}, 17, 17);

@@ -99,6 +99,17 @@ TEST(Chapter06, QuadraticDragIsTheCanonicalCase) {
   }
 }
 
+// v₀/v_t = 2 to 18 digits: T = 1.87608349291696901, R = 1.17777844440920282.
+TEST(Chapter06, QuadraticDragToEveryDigit) {
+  const double vt = 50, length = vt * vt / g;
+  const Conditions still{.air = environment::AirColumn::uniform(1.225)};
+  const auto flight = fly(projectile_from_terminal_speed(vt), still, {{}, 2 * vt * direction(45 * degree)},
+                          {.time = 60, .ground = 0, .tolerance = 1e-13});
+  ASSERT_TRUE(flight) << flight.error().message;
+  EXPECT_NEAR(flight->end().time * g / vt, 1.87608349291696901, 2e-14);
+  EXPECT_NEAR(flight->end().position.x / length, 1.17777844440920282, 2e-14);
+}
+
 TEST(Chapter06, QuadraticDragAtOtherAngles) {
   const struct {
     double angle, ratio, range;

@@ -55,10 +55,10 @@ TEST(Chapter18Wave, ScalingAndAnExample) {
   EXPECT_NEAR(w.reflected_impulse, 954.938, 1e-2);
   EXPECT_NEAR(w.duration * 1e3, 13.9265, 1e-3);
   EXPECT_NEAR(w.arrival * 1e3, 18.7428, 1e-3);
-  // Rankine and Hugoniot agree with the fitted speed within 1.2 % from Z = 1 on.
-  for (double z = 1; z < 10; z += .5) {
+  // Rankine and Hugoniot agree with the fitted speed within 1 % from Z = 1 on, as far as the fits reach.
+  for (double z = 1; z <= 40; z += .1) {
     const Wave at = blast_wave(1, z).value();
-    EXPECT_NEAR(shock_speed(at.pressure) / at.front_speed, 1, .012) << z;
+    EXPECT_NEAR(shock_speed(at.pressure) / at.front_speed, 1, .01) << z;
   }
 }
 
@@ -77,7 +77,7 @@ TEST(Chapter18Wave, FreeAirBurst) {
       EXPECT_NEAR(w.reflected_pressure / w.pressure, ground.reflected_pressure / ground.pressure, 1e-9);
       EXPECT_NEAR(w.decay, ground.decay, 1e-9 * ground.decay + 1e-9) << row.z;
       EXPECT_EQ(w.arrival, ground.arrival);
-      EXPECT_NEAR(shock_speed(w.pressure) / w.front_speed, 1, .012) << row.z;
+      EXPECT_NEAR(shock_speed(w.pressure) / w.front_speed, 1, .01) << row.z;
       EXPECT_LT(w.pressure, blast_wave(charge, row.z * scale)->pressure);
     }
 }

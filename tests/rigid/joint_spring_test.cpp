@@ -1,6 +1,9 @@
 // Springs of joints and spring effectors against the damped oscillator x'' + 2ζω x' + ω² x = 0.
+#include <cmath>
+
 #include "carom/math/elementary.h"
 #include "mechanics_world.h"
+#include "tests/rigid/scene_pieces.h"
 
 namespace carom::rigid::test {
 namespace joint_spring_test {

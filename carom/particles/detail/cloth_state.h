@@ -100,8 +100,7 @@ struct ClothState final : SoftThing {
   ClothLaw law() const;                   ///< without the weight
   void stretch();                         ///< triangles: strains, stresses, wind
   void assemble(float h, Vec3f gravity);  ///< vertices: the linear system
-  void hold(float h);
-  void keep_apart(float h);  ///< folds
+  void keep_apart(float h);               ///< folds
   float lightness(std::uint32_t i) const {
     return pin_of[i] >= 0 ? 0.0f : 1 / mass[i];
   }  ///< 1/kg; none of what is held

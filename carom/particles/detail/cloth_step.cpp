@@ -89,30 +89,6 @@ void ClothState::assemble(float h, Vec3f gravity) {
   solver.begin(matrix, velocity, tasks());
 }
 
-void ClothState::hold(float h) {
-  hold_pins(touching(), solver);
-  if (!collide || obstacles.empty()) {
-    for (SoftTouch& touch : touches) touch = {};
-    return;
-  }
-  const double radius = fabric.thickness;
-  tasks().parallel_for(int(position.size()), cloth_chunk, [&](int from, int to, int) {
-    for (int row = from; row < to; ++row) {
-      const std::size_t i = std::size_t(row);
-      SoftTouch& touch = touches[i];
-      touch.near =
-          pin_of[i] < 0 &&
-          obstacles.nearest(position[i], radius,
-                            radius + 2 * double(h) * (double(length(velocity[i])) + double(h) * 20), touch.plane);
-      if (!touch.near) {
-        touch = {};
-        continue;
-      }
-      hold_touch(touch, i, position[i], velocity[i], fabric.friction, h, obstacles, solver);
-    }
-  });
-}
-
 void ClothState::begin_step(rigid::World3& world, double dt) {
   last_step = dt;
   greatest_tension = 0;

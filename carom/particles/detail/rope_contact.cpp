@@ -12,7 +12,6 @@ namespace {
 constexpr double rope_slip = 0.01;       // m/s: friction grows up to here
 constexpr int friction_iterations = 15;  // in which how things rub is found anew
 constexpr double meet_depth = 0.25;      // radii: where a motion within a substep enters a shape
-constexpr double usual_body = 20;  // m/s: up to there what comes to a rope is looked for without a look at its speed
 constexpr int meet_steps = 24;
 constexpr double most_way = 0.5;      // of half a body, that it may come in a substep in which it is met
 constexpr double most_turn = 0.3;     // rad, by which such a substep may change its turn
@@ -59,35 +58,9 @@ bool RopeSolver::search(bool solved) {
   return true;
 }
 
-/// Of what is faster than what is looked for anyway, where it goes.
-void RopeSolver::find_fast() {
-  set.fast_.clear();
-  world.fast_bodies(float(usual_body), set.fast_bodies_);
-  for (const rigid::BodyId id : set.fast_bodies_) {
-    const auto state = world.state(id);
-    if (!state) continue;
-    const Vec3d center = state->center_of_mass, way = dt * Vec3d(state->linear_velocity);
-    const bool turns = length(state->angular_velocity) > 0;
-    world.shapes(id, set.of_body_);
-    for (const rigid::ShapeId shape : set.of_body_) {
-      const auto definition = world.shape_definition(shape);
-      const auto geometry = world.shape_geometry(shape);
-      if (!definition || !geometry || definition->sensor) continue;
-      const geometry::Bounds3f tight = geometry::bounds(*geometry, definition->local);
-      const Vec3d from = state->pose.position - center;
-      const Vec3f extents = tight.extents();
-      const double outer = length(Vec3d(extents));
-      const Vec3d middle = from + rotate(Quatd(state->pose.rotation), Vec3d(tight.center()));
-      const double reach = outer + (turns ? length(middle) : 0), slack = 0.5 * dt * dt * length(gravity);
-      const Vec3d at = turns ? center : center + middle;
-      set.fast_.push_back({shape, grow(geometry::Bounds3d{min(at, at + way), max(at, at + way)}, reach + slack)});
-    }
-  }
-}
-
 void RopeSolver::find_shapes(const geometry::Bounds3d& bounds) {
   (void)world.overlap_bounds(grow(bounds, dt * usual_body), set.found_);
-  for (const RopeFast& fast : set.fast_) {
+  for (const FastShape& fast : set.fast_) {
     if (!overlaps(fast.way, bounds)) continue;
     alert = true;
     if (std::find(set.found_.begin(), set.found_.end(), fast.id) == set.found_.end()) set.found_.push_back(fast.id);

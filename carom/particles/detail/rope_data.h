@@ -55,12 +55,6 @@ struct RopeShape {
   Vec3d place{};
 };
 
-/// A shape of a body that comes fast, and the room that it goes through in the step.
-struct RopeFast {
-  rigid::ShapeId id{};
-  geometry::Bounds3d way{};
-};
-
 /// A plane that a particle may touch, fixed in a body.
 struct RopeContact {
   rigid::ShapeId shape{};

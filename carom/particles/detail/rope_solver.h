@@ -2,6 +2,8 @@
 #pragma once
 
 #include "carom/math/calculus.h"
+#include "carom/particles/detail/fast_shapes.h"
+#include "carom/particles/detail/nearest_surface.h"
 #include "carom/particles/detail/rope_data.h"
 
 namespace carom::particles::detail {
@@ -12,9 +14,12 @@ double nearest_share(const Distance& distance) {
   return math::least_place(distance, 0, 1, 16);
 }
 
-/// The nearest plane of a shape to a ball at `center` (shape's frame) and how far it is; false where that is more than
-/// `margin`.
-bool nearest_surface(const RopeShape& near, Vec3f center, float radius, float margin, Vec3f& normal, float& separation);
+/// Of what comes fast how far it is has to be told beside its edges, too.
+inline bool nearest_surface(const RopeShape& near, Vec3f center, float radius, float margin, Vec3f& normal,
+                            float& separation) {
+  return near.fast ? nearest_surface(near.shape, center, radius, margin, normal, separation)
+                   : nearest_plane(near.shape, center, radius, margin, normal, separation);
+}
 
 /// A segment's two ends, or a particle twice, in the frame of a shape.
 struct RopePlace {
@@ -64,7 +69,6 @@ struct RopeSolver {
 
   // rope_contact.cpp
   double reach_at(const Rope& rope, double speed) const;
-  void find_fast();
   /// Shapes in the bounds, and those that may come there within the step.
   void find_shapes(const geometry::Bounds3d& bounds);
   /// m/s, of a particle at the start of the substep, or as it is solved if that is faster.

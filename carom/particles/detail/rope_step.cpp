@@ -482,7 +482,7 @@ Status RopeSolver::run() {
   }
   h = dt / substeps;
   gather();
-  find_fast();
+  find_fast_shapes(world, dt, set.fast_bodies_, set.of_body_, set.fast_);
   for (Rope& rope : set.ropes_) {
     wind_winches(rope);
     find_contacts(rope, false);

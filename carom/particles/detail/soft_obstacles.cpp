@@ -1,36 +1,18 @@
 #include "carom/particles/detail/soft_obstacles.h"
 
+#include <algorithm>
+
 #include "carom/geometry/mass_properties.h"
 #include "carom/math/elementary.h"
 #include "carom/particles/detail/checks.h"
+#include "carom/particles/detail/nearest_surface.h"
 
 namespace carom::particles::detail {
 
-bool nearest_plane(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
-                   float& separation) {
-  const geometry::Shape3 ball(geometry::Sphere{radius});
-  const math::Transform3f place{center, {}};
-  bool found = false;
-  const auto take = [&](const geometry::Manifold3& manifold) {
-    for (int k = 0; k < manifold.count; ++k)
-      if (manifold.points[k].separation <= margin && (!found || manifold.points[k].separation < separation)) {
-        found = true;
-        separation = manifold.points[k].separation;
-        normal = manifold.normal;
-      }
-  };
-  if (is_convex(shape) || shape.type == geometry::ShapeType3::plane) {
-    geometry::PairCache cache;
-    geometry::Manifold3 manifold;
-    geometry::collide(shape, ball, place, margin, cache, manifold);
-    take(manifold);
-  } else {
-    geometry::Manifold3 manifolds[4];
-    const int count = geometry::collide_many(shape, ball, place, margin, manifolds);
-    for (int k = 0; k < count; ++k) take(manifolds[k]);
-  }
-  return found;
-}
+namespace {
+constexpr double half_way = 0.5;  // of half of a shape: what comes farther in a step is fast
+constexpr double least_blow = 1;  // m/s
+}  // namespace
 
 int SoftObstacles::body_index(rigid::World3& world, rigid::BodyId id) {
   for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -52,39 +34,78 @@ int SoftObstacles::body_index(rigid::World3& world, rigid::BodyId id) {
   return int(bodies.size()) - 1;
 }
 
-void SoftObstacles::gather(rigid::World3& world, const geometry::Bounds3d& bounds, const rigid::Filter& filter,
-                           const std::vector<SoftPin>& pins) {
-  (void)world.overlap_bounds(bounds, found_);
-  for (const rigid::ShapeId id : found_) {
-    const auto definition = world.shape_definition(id);
-    const auto owner = world.body_of(id);
-    if (!definition || !owner || definition->sensor) continue;
-    if (!filters_meet(definition->filter, filter)) continue;
-    bool pinned = false;
-    for (const SoftPin& pin : pins) pinned |= pin.body == *owner;
-    if (pinned) continue;
-    const auto shape = world.shape_geometry(id);
-    const int index = body_index(world, *owner);
-    if (!shape || index < 0) continue;
-    const Body& body = bodies[std::size_t(index)];
-    const Quatd turn(definition->local.q);
-    const Vec3d place(definition->local.p);
-    shapes_.push_back({*shape, geometry::bounds(*shape, {}), index, body.rotation * turn, turn, body.place(place),
-                       place, double(definition->material.friction)});
-  }
+double SoftObstacles::speed_of(const Shape& shape) const {
+  const Body& body = bodies[std::size_t(shape.body)];
+  const double turn = length(body.spin), speed = length(body.velocity);
+  if (turn == 0 || !math::is_finite(shape.outer)) return speed;
+  return speed + turn * (shape.outer + distance(shape.middle(), body.center));
 }
 
-bool SoftObstacles::nearest(Vec3d point, double radius, double margin, SoftPlane& plane) const {
+void SoftObstacles::take(rigid::World3& world, rigid::ShapeId id, const rigid::Filter& filter,
+                         const std::vector<SoftPin>& pins, double dt) {
+  const auto definition = world.shape_definition(id);
+  const auto owner = world.body_of(id);
+  if (!definition || !owner || definition->sensor) return;
+  if (!filters_meet(definition->filter, filter)) return;
+  for (const SoftPin& pin : pins)
+    if (pin.body == *owner) return;
+  const auto shape = world.shape_geometry(id);
+  const int index = body_index(world, *owner);
+  if (!shape || index < 0) return;
+  const Body& body = bodies[std::size_t(index)];
+  const Quatd turn(definition->local.q);
+  const Vec3d place(definition->local.p);
+  Shape here{*shape, geometry::bounds(*shape, {}),         index, body.rotation * turn, turn, body.place(place),
+             place,  double(definition->material.friction)};
+  const Vec3f extents = here.tight.extents();
+  here.half = double(math::min(extents.x, math::min(extents.y, extents.z)));
+  here.outer = length(Vec3d(extents));
+  here.speed = speed_of(here);
+  here.fast = dt * here.speed > half_way * here.half;
+  fast = fast || here.fast;
+  shapes_.push_back(here);
+}
+
+void SoftObstacles::gather(rigid::World3& world, const geometry::Bounds3d& bounds, const rigid::Filter& filter,
+                           const std::vector<SoftPin>& pins, double dt) {
+  (void)world.overlap_bounds(bounds, found_);
+  for (const rigid::ShapeId id : found_) take(world, id, filter, pins, dt);
+  const auto known = [&](rigid::ShapeId id) { return std::find(found_.begin(), found_.end(), id) != found_.end(); };
+  (void)world.overlap_bounds(grow(bounds, dt * usual_body), coming_);
+  const double slack = 0.5 * dt * dt * length(Vec3d(world.definition().gravity));
+  for (const rigid::ShapeId id : coming_) {
+    const auto owner = world.body_of(id);
+    if (known(id) || !owner) continue;
+    const auto state = world.state(*owner);
+    if (!state || (state->linear_velocity == Vec3f{} && state->angular_velocity == Vec3f{})) continue;
+    const auto definition = world.shape_definition(id);
+    const auto shape = world.shape_geometry(id);
+    if (!definition || !shape) continue;
+    if (!overlaps(way_of(*state, geometry::bounds(*shape, definition->local), dt, slack), bounds)) continue;
+    take(world, id, filter, pins, dt);
+    found_.push_back(id);
+  }
+  find_fast_shapes(world, dt, fast_bodies_, of_body_, fast_shapes_);
+  for (const FastShape& coming : fast_shapes_)
+    if (overlaps(coming.way, bounds) && !known(coming.id)) take(world, coming.id, filter, pins, dt);
+}
+
+bool SoftObstacles::nearest(Vec3d point, double radius, double margin, double h, SoftPlane& plane) const {
   bool found = false;
   for (const Shape& shape : shapes_) {
+    const double reach = margin + 2 * h * shape.speed;
     const Vec3f local(inverse_rotate(shape.turn, point - shape.place));
-    if (!contains(grow(shape.tight, float(radius + margin)), geometry::Bounds3f{local, local})) continue;
+    if (!contains(grow(shape.tight, float(radius + reach)), geometry::Bounds3f{local, local})) continue;
     Vec3f normal;
     float separation = 0;
-    if (!nearest_plane(shape.shape, local, float(radius), float(margin), normal, separation)) continue;
+    // A ground of many triangles tells beside its ridges soon enough.
+    const bool plain = shape.shape.type == geometry::ShapeType3::mesh && shape.speed == 0;
+    if (plain ? !nearest_plane(shape.shape, local, float(radius), float(reach), normal, separation)
+              : !nearest_surface(shape.shape, local, float(radius), float(reach), normal, separation))
+      continue;
     if (found && double(separation) >= plane.separation) continue;
     found = true;
-    plane = {shape.body, rotate(shape.turn, Vec3d(normal)), double(separation), shape.friction};
+    plane = {shape.body, point, rotate(shape.turn, Vec3d(normal)), double(separation), shape.friction};
   }
   return found;
 }
@@ -184,6 +205,8 @@ void SoftObstacles::advance(double h, const SoftSolver& solver) {
       body.spin += body.change.angular;
     }
     if (body.dynamic && !body.moves) continue;
+    body.carried += h * body.impulse;
+    body.carried_turn += h * body.turn;
     body.center += h * body.velocity;
     body.rotation = integrate(body.rotation, h * body.spin);
   }
@@ -191,9 +214,12 @@ void SoftObstacles::advance(double h, const SoftSolver& solver) {
     const Body& body = bodies[std::size_t(shape.body)];
     shape.turn = body.rotation * shape.local_turn;
     shape.place = body.place(shape.local_place);
+    shape.speed = speed_of(shape);
   }
 }
 
+// A force over the step would carry a body that is stopped early in it beyond what stops it: of the impulse of a blow
+// so much comes at the start that the body is at the step's end where it was in the substeps.
 void SoftObstacles::hand_over(rigid::World3& world, double dt, double gravity) {
   const float per_step = float(1 / dt);
   memory_.clear();
@@ -207,8 +233,15 @@ void SoftObstacles::hand_over(rigid::World3& world, double dt, double gravity) {
     if (length_squared(body.impulse) == 0 && length_squared(body.turn) == 0) continue;
     // What sleeps is not woken by what only lies on it.
     if (!body.awake && length(body.impulse) < 0.02 * body.mass * gravity * dt) continue;
-    (void)world.add_force(body.id, Vec3f(body.impulse) * per_step);
-    (void)world.add_torque(body.id, Vec3f(body.turn) * per_step);
+    Vec3d start{}, start_turn{};
+    if (fast && body.moves && length(body.impulse) > least_blow * body.mass) {
+      start = (2 / dt) * body.carried - body.impulse;
+      start_turn = (2 / dt) * body.carried_turn - body.turn;
+      (void)world.add_impulse(body.id, Vec3f(start));
+      (void)world.add_angular_impulse(body.id, Vec3f(start_turn));
+    }
+    (void)world.add_force(body.id, Vec3f(body.impulse - start) * per_step);
+    (void)world.add_torque(body.id, Vec3f(body.turn - start_turn) * per_step);
   }
 }
 

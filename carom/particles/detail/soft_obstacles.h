@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "carom/math/quat.h"
+#include "carom/particles/detail/fast_shapes.h"
 #include "carom/particles/detail/soft_matrix.h"
 #include "carom/rigid/world.h"
 
@@ -13,12 +14,9 @@ using math::Quatd;
 using math::Vec3d;
 using math::Vec3f;
 
-/// The nearest plane of a shape to a ball at `center` (shape's frame); false where there is none within `margin`.
-bool nearest_plane(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
-                   float& separation);
-
 struct SoftPlane {
   int body = -1;
+  Vec3d at{};             ///< m, where it is met
   Vec3d normal{};         ///< out of the shape
   double separation = 0;  ///< m, of the ball
   double friction = 0;    ///< of the shape
@@ -52,21 +50,39 @@ class SoftObstacles {
     SoftTwist start{}, pull{};  ///< velocity before the step; acceleration by all else
     SoftTwist change{};         ///< of velocity in the last substep, where it was touched
     bool touched = false;
-    Vec3d impulse{}, turn{};  ///< over the step, about the centre of mass
+    Vec3d impulse{}, turn{};          ///< over the step, about the centre of mass
+    Vec3d carried{}, carried_turn{};  ///< both times how long they have acted
     Vec3d velocity_at(Vec3d point) const { return velocity + cross(spin, point - center); }
     Vec3d place(Vec3d local) const { return center + rotate(rotation, local - local_center); }
   };
+  struct Shape {
+    geometry::Shape3 shape{};
+    geometry::Bounds3f tight{};
+    int body = -1;
+    Quatd turn{}, local_turn{};
+    Vec3d place{}, local_place{};
+    double friction = 0;
+    double half = 0, outer = 0;  ///< m, from the middle of its bounds to the nearest side, and to a corner
+    double speed = 0;            ///< m/s, of none of its points more
+    bool fast = false;           ///< comes farther in the step than through half of that
+    Vec3d middle() const { return place + rotate(turn, Vec3d(tight.center())); }
+  };
   std::vector<Body> bodies;
+  bool fast = false;  ///< a shape is
 
   void clear() {
     bodies.clear();
     shapes_.clear();
+    fast = false;
   }
   int body_index(rigid::World3& world, rigid::BodyId id);  ///< −1: not there
+  /// What is within the bounds, and what may come there in a step of dt.
   void gather(rigid::World3& world, const geometry::Bounds3d& bounds, const rigid::Filter& filter,
-              const std::vector<SoftPin>& pins);
+              const std::vector<SoftPin>& pins, double dt);
   bool empty() const { return shapes_.empty(); }
-  bool nearest(Vec3d point, double radius, double margin, SoftPlane& plane) const;
+  const std::vector<Shape>& shapes() const { return shapes_; }
+  /// The nearest plane to a ball that comes by `margin` m in h s.
+  bool nearest(Vec3d point, double radius, double margin, double h, SoftPlane& plane) const;
   void push(int body, Vec3d point, Vec3d impulse) {
     if (body < 0) return;
     Body& b = bodies[std::size_t(body)];
@@ -82,20 +98,17 @@ class SoftObstacles {
   void hand_over(rigid::World3& world, double dt, double gravity);
 
  private:
-  struct Shape {
-    geometry::Shape3 shape{};
-    geometry::Bounds3f tight{};
-    int body = -1;
-    Quatd turn{}, local_turn{};
-    Vec3d place{}, local_place{};
-    double friction = 0;
-  };
+  void take(rigid::World3& world, rigid::ShapeId id, const rigid::Filter& filter, const std::vector<SoftPin>& pins,
+            double dt);
+  double speed_of(const Shape& shape) const;
   double mass_behind(rigid::World3& world, const Body& body, Vec3d push);
   std::vector<SoftMemory> memory_;
   std::vector<rigid::BodyId> behind_;
   std::vector<rigid::ContactView<rigid::Dim3>> contacts_;
   std::vector<Shape> shapes_;
-  std::vector<rigid::ShapeId> found_;
+  std::vector<rigid::ShapeId> found_, coming_, of_body_;
+  std::vector<rigid::BodyId> fast_bodies_;
+  std::vector<FastShape> fast_shapes_;
 };
 
 }  // namespace carom::particles::detail

@@ -60,7 +60,6 @@ struct SoftState final : SoftThing {
   void enter_crush(std::size_t element, float sign);
   double elastic_energy() const;
   void assemble(float h, Vec3f gravity);
-  void hold(float h);
 
   std::span<const std::uint32_t> faces() const override { return surface; }
   void begin_substep(float h, Vec3f gravity) override;

@@ -109,22 +109,6 @@ void SoftState::assemble(float h, Vec3f gravity) {
   solver.begin(matrix, velocity, tasks());
 }
 
-void SoftState::hold(float h) {
-  hold_pins(touching(), solver);
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    SoftTouch& touch = touches[i];
-    touch.near =
-        collide && !obstacles.empty() && outside[i] != 0 && pin_of[i] < 0 &&
-        obstacles.nearest(position[i], material.skin,
-                          material.skin + 2 * double(h) * (double(length(velocity[i])) + 20 * double(h)), touch.plane);
-    if (!touch.near) {
-      touch = {};
-      continue;
-    }
-    hold_touch(touch, i, position[i], velocity[i], material.friction, h, obstacles, solver);
-  }
-}
-
 void SoftState::begin_substep(float h, Vec3f gravity) {
   way = greatest_way(h, nullptr);
   strain(h);

@@ -54,13 +54,14 @@ struct SoftThing {
   virtual void end_substep(float h) = 0;  ///< moves on by what the solver found
   virtual void end_step(rigid::World3& world, double dt);
 
+  void hold(float h);  ///< what is pinned or touches, in this substep
   SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
   core::TaskScheduler& tasks() const;
 };
 
 class SoftMeeting;
 
-/// A step of things that meet each other; `meeting` null: of one that meets none. Returns how many substeps it had.
-int step_together(std::span<SoftThing* const> things, SoftMeeting* meeting, rigid::World3& world, double dt);
+/// A step of things that meet each other; `meeting` null: of one that meets none. Returns s, its last substep.
+float step_together(std::span<SoftThing* const> things, SoftMeeting* meeting, rigid::World3& world, double dt);
 
 }  // namespace carom::particles::detail

@@ -11,21 +11,21 @@ using math::Mat3f;
 namespace {
 
 /// Velocity of what a touch lies on: before the solve, and how the solve changes it.
-Vec3f surface_velocity(const SoftTouch& touch, Vec3d at, const SoftObstacles& obstacles) {
-  return Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(at));
+Vec3f surface_velocity(const SoftTouch& touch, const SoftObstacles& obstacles) {
+  return Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(touch.plane.at));
 }
-Vec3f surface_change(const SoftTouch& touch, Vec3d at, const SoftObstacles& obstacles, const SoftSolver& solver) {
+Vec3f surface_change(const SoftTouch& touch, const SoftObstacles& obstacles, const SoftSolver& solver) {
   const std::size_t b = std::size_t(touch.plane.body);
   if (!obstacles.bodies[b].moves) return {};
-  return Vec3f(solver.movers[b].change.at(at - obstacles.bodies[b].center));
+  return Vec3f(solver.movers[b].change.at(touch.plane.at - obstacles.bodies[b].center));
 }
 
 }  // namespace
 
-void hold_touch(SoftTouch& touch, std::size_t i, Vec3d position, Vec3f velocity, double friction, float h,
+void hold_touch(SoftTouch& touch, std::size_t i, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver) {
   const Vec3f n(touch.plane.normal);
-  const Vec3f against = velocity - surface_velocity(touch, position, obstacles);
+  const Vec3f against = velocity - surface_velocity(touch, obstacles);
   touch.grip = 0;
   if (touch.push > 0) {
     touch.slip = against - dot(n, against) * n;
@@ -54,7 +54,7 @@ void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSo
     const SoftObstacles::Body& body = obstacles.bodies[std::size_t(touch.plane.body)];
     if (body.moves && (touch.active || touch.grip > 0))
       solver.ties.push_back(
-          {int(i), touch.plane.body, all.position[i] - body.center, Vec3f(touch.plane.normal), touch.grip, touch.slip});
+          {int(i), touch.plane.body, touch.plane.at - body.center, Vec3f(touch.plane.normal), touch.grip, touch.slip});
   }
   for (std::size_t k = 0; k < all.pins.size(); ++k) {
     const std::size_t i = std::size_t(all.pinned[k]);
@@ -88,8 +88,8 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
       again |= pull > slight * all.mass[i];
       continue;
     }
-    const Vec3f before = all.velocity[i] - surface_velocity(touch, all.position[i], obstacles);
-    const Vec3f change = solver.change[i] - surface_change(touch, all.position[i], obstacles, solver);
+    const Vec3f before = all.velocity[i] - surface_velocity(touch, obstacles);
+    const Vec3f change = solver.change[i] - surface_change(touch, obstacles, solver);
     if (float(touch.plane.separation) + h * dot(n, before + change) >= -1e-6f) continue;
     touch.active = again = true;
     touch.given = -math::max(float(touch.plane.separation), 0.0f) / h - dot(n, before);
@@ -112,10 +112,10 @@ void react_touches(const SoftTouching& all, float h, SoftObstacles& obstacles, c
     touch.push = touch.active ? math::max(dot(n, solver.reaction[i]), 0.0f) / h : 0;
     Vec3f impulse = touch.active ? solver.reaction[i].vector() : Vec3f{};
     if (touch.grip > 0) {  // as the system had it
-      const Vec3f change = solver.change[i] - surface_change(touch, all.position[i], obstacles, solver);
+      const Vec3f change = solver.change[i] - surface_change(touch, obstacles, solver);
       impulse -= touch.grip * (touch.slip + change - dot(n, change) * n);
     }
-    obstacles.push(touch.plane.body, all.position[i], -Vec3d(impulse));
+    obstacles.push(touch.plane.body, touch.plane.at, -Vec3d(impulse));
   }
 }
 
@@ -163,7 +163,7 @@ void gather_near(double apart, double dt, rigid::World3& world, const rigid::Fil
     bounds.high = max(bounds.high, position[i]);
     fastest = math::max(fastest, length_squared(velocity[i]));
   }
-  obstacles.gather(world, grow(bounds, 2 * apart + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)), filter, pins);
+  obstacles.gather(world, grow(bounds, 2 * apart + 2 * dt * (double(math::sqrt(fastest)) + dt * 20)), filter, pins, dt);
 }
 
 }  // namespace carom::particles::detail

@@ -31,8 +31,15 @@ struct SoftTouching {
   const std::vector<float>& mass;
 };
 
+struct SoftThing;
+/// Of what is small or comes fast what its faces meet between their corners: each of these is held off the plane where
+/// the body is nearest to the face.
+void meet_faces(SoftThing& thing, float h);
+/// s, of a substep of h at most and `least` at least: as far as something fast may come before it is seen to touch.
+double stride(const SoftThing& thing, double h, double least);
+
 /// Enters the touch of particle i, which is near, into the system. `friction`: of the particles' material.
-void hold_touch(SoftTouch& touch, std::size_t i, math::Vec3d position, Vec3f velocity, double friction, float h,
+void hold_touch(SoftTouch& touch, std::size_t i, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver);
 
 /// Enters what is held, and the bodies of what is held or rubbed, into the system. Before every solve.

@@ -206,10 +206,12 @@ void mark_settling(StepContext<D>& context) {
         if (world.bodies.is_dynamic(body) && is_pushed[body] == 0) is_pushed[body] = 1, pushed[count++] = body;
     });
   if (count == 0) return;
+  const bool weightless = is_weightless(context);  // where what was pushed is taken back
   const auto settles = [&](ContactBlock<D, W>& block, int lane, std::uint8_t& mark) {
     block.settles[lane] = 1;
     for (const std::int32_t body : {block.body_a[lane], block.body_b[lane]})
-      if (body >= 0 && world.bodies.motion[std::size_t(body)].load_level > 0) block.again[lane] |= block_bears;
+      if (weightless && body >= 0 && world.bodies.motion[std::size_t(body)].load_level > 0)
+        block.again[lane] |= block_bears;
     mark |= mark_settles;
   };
   if (many_bodies * count > world.bodies.awake.size()) {

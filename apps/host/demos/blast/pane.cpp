@@ -1,4 +1,6 @@
 // A pane of glass that cracks where it is hit, at the moment it is hit (chapter 18.8).
+#include <algorithm>
+
 #include "apps/host/demos/blast/list.h"
 #include "apps/host/demos/blast/shown.h"
 #include "carom/math/elementary.h"
@@ -35,7 +37,11 @@ class Pane final : public Repeatable<Pane, Demo3> {
     };
     d.plots = {
         {"Pieces that fell", {"time", "s"}, {"bodies", ""}, {{"bodies"}}},
-        {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}, {"free flight", Series::Style::points}}}};
+        {"Speed of the ball", {"time", "s"}, {"speed", "m/s"}, {{"ball"}, {"free flight", Series::Style::points}}},
+        {"Pieces about the impact",
+         {"distance", "m"},
+         {"pieces within", ""},
+         {{"pieces", Series::Style::points}, {"1 + rays · ln(r/r₀)/ln(growth)"}}}};
     d.inputs = {{"shoot", "Throw", {"Space"}, true, 1}};
     return d;
   }
@@ -104,11 +110,14 @@ class Pane final : public Repeatable<Pane, Demo3> {
     double sum = 0;
     for (const auto& part : glass_pieces_.definition().parts) sum += part.mass.mass;
     out.push_back({"mass of the pieces", "kg", "ρ V of the pane", sum, mass, 1e-6 * mass});
+    out.push_back({"pieces in the outermost whole ring and within", "", "rays in every ring, and the middle", found_,
+                   expected_, 0.1 * expected_});
     out.push_back({"pieces that fell", "", "some do", glass_pieces_.cluster_count() > 8 ? 1.0 : 0.0, 1, 0});
   }
 
  private:
   static constexpr std::uint32_t glass_ = 0x70a8d0e0u;
+  static constexpr double first_radius_ = 0.03;  // m
 
   bool crack(Stage3& stage) {
     for (const auto& hit : stage.world().events().contact_hit) {
@@ -121,7 +130,7 @@ class Pane final : public Repeatable<Pane, Demo3> {
       const auto sites = stage.keep(blast::radial_sites(box,
                                                         {.impact = impact,
                                                          .axis = {0, 0, 1},
-                                                         .first_radius = 0.03,
+                                                         .first_radius = first_radius_,
                                                          .growth = stage.value("growth"),
                                                          .sectors = stage.count("sectors")},
                                                         5));
@@ -138,10 +147,29 @@ class Pane final : public Repeatable<Pane, Demo3> {
       stage.remove(pane_);
       glass_pieces_ = stage.keep(blast::Structure3::make(stage.world(), d));
       stage.adopt_all();
+      count_pieces(stage, d, impact);
       stage.say(format("%.0f pieces about the impact", double(d.parts.size())));
       return true;
     }
     return false;
+  }
+  /// How many lie within a distance of the impact, as far as whole rings reach, and how many rings make them.
+  void count_pieces(Stage3& stage, const blast::StructureDef<Dim3>& d, Vec3d impact) {
+    const double edge = math::min(half_.x - math::abs(impact.x), half_.y - math::abs(impact.y));
+    const double growth = stage.value("growth");
+    const int rays = stage.count("sectors");
+    std::vector<double> distances;
+    for (const auto& part : d.parts)
+      distances.push_back(math::hypot(part.mass.center.x - impact.x, part.mass.center.y - impact.y));
+    std::sort(distances.begin(), distances.end());
+    for (std::size_t i = 0; i < distances.size() && distances[i] < edge; ++i)
+      stage.sample(2, 0, distances[i], double(i + 1));
+    int rings = 0;
+    for (double radius = first_radius_; radius < edge; radius *= growth, ++rings) {
+      stage.sample(2, 1, radius, 1 + rays * rings);
+      expected_ = 1 + rays * rings;
+      found_ = double(std::lower_bound(distances.begin(), distances.end(), radius) - distances.begin());
+    }
   }
   /// Pieces at the border are held by putty.
   void hold(blast::StructureDef<Dim3>& d) const {
@@ -173,6 +201,7 @@ class Pane final : public Repeatable<Pane, Demo3> {
   Vec3d half_{}, middle_{0, 1.05, 0};
   int shots_ = 0;
   double thrown_ = 0;  // s
+  double found_ = 0, expected_ = 0;
 };
 
 }  // namespace

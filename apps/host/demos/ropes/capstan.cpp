@@ -32,7 +32,12 @@ class Capstan final : public Repeatable<Capstan, Demo3> {
         {"turns", "Extra turns", "", "", "beside the half one over the post", 0, 1, 1, 0, false},
         {"load", "Load", "kg", "kg", "", 5, 200, 0, 40, false},
     };
-    d.plots = {{"Ratio of the tensions", {"time", "s"}, {"T₁/T₂", ""}, {{"rope"}, {"e^(μφ)"}}}};
+    d.plots = {
+        {"Ratio of the tensions", {"time", "s"}, {"T₁/T₂", ""}, {{"rope"}, {"e^(μφ)"}}},
+        {"Tension round the post",
+         {"angle from the load", "rad"},
+         {"T/T₂", ""},
+         {{.name = "rope", .style = Series::Style::points, .latest = true}, {.name = "e^(μφ)", .latest = true}}}};
     return d;
   }
 
@@ -77,6 +82,7 @@ class Capstan final : public Repeatable<Capstan, Demo3> {
     load_ = stage.add(def, geometry::Box{{0.2f, 0.2f, 0.2f}}, iron, red);
     stage.check(ropes_.attach(0, {.node = 0, .point = points.front()}, stage.world()));
     stage.check(ropes_.attach(0, {.node = -1, .body = load_, .point = {0, 0.2, 0}}, stage.world()));
+    angle_ = angle;
     ratio_ = math::exp(stage.value("friction") * angle);
   }
 
@@ -95,21 +101,49 @@ class Capstan final : public Repeatable<Capstan, Demo3> {
     const double ratio = tension.front() / math::max(tension.back(), 1.0);
     stage.sample(0, 0, t, ratio);
     stage.sample(0, 1, t, ratio_);
-    if (t > 3 && t < 7) sum_ += ratio, ++samples_;
+    if (t > 3 && t < 7) {
+      sum_ += ratio;
+      half_ += tell_tensions(stage);
+      ++samples_;
+    }
   }
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
     out.push_back({"ratio of the tensions", "", "Euler and Eytelwein, e^(μφ)", samples_ > 0 ? sum_ / samples_ : 0,
                    ratio_, 0.05 * ratio_});
+    out.push_back({"tension half way round, of T₂", "", "e^(μφ/2)", samples_ > 0 ? half_ / samples_ : 0, sqrt(ratio_),
+                   0.05 * sqrt(ratio_)});
     out.push_back(
         {"height gained", "m", "what the winch took in", stage.at(load_).center_of_mass.y - 0.3, 0.975, 0.06});
   }
   std::uint64_t state_hash(std::uint64_t world) const override { return world ^ ropes_.state_hash(); }
 
  private:
+  /// From the load on, by the angle that the rope has turned round the post. Returns the tension half way, of the
+  /// load's.
+  double tell_tensions(Stage3& stage) {
+    constexpr int stations = 24;
+    const auto place = ropes_.positions(0);
+    const auto tension = ropes_.tensions(0);
+    const double load = math::max(tension.back(), 1.0);
+    double turned = 0, half = 0;
+    int station = 0;
+    for (std::size_t i = tension.size(); i-- > 0 && station <= stations;) {
+      const Vec3d a = place[i + 1] - Vec3d{0, 2, 0}, b = place[i] - Vec3d{0, 2, 0};
+      if (b.y > 0 || turned > 0) turned += math::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+      for (; station <= stations && turned >= angle_ * station / stations; ++station) {
+        const double angle = angle_ * station / stations;
+        stage.sample(1, 0, angle, tension[i] / load);
+        stage.sample(1, 1, angle, math::exp(stage.value("friction") * angle));
+        if (2 * station == stations) half = tension[i] / load;
+      }
+    }
+    return half;
+  }
+
   static constexpr float radius_ = 0.25f;
   RopeSet ropes_;
   BodyId load_{};
-  double ratio_ = 1, sum_ = 0;
+  double ratio_ = 1, sum_ = 0, half_ = 0, angle_ = 0;
   int samples_ = 0;
 };
 

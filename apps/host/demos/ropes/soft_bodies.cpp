@@ -32,7 +32,14 @@ class SoftBodies final : public Repeatable<SoftBodies, Demo3> {
         {"poisson", "Poisson's ratio", "", "", "", 0, 0.47, 0, 0.4, false},
         {"iron", "Iron ball", "kg", "kg", "", 1, 80, 0, 25, false},
     };
-    d.plots = {{"Ball", {"time", "s"}, {"height of the middle", "m"}, {{"foam"}, {"iron"}}}};
+    d.plots = {{"Ball",
+                {"time", "s"},
+                {"height of the middle", "m"},
+                {{"foam"}, {"iron"}, {"free fall, y₀ − g t²/2", Series::Style::points}}},
+               {"Energy of the foam ball",
+                {"time", "s"},
+                {"energy", "J"},
+                {{"motion, height and strain"}, {"at the start: none is gained"}, {"strain alone"}}}};
     return d;
   }
 
@@ -68,12 +75,26 @@ class SoftBodies final : public Repeatable<SoftBodies, Demo3> {
     const double t = stage.world().time(), y = bodies_[0].center().y;
     stage.sample(0, 0, t, y);
     stage.sample(0, 1, t, stage.at(iron_).center_of_mass.y);
+    const double g = -double(stage.world().definition().gravity.y);
+    for (const double start : {1.6, 1.2}) {
+      const double fallen = start - 0.5 * g * t * t;
+      if (fallen > (start == 1.6 ? 0.45 : 0.74)) stage.sample(0, 2, t, fallen);
+    }
+    const double strain = bodies_[0].elastic_energy(), weight = bodies_[0].mass() * g;
+    const double energy = bodies_[0].kinetic_energy() + strain + weight * y;
+    stage.sample(1, 0, t, energy);
+    stage.sample(1, 1, t, weight * 1.6);
+    stage.sample(1, 2, t, strain);
+    most_ = max(most_, energy / (weight * 1.6));
+    if (y > 0.5 && !touched_) fall_ = max(fall_, math::abs(y - (1.6 - 0.5 * g * t * t)));
     for (const SoftBody& body : bodies_) volume_ = max(volume_, math::abs(body.volume() / body.rest_volume() - 1));
     touched_ |= y < 0.45;
     if (touched_) bounce_ = max(bounce_, y);
   }
   void expectations(Stage3& stage, std::vector<Expectation>& out) override {
     out.push_back({"change of volume, most", "", "small near ν = ½", volume_, 0, 0.2});
+    out.push_back({"the foam ball falls as a stone, off by", "m", "y₀ − g t²/2", fall_, 0, 0.02});
+    out.push_back({"its greatest energy, of that at the start", "", "none is gained", most_, 1, 0.01});
     out.push_back({"bounce of the foam ball", "m", "up again, and not above its start", bounce_, 1.0, 0.55});
     const double y = stage.at(iron_).center_of_mass.y;
     out.push_back({"the iron ball lies in the cushion", "m", "above the ground, below where it would lie on stone", y,
@@ -95,7 +116,7 @@ class SoftBodies final : public Repeatable<SoftBodies, Demo3> {
   std::vector<SoftBody> bodies_;
   std::vector<int> surfaces_;
   BodyId iron_{};
-  double volume_ = 0, bounce_ = 0;
+  double volume_ = 0, bounce_ = 0, fall_ = 0, most_ = 0;
   bool touched_ = false;
 };
 

@@ -1,13 +1,43 @@
 // How far a ball is from a shape. A contact's manifold tells nothing beside the border of a sharp shape, where nothing
 // is met yet; what comes fast is met there within the step.
+#include "carom/particles/detail/nearest_surface.h"
+
 #include "carom/geometry/compound.h"
+#include "carom/geometry/manifold.h"
 #include "carom/geometry/query.h"
 #include "carom/geometry/tree_walk.h"
 #include "carom/math/elementary.h"
-#include "carom/particles/detail/rope_solver.h"
-#include "carom/particles/detail/soft_obstacles.h"
 
 namespace carom::particles::detail {
+
+using math::Vec3d;
+using math::Vec3f;
+
+bool nearest_plane(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
+                   float& separation) {
+  const geometry::Shape3 ball(geometry::Sphere{radius});
+  const math::Transform3f place{center, {}};
+  bool found = false;
+  const auto take = [&](const geometry::Manifold3& manifold) {
+    for (int k = 0; k < manifold.count; ++k)
+      if (manifold.points[k].separation <= margin && (!found || manifold.points[k].separation < separation)) {
+        found = true;
+        separation = manifold.points[k].separation;
+        normal = manifold.normal;
+      }
+  };
+  if (is_convex(shape) || shape.type == geometry::ShapeType3::plane) {
+    geometry::PairCache cache;
+    geometry::Manifold3 manifold;
+    geometry::collide(shape, ball, place, margin, cache, manifold);
+    take(manifold);
+  } else {
+    geometry::Manifold3 manifolds[4];
+    const int count = geometry::collide_many(shape, ball, place, margin, manifolds);
+    for (int k = 0; k < count; ++k) take(manifolds[k]);
+  }
+  return found;
+}
 
 namespace {
 
@@ -42,9 +72,6 @@ CoreGap from_cylinder(const geometry::Cylinder& cylinder, Vec3d p) {
   return side >= end ? CoreGap{outward, side} : CoreGap{along, end};
 }
 
-bool nearest_beside(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
-                    float& separation);
-
 /// Of a compound's parts the nearest.
 bool nearest_part(const geometry::Compound& compound, Vec3f center, float radius, float margin, Vec3f& normal,
                   float& separation) {
@@ -54,7 +81,7 @@ bool nearest_part(const geometry::Compound& compound, Vec3f center, float radius
     const geometry::CompoundChild& part = compound.children[i];
     Vec3f n;
     float s = 0;
-    if (nearest_beside(part.shape, transform_point(inverse(part.local), center), radius, margin, n, s) &&
+    if (nearest_surface(part.shape, transform_point(inverse(part.local), center), radius, margin, n, s) &&
         (!found || s < separation)) {
       found = true;
       normal = rotate(part.local.q, n);
@@ -67,8 +94,10 @@ bool nearest_part(const geometry::Compound& compound, Vec3f center, float radius
   return found;
 }
 
-bool nearest_beside(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
-                    float& separation) {
+}  // namespace
+
+bool nearest_surface(const geometry::Shape3& shape, Vec3f center, float radius, float margin, Vec3f& normal,
+                     float& separation) {
   using geometry::ShapeType3;
   if (shape.type == ShapeType3::compound)
     return nearest_part(*shape.compound, center, radius, margin, normal, separation);
@@ -94,14 +123,6 @@ bool nearest_beside(const geometry::Shape3& shape, Vec3f center, float radius, f
   normal = found.normal;
   separation = found.distance;
   return true;
-}
-
-}  // namespace
-
-bool nearest_surface(const RopeShape& near, Vec3f center, float radius, float margin, Vec3f& normal,
-                     float& separation) {
-  if (near.fast) return nearest_beside(near.shape, center, radius, margin, normal, separation);
-  return nearest_plane(near.shape, center, radius, margin, normal, separation);
 }
 
 }  // namespace carom::particles::detail
