@@ -1,6 +1,9 @@
 #include "carom/rigid/detail/bodies.h"
 
+#include <algorithm>
+
 #include "carom/geometry/detail/passage.h"
+#include "carom/rigid/detail/contacts.h"
 #include "carom/rigid/detail/load_account.h"
 #include "carom/rigid/detail/rotation_step.h"
 
@@ -160,7 +163,7 @@ void deactivate_body(WorldImplementation<D>& world, std::int32_t body) {
 }
 
 template <class D>
-void wake_body(WorldImplementation<D>& world, std::int32_t body) {
+void rouse_body(WorldImplementation<D>& world, std::int32_t body) {
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   record.sleep_timer = 0;
   if (record.awake_index != none || record.type == BodyType::fixed) return;
@@ -185,7 +188,14 @@ void wake_body(WorldImplementation<D>& world, std::int32_t body) {
 }
 
 template <class D>
-void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies) {
+void wake_body(WorldImplementation<D>& world, std::int32_t body) {
+  rouse_body(world, body);
+  enter_graph_in_order(world);
+}
+
+template <class D>
+void put_to_sleep(WorldImplementation<D>& world, std::span<std::int32_t> bodies) {
+  std::sort(bodies.begin(), bodies.end());  // they wake in an order that tells nothing of other islands
   SleepingIslands& sleeping = world.sleeping;
   std::int32_t island;
   if (!sleeping.free.empty()) {
@@ -535,7 +545,8 @@ bool joints_forbid_collision(const WorldImplementation<D>& world, std::int32_t a
   template void activate_body<D>(WorldImplementation<D>&, std::int32_t);                      \
   template void deactivate_body<D>(WorldImplementation<D>&, std::int32_t);                    \
   template void wake_body<D>(WorldImplementation<D>&, std::int32_t);                          \
-  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<const std::int32_t>);      \
+  template void rouse_body<D>(WorldImplementation<D>&, std::int32_t);                         \
+  template void put_to_sleep<D>(WorldImplementation<D>&, std::span<std::int32_t>);            \
   template void wake_touching<D>(WorldImplementation<D>&, std::int32_t);                      \
   template void update_world_inertia<D>(WorldImplementation<D>&, std::int32_t);               \
   template void pose_from_center<D>(WorldImplementation<D>&, std::int32_t);                   \

@@ -22,15 +22,19 @@ inline bool is_moving_surface(const WorldImplementation<D>& world, std::int32_t 
   return is_surface(s.geometry) && !world.bodies.is_fixed(s.body);
 }
 
-/// Puts the body among those that move (or does nothing, for fixed and disabled ones), with its contacts and joints.
+/// Puts the body among those that move (or does nothing, for fixed and disabled ones), with its contacts and joints;
+/// what touches enters the graph with enter_graph_in_order.
 template <class D>
 void activate_body(WorldImplementation<D>& world, std::int32_t body);
 /// The opposite. Contacts and joints stay active where the other body is awake.
 template <class D>
 void deactivate_body(WorldImplementation<D>& world, std::int32_t body);
-/// Puts bodies that are awake to sleep together.
+/// Puts bodies that are awake to sleep together. Sorts them.
 template <class D>
-void put_to_sleep(WorldImplementation<D>& world, std::span<const std::int32_t> bodies);
+void put_to_sleep(WorldImplementation<D>& world, std::span<std::int32_t> bodies);
+/// As wake_body, but what touches enters the graph with enter_graph_in_order, once all are awake.
+template <class D>
+void rouse_body(WorldImplementation<D>& world, std::int32_t body);
 
 /// Wakes whoever touches the body: what it rested on may be gone.
 template <class D>

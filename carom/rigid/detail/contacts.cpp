@@ -408,7 +408,8 @@ void activate_contact(WorldImplementation<D>& world, std::int32_t contact) {
   c.awake_index = std::int32_t(world.contacts.awake.size());
   world.contacts.awake.push_back(contact);
   if (!world.scratch.watches.empty()) world.scratch.watches.push_back({});
-  for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) enter_graph(world, m);
+  for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next)
+    world.scratch.new_manifolds.push_back(m);
 }
 
 template <class D>

@@ -106,7 +106,8 @@ void set_manifold_material(WorldImplementation<D>& world, std::int32_t manifold,
 template <class D>
 void mix_materials(WorldImplementation<D>& world, std::int32_t manifold);
 
-/// For waking and falling asleep: the contact joins or leaves those that are updated, its manifolds the graph.
+/// For waking and falling asleep: the contact joins or leaves those that are updated, its manifolds the graph
+/// (enter_graph_in_order).
 template <class D>
 void activate_contact(WorldImplementation<D>& world, std::int32_t contact);
 template <class D>

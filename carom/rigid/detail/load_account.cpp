@@ -25,7 +25,8 @@ float accounted_load(const WorldImplementation<D>& world, std::int32_t body, flo
   const V gravity = own_scale < 0 ? -world.definition.gravity : world.definition.gravity;
   const float g = math::length(gravity);
   bool may_be_any = (world.bodies.record[std::size_t(body)].flags & body_pushed) != 0;
-  float weights_above = 0, most_load_above = 0, most_weight = 0;
+  float most_load_above = 0, most_weight = 0;
+  double weights_above = 0;  // of floats, so that their order does not show
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
     const ContactRecord<D>& c = world.contacts.at(key >> 1);
     const int side = key & 1;
@@ -50,10 +51,10 @@ float accounted_load(const WorldImplementation<D>& world, std::int32_t body, flo
     const float pull = (pace * pace) * math::abs(m.gravity_scale) * g, weight = m.mass * pull;
     most_weight = max(most_weight, play * weight);
     if (!(dot(pushed, gravity) > least_slope * g * math::length(pushed))) continue;
-    weights_above += play * weight;
+    weights_above += double(play * weight);
     most_load_above = max(most_load_above, m.mass * borne_as_it_is(m, max(g, pull), contact_stiffness) / load_share(m));
   }
-  return may_be_any ? std::numeric_limits<float>::infinity() : max(most_weight, weights_above + most_load_above);
+  return may_be_any ? std::numeric_limits<float>::infinity() : max(most_weight, float(weights_above) + most_load_above);
 }
 
 /// Of a contact whose effective mass changes, to so many times what it was.
@@ -107,8 +108,9 @@ void grant_loads(StepContext<D>& context) {
         const LoadWish& wish = list[std::size_t(i)];
         if (wish.borne == 0) continue;
         const float load = accounted_load(world, wish.body, context.contact_stiffness);
-        world.bodies.motion[std::size_t(wish.body)].load_limit =
-            wish.borne < load ? level_of_share(wish.borne / load) : std::uint16_t(0);
+        BodyMotion<D>& m = world.bodies.motion[std::size_t(wish.body)];
+        m.load_limit = wish.borne < load ? level_of_share(wish.borne / load) : std::uint16_t(0);
+        if (m.load_limit <= m.load_level) m.load_asked = std::uint16_t(m.load_asked + refused_wait);
       }
     });
   for (const std::vector<LoadWish>& list : scratch.load_wishes)

@@ -315,7 +315,8 @@ void add_who_is_driven_over(WorldImplementation<D>& world) {
     });
   std::sort(bodies.begin(), bodies.end());
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  for (const std::int32_t body : bodies) wake_body(world, body);
+  for (const std::int32_t body : bodies) rouse_body(world, body);
+  enter_graph_in_order(world);
   for (std::size_t place = scratch.swept.size(); place < world.bodies.awake.size(); ++place) {
     const std::size_t body = std::size_t(world.bodies.awake[place]);
     scratch.swept.push_back({world.bodies.pose[body].rotation, world.bodies.motion[body].center, {}, 1});

@@ -242,8 +242,9 @@ void update_contacts(WorldImplementation<D>& world) {
     const std::int32_t a = c.body[0], b = c.body[1];
     for (const std::int32_t body : {a, b})
       if (world.bodies.record[std::size_t(body)].awake_index == none && !world.bodies.is_fixed(body))
-        wake_body(world, body);
+        rouse_body(world, body);
   }
+  enter_graph_in_order(world);
 }
 
 template void update_contacts<Dim2>(WorldImplementation<Dim2>&);

@@ -147,9 +147,7 @@ void sleep_islands(StepContext<D>& context) {
   scratch.island_ends.push_back(std::int32_t(scratch.island_list.size()));
   std::int32_t begin = 0;
   for (const std::int32_t end : scratch.island_ends) {
-    put_to_sleep<D>(
-        world,
-        std::span<const std::int32_t>(scratch.island_bodies).subspan(std::size_t(begin), std::size_t(end - begin)));
+    put_to_sleep<D>(world, std::span(scratch.island_bodies).subspan(std::size_t(begin), std::size_t(end - begin)));
     begin = end;
   }
 }

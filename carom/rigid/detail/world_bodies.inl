@@ -81,6 +81,7 @@ void put_back(WorldImplementation<D>& world, std::int32_t body) {
   for (std::int32_t s = world.bodies.record[std::size_t(body)].first_shape; s != none; s = world.shapes.at(s).next)
     insert_into_tree(world, s);
   activate_body(world, body);
+  enter_graph_in_order(world);
 }
 /// Detaches the joints of a body while `change` alters what the graph depends on.
 template <class D, class F>

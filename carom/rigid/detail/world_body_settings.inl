@@ -133,10 +133,12 @@ Status World<D>::set_awake(BodyId body, bool awake) {
   const Result<std::int32_t> slot = slot_of(*self_, "set_awake", body);
   if (!slot.ok()) return slot.error();
   const BodyRecord& r = self_->bodies.record[std::size_t(*slot)];
-  if (awake)
+  if (awake) {
     wake_body(*self_, *slot);
-  else if (r.awake_index != none)
-    put_to_sleep<D>(*self_, island_of(*self_, *slot));
+  } else if (r.awake_index != none) {
+    std::vector<std::int32_t> island = island_of(*self_, *slot);
+    put_to_sleep<D>(*self_, island);
+  }
   return {};
 }
 
