@@ -21,7 +21,7 @@ constexpr double meeting_turn = 0.2;    // rad, of what touches with its corners
 constexpr double stretching_way = 0.5;  // of an edge
 
 /// The farthest point of a shape, which may be of several parts, along a direction of the world.
-Vec3d farthest(const Shape& shape, Vec3f direction) {
+Vec3d farthest_along(const Shape& shape, Vec3f direction) {
   const Vec3f along(inverse_rotate(shape.turn, Vec3d(direction)));
   if (shape.shape.type != geometry::ShapeType3::compound)
     return shape.place + rotate(shape.turn, Vec3d(geometry::support(shape.shape, along)));
@@ -74,7 +74,7 @@ bool meet_face(const SoftThing& thing, const Shape& shape, Vec3d middle, const s
   const float height = dot(outward, from);
   if (math::abs(height) > reach || (thing.closed && height < -thing.mean_edge)) return false;
   const Vec3f to_shape = thing.closed || height >= 0 ? outward : -outward;
-  const Vec3d point = farthest(shape, -to_shape);
+  const Vec3d point = farthest_along(shape, -to_shape);
   const Vec3f seen(point - a);
   const float above = dot(to_shape, seen);
   if (above - apart > margin || (thing.closed && above < -thing.mean_edge)) return false;

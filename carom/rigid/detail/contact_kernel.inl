@@ -239,7 +239,8 @@ void take_impulses_back(SolverBody<D>* bodies, void* blocks, const float* kept, 
   for (int k = begin; k < end; ++k) {
     Block& c = static_cast<Block*>(blocks)[k];
     auto a = read_velocity<W>(bodies, Slots<W>(c.body_a).of), b = read_velocity<W>(bodies, Slots<W>(c.body_b).of);
-    const auto n = load_vector(c.normal), offset_turn = cross(load_vector(c.center_offset), n);
+    const auto n = load_vector(c.normal);
+    const auto offset_turn = cross(load_vector(c.center_offset), n);
     const auto bearless = (WideInt<W>::load(c.again) & WideInt<W>::splat(block_bears)) == WideInt<W>::zero();
     F sum = F::zero();
     decltype(a.w) on_a{}, on_b{};
