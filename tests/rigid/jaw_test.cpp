@@ -81,5 +81,16 @@ TYPED_TEST(Jaws, APressOnHeavyOnesThrowsNothing) {
   this->expect_held(30);
 }
 
+// The steps since a body last asked to count for more are kept modulo 2¹⁶.
+TYPED_TEST(Jaws, ALoadIsGrantedAfterHoursToo) {
+  using D = TypeParam;
+  add_ground(this->world);
+  run(this->world, 40000);
+  add_box<D>(this->world, at<D>(0, 0.5), 0.5f, {.density = 1000});
+  const BodyId heavy = add_box<D>(this->world, at<D>(0, 1.52), 0.5f, {.density = 1e6f});
+  run(this->world, 600);
+  EXPECT_NEAR(this->world.state(heavy)->pose.position.y, 1.5, 0.01);
+}
+
 }  // namespace jaw_test
 }  // namespace carom::rigid::test

@@ -70,6 +70,9 @@ struct LoadWish {
   float borne;  ///< N, what it bears as it is; 0: it is to be its own self
 };
 
+/// `since`: steps since BodyMotion::load_asked, modulo 2¹⁶. That is to come where the answer was no.
+inline bool may_ask(std::uint16_t since) { return since >= load_wait && since < 0x10000 - refused_wait; }
+
 /// m/s², what a body bears as it is. gravity: m/s², of what acts on the body from afar.
 template <class D>
 float borne_as_it_is(const BodyMotion<D>& m, float gravity, float contact_stiffness) {

@@ -224,7 +224,7 @@ static void follow_load_of(StepContext<D>& context, std::int32_t body, const Bod
     m.load_level = std::uint16_t(max(int(m.load_level), min(level, limit)));
     // To ask costs a walk over all contacts.
     const auto now = std::uint16_t(world.step_count);
-    if (level > limit && std::int16_t(now - m.load_asked) >= load_wait) {
+    if (level > limit && may_ask(std::uint16_t(now - m.load_asked))) {
       m.load_asked = now;
       wishes.push_back({body, m.mass * borne_as_it_is(m, gravity, context.contact_stiffness)});
     }
