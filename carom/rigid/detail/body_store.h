@@ -149,6 +149,9 @@ struct BodyRecord {
   bool awake() const { return (flags & body_awake) != 0; }
   bool enabled() const { return (flags & body_enabled) != 0; }
 };
+inline void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
+  r.flags = std::uint16_t(on ? r.flags | flag : r.flags & ~flag);
+}
 
 template <class D>
 struct BodyStore {

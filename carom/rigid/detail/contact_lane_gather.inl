@@ -158,8 +158,7 @@ void gather_block(const StepContext<D>& context, const ContactSources<D>& source
   std::uint32_t pushed = found.pushed & lane_bits(lanes), turns = found.turns & ~meets;
   for (; pushed != 0; pushed &= pushed - 1) {
     const int lane = std::countr_zero(pushed);
-    const std::int32_t a = block.body_a[lane], b = block.body_b[lane];
-    if (!parts_in_flight(context, slot_of(a), slot_of(b))) marks[lane] |= mark_pushed;
+    if (!parts_in_flight(context, slot_of(block.body_a[lane]), slot_of(block.body_b[lane]))) marks[lane] |= mark_pushed;
   }
   for (; meets != 0; meets &= meets - 1) {
     const int lane = std::countr_zero(meets);

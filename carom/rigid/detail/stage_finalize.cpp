@@ -204,10 +204,7 @@ static void follow_load_of(StepContext<D>& context, std::int32_t body, const Bod
   WorldImplementation<D>& world = context.world;
   BodyRecord& record = world.bodies.record[std::size_t(body)];
   BodyMotion<D>& m = world.bodies.motion[std::size_t(body)];
-  if (m.force == typename D::Vector{})
-    record.flags &= std::uint16_t(~body_pushed);
-  else
-    record.flags |= body_pushed;
+  set_flag(record, body_pushed, !(m.force == typename D::Vector{}));
   const bool jointed = record.joint_count > 0;
   int level = 0;
   if (record.type == BodyType::dynamic)

@@ -58,10 +58,6 @@ void reserve_bodies(BodyStore<D>& bodies, std::size_t count) {
   bodies.record.reserve(count);
   bodies.birth.reserve(count);
 }
-template <class D>
-void set_flag(BodyRecord& r, std::uint16_t flag, bool on) {
-  r.flags = std::uint16_t(on ? r.flags | flag : r.flags & ~flag);
-}
 
 /// Takes the body out of trees, contacts and the set of movers, or puts it back.
 template <class D>
@@ -132,9 +128,9 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& d) {
   if (d.substeps > 0) ++bodies.substep_wishes;
   bodies.set_pace(std::int32_t(slot), d.time_scale);
   give_word(bodies.user_data, std::int32_t(slot), d.user_data);
-  set_flag<D>(r, body_enabled, d.enabled);
-  set_flag<D>(r, body_bullet, d.bullet);
-  set_flag<D>(r, body_allow_sleep, d.allow_sleep);
+  set_flag(r, body_enabled, d.enabled);
+  set_flag(r, body_bullet, d.bullet);
+  set_flag(r, body_allow_sleep, d.allow_sleep);
   if (!d.name.empty() || !bodies.names.empty()) {
     if (bodies.names.size() < bodies.record.size()) bodies.names.resize(bodies.record.size());
     bodies.names[slot] = std::string(d.name);

@@ -150,7 +150,7 @@ Status World<D>::set_enabled(BodyId body, bool enabled) {
   if (self_->bodies.record[std::size_t(*slot)].enabled() == enabled) return {};
   with_joints_detached(*self_, *slot, [&] {
     if (!enabled) take_out(*self_, *slot);
-    set_flag<D>(self_->bodies.record[std::size_t(*slot)], body_enabled, enabled);
+    set_flag(self_->bodies.record[std::size_t(*slot)], body_enabled, enabled);
     if (enabled) put_back(*self_, *slot);
   });
   return {};
