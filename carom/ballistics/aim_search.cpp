@@ -34,7 +34,7 @@ AimMedium medium_of(const Projectile& projectile, const Conditions& conditions) 
 }
 
 const AimKernel& best_kernel(math::InstructionSet most) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   switch (math::choose_instruction_set(most)) {
     case math::InstructionSet::avx512:
       return aim_avx512::kernel;

@@ -188,7 +188,7 @@ void ProjectileBatch::step(double dt, std::size_t from, std::size_t to) {
   batch.gravity = gravity_;
   batch.dt = float(dt);
   batch.most_drag = 1 / batch.dt;
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (lanes_ == 16) return detail::batch_avx512::step(batch, from, to);
   if (lanes_ == 8) return detail::batch_avx2::step(batch, from, to);
 #endif

@@ -100,7 +100,7 @@ class CAROM_API BatchHits {
   std::size_t cast_ = 0;
 };
 
-extern template class BatchHits<rigid::Dim2>;
-extern template class BatchHits<rigid::Dim3>;
+extern template class CAROM_API BatchHits<rigid::Dim2>;
+extern template class CAROM_API BatchHits<rigid::Dim3>;
 
 }  // namespace carom::ballistics

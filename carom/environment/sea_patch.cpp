@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t widest = 16;
 
 void run_lanes(int lanes, const detail::SeaWaves& waves, std::size_t from, std::size_t to) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (lanes == 16) return detail::sea_avx512::heights(waves, from, to);
   if (lanes == 8) return detail::sea_avx2::heights(waves, from, to);
 #endif

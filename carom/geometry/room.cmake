@@ -5,7 +5,7 @@ if(CAROM_MESH_FILES AND NOT CMAKE_CROSSCOMPILING)
   find_path(CAROM_NLOHMANN_JSON_INCLUDE nlohmann/json.hpp)
   if(CAROM_TINYGLTF_INCLUDE AND CAROM_NLOHMANN_JSON_INCLUDE)
     set_source_files_properties(${gltf_source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
-      COMPILE_DEFINITIONS CAROM_HAVE_TINYGLTF COMPILE_OPTIONS "-fexceptions;-frtti;-w")
+      COMPILE_DEFINITIONS CAROM_HAVE_TINYGLTF COMPILE_OPTIONS "-fexceptions;-frtti;-w;$<$<CONFIG:Release>:-O1>")
     foreach(folder IN ITEMS ${CAROM_TINYGLTF_INCLUDE} ${CAROM_NLOHMANN_JSON_INCLUDE})
       if(NOT folder STREQUAL "/usr/include")
         target_include_directories(${target} SYSTEM PRIVATE ${folder})

@@ -3,7 +3,7 @@
 namespace carom::math {
 
 InstructionSet detect_instruction_set() {
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#if CAROM_WIDE_UNITS
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512bw")) {

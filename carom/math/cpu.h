@@ -8,8 +8,16 @@ namespace carom::math {
 /// In rising order. `baseline` is what the whole library is compiled for: SSE2, NEON or WASM SIMD128, four lanes.
 enum class InstructionSet { baseline, avx2, avx512 };
 
+/// Whether the rooms have units for AVX2 and AVX-512 to pick from. CAROM_BASELINE_ONLY: not in this build (cmake:
+/// CAROM_WIDE).
+#if defined(__x86_64__) && !defined(CAROM_BASELINE_ONLY)
+#define CAROM_WIDE_UNITS 1
+#else
+#define CAROM_WIDE_UNITS 0
+#endif
+
 /// The most lanes that a kernel may be picked with: only x86 has any that are wider than the baseline.
-#if defined(__x86_64__) || defined(_M_X64)
+#if CAROM_WIDE_UNITS
 inline constexpr int widest_lanes = 16;
 #else
 inline constexpr int widest_lanes = 4;

@@ -18,7 +18,7 @@ constexpr double rebase_after = 64;  // s: ages stay exact to 4 µs
 constexpr float immortal = 1e29f;
 
 detail::Kernels kernels_of(int lanes) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (lanes == 16)
     return {detail::particles_avx512::move, detail::particles_avx512::collide, detail::particles_avx512::find_near,
             detail::particles_avx512::find_dead};

@@ -1,4 +1,4 @@
-# cmake -DWAY=… -DSOURCE=… -DBUILD=… -DSCRATCH=… [-DSHARED=ON] -P check.cmake: builds and runs the consumer project.
+# cmake -DWAY=… -DSOURCE=… -DBUILD=… -DSCRATCH=… -P check.cmake: builds and runs the consumer project.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -27,18 +27,9 @@ elseif(WAY STREQUAL "installed" OR WAY STREQUAL "pkgconfig")
     run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${folder} ${CMAKE_COMMAND} ${options} -DWAY=pkgconfig
         -DCMAKE_BUILD_TYPE=Release "-DPKG_CONFIG_ARGN=--define-prefix")
   endif()
-else()
-  # The whole library is compiled again here: without optimisation, in few units, as a shared library (the other ways
-  # have the static one), and with clang where the machine has it, which needs half the time of gcc.
-  find_program(clang NAMES clang++-20 clang++-19 clang++-18 clang++-17 clang++-16)
-  if(clang)
-    list(APPEND options -DCMAKE_CXX_COMPILER=${clang})
-  endif()
-  run(${CMAKE_COMMAND} ${options} -DWAY=${WAY} -DCAROM_UNITY=ON -DCAROM_UNITY_BATCH=16 -DCMAKE_BUILD_TYPE=None
-      -DBUILD_SHARED_LIBS=ON)
-endif()
-if(WAY STREQUAL "fetchcontent")
-  # From here on it is what a subfolder is: one room tells that it compiles.
+elseif(WAY STREQUAL "fetchcontent")
+  # Fetched it is what a subfolder is, and that is built whole by `./check consumers`: one room tells that it compiles.
+  run(${CMAKE_COMMAND} ${options} -DWAY=fetchcontent -DCMAKE_BUILD_TYPE=None)
   run(${CMAKE_COMMAND} --build ${SCRATCH}/build --parallel 2 --target carom_core)
   return()
 endif()

@@ -5,6 +5,7 @@
 
 #include "carom/ballistics/detail/flight_path.h"
 #include "carom/ballistics/flight.h"
+#include "carom/math/cpu.h"
 
 namespace carom::ballistics::detail {
 
@@ -55,7 +56,7 @@ struct AimKernel {
 namespace aim_baseline {
 extern const AimKernel kernel;
 }
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace aim_avx2 {
 extern const AimKernel kernel;
 }

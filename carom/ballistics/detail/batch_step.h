@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "carom/math/cpu.h"
+
 namespace carom::ballistics::detail {
 
 /// Tables, every value followed by the difference to the next node's or by the slope toward it: drag_row and air_row
@@ -32,7 +34,7 @@ struct BatchStep {
 namespace batch_baseline {
 void step(const BatchStep& batch, std::size_t from, std::size_t to);
 }
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace batch_avx2 {
 void step(const BatchStep& batch, std::size_t from, std::size_t to);
 }

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "carom/math/cpu.h"
+
 namespace carom::environment::detail {
 
 struct SeaWaves {
@@ -22,7 +24,7 @@ struct SeaWaves {
 namespace sea_baseline {
 void heights(const SeaWaves& sea, std::size_t from, std::size_t to);
 }
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace sea_avx2 {
 void heights(const SeaWaves& sea, std::size_t from, std::size_t to);
 }

@@ -5,7 +5,7 @@
 namespace carom::geometry::detail {
 
 const CornerKernels& corner_kernels() {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   static const bool wide = math::detect_instruction_set() >= math::InstructionSet::avx2;
   if (wide) return corner_lanes_avx2::kernels;
 #endif

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "carom/geometry/manifold.h"
+#include "carom/math/cpu.h"
 
 namespace carom::geometry::detail {
 
@@ -49,7 +50,7 @@ struct LaneColliders {
 namespace lane_pairs_baseline {
 LaneColliders colliders();
 }
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace lane_pairs_avx2 {
 LaneColliders colliders();
 }
@@ -57,7 +58,7 @@ LaneColliders colliders();
 
 /// `lanes`: as many as the machine is known to have.
 inline LaneColliders lane_colliders(int lanes) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (lanes >= 8) return lane_pairs_avx2::colliders();
 #endif
   (void)lanes;

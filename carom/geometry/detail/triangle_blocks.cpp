@@ -40,7 +40,7 @@ struct Planes {
 
 TriangleBlocks::TriangleBlocks(int lanes)
     : find_planes_(triangle_planes_baseline::find_planes), set_normals_(triangle_planes_baseline::set_normals) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   const math::InstructionSet wanted = lanes == 0 ? math::InstructionSet::avx512 : math::instruction_set_of_width(lanes);
   if (math::choose_instruction_set(wanted) >= math::InstructionSet::avx2)
     find_planes_ = triangle_planes_avx2::find_planes, set_normals_ = triangle_planes_avx2::set_normals;

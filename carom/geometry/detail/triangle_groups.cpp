@@ -5,7 +5,7 @@
 namespace carom::geometry::detail {
 
 const TriangleKernels& triangle_kernels() {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   static const bool wide = math::detect_instruction_set() >= math::InstructionSet::avx2;
   if (wide) return triangle_groups_avx2::kernels;
 #endif

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "carom/math/cpu.h"
+
 namespace carom::particles::detail {
 
 inline constexpr int grain_lanes = 16;  ///< of a block, whatever the width: no grain is in a block twice
@@ -138,7 +140,7 @@ const GrainKernels<N>& grain_kernels(int lanes) {
     else
       return static_cast<void>(plane), space;
   };
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (lanes == 16) return pick(grains_avx512::kernels2, grains_avx512::kernels3);
   if (lanes == 8) return pick(grains_avx2::kernels2, grains_avx2::kernels3);
 #endif

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/math/cpu.h"
 #include "carom/particles/detail/cloth_tiles.h"
 #include "carom/particles/detail/fold_tiles.h"
 
@@ -93,7 +94,7 @@ extern const SoftKernels kernels;
 
 /// For 4, 8 or 16 lanes; the machine must have them.
 inline const SoftKernels& soft_kernels(int lanes) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (lanes == 16) return soft_avx512::kernels;
   if (lanes == 8) return soft_avx2::kernels;
 #endif

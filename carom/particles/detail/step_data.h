@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "carom/math/cpu.h"
+
 namespace carom::particles::detail {
 
 /// Particles that pass through all kernels together: few enough that their paths stay in the first cache.
@@ -131,7 +133,7 @@ struct HitList {
 namespace particles_baseline {
 CAROM_PARTICLE_KERNELS
 }
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace particles_avx2 {
 CAROM_PARTICLE_KERNELS
 }

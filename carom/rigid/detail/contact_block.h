@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "carom/math/cpu.h"
 #include "carom/rigid/detail/box_lanes.h"
 #include "carom/rigid/detail/box_strips.h"
 #include "carom/rigid/detail/contact_watch.h"
@@ -204,7 +205,7 @@ PairKernels<Dim3> pair_kernels(Dim3);
 ContactKernels<Dim2> kernels(Dim2);
 ContactKernels<Dim3> kernels(Dim3);
 }  // namespace contact_kernels_baseline
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace contact_kernels_avx2 {
 PairKernels<Dim2> pair_kernels(Dim2);
 PairKernels<Dim3> pair_kernels(Dim3);

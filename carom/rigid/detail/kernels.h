@@ -30,7 +30,7 @@ namespace pin_kernels_baseline {
 LaneKernels<Dim2> kernels(Dim2);
 LaneKernels<Dim3> kernels(Dim3);
 }  // namespace pin_kernels_baseline
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
 namespace pin_kernels_avx2 {
 LaneKernels<Dim2> kernels(Dim2);
 LaneKernels<Dim3> kernels(Dim3);
@@ -45,7 +45,7 @@ LaneKernels<Dim3> kernels(Dim3);
 /// sixteen slow down (narrow phases by 2 to 15 %).
 template <class D>
 Kernels<D> kernels_of([[maybe_unused]] math::InstructionSet set) {
-#if defined(__x86_64__)
+#if CAROM_WIDE_UNITS
   if (set >= math::InstructionSet::avx2) {
     const PairKernels<D> pairs = contact_kernels_avx2::pair_kernels(D{});
     if (set == math::InstructionSet::avx512)
