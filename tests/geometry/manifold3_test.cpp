@@ -303,6 +303,24 @@ TEST(Manifold3, CylinderStandsOnItsCapAndLiesOnItsSide) {
 
 // Its outside is the core's and the rounding's: it stands on a disc of the core's radius and lies on a line of the
 // core's length, and tilted by 45° it touches with one point of its rim.
+// The rim of a tilted disc is told to a fiftieth of its radius, all round: what rocks on it is not lifted on the way.
+TEST(Manifold3, ATiltedDiscHasItsRimAllRound) {
+  const geometry::detail::Convex disc = geometry::detail::convex_of(Cylinder{0.05f, 1});
+  Draw draw;
+  for (int i = 0; i < 100; ++i) {
+    geometry::detail::Feature face;
+    const float heading = draw.in(-3, 3), tilt = draw.in(0.02, 0.5);
+    const Vec3f lowest{math::cos(heading), 0, math::sin(heading)};
+    geometry::detail::feature(disc, normalize(Vec3f{0, -1, 0} + lowest * tilt), face);
+    float most = 0;
+    for (int k = 0; k < face.count; ++k) {
+      const Vec3f middle = 0.5f * (face.point[k] + face.point[k + 1 < face.count ? k + 1 : 0]);
+      most = max(most, 1 - length(Vec3f{middle.x, 0, middle.z}));
+    }
+    EXPECT_LT(most, 0.02f) << i;
+  }
+}
+
 TEST(Manifold3, RoundedCylinderStandsLiesAndLeans) {
   const Cylinder c{0.4f, 0.3f, 0.1f};
   const Box ground{{5, 1, 5}};
