@@ -229,6 +229,40 @@ TEST(Manifold3, ACardThatLeansStandsOnTheLowerBorderOfItsEdge) {
   }
 }
 
+// What rocks from one edge to the other comes down on points that were there before, at the height that they had.
+TEST(Manifold3, CrossedSticksTouchOnAllTheirWidth) {
+  const float half = 0.02f;
+  std::vector<Vec3f> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 0.5f : -0.5f, i & 2 ? half : -half, i & 4 ? half : -half});
+  const Shape3 box = Box{{0.5f, half, half}}, hull = make_hull(corners).value();
+  Draw draw;
+  for (int i = 0; i < 400; ++i) {
+    const Shape3 &a = i & 1 ? box : hull, &b = i & 2 ? box : hull;
+    const float roll_a = i & 4 ? draw.in(-0.1, 0.1) : draw.in(0.3, 0.7), roll = draw.in(0.01, 0.1);
+    const Quatf cross = from_rotation_vector(Vec3f{0, draw.in(0.6, 1.6), 0});
+    const auto pose = [&](float roll_b) {  // A below is rolled about its length, x; B above lies across it
+      const Quatf qa = from_rotation_vector(Vec3f{roll_a, 0, 0});
+      const Quatf qb = cross * from_rotation_vector(Vec3f{roll_b, 0, 0});
+      const auto height = [&](float t) { return half * (math::abs(math::cos(t)) + math::abs(math::sin(t))); };
+      const Vec3f up{0, height(roll_a) + height(roll_b) - 0.001f, 0};
+      return Transform3f{inverse_rotate(qa, up), conjugate(qa) * qb};
+    };
+    const Manifold3 m = contact(a, b, pose(roll), 0.01f), then = contact(a, b, pose(-roll), 0.01f);
+    ASSERT_GE(m.count, 2) << i;
+    EXPECT_NEAR(double(least(m)), reference(a, b, pose(roll)), 1e-5) << i;
+    const auto deepest = [](const Manifold3& of) {
+      return *std::min_element(of.points, of.points + of.count, [](const ManifoldPoint3& p, const ManifoldPoint3& q) {
+        return p.separation < q.separation;
+      });
+    };
+    const Vec3f next = deepest(then).point;
+    float near = 1e30f;
+    for (int k = 0; k < m.count; ++k) near = min(near, length(m.points[k].point - next));
+    EXPECT_GT(length(deepest(m).point - next), half) << i;
+    EXPECT_LT(near, 0.4f * half) << i;
+  }
+}
+
 TEST(Manifold3, OctagonOfCrossedSquaresKeepsFourSpreadPoints) {
   const Box box{{0.5f, 0.5f, 0.5f}};
   const Transform3f x{{0, 1, 0}, normalize(Quatf{0.92388f, 0, 0.38268f, 0})};  // 45°
@@ -269,6 +303,24 @@ TEST(Manifold3, CylinderStandsOnItsCapAndLiesOnItsSide) {
 
 // Its outside is the core's and the rounding's: it stands on a disc of the core's radius and lies on a line of the
 // core's length, and tilted by 45° it touches with one point of its rim.
+// The rim of a tilted disc is told to a fiftieth of its radius, all round: what rocks on it is not lifted on the way.
+TEST(Manifold3, ATiltedDiscHasItsRimAllRound) {
+  const geometry::detail::Convex disc = geometry::detail::convex_of(Cylinder{0.05f, 1});
+  Draw draw;
+  for (int i = 0; i < 100; ++i) {
+    geometry::detail::Feature face;
+    const float heading = draw.in(-3, 3), tilt = draw.in(0.02, 0.5);
+    const Vec3f lowest{math::cos(heading), 0, math::sin(heading)};
+    geometry::detail::feature(disc, normalize(Vec3f{0, -1, 0} + lowest * tilt), face);
+    float most = 0;
+    for (int k = 0; k < face.count; ++k) {
+      const Vec3f middle = 0.5f * (face.point[k] + face.point[k + 1 < face.count ? k + 1 : 0]);
+      most = max(most, 1 - length(Vec3f{middle.x, 0, middle.z}));
+    }
+    EXPECT_LT(most, 0.02f) << i;
+  }
+}
+
 TEST(Manifold3, RoundedCylinderStandsLiesAndLeans) {
   const Cylinder c{0.4f, 0.3f, 0.1f};
   const Box ground{{5, 1, 5}};

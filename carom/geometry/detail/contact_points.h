@@ -39,6 +39,11 @@ void flip(Manifold3& m, const Transform3f& a_in_b);
 inline float border_tolerance(float r) { return min(0.005f * r, 0.001f); }
 inline constexpr float border_cosine = 0.85f;
 
+/// Where edges cross of which one borders a face that looks at the other shape to within 20°, what rocks over an edge
+/// comes down on the other ones: the points of the faces along the normal, of which the edges' is the deepest, are all
+/// of them. Not where they overlap by more than a fifth of half the length of the shorter shape.
+inline constexpr float facing_cosine = 0.94f, shallow_share = 0.2f;
+
 /// The closest parameters of two segments, clamped to them (Ericson 2005, §5.1.9).
 void closest_on_segments(Vec3f p1, Vec3f d1, Vec3f p2, Vec3f d2, float& s, float& t);
 

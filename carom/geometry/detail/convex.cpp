@@ -180,36 +180,40 @@ FacePlane face_plane(const Convex& c, int face) {
   }
 }
 
-// The rim as eight fixed corners, and the point lowest along `toward`, so that a tilted disc stands on its true rim.
+// The rim as eight fixed corners, of a tilted disc sixteen, and the point lowest along `toward`, so that a tilted disc
+// stands on its true rim, and what rocks on it finds the next points nearly as high as the rim is there.
 static void add_disc(const Convex& c, float y, bool upward, Vec3f toward, Feature& out) {
-  constexpr float s = 0.70710678118654752f;
-  constexpr float table[8][2] = {{1, 0}, {s, s}, {0, 1}, {-s, s}, {-1, 0}, {-s, -s}, {0, -1}, {s, -s}};
+  constexpr int sides = 16;
+  constexpr float s = 0.70710678118654752f, c1 = 0.92387953251128674f, s1 = 0.38268343236508977f;
+  constexpr float table[sides][2] = {{1, 0},  {c1, s1},   {s, s},   {s1, c1},   {0, 1},  {-s1, c1}, {-s, s}, {-c1, s1},
+                                     {-1, 0}, {-c1, -s1}, {-s, -s}, {-s1, -c1}, {0, -1}, {s1, -c1}, {s, -s}, {c1, -s1}};
   const float across = math::sqrt(toward.x * toward.x + toward.z * toward.z);
   const float r = c.half.x;
+  const int step = across > 0.01f ? 1 : 2;
   int lowest_after = -1;
   float lx = 0, lz = 0;
   if (across > 1e-4f) {
     lx = toward.x / across, lz = toward.z / across;
     float most = -2;
     int near = 0;
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < sides; i += step) {
       const float a = table[i][0] * lx + table[i][1] * lz;
       if (a > most) most = a, near = i;
     }
     if (most < 0.99999f) {
       const float side = table[near][0] * lz - table[near][1] * lx;
-      lowest_after = side > 0 ? near : (near + 7) & 7;
+      lowest_after = side > 0 ? near : (near + sides - step) % sides;
     }
   }
   Feature ring;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < sides; i += step) {
     ring.add({table[i][0] * r, y, table[i][1] * r}, i);
-    if (i == lowest_after) ring.add({lx * r, y, lz * r}, 8);
+    if (i == lowest_after) ring.add({lx * r, y, lz * r}, sides);
   }
   // x towards z is clockwise seen from +y.
   for (int i = 0; i < ring.count; ++i) {
     const int k = upward ? ring.count - 1 - i : i;
-    out.add(ring.point[k], ring.id[k] + (upward ? 16 : 0));
+    out.add(ring.point[k], ring.id[k] + (upward ? 64 : 0));
   }
   out.normal = {0, upward ? 1.0f : -1.0f, 0};
 }

@@ -31,11 +31,11 @@ int clip_side(const Corner* in, int count, Corner* out, bool along_v, float sign
 }
 
 // The faces: `ref` has half extents hr and axes r[], `inc` likewise, its centre at c from ref's centre, all in one
-// frame.
-void clip_faces(Vec3f hr, const Vec3f* r, Vec3f hi, const Vec3f* q, Vec3f c, int axis, Vec3f n, float margin,
-                std::uint32_t tag, Vec3f ref_center, ContactPoints& out) {
+// frame. n: the normal of ref's face. The other one is seen along `normal`, and so are separations.
+void clip_faces(Vec3f hr, const Vec3f* r, Vec3f hi, const Vec3f* q, Vec3f c, int axis, Vec3f n, Vec3f normal,
+                float margin, std::uint32_t tag, Vec3f ref_center, ContactPoints& out) {
   const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-  float along[3] = {dot(q[0], n), dot(q[1], n), dot(q[2], n)};
+  float along[3] = {dot(q[0], normal), dot(q[1], normal), dot(q[2], normal)};
   const float a0 = abs(along[0]), a1 = abs(along[1]), a2 = abs(along[2]);
   const int j = a0 >= a1 && a0 >= a2 ? 0 : (a1 >= a2 ? 1 : 2);
   const int ju = j == 2 ? 0 : j + 1, jv = j == 0 ? 2 : j - 1;
@@ -54,13 +54,21 @@ void clip_faces(Vec3f hr, const Vec3f* r, Vec3f hi, const Vec3f* q, Vec3f c, int
     x[k] = {cu + su * uu + sv * vu, cv + su * uv + sv * vv, cw + su * uw + sv * vw,
             base | (su > 0 ? 1u << ju : 0u) | (sv > 0 ? 1u << jv : 0u)};
   }
+  const Vec3f lean = normal - n;
+  if (!(lean == Vec3f{})) {
+    const float scale = 1 / dot(normal, n), lean_u = dot(normal, U), lean_v = dot(normal, V);
+    for (int k = 0; k < 4; ++k) {
+      x[k].w *= scale;
+      x[k].u -= lean_u * x[k].w, x[k].v -= lean_v * x[k].w;
+    }
+  }
   int count = clip_side(x, 4, y, false, 1, hr[u], 1);
   if (count > 0) count = clip_side(y, count, x, false, -1, hr[u], 2);
   if (count > 0) count = clip_side(x, count, y, true, 1, hr[v], 3);
   if (count > 0) count = clip_side(y, count, x, true, -1, hr[v], 4);
   for (int k = 0; k < count; ++k) {
     if (x[k].w > margin) continue;
-    const Vec3f p = ref_center + U * x[k].u + V * x[k].v + n * (hr[axis] + 0.5f * x[k].w);
+    const Vec3f p = ref_center + U * x[k].u + V * x[k].v + n * (hr[axis] + 0.5f * x[k].w) + lean * (0.5f * x[k].w);
     out.add(p, x[k].w, x[k].id | tag);
   }
 }
@@ -161,6 +169,22 @@ void collide_box_box(const Box& box_a, const Box& box_b, const Transform3f& x, f
     // Edges that pass each other beyond their ends do not meet while the boxes are apart.
     if (edge > 0 && length(cb - ca) > edge + margin) out.count = 0;
     cache.kind = std::uint8_t(7 + 3 * edge_i + edge_j);
+    if (out.count == 0 || edge < -shallow_share * min(max(ea.x, max(ea.y, ea.z)), max(eb.x, max(eb.y, eb.z)))) return;
+    // Where the faces beside the edges nearly face each other, what rocks over an edge comes down on the other ones:
+    // the points of the faces along n, of which the edges' is the deepest, are all of them.
+    int k = 0;
+    for (int i = 1; i < 3; ++i)
+      if (abs(n[i]) > abs(n[k])) k = i;
+    const Vec3f in_b = n * R;
+    const float facing = max(abs(in_b.x), max(abs(in_b.y), abs(in_b.z)));
+    if (max(abs(n[k]), facing) < facing_cosine) return;
+    const Vec3f A[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Vec3f face_normal{};
+    face_normal[k] = n[k] < 0 ? -1.0f : 1.0f;
+    ContactPoints points;
+    clip_faces(ea, A, eb, B, t, k, face_normal, n, margin,
+               1u << 31 | (n[k] < 0 ? 1u : 0u) << 28 | std::uint32_t(k) << 24, {}, points);
+    if (points.count > 1) write_points(points, n, out);
     return;
   }
 
@@ -186,13 +210,14 @@ void collide_box_box(const Box& box_a, const Box& box_b, const Transform3f& x, f
   if (axis < 3) {
     Vec3f n{};
     n[axis] = t[axis] < 0 ? -1.0f : 1.0f;
-    clip_faces(ea, A, eb, B, t, axis, n, margin, (t[axis] < 0 ? 1u : 0u) << 28 | std::uint32_t(axis) << 24, {}, points);
+    clip_faces(ea, A, eb, B, t, axis, n, n, margin, (t[axis] < 0 ? 1u : 0u) << 28 | std::uint32_t(axis) << 24, {},
+               points);
     write_points(points, n, out);
   } else {
     const int j = axis - 3;
     const bool negative = tb[j] > 0;  // the face of B that looks at A
     const Vec3f n = B[j] * (negative ? -1.0f : 1.0f);
-    clip_faces(eb, B, ea, A, -t, j, n, margin, 1u << 29 | (negative ? 1u : 0u) << 28 | std::uint32_t(j) << 24, t,
+    clip_faces(eb, B, ea, A, -t, j, n, n, margin, 1u << 29 | (negative ? 1u : 0u) << 28 | std::uint32_t(j) << 24, t,
                points);
     write_points(points, -n, out);
   }

@@ -229,6 +229,30 @@ bool grazes(const Convex& a, const Convex& b, const Transform3f& b_in_a, Vec3f n
   return false;
 }
 
+float half_length(const Convex& c) {
+  if (c.kind == CoreKind::triangle) return 1e30f;
+  const Vec3f half = c.kind == CoreKind::hull ? c.hull->bounds.extents() : c.half;
+  return max(half.x, max(half.y, half.z));
+}
+
+/// What faces show each other along the normal of two edges that cross (facing_cosine).
+void clip_beside(const Pair& pair, Vec3f n, float facing_a, float facing_b, ContactPoints& points) {
+  Feature on_a, on_b;
+  feature(pair.a, n, on_a);
+  feature(pair.b, -inverse_rotate(pair.x.q, n), on_b);
+  place(on_b, pair.x);
+  const bool of_a = on_a.count > 2 && (on_b.count <= 2 || facing_a >= facing_b);
+  const Feature& face = of_a ? on_a : on_b;
+  Feature& other = of_a ? on_b : on_a;
+  if (face.count <= 2) return;
+  const Vec3f along = of_a ? n : -n, lean = along - face.normal;
+  const float scale = 1 / dot(along, face.normal), radius_r = of_a ? pair.a.radius : pair.b.radius;
+  for (int i = 0; i < other.count; ++i)
+    other.point[i] -= lean * (scale * dot(face.normal, other.point[i] - face.point[0]));
+  clip_to_face(face, radius_r, other, pair.radius() - radius_r, pair.margin, of_a ? 0x20000000u : 0xa0000000u, points);
+  for (int i = 0; i < points.count; ++i) points.point[i].point += lean * (0.5f * points.point[i].separation + radius_r);
+}
+
 // Contacts for the normal n (A to B, in A's frame) with core separation d. Returns the cache entry.
 template <class AnyPair>
 void points_for(const AnyPair& pair, const CoreDistance& found, float slack, PairCache& cache, Manifold3& out) {
@@ -326,9 +350,20 @@ void points_for(const AnyPair& pair, const CoreDistance& found, float slack, Pai
   const float s = d - pair.radius();
   if (s > pair.margin) return;
   const Vec3f pa = Vec3f(found.point_a) + n * pair.a.radius, pb = Vec3f(found.point_b) - n * pair.b.radius;
+  const ManifoldPoint3 nearest = {(pa + pb) * 0.5f, s, 0x20000000u};
+  const float facing_a = fa >= 0 ? dot(face_plane(pair.a, fa).normal, n) : -1;
+  const float facing_b = fb >= 0 ? dot(pair.normal_of_b(fb), n) : -1;
+  if (max(facing_a, facing_b) >= facing_cosine && d > -shallow_share * min(half_length(pair.a), half_length(pair.b))) {
+    ContactPoints points;
+    clip_beside(pair, n, facing_a, facing_b, points);
+    if (points.count == 0 || least_separation(points) > s + 0.05f * abs(s) + slack)
+      points.add(nearest.point, nearest.separation, nearest.feature);
+    write_points(points, pushed, out);
+    return;
+  }
   out.normal = pushed;
   out.count = 1;
-  out.points[0] = {(pa + pb) * 0.5f, s, 0x20000000u};
+  out.points[0] = nearest;
 }
 
 }  // namespace core_pair
