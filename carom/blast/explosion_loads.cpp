@@ -7,9 +7,6 @@
 
 namespace carom::blast {
 
-using rigid::Dim2;
-using rigid::Dim3;
-
 namespace {
 
 float widest(const geometry::Bounds2f& b) { return 2 * math::max(b.extents().x, b.extents().y); }
@@ -217,7 +214,7 @@ core::Status Explosion<D>::load(World& world, Pass& pass) {
   return {};
 }
 
-template core::Status Explosion<Dim2>::apply(World&, double);
-template core::Status Explosion<Dim3>::apply(World&, double);
+template core::Status Explosion<rigid::Dim2>::apply(World&, double);
+template core::Status Explosion<rigid::Dim3>::apply(World&, double);
 
 }  // namespace carom::blast

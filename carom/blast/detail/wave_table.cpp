@@ -87,7 +87,7 @@ Wave WaveTable::at(double z, double scale) const {
   const double along = (math::log(z) - s->start) * s->pieces_each;
   const int k = math::clamp(int(along), 0, s->count - 1);
   const double t = 2 * (along - k) - 1;
-  const Piece& piece = pieces_[std::size_t(s->first + k)];
+  const Piece& piece = pieces_[std::size_t(s->first) + std::size_t(k)];
   double v[quantities];
   for (int q = 0; q < quantities; ++q) v[q] = piece.of[points - 1][q];
   for (int p = points - 2; p >= 0; --p)
