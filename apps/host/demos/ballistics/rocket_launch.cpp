@@ -119,7 +119,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       for (const ballistics::ThrustPoint& point : rocket_.stages.front().motor.curve.points())
         stage.sample(2, 1, rocket_.stages.front().ignition_delay + point.time, point.thrust);
     const RocketMoment* apex = flight_->first(RocketEvent::apex);
-    const double top = apex != nullptr ? apex->position.y : 50;
+    const double top = (apex != nullptr ? apex->position.y : 50) + 2.2 * scale_;  // with the canopy
     // Where it drifts in half a minute is seen.
     const double middle = 0.5 * flight_->path.at(30).position.x, wide = max(0.62 * top, 0.6 * abs(middle) + 20);
     stage.set_camera({{middle, 0.5 * top, 2.5 * wide}, {middle, 0.47 * top, 0}});
@@ -157,6 +157,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     for (const RocketMoment& moment : flight_->events)
       if (moment.time <= t) name = ballistics::to_string(moment.event);
     const double mass = mass_at(t);
+    ++steps_;
     if (t <= end) {
       stage.sample(1, 0, t, point.position.y);
       stage.sample(0, 0, t, length(point.velocity));
@@ -166,9 +167,9 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       const double lit = t - rocket_.stages.front().ignition_delay;
       if (lit <= first.curve.burn_time()) {  // up to the first burn-out, by Tsiolkovsky
         const double ideal = first.exhaust_speed() * math::log(flight_->masses.front() / mass) - 9.80665 * lit;
-        if (ideal > 0) stage.sample(0, 2, t, ideal);
+        if (ideal > 0 && steps_ % 6 == 0) stage.sample(0, 2, t, ideal);
       }
-      if (open) stage.sample(0, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
+      if (open && steps_ % 60 == 0) stage.sample(0, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
     }
     stage.say(std::string(name) + format(": %.1f s, %.0f m high, %.1f m/s, %.0f g", min(t, end),
                                          max(0.0, point.position.y), length(point.velocity), 1000 * mass));
@@ -232,6 +233,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
   std::optional<ballistics::RocketFlight> flight_;
   std::optional<ballistics::Trajectory> fall_;
   double dropped_ = 0;
+  int steps_ = 0;
   rigid::BodyId body_, canopy_, booster_;
 };
 
