@@ -12,7 +12,6 @@
 namespace carom::host::demo {
 namespace {
 
-using sports::BallPhase;
 using sports::Billiards;
 using sports::BilliardState;
 using sports::BilliardTable;
