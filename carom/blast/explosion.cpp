@@ -1,8 +1,6 @@
 #include "carom/blast/explosion.h"
 
-#include <algorithm>
-
-#include "carom/blast/detail/patches.h"
+#include "carom/blast/detail/wave_table.h"
 #include "carom/blast/reflection.h"
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
@@ -24,33 +22,6 @@ constexpr int ground_parts = 128;
 /// A fireball on the ground sees over its roughness.
 constexpr double above_ground = 0.05;
 
-float widest(const geometry::Bounds2f& b) { return 2 * math::max(b.extents().x, b.extents().y); }
-float widest(const geometry::Bounds3f& b) {
-  return 2 * math::max(b.extents().x, math::max(b.extents().y, b.extents().z));
-}
-/// The shorter of the height and half the width of what a box shows: clearing is a matter of a factor, not of percents.
-double clearing_length_of(const geometry::Bounds2f& b) { return double(2 * b.extents().y); }
-double clearing_length_of(const geometry::Bounds3f& b) {
-  const math::Vec3f e = b.extents();
-  const float middle = e.x + e.y + e.z - math::max(e.x, math::max(e.y, e.z)) - math::min(e.x, math::min(e.y, e.z));
-  return double(middle);
-}
-
-/// Of waves that come one after another: the most that they add up to as the front of one arrives.
-template <class D>
-double greatest_pressure(const WavesAt<D>& waves) {
-  double most = 0;
-  for (int k = 0; k < waves.count; ++k) {
-    double sum = 0;
-    for (int j = 0; j < waves.count; ++j) {
-      const Wave& w = waves.wave[j];
-      sum += friedlander(w.pressure, w.duration, w.decay, waves.wave[k].arrival - w.arrival);
-    }
-    most = math::max(most, sum);
-  }
-  return most;
-}
-
 }  // namespace
 
 template <class D>
@@ -64,7 +35,8 @@ core::Result<Explosion<D>> Explosion<D>::make(const Charge<D>& c) {
   if (!(c.shelter >= 0 && c.shelter <= 1)) return core::Error{core::refused("Charge: shelter", c.shelter, "0 to 1")};
   Explosion e;
   e.charge_ = c;
-  const double most = greatest_scaled_distance * scale_of(c.mass, c.burst);
+  e.scale_ = scale_of(c.mass, c.burst);
+  const double most = greatest_scaled_distance * e.scale_;
   e.reach_ = c.reach > 0 ? math::min(c.reach, most) : most;
   if (c.burst == Burst::air) {
     if (!math::is_finite(c.ground))
@@ -98,11 +70,9 @@ core::Result<Explosion<D>> Explosion<D>::make(const Charge<D>& c) {
 
 template <class D>
 Wave Explosion<D>::wave_at(double distance) const {
-  const double scale = scale_of(charge_.mass, charge_.burst);
   const double z =
-      math::clamp(distance / scale, least_scaled_distance * (1 + 1e-12), greatest_scaled_distance * (1 - 1e-12));
-  const auto wave = blast_wave(charge_.mass, z * scale, charge_.burst);
-  return wave.ok() ? *wave : Wave{};
+      math::clamp(distance / scale_, least_scaled_distance * (1 + 1e-12), greatest_scaled_distance * (1 - 1e-12));
+  return detail::WaveTable::of(charge_.burst).at(z, scale_);
 }
 
 template <class D>
@@ -159,8 +129,7 @@ template <class D>
 double Explosion<D>::front_radius(double world_time) const {
   const double t = world_time - charge_.time;
   if (!(t > 0)) return 0;
-  const double scale = scale_of(charge_.mass, charge_.burst);
-  double low = least_scaled_distance * scale, high = reach_;
+  double low = least_scaled_distance * scale_, high = reach_;
   const double first = wave_at(low).arrival;
   if (t <= first) return low * t / first;
   if (t >= wave_at(high).arrival) return high;
@@ -225,153 +194,6 @@ void Explosion<D>::push_particles(std::span<const Vector> positions, std::span<V
       velocities[i] += Vector(gain * out);
     }
   }
-}
-
-template <class D>
-core::Status Explosion<D>::apply(World& world, double dt) {
-  events_.clear();
-  loads_.clear();
-  if (!(dt > 0) || !math::is_finite(dt)) return core::Error{core::refused("Explosion::apply: dt", dt, "s > 0")};
-  const double from = world.time() - charge_.time, to = from + dt;
-  if (to <= 0 || from > last_) return {};
-  const double front = front_radius(world.time() + dt);
-  Position half{};
-  for (int k = 0; k < D::dimension; ++k) half[k] = front;
-  std::vector<rigid::ShapeId> shapes;
-  if (auto s = world.overlap_bounds({charge_.position - half, charge_.position + half}, shapes,
-                                    {.mask = charge_.mask, .ignore = charge_.casing});
-      !s)
-    return s;
-  struct Seen {
-    rigid::ShapeId shape;
-    rigid::BodyId body;
-    Position center_of_mass;
-    double clearing = 0;
-    std::size_t first = 0, count = 0;  // patches
-    bool dynamic = false;
-  };
-  struct Place {
-    Position center, normal;
-    double area = 0, distance = 0;
-    std::int32_t cover = -1;  // ray
-  };
-  std::vector<Seen> seen;
-  std::vector<Place> places;
-  std::vector<rigid::RayQuery<D>> rays;
-  std::vector<detail::SurfacePatch<D>> patches;
-  std::vector<rigid::ShapeId> siblings;
-  const Position eye = this->eye();
-  const double band = math::max(0.0, front);
-  for (const rigid::ShapeId id : shapes) {
-    const auto geometry = world.shape_geometry(id);
-    const auto body = world.body_of(id);
-    if (!geometry.ok() || !body.ok() || !detail::has_patches(*geometry)) continue;
-    const auto definition = world.shape_definition(id);
-    const auto state = world.state(*body);
-    if (!definition.ok() || !state.ok() || definition->sensor || !state->enabled) continue;
-    if (state->type != rigid::BodyType::dynamic && !definition->hit_events) continue;
-    const auto pose = state->pose * definition->local;
-    const auto box = geometry::bounds(*geometry, {});
-    const double size = 0.5 * double(math::length(box.high - box.low));
-    const double middle = distance(world_point(pose, box.center()), charge_.position);
-    if (middle - size > band) continue;
-    // The wave has passed it all.
-    const Wave far = wave_at(middle + size + (ground_.empty() ? 0 : 2 * height()));
-    if (from > far.arrival + 2.5 * far.duration) continue;
-    Seen s{id,
-           *body,
-           state->center_of_mass,
-           charge_.clearing ? clearing_length_of(box) : 0,
-           places.size(),
-           0,
-           state->type == rigid::BodyType::dynamic};
-    patches.clear();
-    const float fine = math::max(0.02f, math::max(float(0.15 * math::max(middle - size, 0.0)), widest(box) / 24));
-    detail::add_patches(*geometry, fine, patches);
-    for (const auto& patch : patches) {
-      Place p;
-      p.center = world_point(pose, patch.center);
-      p.normal = Position(rotate(pose.rotation, patch.normal));
-      p.area = double(patch.area);
-      p.distance = distance(p.center, charge_.position);
-      if (p.distance > reach_) continue;
-      places.push_back(p);
-    }
-    s.count = places.size() - s.first;
-    if (s.count == 0) continue;
-    // Parts of one body cover each other: what lies against another one feels nothing.
-    world.shapes(*body, siblings);
-    for (std::size_t i = s.first; i < places.size() && siblings.size() > 1; ++i) {
-      constexpr double outside = 2e-4, look = 5e-3;
-      places[i].cover = std::int32_t(rays.size());
-      rays.push_back({places[i].center + outside * places[i].normal, Vector(look * places[i].normal), {}});
-    }
-    seen.push_back(s);
-  }
-  std::vector<rigid::RayHit<D>> hits(rays.size());
-  if (auto s = world.cast_rays(rays, hits); !s) return s;
-  for (const Seen& s : seen)
-    for (std::size_t i = s.first; i < s.first + s.count; ++i) {
-      if (places[i].cover < 0 || hits[std::size_t(places[i].cover)].shape.is_null()) continue;
-      const rigid::ShapeId above = hits[std::size_t(places[i].cover)].shape;
-      const auto owner = world.body_of(above);
-      if (!(above == s.shape) && owner.ok() && *owner == s.body) places[i].area = 0;
-    }
-  rays.clear();
-  for (const Seen& s : seen)
-    for (std::size_t i = s.first; i < s.first + s.count; ++i)
-      rays.push_back({eye, Vector(places[i].center - eye), {.mask = charge_.obstacles, .ignore = s.body}});
-  hits.assign(rays.size(), {});
-  if (auto s = world.cast_rays(rays, hits); !s) return s;
-  for (const Seen& s : seen) {
-    Position sum{}, moment_point{};
-    double weight = 0, nearest = 1e300, acted = 0;
-    decltype(cross(Position{}, Position{})) torque{};
-    FrontEvent<D> event;
-    for (std::size_t i = s.first; i < s.first + s.count; ++i) {
-      const Place& p = places[i];
-      if (p.area == 0) continue;
-      const auto& hit = hits[i];
-      bool sheltered = !hit.shape.is_null() && hit.fraction < 0.999f;
-      if (sheltered && !charge_.casing.is_null()) {
-        const auto owner = world.body_of(hit.shape);
-        sheltered = !(owner.ok() && *owner == charge_.casing);
-      }
-      const double share = sheltered ? charge_.shelter : 1;
-      const WavesAt<D> waves = waves_at(p.center);
-      if (waves.count > 0 && p.distance < nearest) {
-        nearest = p.distance;
-        event = {s.body, waves.wave[0].arrival, p.distance, share * greatest_pressure(waves), sheltered, {}};
-      }
-      double impulse = 0;
-      for (int k = 0; k < waves.count; ++k) {
-        const SurfaceLoad load(waves.wave[k], dot(p.normal, waves.toward[k]), s.clearing, share);
-        impulse += p.area * (load.impulse(to) - load.impulse(from));
-        acted = math::max(acted, math::min(to, load.end()) - math::max(from, load.arrival()));
-      }
-      if (impulse == 0) continue;
-      const Position push = -impulse * p.normal;
-      sum += push;
-      torque = torque + cross(p.center - s.center_of_mass, push);
-      moment_point += math::abs(impulse) * p.center;
-      weight += math::abs(impulse);
-    }
-    if (event.time > from && event.time <= to) {
-      event.damage = damage_of(event.pressure);
-      const auto known = std::find_if(events_.begin(), events_.end(), [&](const auto& e) { return e.body == s.body; });
-      if (known == events_.end())
-        events_.push_back(event);
-      else if (event.distance < known->distance)
-        *known = event;
-    }
-    if (!(weight > 0)) continue;
-    loads_.push_back({s.shape, s.body, Vector(sum), moment_point / weight, math::max(acted, 1e-6)});
-    if (!s.dynamic) continue;
-    if (auto status = world.add_impulse(s.body, Vector(sum)); !status) return status;
-    if (auto status = world.add_angular_impulse(s.body, typename D::Angular(torque)); !status) return status;
-    given_ += sum;
-  }
-  return {};
 }
 
 template class Explosion<Dim2>;

@@ -103,10 +103,16 @@ class CAROM_API Explosion {
   struct Ground {
     double factor = 1, stem = 0;  // m
   };
+  struct Pass;
+  /// Adds what the wave is passing of a shape.
+  void see(const World& world, rigid::ShapeId shape, double front, Pass& pass) const;
+  /// Gives what was seen its loads.
+  core::Status load(World& world, Pass& pass);
   Ground ground_at(double tangent) const;
   double height() const;  // m, of the burst
   Position eye() const;
   Charge<D> charge_{};
+  double scale_ = 1;  // m per m/kg^{1/3}
   double reach_ = 0, last_ = 0;
   std::vector<Ground> ground_;  // of a burst in the air
   double tangent_scale_ = 0;

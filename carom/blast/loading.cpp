@@ -1,5 +1,7 @@
 #include "carom/blast/loading.h"
 
+#include <array>
+
 #include "carom/math/elementary.h"
 
 namespace carom::blast {
@@ -7,28 +9,40 @@ namespace carom::blast {
 namespace {
 
 /// ∫₀^S sᵏ e^{−βs} ds for k = 0 … 3.
-void moments(double beta, double end, double out[4]) {
-  if (beta * end < 0.5) {
-    for (int k = 0; k < 4; ++k) {
-      double power = 1, sum = 0;
-      for (int n = 0; n < 18; ++n) {
-        sum += power / (n + k + 1);
-        power *= -beta * end / (n + 1);
-      }
-      out[k] = sum;
+struct Moments {
+  double beta = -1, end = -1;
+  double of[4] = {};
+
+  Moments() = default;
+  Moments(double b, double s) : beta(b), end(s) {
+    const double x = beta * end, last = math::exp(-x);
+    if (x < 0.5) {
+      // The last by its series Σ (−x)ⁿ/(n! (n + 4)), the others from it.
+      constexpr int terms = 14;
+      static constexpr auto series = [] {
+        std::array<double, terms> c{};
+        double factorial = 1;
+        for (int n = 0; n < terms; factorial *= ++n) c[std::size_t(n)] = 1 / (factorial * (n + 4));
+        return c;
+      }();
+      double sum = 0;
+      for (int n = terms - 1; n >= 0; --n) sum = series[std::size_t(n)] - x * sum;
+      const double end2 = end * end;
+      of[3] = end2 * end2 * sum;
+      of[2] = (beta * of[3] + end2 * end * last) / 3;
+      of[1] = (beta * of[2] + end2 * last) / 2;
+      of[0] = beta * of[1] + end * last;
+      return;
     }
-    double scale = end;
-    for (int k = 0; k < 4; ++k, scale *= end) out[k] *= scale;
-    return;
+    const double inverse = 1 / beta;
+    of[0] = (1 - last) * inverse;
+    double power = last;
+    for (int k = 1; k < 4; ++k) {
+      power *= end;
+      of[k] = (k * of[k - 1] - power) * inverse;
+    }
   }
-  const double last = math::exp(-beta * end);
-  out[0] = -math::expm1(-beta * end) / beta;
-  double power = 1;
-  for (int k = 1; k < 4; ++k) {
-    power *= end;
-    out[k] = (k * out[k - 1] - power * last) / beta;
-  }
-}
+};
 
 }  // namespace
 
@@ -64,8 +78,8 @@ SurfaceLoad::SurfaceLoad(const Wave& w, double cosine, double clearing_length, d
     add(c * c * wind, side, 2 * w.decay, 2, false);
     add(-c * c * wind, side, 2 * w.decay, 2, true);
   }
-  add(c * c * w.reflected_pressure, reflected, w.reflected_decay, 1, clears);
   add((clears ? c * c - 2 * c : 1 + c * c - 2 * c) * w.pressure, side, w.decay, 1, clears);
+  add(c * c * w.reflected_pressure, reflected, w.reflected_decay, 1, clears);
 }
 
 double SurfaceLoad::pressure(double time) const {
@@ -85,8 +99,8 @@ double SurfaceLoad::pressure(double time) const {
 double wind_impulse(const Wave& w, double time) {
   const double s = math::clamp((time - w.arrival) / w.duration, 0.0, 1.0);
   if (!(s > 0)) return 0;
-  double m[4];
-  moments(2 * w.decay, s, m);
+  const Moments moments(2 * w.decay, s);
+  const auto& m = moments.of;
   return dynamic_pressure(w.pressure) * w.duration * (m[0] - 2 * m[1] + m[2]);
 }
 
@@ -102,12 +116,15 @@ double drag_impulse(double load, double mass, double speed, double wind) {
 
 double SurfaceLoad::impulse(double time) const {
   double sum = 0;
+  Moments known[2];
   for (int i = 0; i < count_ && time > arrival_; ++i) {
     const Term& term = terms_[i];
     double t = math::min(time - arrival_, term.duration);
     if (term.clears) t = math::min(t, clearing_);
-    double m[4];
-    moments(term.decay, t / term.duration, m);
+    const double s = t / term.duration;
+    Moments& moments = known[term.power - 1];
+    if (moments.beta != term.decay || moments.end != s) moments = Moments(term.decay, s);
+    const auto& m = moments.of;
     // (1 − s)^power (1 − κ s) by powers of s.
     const double k = term.clears ? term.duration / clearing_ : 0;
     const double part =

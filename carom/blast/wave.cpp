@@ -1,7 +1,9 @@
 #include "carom/blast/wave.h"
 
+#include <algorithm>
 #include <span>
 
+#include "carom/blast/detail/wave_table.h"
 #include "carom/core/string.h"
 #include "carom/math/elementary.h"
 
@@ -61,6 +63,15 @@ const Fitted& fitted(WaveQuantity quantity) {
       {"front speed", .06, front_speed, 1e3, false},
   };
   return all[int(quantity)];
+}
+
+std::vector<double> ends_of_fits() {
+  std::vector<double> ends;
+  for (int i = 0; i <= int(WaveQuantity::front_speed); ++i)
+    for (const Fit& fit : fitted(WaveQuantity(i)).fits)
+      if (fit.until < greatest_scaled_distance) ends.push_back(fit.until);
+  std::sort(ends.begin(), ends.end());
+  return ends;
 }
 
 core::Status check(double charge, double distance) {

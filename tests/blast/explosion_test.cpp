@@ -79,6 +79,21 @@ TEST(Explosion, ImpulseOnABoxIsThatOfItsFaces) {
   }
 }
 
+TEST(Explosion, KnowsItsWaveByATable) {
+  for (const Burst burst : {Burst::ground, Burst::free_air})
+    for (const double mass : {1e-3, 5.0, 4e4}) {
+      const auto explosion = Explosion3::make({.mass = mass, .burst = burst}).value();
+      const double scale = math::cbrt(burst == Burst::ground ? mass : mass / 1.8);
+      for (double z = 0.2001; z < 39.99; z *= 1.0007) {
+        const Wave a = explosion.wave_at(z * scale), b = blast_wave(mass, z * scale, burst).value();
+        for (double Wave::* value :
+             {&Wave::arrival, &Wave::pressure, &Wave::reflected_pressure, &Wave::duration, &Wave::impulse,
+              &Wave::reflected_impulse, &Wave::front_speed, &Wave::decay, &Wave::reflected_decay})
+          ASSERT_NEAR(a.*value, b.*value, 1e-7 * math::abs(b.*value) + 1e-9) << mass << " " << z;
+      }
+    }
+}
+
 // What is struck beside its centre of mass turns: Δω = r × J / I. The charge faces the middle of the plate.
 TEST(Explosion, TurnsWhatItStrikesBesideItsCentre) {
   rigid::World3 world({.gravity = {0, 0, 0}});

@@ -139,7 +139,7 @@ TEST(ParticleAllocation, NoneInAWarmStepOfClothAndSoftBodies) {
   SoftBody* const bodies[] = {&soft, &second};
   SoftGroup group;
   EXPECT_EQ(allocations_among_bodies<rigid::Dim3>(
-                240, [&](rigid::World3& w) { return group.step(cloths, bodies, w, 1.0 / 60); }),
+                360, [&](rigid::World3& w) { return group.step(cloths, bodies, w, 1.0 / 60); }),
             0);
 }
 

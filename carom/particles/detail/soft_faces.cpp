@@ -20,9 +20,10 @@ constexpr double meeting_way = 0.5;     // of what is between the middle of a sh
 constexpr double meeting_turn = 0.2;    // rad, of what touches with its corners
 constexpr double stretching_way = 0.5;  // of an edge
 
-/// The farthest point of a shape, which may be of several parts, along a direction of the world.
-Vec3d farthest_along(const Shape& shape, Vec3f direction) {
-  const Vec3f along(inverse_rotate(shape.turn, Vec3d(direction)));
+/// The farthest point of a shape, which may be of several parts, along a direction of the world; of it turned `as`, but
+/// where it is now.
+Vec3d farthest_along(const Shape& shape, const Quatd& as, Vec3f direction) {
+  const Vec3f along(inverse_rotate(as, Vec3d(direction)));
   if (shape.shape.type != geometry::ShapeType3::compound)
     return shape.place + rotate(shape.turn, Vec3d(geometry::support(shape.shape, along)));
   Vec3f best{};
@@ -73,8 +74,17 @@ bool meet_face(const SoftThing& thing, const Shape& shape, Vec3d middle, const s
   const Vec3f outward = twice / size;
   const float height = dot(outward, from);
   if (math::abs(height) > reach || (thing.closed && height < -thing.mean_edge)) return false;
-  const Vec3f to_shape = thing.closed || height >= 0 ? outward : -outward;
-  const Vec3d point = farthest_along(shape, -to_shape);
+  // Its middle may come beyond a face of a sheet that bears it, by less than half of itself.
+  const bool kept = shape.side != 0 && math::abs(height) < float(shape.half);
+  const bool before = thing.closed || (kept ? shape.side > 0 : height >= 0);
+  const Vec3f to_shape = before ? outward : -outward;
+  Vec3d point = farthest_along(shape, shape.turn, -to_shape);
+  const Vec3d spin = thing.obstacles.bodies[std::size_t(shape.body)].spin;
+  if (spin != Vec3d{} && shape.shape.type != geometry::ShapeType3::sphere) {
+    // A corner that will have turned below that one.
+    const Vec3d then = farthest_along(shape, integrate(shape.turn, double(h) * spin), -to_shape), more = then - point;
+    if (dot(Vec3d(to_shape), more + double(h) * cross(spin, more)) < 0) point = then;
+  }
   const Vec3f seen(point - a);
   const float above = dot(to_shape, seen);
   if (above - apart > margin || (thing.closed && above < -thing.mean_edge)) return false;
@@ -98,15 +108,41 @@ bool meet_face(const SoftThing& thing, const Shape& shape, Vec3d middle, const s
          (share[first] = 1 - share[second], !thing.closed || dot(Vec3f(plane.normal), outward) < 0);
 }
 
+/// The side of a sheet that a shape comes from, by the nearest face; as before while it stays near.
+void find_side(const SoftThing& thing, Shape& shape) {
+  const Vec3d middle = shape.middle();
+  const std::span<const std::uint32_t> corners = thing.faces();
+  float nearest = 1e30f, height = 0;
+  for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
+    const Vec3d a = thing.position[corners[k]];
+    const Vec3f u(thing.position[corners[k + 1]] - a), v(thing.position[corners[k + 2]] - a), seen(middle - a);
+    const Vec3f share = nearest_share(u, v, seen), twice = cross(u, v);
+    const float away = length_squared(seen - share.y * u - share.z * v), size = length(twice);
+    if (!(size > 1e-12f)) continue;
+    const float above = dot(twice, seen) / size;
+    // Of faces that share the nearest edge the one that it stands out from most tells.
+    const float same = 1e-5f * (away + nearest);
+    if (away > nearest + same || (away > nearest - same && math::abs(above) <= math::abs(height))) continue;
+    nearest = math::min(nearest, away);
+    height = above;
+  }
+  const bool near = nearest < math::square(float(shape.outer + 2 * thing.apart));
+  if (!near)
+    shape.side = 0;
+  else if (shape.side == 0)
+    shape.side = height >= 0 ? 1 : -1;
+}
+
 }  // namespace
 
 void meet_faces(SoftThing& thing, float h) {
   const std::span<const std::uint32_t> corners = thing.faces();
-  for (const Shape& shape : thing.obstacles.shapes()) {
+  for (Shape& shape : thing.obstacles.shapes()) {
     if (!is_convex(shape.shape) && shape.shape.type != geometry::ShapeType3::compound) continue;
     const double edge = double(thing.mean_edge);
     if (!shape.fast && (shape.half > edge || shape.outer > small_outer * edge)) continue;
     const Vec3d middle = shape.middle();
+    if (!thing.closed) find_side(thing, shape);
     for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
       if (!thing.folded.empty() && thing.folded[k / 3] != 0) continue;
       SoftPlane plane;

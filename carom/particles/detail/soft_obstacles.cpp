@@ -63,7 +63,11 @@ void SoftObstacles::take(rigid::World3& world, rigid::ShapeId id, const rigid::F
   here.speed = speed_of(here);
   here.fast = dt * here.speed > half_way * here.half;
   fast = fast || here.fast;
+  here.id = id;
+  for (const SoftSide& known : sides_)
+    if (known.id == id) here.side = known.side;
   shapes_.push_back(here);
+  sides_.reserve(shapes_.capacity());
 }
 
 void SoftObstacles::gather(rigid::World3& world, const geometry::Bounds3d& bounds, const rigid::Filter& filter,
@@ -223,6 +227,9 @@ void SoftObstacles::advance(double h, const SoftSolver& solver) {
 void SoftObstacles::hand_over(rigid::World3& world, double dt, double gravity) {
   const float per_step = float(1 / dt);
   memory_.clear();
+  sides_.clear();
+  for (const Shape& shape : shapes_)
+    if (shape.side != 0) sides_.push_back({shape.id, shape.side});
   for (const Body& body : bodies) {
     if (!body.dynamic) continue;
     if (body.awake && body.mass > 0) {

@@ -36,6 +36,12 @@ struct SoftMemory {
   Vec3d impulse{};
 };
 
+/// Which side of a sheet a shape is on, kept while it is near.
+struct SoftSide {
+  rigid::ShapeId id{};
+  int side = 0;
+};
+
 class SoftObstacles {
  public:
   struct Body {
@@ -65,6 +71,8 @@ class SoftObstacles {
     double half = 0, outer = 0;  ///< m, from the middle of its bounds to the nearest side, and to a corner
     double speed = 0;            ///< m/s, of none of its points more
     bool fast = false;           ///< comes farther in the step than through half of that
+    rigid::ShapeId id{};
+    int side = 0;  ///< of a sheet that it is near: 1 where its faces look
     Vec3d middle() const { return place + rotate(turn, Vec3d(tight.center())); }
   };
   std::vector<Body> bodies;
@@ -81,6 +89,7 @@ class SoftObstacles {
               const std::vector<SoftPin>& pins, double dt);
   bool empty() const { return shapes_.empty(); }
   const std::vector<Shape>& shapes() const { return shapes_; }
+  std::vector<Shape>& shapes() { return shapes_; }
   /// The nearest plane to a ball that comes by `margin` m in h s.
   bool nearest(Vec3d point, double radius, double margin, double h, SoftPlane& plane) const;
   void push(int body, Vec3d point, Vec3d impulse) {
@@ -103,6 +112,7 @@ class SoftObstacles {
   double speed_of(const Shape& shape) const;
   double mass_behind(rigid::World3& world, const Body& body, Vec3d push);
   std::vector<SoftMemory> memory_;
+  std::vector<SoftSide> sides_;
   std::vector<rigid::BodyId> behind_;
   std::vector<rigid::ContactView<rigid::Dim3>> contacts_;
   std::vector<Shape> shapes_;

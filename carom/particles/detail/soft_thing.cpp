@@ -12,9 +12,9 @@ core::SerialScheduler soft_serial;
 
 constexpr float meeting_stride = 0.5f;  // of an edge
 constexpr int most_meeting_substeps = 16;
-constexpr int most_fast_substeps = 256;  // of a step, while something fast comes; after them each is
-constexpr int late_fast_substeps = 32;   // at least one of so many of a step
-constexpr int most_fast_rounds = 8;      // of solves, in which who touches is found
+constexpr int most_fast_substeps = 64;  // of a step, while something fast comes; after them each is
+constexpr int late_fast_substeps = 32;  // at least one of so many of a step
+constexpr int most_fast_rounds = 8;     // of solves, in which who touches is found
 constexpr int touch_chunk = 128;
 
 /// Things that meet, and what they are near, pass by each other by a part of an edge a substep at most: what goes

@@ -10,6 +10,8 @@ using math::Mat3f;
 
 namespace {
 
+constexpr float slow_rise = 0.1f, fast_rise = 4;  // m/s, of what is too deep
+
 /// Velocity of what a touch lies on: before the solve, and how the solve changes it.
 Vec3f surface_velocity(const SoftTouch& touch, const SoftObstacles& obstacles) {
   return Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(touch.plane.at));
@@ -37,8 +39,12 @@ void hold_touch(SoftTouch& touch, std::size_t i, Vec3f velocity, double friction
   const float deep = float(touch.plane.separation);
   touch.active = touch.active || deep < 0;
   if (!touch.active) return;
-  // What moves is not thrown: the world moves it through a blow a little otherwise than the substeps here foresee.
-  const float fastest = obstacles.bodies[std::size_t(touch.plane.body)].moves ? 0.1f : 1.0f;
+  // What moves is not thrown: the world moves it through a blow a little otherwise than the substeps here foresee. But
+  // what comes fast would sink in by that, a corner after another.
+  float fastest = 1;
+  if (obstacles.bodies[std::size_t(touch.plane.body)].moves)
+    fastest = obstacles.fast ? math::clamp(0.3f * length(surface_velocity(touch, obstacles)), slow_rise, fast_rise)
+                             : slow_rise;
   const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, fastest);
   touch.given = target - dot(n, against);
 }

@@ -48,13 +48,13 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
         {"fins", "Span of the fins", "m", "mm", "", 0.02, 0.12, 0, 0.06, false},
         {"parachute", "Diameter of the parachute", "m", "cm", "0: none", 0, 1.2, 0, 0.4, false},
     };
-    d.plots = {{"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
-               {"Speed",
+    d.plots = {{"Speed",
                 {"time", "s"},
                 {"speed", "m/s"},
                 {{"rocket"},
                  {"sinks at √(2 m g/ρ C_D A)", Series::Style::points},
                  {"without air: v_e ln(m₀/m) − g t", Series::Style::points}}},
+               {"Height", {"time", "s"}, {"height", "m"}, {{"rocket"}, {"lower stage"}}},
                {"Thrust", {"time", "s"}, {"thrust", "N"}, {{"motors"}, {"as certified", Series::Style::points}}},
                {"Mass", {"time", "s"}, {"mass", "g"}, {{"rocket"}}}};
     return d;
@@ -119,7 +119,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       for (const ballistics::ThrustPoint& point : rocket_.stages.front().motor.curve.points())
         stage.sample(2, 1, rocket_.stages.front().ignition_delay + point.time, point.thrust);
     const RocketMoment* apex = flight_->first(RocketEvent::apex);
-    const double top = apex != nullptr ? apex->position.y : 50;
+    const double top = (apex != nullptr ? apex->position.y : 50) + 2.2 * scale_;  // with the canopy
     // Where it drifts in half a minute is seen.
     const double middle = 0.5 * flight_->path.at(30).position.x, wide = max(0.62 * top, 0.6 * abs(middle) + 20);
     stage.set_camera({{middle, 0.5 * top, 2.5 * wide}, {middle, 0.47 * top, 0}});
@@ -149,7 +149,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
       stage.check(
           stage.world().set_pose(booster_, fallen.position + Vec3d{0, 0.5, 0}, turn_of_y({sin(4 * t), cos(4 * t), 0})));
       draw_flight(stage, *fall_, t - dropped_, pen(blue, 0xa0), 60);
-      if (t - dropped_ < fall_->duration()) stage.sample(0, 1, t, fallen.position.y);
+      if (t - dropped_ < fall_->duration()) stage.sample(1, 1, t, fallen.position.y);
     } else if (fall_ || rocket_.stages.size() == 2) {
       stage.check(stage.world().set_pose(booster_, middle - 0.4 * scale_ * nose, turn_of_y(nose)));
     }
@@ -157,18 +157,19 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
     for (const RocketMoment& moment : flight_->events)
       if (moment.time <= t) name = ballistics::to_string(moment.event);
     const double mass = mass_at(t);
+    ++steps_;
     if (t <= end) {
-      stage.sample(0, 0, t, point.position.y);
-      stage.sample(1, 0, t, length(point.velocity));
+      stage.sample(1, 0, t, point.position.y);
+      stage.sample(0, 0, t, length(point.velocity));
       stage.sample(2, 0, t, thrust(t));
       stage.sample(3, 0, t, 1000 * mass);
       const ballistics::Motor& first = rocket_.stages.front().motor;
       const double lit = t - rocket_.stages.front().ignition_delay;
       if (lit <= first.curve.burn_time()) {  // up to the first burn-out, by Tsiolkovsky
         const double ideal = first.exhaust_speed() * math::log(flight_->masses.front() / mass) - 9.80665 * lit;
-        if (ideal > 0) stage.sample(1, 2, t, ideal);
+        if (ideal > 0 && steps_ % 6 == 0) stage.sample(0, 2, t, ideal);
       }
-      if (open) stage.sample(1, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
+      if (open && steps_ % 60 == 0) stage.sample(0, 1, t, hypot(sink_speed(), air_.wind.at(0).x));
     }
     stage.say(std::string(name) + format(": %.1f s, %.0f m high, %.1f m/s, %.0f g", min(t, end),
                                          max(0.0, point.position.y), length(point.velocity), 1000 * mass));
@@ -232,6 +233,7 @@ class RocketLaunch final : public Repeatable<RocketLaunch, Demo3> {
   std::optional<ballistics::RocketFlight> flight_;
   std::optional<ballistics::Trajectory> fall_;
   double dropped_ = 0;
+  int steps_ = 0;
   rigid::BodyId body_, canopy_, booster_;
 };
 

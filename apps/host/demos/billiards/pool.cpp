@@ -12,7 +12,6 @@
 namespace carom::host::demo {
 namespace {
 
-using sports::BallPhase;
 using sports::Billiards;
 using sports::BilliardState;
 using sports::BilliardTable;
@@ -58,11 +57,11 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
         choice("table", "Table", "", {"pool, 7 ft", "pool, 8 ft", "pool, 9 ft", "snooker", "Russian pyramid", "carom"},
                2),
     };
-    d.plots = {{"Energy", {"time", "s"}, {"energy of the balls", "J"}, {{"all"}}},
-               {"Speed of the cue ball",
+    d.plots = {{"Speed of the cue ball",
                 {"time", "s"},
                 {"speed", "m/s"},
-                {{"cue ball"}, {"slides, then rolls", Series::Style::points}}}};
+                {{"cue ball"}, {"slides, then rolls", Series::Style::points}}},
+               {"Energy", {"time", "s"}, {"energy of the balls", "J"}, {{"all"}}}};
     d.inputs = {{"aim_left", "Aim left", {"ArrowLeft"}, false, 1},
                 {"aim_right", "Aim right", {"ArrowRight"}, false, 1},
                 {"aim_fine", "Aim finely", {"ShiftLeft", "ShiftRight"}, false, 1},
@@ -151,8 +150,8 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     drag(stage);
     show(stage);
     const double t = stage.world().time(), energy = game_->energy();
-    stage.sample(0, 0, t, energy);
-    stage.sample(1, 0, t, length(game_->state(0).velocity));
+    stage.sample(1, 0, t, energy);
+    stage.sample(0, 0, t, length(game_->state(0).velocity));
     follow_law(stage, t);
     if (shots_ > 0 && !struck_) rise_ = max(rise_, energy - energy_);
     struck_ = false;
@@ -243,7 +242,7 @@ class PoolTable final : public Repeatable<PoolTable, Demo3> {
     const double speed = length(law), rolled = physics.cloth.rolling_friction * g * max(0.0, since - slides);
     if (speed > 0) law *= max(0.0, speed - rolled) / speed;
     if (distance(law, now.velocity) < 1e-6) {
-      if (length(law) > 0 && ++law_steps_ % 6 == 1) stage.sample(1, 1, t, length(law));
+      if (length(law) > 0 && ++law_steps_ % 6 == 1) stage.sample(0, 1, t, length(law));
       if (free_) law_time_ = t;
       return;
     }

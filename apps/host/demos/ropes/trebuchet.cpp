@@ -35,9 +35,9 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
          false},
     };
     d.plots = {
-        {"Tension of the sling", {"time", "s"}, {"force", "kN"}, {{"sling"}}},
+        {"Flight", {"way", "m"}, {"height", "m"}, {{"stone"}, {"parabola from the release", Series::Style::points}}},
         {"Energy", {"time", "s"}, {"energy", "kJ"}, {{"stone"}, {"given by the weight"}}},
-        {"Flight", {"way", "m"}, {"height", "m"}, {{"stone"}, {"parabola from the release", Series::Style::points}}}};
+        {"Tension of the sling", {"time", "s"}, {"force", "kN"}, {{"sling"}}}};
     return d;
   }
 
@@ -105,9 +105,9 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
       lowest_ = min(lowest_, weight_height(stage));
       stretch_ = max(stretch_, ropes_.length(0) / ropes_.rest_length(0) - 1);
     }
-    stage.sample(0, 0, t, 1e-3 * ropes_.peak_tension(0));
+    if (!released_) stage.sample(2, 0, t, 1e-3 * ropes_.peak_tension(0));
     stage.sample(1, 0, t, 1e-3 * energy);
-    if (range_ == 0) stage.sample(2, 0, stone.center_of_mass.x, stone.center_of_mass.y);
+    if (range_ == 0) stage.sample(0, 0, stone.center_of_mass.x, stone.center_of_mass.y);
     stage.sample(1, 1, t, 1e-3 * stage.value("weight") * 9.80665 * (height_ - lowest_));
     // The sling opens where the stone flies forward and no steeper than was set.
     if (!released_ && v.x > 3 && stone.center_of_mass.y > 3 && v.y < v.x * math::tan(stage.value("angle"))) {
@@ -118,7 +118,7 @@ class Trebuchet final : public Repeatable<Trebuchet, Demo3> {
       const double g = 9.80665, last = (speed_.y + math::sqrt(speed_.y * speed_.y + 2 * g * start_.y)) / g;
       for (int i = 0; i <= 20; ++i) {
         const double after = i * last / 20;
-        stage.sample(2, 1, start_.x + speed_.x * after, start_.y + after * (speed_.y - 0.5 * g * after));
+        stage.sample(0, 1, start_.x + speed_.x * after, start_.y + after * (speed_.y - 0.5 * g * after));
       }
       stage.say(format("away with %.1f m/s at %.0f°", length(v), math::degrees(math::atan2(v.y, v.x))));
     }
