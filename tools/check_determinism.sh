@@ -4,6 +4,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 gcc=$1/tests/determinism/state_hashes clang=$2/tests/determinism/state_hashes wasm=$3/tests/determinism/state_hashes.wasm
+for program in "$gcc" "$clang" "$wasm"; do [ -f "$program" ] || { echo "not built: $program" >&2; exit 1; }; done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
