@@ -1,6 +1,9 @@
 // Small bodies of many shapes that are flung at ropes, cloth and soft bodies.
 #pragma once
 
+#include <cstdlib>
+#include <string_view>
+
 #include "carom/geometry/compound.h"
 #include "carom/geometry/hull.h"
 #include "carom/geometry/shape3.h"
@@ -9,6 +12,12 @@
 #include "carom/rigid/world.h"
 
 namespace carom::particles {
+
+/// How many are flung: a third of them, or all where CAROM_SHOTS is "all".
+inline int shots_of(int all) {
+  const char* const wanted = std::getenv("CAROM_SHOTS");
+  return wanted != nullptr && std::string_view(wanted) == "all" ? all : (all + 2) / 3;
+}
 
 /// A ball, box, cylinder, hull or compound of `size` m from its middle to its nearest side.
 inline geometry::Shape3 flung_shape(int kind, double size) {

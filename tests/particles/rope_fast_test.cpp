@@ -103,7 +103,7 @@ TEST(RopeFast, LightBodiesAreThrownBack) {
   math::Random random(41);
   int shots = 0, beyond = 0;
   for (int kind = 0; kind < 2; ++kind)
-    for (int i = 0; i < 150; ++i) {
+    for (int i = 0; i < shots_of(150); ++i) {
       World3 world({.gravity = {0, 0, 0}});
       const Shot shot = fling(world, random, kind, 0.002, 0, dt);
       RopeSet ropes = taut_rope(world, 1e4, 1e6);
@@ -126,7 +126,7 @@ TEST(RopeFast, NonePasses) {
     math::Random random(7);
     for (int kind = 0; kind < 5; ++kind)
       for (const double mass : {0.0, 0.01, 0.3})
-        for (int i = 0; i < (kind < 2 ? 40 : 15); ++i) {
+        for (int i = 0; i < shots_of(kind < 2 ? 40 : 15); ++i) {
           World3 world({.gravity = {0, 0, 0}});
           const Shot shot = fling(world, random, kind, mass, 0.35, dt);
           RopeSet ropes = taut_rope(world, 1000, 1e5, substeps);
@@ -151,7 +151,7 @@ TEST(RopeFast, MomentumIsKept) {
   constexpr double dt = 1.0 / 60;
   math::Random random(23);
   for (int kind = 0; kind < 5; ++kind)
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < shots_of(12); ++i) {
       World3 world({.gravity = {0, 0, 0}});
       const Shot shot = fling(world, random, kind, i % 2 == 0 ? 0.02 : 0.5, 0.3, dt);
       RopeSet ropes = taut_rope(world, 1000, 1e5);

@@ -83,7 +83,7 @@ TEST(SoftFast, NonePassesATautCloth) {
   const Cloth taut = taut_sheet(still);
   for (int kind = 0; kind < 5; ++kind)
     for (const double mass : {0.0, 0.01, 0.3})
-      for (int i = 0; i < (kind < 2 ? 25 : 10); ++i) {
+      for (int i = 0; i < shots_of(kind < 2 ? 25 : 10); ++i) {
         World3 world = weightless();
         const Shot shot = fling(world, random, kind, mass, 0.3, 0);
         Cloth cloth = taut;
@@ -106,7 +106,7 @@ TEST(SoftFast, NonePassesATautCloth) {
       }
   RecordProperty("shots", shots);
   RecordProperty("through", through);
-  EXPECT_LT(through, shots / 25);
+  EXPECT_LE(through, shots / 25);
 }
 
 // In a group with a block of foam under the sheet, which the sheet is flung against.
@@ -121,7 +121,7 @@ TEST(SoftFast, GroupsMeetWhatIsFast) {
   const Cloth taut = taut_sheet(still);
   for (int kind = 0; kind < 5; ++kind)
     for (const double mass : {0.0, 0.01, 0.3})
-      for (int i = 0; i < 4; ++i) {
+      for (int i = 0; i < shots_of(4); ++i) {
         World3 world = weightless();
         const Shot shot = fling(world, random, kind, mass, 0.3, 0);
         Cloth cloth = taut;
@@ -175,7 +175,7 @@ TEST(SoftFast, NoneEntersASoftBody) {
   const SoftBody foam = foam_block();
   for (int kind = 0; kind < 5; ++kind)
     for (const double mass : {0.0, 0.01, 0.3})
-      for (int i = 0; i < (kind < 2 ? 12 : 6); ++i) {
+      for (int i = 0; i < shots_of(kind < 2 ? 12 : 6); ++i) {
         World3 world = weightless();
         const Shot shot = fling(world, random, kind, mass, 0.2, 0);
         SoftBody body = foam;
@@ -192,7 +192,7 @@ TEST(SoftFast, NoneEntersASoftBody) {
         inside += entered;
       }
   RecordProperty("inside", inside);
-  EXPECT_LT(inside, shots / 50);
+  EXPECT_LE(inside, shots / 50);
 }
 
 // Of what flies freely nothing is lost, and no energy comes.
@@ -205,7 +205,7 @@ TEST(SoftFast, MomentumIsKept) {
   const SoftBody foam = foam_block();
   for (const bool cloth : {true, false})
     for (int kind = 0; kind < 5; ++kind)
-      for (int i = 0; i < 8; ++i) {
+      for (int i = 0; i < shots_of(8); ++i) {
         World3 world = weightless();
         const Shot shot = fling(world, random, kind, i % 2 == 0 ? 0.02 : 0.5, 0.2, 0);
         Cloth sheet = loose;
