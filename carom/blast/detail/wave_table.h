@@ -7,7 +7,7 @@
 
 namespace carom::blast::detail {
 
-/// What `blast_wave` says, to 1e-8, in a twentieth of its time.
+/// What `blast_wave` says, to 1e-7, in a twentieth of its time.
 class WaveTable {
  public:
   static const WaveTable& of(Burst burst);
