@@ -216,5 +216,9 @@ core::Status Explosion<D>::load(World& world, Pass& pass) {
 
 template core::Status Explosion<rigid::Dim2>::apply(World&, double);
 template core::Status Explosion<rigid::Dim3>::apply(World&, double);
+template void Explosion<rigid::Dim2>::see(const World&, rigid::ShapeId, double, Pass&) const;
+template void Explosion<rigid::Dim3>::see(const World&, rigid::ShapeId, double, Pass&) const;
+template core::Status Explosion<rigid::Dim2>::load(World&, Pass&);
+template core::Status Explosion<rigid::Dim3>::load(World&, Pass&);
 
 }  // namespace carom::blast
