@@ -150,15 +150,25 @@ struct Search {
   }
   void guard(const Rounded2& part, const Swept<Vec2d>& swept_part) {
     if (!has_guard) guard_core = guard_of(core, float(inner)), has_guard = true;
-    const Swept<Vec2d> s = swept(guard_core, a);
-    CoreGap2 gap{guard_core, part, a, b};
+    if (stop_guard(guard_core, part, swept_part)) return;
+    // A heap that falls on what is thin presses it in deeper step by step: then its middle must not pass.
+    Rounded2 middle;
+    middle.count = 1;
+    middle.v[0] = center_of(core);
+    stop_guard(middle, part, swept_part);
+  }
+  /// False: it is too late, the guard stands at the surface or behind it.
+  bool stop_guard(const Rounded2& guarded, const Rounded2& part, const Swept<Vec2d>& swept_part) {
+    const Swept<Vec2d> s = swept(guarded, a);
+    CoreGap2 gap{guarded, part, a, b};
     Vec2d n{};
     const double first = gap(0, n);
-    if (!(first > 1e-5)) return;  // too late
+    if (!(first > min(1e-5, 0.01 * inner))) return false;
     const double near = min(min(target, 0.25 * inner), 0.5 * first);
     keep(advance<Vec2d>(
         near, limit, gap, [&](double t, Vec2d along) { return a.speed(along, s, t) + b.speed(-along, swept_part, t); },
         [](double, Vec2d) { return false; }));
+    return true;
   }
   void meet_segment(const Shape2& segment) {
     const Rounded2 line = rounded_of(segment);
