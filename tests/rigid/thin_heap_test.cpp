@@ -88,10 +88,13 @@ TEST(ThinHeap, FallsAsleep) {
 }
 
 // Cards of a heap that lands are pressed into the ground deeper step by step. Once the guarded part of one had come to
-// the surface, nothing held it any more: of 16 heaps of 1 cm three lost a card through a ground of 1 m.
+// the surface, nothing held it any more, and it went into the ground by more than half its length within a step, to be
+// pushed out later: in 7 of these 40 heaps of 1 cm.
 TEST(ThinHeap, OfThePlaneStaysOnTheGround) {
-  for (const double size : {0.01, 0.1, 1.0, 10.0})
-    for (std::uint32_t seed = 1; seed <= 16; ++seed) {
+  for (const double size : {0.01, 0.1, 1.0, 10.0}) {
+    const std::uint32_t heaps = size < 0.1 ? 40 : 8;
+    int entered = 0;
+    for (std::uint32_t seed = 1; seed <= heaps; ++seed) {
       World2 world(world_with<Dim2>());
       add_ground(world);
       std::uint32_t r = seed;
@@ -108,10 +111,15 @@ TEST(ThinHeap, OfThePlaneStaysOnTheGround) {
         bodies.push_back(world.create_body(body).value());
         world.add_shape(bodies.back(), geometry::make_box2({float(0.5 * size), float(0.025 * size)})).value();
       }
-      run(world, 240);
-      for (const BodyId body : bodies)
-        EXPECT_GT(world.state(body).value().pose.position.y, 0) << "size " << size << " seed " << seed;
+      double lowest = 0;
+      for (int step = 0; step < 120; ++step) {
+        world.step(frame).value();
+        for (const BodyId body : bodies) lowest = std::min(lowest, world.state(body).value().pose.position.y);
+      }
+      entered += lowest < -0.5 * size ? 1 : 0;
     }
+    EXPECT_LE(entered, size < 0.1 ? 1 : 0) << "size " << size;
+  }
 }
 
 }  // namespace thin_heap_test
