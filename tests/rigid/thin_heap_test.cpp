@@ -7,6 +7,15 @@
 namespace carom::rigid::test {
 namespace thin_heap_test {
 
+/// Random numbers from −1 to 1, the same on every machine.
+struct Draw {
+  std::uint32_t r;
+  float operator()() {
+    r = 1664525u * r + 1013904223u;
+    return float(r >> 8) / 8388608.0f - 1;
+  }
+};
+
 struct Burst {
   double fastest = 0;  ///< m/s
   double gain = 0;     ///< of the energy of all in a step, over what there was at first
@@ -15,11 +24,7 @@ struct Burst {
 /// Thirty pieces fall one after the other from up to 24 m, at 21 m/s.
 std::vector<BodyId> add_falling(World3& world, const geometry::Shape3& shape, std::uint32_t seed) {
   add_ground(world);
-  std::uint32_t r = seed;
-  const auto draw = [&] {
-    r = 1664525u * r + 1013904223u;
-    return float(r >> 8) / 8388608.0f - 1;
-  };
+  Draw draw{seed};
   std::vector<BodyId> bodies;
   for (int i = 0; i < 30; ++i) {
     BodyDef<Dim3> body;
@@ -97,11 +102,7 @@ TEST(ThinHeap, OfThePlaneStaysOnTheGround) {
     for (std::uint32_t seed = 1; seed <= heaps; ++seed) {
       World2 world(world_with<Dim2>());
       add_ground(world);
-      std::uint32_t r = seed;
-      const auto draw = [&] {
-        r = 1664525u * r + 1013904223u;
-        return float(r >> 8) / 8388608.0f - 1;
-      };
+      Draw draw{seed};
       std::vector<BodyId> bodies;
       for (int i = 0; i < 30; ++i) {
         BodyDef<Dim2> body;
