@@ -32,12 +32,16 @@ struct Manifold3 {
 };
 
 /// What a pair remembers from step to step (the axis or features that separated it last). Zero it for a new pair.
-/// It only makes the answer faster, never different by more than rounding… and it is part of the world's state.
+/// It only makes the answer faster, never different by more than rounding, but for segments of chains (`met_front`),
+/// and it is part of the world's state.
 struct PairCache {
   std::uint8_t kind = 0;
   std::uint8_t a = 0, b = 0, c = 0;
   std::uint32_t d = 0;
 };
+/// `PairCache::kind` with a segment of a chain, which stops only what comes from its front: the shape did, so that it
+/// is held even where something presses its middle through the line.
+inline constexpr std::uint8_t met_front = 3;
 
 /// Contacts of A and B with separation ≤ margin. Returns nothing (count 0) where they are farther apart: if
 /// points[0].separation exceeds the margin then, the shapes are known to be at least that far (m) from each other; and

@@ -141,11 +141,15 @@ struct ChainSector {
   }
 };
 
-void chain_any(const ChainSegment& c, const Rounded2& b, float margin, Manifold2& out) {
+void chain_front(const ChainSegment& c, const Rounded2& b, float margin, bool met, Manifold2& out) {
   const ChainSector sector(c);
   Rounded2 line = detail::rounded_of(Shape2(c));
   if (line.count < 2) return;
-  if (dot(sector.normal, detail::center_of(b) - c.a) < 0) return;  // from the solid side nothing collides
+  const Vec2f middle = detail::center_of(b) - c.a;
+  if (dot(sector.normal, middle) < 0) {  // from the solid side nothing collides but what was pressed through
+    const Vec2f way = c.b - c.a;
+    if (!met || dot(way, middle) < 0 || dot(way, middle) > dot(way, way)) return;
+  }
   const float along = detail::separation_along(line, 0, b);
   if (along > b.radius + margin) return;
 
@@ -183,6 +187,11 @@ void chain_any(const ChainSegment& c, const Rounded2& b, float margin, Manifold2
   }
   if (edge >= 0) return clip_edges(b, edge, line, true, margin, out);
   on_edge();
+}
+
+void chain_any(const ChainSegment& c, const Rounded2& b, float margin, PairCache& cache, Manifold2& out) {
+  chain_front(c, b, margin, cache.kind == met_front, out);
+  cache.kind = out.count > 0 ? met_front : 0;
 }
 
 void flip(Manifold2& m) { m.normal = -m.normal; }
@@ -226,10 +235,10 @@ void collide(const Shape2& a, const Shape2& b, const Transform2f& x, float margi
   if (a.type == ShapeType2::chain || b.type == ShapeType2::chain) return;  // segment by segment: Chain::segment
   if (a.type == ShapeType2::chain_segment) {
     if (!convex_shape(b)) return;
-    return chain_any(a.chain_segment, detail::placed(b, x), margin, out);
+    return chain_any(a.chain_segment, detail::placed(b, x), margin, cache, out);
   }
   if (b.type == ShapeType2::chain_segment) {
-    chain_any(b.chain_segment, detail::placed(a, inverse(x)), margin, out);
+    chain_any(b.chain_segment, detail::placed(a, inverse(x)), margin, cache, out);
     out.normal = -rotate(x.q, out.normal);
     for (int i = 0; i < out.count; ++i) out.points[i].point = transform_point(x, out.points[i].point);
     return;

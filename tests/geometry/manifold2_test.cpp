@@ -150,6 +150,28 @@ TEST(Manifold2, ChainCollidesOnItsFreeSideOnly) {
   EXPECT_NEAR(m.points[0].separation, -0.1f, 1e-6f);
 }
 
+TEST(Manifold2, ChainHoldsWhatMetItsFront) {
+  const ChainSegment s{{2, 0}, {1, 0}, {-1, 0}, {-2, 0}};
+  const Shape2 card = make_box2({0.5f, 0.1f});
+  PairCache cache;
+  const auto meet = [&](float x, float height) {
+    Manifold2 m;
+    collide(s, card, {{x, height}, {}}, 0.01f, cache, m);
+    return m;
+  };
+  EXPECT_EQ(meet(0, -0.05f).count, 0);  // from behind
+  EXPECT_EQ(meet(0, 0.09f).count, 2);   // from the front
+  const Manifold2 pressed = meet(0, -0.05f);
+  ASSERT_EQ(pressed.count, 2);
+  EXPECT_EQ(pressed.normal, (Vec2f{0, 1}));
+  EXPECT_NEAR(least2(pressed), -0.15f, 1e-6f);
+  EXPECT_EQ(meet(0.9f, -0.05f).count, 2);
+  EXPECT_EQ(meet(1.1f, -0.05f).count, 0);  // over the neighbour, whose matter it is
+  EXPECT_EQ(meet(0.9f, -0.05f).count, 0);  // what was let go comes from behind
+  EXPECT_EQ(meet(0, 0.09f).count, 2);
+  EXPECT_EQ(meet(0, -0.15f).count, 0);  // right through
+}
+
 TEST(Manifold2, ConvexChainCornerIsSharedByHalves) {
   // A roof: the circle over the ridge touches it once for each half of the corner's normals, never twice apart.
   const std::vector<Vec2f> points{{2, -2}, {0, 0}, {-2, -2}};

@@ -74,7 +74,7 @@ TEST(BoxStrips, TellWhatMeetsNowAndDidNotBeforeOnceByAnyLanes) {
           if (overlaps(boxes[i].now, boxes[k].now) && !overlaps(boxes[i].old, boxes[k].old)) expected.insert({i, k});
       EXPECT_GT(expected.size(), 200u);
       BoxStrips strips;
-      for (const auto [width, parts] : {std::pair{4, 1}, {8, 1}, {16, 1}, {16, 3}}) {
+      for (const auto& [width, parts] : {std::pair{4, 1}, {8, 1}, {16, 1}, {16, 3}}) {
         ASSERT_TRUE(take(strips, boxes, parts));
         const auto kernels = kernels_of<Dim2>(math::choose_instruction_set(math::instruction_set_of_width(width)));
         Meetings meetings{strips};

@@ -132,8 +132,8 @@ struct Search {
     if (t.state == ImpactState::hit) limit = min(limit, double(t.time));
   }
 
-  /// `part` is convex and stands in the frame of b.
-  void meet(const Rounded2& part) {
+  /// `part` is convex and stands in the frame of b; `front`: the normal of a line that stops only what is there.
+  void meet(const Rounded2& part, const Vec2d* front = nullptr) {
     const Swept<Vec2d> swept_part = swept(part, b);
     CoreGap2 gap{core, part, a, b};
     const TimeOfImpact t = advance<Vec2d>(
@@ -146,16 +146,21 @@ struct Search {
         });
     if (t.state == ImpactState::hit && t.time > 0) return keep(t);
     if (t.state == ImpactState::separated || !passage.guarded) return;
-    guard(part, swept_part);
+    guard(part, swept_part, front);
   }
-  void guard(const Rounded2& part, const Swept<Vec2d>& swept_part) {
+  void guard(const Rounded2& part, const Swept<Vec2d>& swept_part, const Vec2d* front) {
     if (!has_guard) guard_core = guard_of(core, float(inner)), has_guard = true;
     if (stop_guard(guard_core, part, swept_part)) return;
     // A heap that falls on what is thin presses it in deeper step by step: then its middle must not pass.
-    Rounded2 middle;
-    middle.count = 1;
-    middle.v[0] = center_of(core);
-    stop_guard(middle, part, swept_part);
+    Rounded2 point;
+    point.count = 1;
+    point.v[0] = center_of(core);
+    if (stop_guard(point, part, swept_part) || front == nullptr) return;
+    // Nor, where the middle is in a line, what is still in front of that.
+    const auto height = [&](Vec2f corner) { return dot(*front, transform_point(start, Vec2d(corner))); };
+    for (int i = 0; i < core.count; ++i)
+      if (height(core.v[i]) > height(point.v[0])) point.v[0] = core.v[i];
+    stop_guard(point, part, swept_part);
   }
   /// False: it is too late, the guard stands at the surface or behind it.
   bool stop_guard(const Rounded2& guarded, const Rounded2& part, const Swept<Vec2d>& swept_part) {
@@ -172,15 +177,14 @@ struct Search {
   }
   void meet_segment(const Shape2& segment) {
     const Rounded2 line = rounded_of(segment);
-    if (line.count == 2) {
-      const Vec2d n(line.n[0]), p(line.v[0]);
-      const Vec2d middle = transform_point(start, Vec2d(center_of(core)));
-      if (dot(n, middle - p) < 0) return;  // from behind
-      const double offset = dot(n, p);
-      if (clears(n, offset)) return;
-      if (touches(line, n, offset, middle) && (!passage.guarded || guard_clears(n, offset))) return;
-    }
-    meet(line);
+    if (line.count < 2) return meet(line);
+    const Vec2d n(line.n[0]), p(line.v[0]);
+    const Vec2d middle = transform_point(start, Vec2d(center_of(core)));
+    if (dot(n, middle - p) < 0) return;  // from behind
+    const double offset = dot(n, p);
+    if (clears(n, offset)) return;
+    if (touches(line, n, offset, middle) && (!passage.guarded || guard_clears(n, offset))) return;
+    meet(line, &n);
   }
 };
 

@@ -95,6 +95,13 @@ inline typename D::Vector surface_slip(const WorldImplementation<D>& world, cons
 /// The coefficient of friction of a pair whose rule has one of rest too: that of rest while the contact sticks.
 template <class D>
 float friction_of(const WorldImplementation<D>& world, const ManifoldRecord<D>& m, const PairRule& rule);
+/// Its shapes stand or look otherwise than a step would have left them: the next finds its manifolds afresh.
+template <class D>
+void look_anew(WorldImplementation<D>& world, ContactRecord<D>& c) {
+  c.flags &= std::uint16_t(~(contact_known | contact_recycled));
+  core::Column<ContactWatch<D>>& watches = world.scratch.watches;
+  if (c.awake_index != none && !watches.empty()) watches[std::size_t(c.awake_index)] = {};
+}
 /// Flags that follow from the shapes and may change while a contact lives.
 template <class D>
 void update_contact_flags(WorldImplementation<D>& world, std::int32_t contact);

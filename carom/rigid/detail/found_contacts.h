@@ -3,7 +3,7 @@
 
 #include "carom/geometry/detail/chain_tree.h"
 #include "carom/geometry/detail/contact_points.h"
-#include "carom/rigid/dimension.h"
+#include "carom/rigid/detail/contact_store.h"
 
 namespace carom::rigid::detail {
 
@@ -18,10 +18,16 @@ struct Found {
   float near = 0;   ///< m: what keeps farther off than so in this step may be left out; 0: all is there
 };
 
-/// Segments of a chain are children, like the triangles of a mesh.
-inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, const Transform2f& b_in_a, float margin,
-                        Found<Dim2>& found) {
-  const geometry::Bounds2f tight = geometry::bounds(b, b_in_a), box = geometry::grow(tight, margin);
+/// Segments of a chain are children, like the triangles of a mesh. Those that b met before, in manifolds that are still
+/// known, hold it.
+inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, const ContactStore<Dim2>& store,
+                        const ContactRecord<Dim2>& c, bool known, float margin, Found<Dim2>& found) {
+  const geometry::Bounds2f tight = geometry::bounds(b, c.base), box = geometry::grow(tight, margin);
+  const auto has_met = [&](int segment) {
+    std::int32_t m = known ? c.first_manifold : none;
+    while (m != none && store.manifold(m).manifold.child != std::uint32_t(segment)) m = store.manifold(m).next;
+    return m != none;
+  };
   const bool round = b.type == geometry::ShapeType2::circle;
   const Vec2f middle = tight.center();
   const float reach = 1.0001f * ((round ? b.circle.radius : math::length(tight.extents())) + margin);
@@ -35,8 +41,9 @@ inline void collide_all(const geometry::Shape2& a, const geometry::Shape2& b, co
   geometry::detail::visit_segments(chain, box, [&](int i) {
     if (geometry::detail::segment_far(chain, i, middle, reach)) return true;
     geometry::PairCache cache;
+    if (has_met(i)) cache.kind = geometry::met_front;
     geometry::Manifold2 m;
-    geometry::collide(geometry::Shape2(chain.segment(i)), b, b_in_a, margin, cache, m);
+    geometry::collide(geometry::Shape2(chain.segment(i)), b, c.base, margin, cache, m);
     if (m.count == 0) return true;
     float depth = m.points[0].separation;
     for (int k = 1; k < m.count; ++k) depth = min(depth, m.points[k].separation);

@@ -67,6 +67,15 @@ void go_on_apart(ContactRecord<D>& c, const ShapeRecord<D>& a, const ShapeRecord
   c.gap = min(c.gap, apart);
 }
 
+/// What is known of a contact until its manifolds are computed.
+template <class D>
+struct Looking {
+  std::int32_t awake_index = none;
+  float reach = 0;       ///< m
+  bool known = false;    ///< the manifolds that it has are of the step before
+  BodySweep<D> sweep{};  ///< of B's shape, where bodies turn far
+};
+
 /// Two convex shapes, or a plane: one manifold at most, which was found within `reach` (m).
 template <class D>
 std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
@@ -105,21 +114,21 @@ std::uint8_t update_convex(WorldImplementation<D>& world, ContactRecord<D>& c, c
 /// One of the shapes has many parts.
 template <class D>
 std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, const ShapeRecord<D>& a,
-                         const ShapeRecord<D>& b, float reach, const BodySweep<D>& sweep,
-                         std::vector<FoundManifold<D>>& list) {
+                         const ShapeRecord<D>& b, const Looking<D>& look, std::vector<FoundManifold<D>>& list) {
   ContactStore<D>& store = world.contacts;
+  const float reach = look.reach;
   Found<D> found;
   if constexpr (D::dimension == 3)
     collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c, reach), c.cache, found);
   else
-    collide_all(a.geometry, b.geometry, c.base, reach, found);
+    collide_all(a.geometry, b.geometry, store, c, look.known, reach, found);
   c.gap = found.count == 0 ? found.apart : reach;
   c.axis = {};
   int kept = 0;
   for (int i = 0; i < found.count; ++i) {
     const float s = smallest_separation(found.manifold[i]);
     c.gap = min(c.gap, s);
-    if (!of_interest(world, c, sweep, found.manifold[i], s)) continue;
+    if (!of_interest(world, c, look.sweep, found.manifold[i], s)) continue;
     if (kept != i) {
       found.manifold[kept] = found.manifold[i];
       found.child[kept] = found.child[i];
@@ -206,20 +215,12 @@ std::uint8_t pass_by(const WorldImplementation<D>& world, ContactRecord<D>& c, c
   return std::uint8_t(change | touch_change(c, 1e30f, false));
 }
 
-/// What is known of a contact until its manifolds are computed.
-template <class D>
-struct Looking {
-  std::int32_t awake_index = none;
-  float reach = 0;       ///< m
-  BodySweep<D> sweep{};  ///< of B's shape, where bodies turn far
-};
-
 /// Computes manifolds, of the shapes at `base`. Writes only to the contact, its manifolds and the worker's list.
 template <class D>
 std::uint8_t find_manifolds(WorldImplementation<D>& world, Looking<D>& look, std::vector<FoundManifold<D>>& list) {
   ContactRecord<D>& c = world.contacts.at(world.contacts.awake[std::size_t(look.awake_index)]);
   const ShapeRecord<D>&a = world.shapes.at(c.shape[0]), &b = world.shapes.at(c.shape[1]);
-  if ((c.flags & contact_many) != 0) return update_many(world, c, a, b, look.reach, look.sweep, list);
+  if ((c.flags & contact_many) != 0) return update_many(world, c, a, b, look, list);
   typename D::Manifold m;
   geometry::collide(a.geometry, b.geometry, c.base, look.reach, c.cache, m);
   return update_convex(world, c, a, b, look.reach, look.sweep, m, list);
@@ -365,9 +366,11 @@ class PairUpdates {
       change = pass_by(world_, c, a, b);
       return;
     }
+    Looking<D> look{.awake_index = awake_index_[lane],
+                    .reach = 2 * c.margin() + pairs_.ahead[lane],
+                    .known = (c.flags & contact_known) != 0};
     c.flags = std::uint16_t((c.flags & ~contact_recycled) | contact_known);
     c.base = now;
-    Looking<D> look{.awake_index = awake_index_[lane], .reach = 2 * c.margin() + pairs_.ahead[lane]};
     for (int k = 0; k < D::dimension; ++k) look.sweep.way[k] = pairs_.sweep_way[k][lane];
     look.sweep.turning = pairs_.sweep_turn[lane];
     if (!queues_.take(world_, look, list_)) change = find_manifolds(world_, look, list_);

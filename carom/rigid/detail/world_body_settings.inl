@@ -19,6 +19,11 @@ Status World<D>::set_pose(BodyId body, Position position, Rotation rotation) {
   wake_body(*self_, *slot);
   wake_touching(*self_, *slot);
   const Position way = position - self_->bodies.pose[std::size_t(*slot)].position;
+  // Kept manifolds take any way along their normal for depth, right through what is there.
+  if (math::length(way) > double(self_->bodies.motion[std::size_t(*slot)].inner_extent))
+    for (std::int32_t key = self_->bodies.record[std::size_t(*slot)].first_contact; key != none;
+         key = self_->contacts.at(key >> 1).next[key & 1])
+      look_anew(*self_, self_->contacts.at(key >> 1));
   self_->bodies.pose[std::size_t(*slot)] = {position, unit_rotation(rotation)};
   center_from_pose(*self_, *slot);
   // What is set from place to place has gone no way in between.

@@ -44,8 +44,7 @@ inline void terrain_changed(WorldImplementation<Dim3>& world, std::int32_t slot,
   for (const std::int32_t contact : world.contacts.awake) {
     ContactRecord<Dim3>& c = world.contacts.at(contact);
     if (c.shape[0] != slot && c.shape[1] != slot) continue;
-    c.flags &= std::uint16_t(~(contact_known | contact_recycled));
-    if (!world.scratch.watches.empty()) world.scratch.watches[std::size_t(c.awake_index)] = {};
+    look_anew(world, c);
   }
   if (shape.leaf == none) return;
   auto& tree = world.shapes.trees[shape.tree];
