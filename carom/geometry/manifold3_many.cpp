@@ -173,7 +173,7 @@ float clearance(const Shape3& surface, const Shape3& shape, const detail::Convex
 
 /// Returns −1 for what meets nothing. `near`: of a shape with corners, some of it was in the box.
 int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Convex& b,
-                   const detail::PlacedCorners& corners, const Transform3f& x, float margin, Bounds3f box,
+                   const detail::PlacedCorners& corners, const Transform3f& x, float margin, Vec3f held, Bounds3f box,
                    detail::OffDirections& off, bool& near, std::span<Manifold3> out) {
   constexpr int max_patches = 12;
   const bool solid = surface.type == ShapeType3::height_field;
@@ -188,7 +188,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
     const detail::Convex triangle = detail::convex_of_triangle(t.corner[0], t.corner[1], t.corner[2]);
     ContactPoints points;
     Vec3f n;
-    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, off, points, n)) return;
+    if (!detail::collide_triangle(triangle, t.edges, solid, b, corners, x, margin, held, off, points, n)) return;
     // Corners of the moving shape keep their names from triangle to triangle; points cut by an edge are the triangle's.
     for (int i = 0; i < points.count; ++i)
       if (points.point[i].feature > 0xff) points.point[i].feature ^= t.index * 2654435761u;
@@ -216,7 +216,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
     merge_into(patch, points, same);
   };
   if (cornered) {
-    detail::CornersReach reach(corners, b.radius, length(max(abs(own.low), abs(own.high))), margin, solid, off);
+    detail::CornersReach reach(corners, b.radius, length(max(abs(own.low), abs(own.high))), margin, held, solid, off);
     detail::visit_groups(surface, box, true, [&](const detail::TriangleGroup& group, std::uint32_t lanes) {
       near = true;
       lanes = reach.meets(group, lanes);
@@ -227,7 +227,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const detail::Con
       return true;
     });
   } else {
-    const detail::TriangleReach reach(shape, b, x, margin, solid);
+    const detail::TriangleReach reach(shape, b, x, margin, held, solid);
     detail::visit_triangles(surface, box, true, [&](const detail::SurfaceTriangle& t) {
       if (reach.meets(t.corner)) meet(t);
       return true;
@@ -263,7 +263,7 @@ int surface_convex(const Shape3& surface, const Shape3& shape, const Transform3f
   detail::OffDirections off(corners, approach, b.radius, margin, solid);
   off.begin_with(cache);
   bool near = false;
-  const int count = surface_convex(surface, shape, b, corners, x, margin, box, off, near, out);
+  const int count = surface_convex(surface, shape, b, corners, x, margin, approach.held, box, off, near, out);
   off.keep(cache);
   if (count >= 0) return count;
   out[0] = {};
@@ -358,7 +358,7 @@ int detail::collide_surface(const Shape3& surface, const Shape3& b, const Transf
   const PlacedCorners corners(core, b_in_a);
   OffDirections off(corners, {}, core.radius, margin, false);
   bool near = false;
-  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, box, off, near, out), 0);
+  return max(many3::surface_convex(surface, b, core, corners, b_in_a, margin, {}, box, off, near, out), 0);
 }
 int detail::collide_approaching(const Shape3& surface, const Shape3& b, const Transform3f& b_in_a, float margin,
                                 const ShapeWay& approach, PairCache& cache, std::span<Manifold3> out) {

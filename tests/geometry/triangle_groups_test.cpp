@@ -98,7 +98,7 @@ TEST_F(Groups, LeaveOutNothingThatIsWithinReach) {
       const Transform3f x = place();
       const PlacedCorners corners(core, x);
       OffDirections off(corners, {}, core.radius, margin, false);
-      CornersReach reach(corners, core.radius, 2, margin, false, off);
+      CornersReach reach(corners, core.radius, 2, margin, {}, false, off);
       const Vec3f middle = corners.middle() + x.p;
       visit_groups(surface, grow(bounds(shape, x), margin), true, [&](const TriangleGroup& group, std::uint32_t lanes) {
         const std::uint32_t met = reach.meets(group, lanes);
@@ -132,7 +132,7 @@ TEST_F(Groups, LeaveOutWhatTheShapeKeepsOffAsItGoesOn) {
     PlacedCorners corners(core, x);
     corners.go(way);
     OffDirections off(corners, way, core.radius, margin, false);
-    CornersReach reach(corners, core.radius, 2, margin, false, off);
+    CornersReach reach(corners, core.radius, 2, margin, {}, false, off);
     const Vec3f middle = corners.middle() + x.p;
     visit_groups(surface, grow(bounds(shape, x), margin), true, [&](const TriangleGroup& group, std::uint32_t lanes) {
       const std::uint32_t met = reach.meets(group, lanes);

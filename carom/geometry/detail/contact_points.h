@@ -57,10 +57,10 @@ void collide_plane(const Plane& plane, const Convex& b, const Transform3f& b_in_
 /// over a flat edge are the neighbour's, and nothing that hardly dips below the plane catches on an open one. `solid`:
 /// there is matter below, to any depth. False where there is none.
 /// `corners` are those of b; where they are known, the caller has seen that the triangle is within reach. What is off
-/// as b goes on does not count, and is remembered in `off`.
+/// as b goes on does not count, and is remembered in `off`. `held`: as ShapeWay's.
 bool collide_triangle(const Convex& triangle, std::uint8_t edges, bool solid, const Convex& b,
-                      const PlacedCorners& corners, const Transform3f& b_in_a, float margin, OffDirections& off,
-                      ContactPoints& out, Vec3f& normal);
+                      const PlacedCorners& corners, const Transform3f& b_in_a, float margin, Vec3f held,
+                      OffDirections& off, ContactPoints& out, Vec3f& normal);
 
 /// How a shape goes past a surface while their contacts hold, in the surface's frame.
 struct ShapeWay {
@@ -69,6 +69,7 @@ struct ShapeWay {
   float bend = 0;        ///< m: no point strays farther from where these take it
   float margin = 1e30f;  ///< m: what the shape stays farther from than so does not count
   float worth = 0;       ///< m: to be less far from all is not worth knowing
+  Vec3f held{};          ///< m: a mesh stops what has its middle in front of a triangle, moved by this
 };
 /// `collide_many` of a surface and a convex shape, for triangles that the shape may come near. The cache keeps
 /// directions along which the shape was off most of them.

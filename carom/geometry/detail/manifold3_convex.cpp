@@ -408,7 +408,8 @@ void collide_cores(const Convex& a, const Convex& b, const Transform3f& x, float
 }
 
 bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Convex& b, const PlacedCorners& corners,
-                      const Transform3f& x, float margin, OffDirections& off, ContactPoints& out, Vec3f& normal) {
+                      const Transform3f& x, float margin, Vec3f held, OffDirections& off, ContactPoints& out,
+                      Vec3f& normal) {
   using namespace core_pair;
   const int flat_edges = edges & (edge0_flat | edge1_flat | edge2_flat);
   const Pair pair{t, b, x, margin};
@@ -417,7 +418,7 @@ bool collide_triangle(const Convex& t, std::uint8_t edges, bool solid, const Con
   const Vec3f center = line ? x.p : corners.known() ? corners.middle() + x.p : transform_point(x, inner_point(b));
   const Vec3f end = line ? rotate(x.q, Vec3f{0, b.half.y, 0}) : Vec3f{};
   const float behind = dot(t.normal, center - t.corner[0]);
-  if (behind < (solid ? -2 * (outer_size(b) + b.radius) : 0.0f)) return false;
+  if (solid ? behind < -2 * (outer_size(b) + b.radius) : behind + dot(t.normal, held) < 0) return false;
   // The point that comes nearest to the triangle's plane, and how near, without the radius.
   Vec3f foot{};
   if (corners.known())

@@ -35,7 +35,7 @@ struct PlacedShape {
 };
 
 struct NearQuestion {
-  Vec3f middle;  ///< of the shape: triangles that look away from it do not count
+  Vec3f middle;  ///< of the shape, moved by what holds it: triangles that look away from it do not count
   float around;  ///< m: nor what is farther off
   float keeps;   ///< m: nor what is farther off now and then
 };

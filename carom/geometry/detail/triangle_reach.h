@@ -20,15 +20,17 @@ inline Bounds3f own_bounds(const Shape3& shape) {
 /// frame.
 struct TriangleReach {
   Vec3f middle{}, axis[3]{}, origin{};
+  Vec3f judged{};  ///< what must be in front of a triangle
   Bounds3f own{};
   float around = 0;  ///< m from the middle; of a ball or capsule, from its line
   Vec3f end{};       ///< of the line, from the middle
   Vec3f box_middle{}, half[3]{};
   bool line = false, solid = false;
 
-  TriangleReach(const Shape3& shape, const Convex& core, const Transform3f& x, float margin, bool below)
+  TriangleReach(const Shape3& shape, const Convex& core, const Transform3f& x, float margin, Vec3f held, bool below)
       : middle(transform_point(x, inner_point(core))),
         origin(x.p),
+        judged(middle + held),
         own(grow(own_bounds(shape), margin)),
         box_middle(transform_point(x, own.center())),
         solid(below) {
@@ -51,7 +53,7 @@ struct TriangleReach {
     const float above = max(line_height(normal, corner[0]), 0.0f), size = length_squared(normal),
                 most = around * around;
     if (above * above > most * size) return false;
-    if (!solid && dot(normal, middle - corner[0]) < 0) return false;
+    if (!solid && dot(normal, judged - corner[0]) < 0) return false;
     if (!line && box_height(normal, corner[0]) > 0) return false;
     for (int e = 0; e < 3; ++e) {
       const Vec3f outward = cross(corner[e == 2 ? 0 : e + 1] - corner[e], normal);
@@ -77,9 +79,10 @@ struct TriangleReach {
 class CornersReach {
  public:
   /// `size`: m, no corner is farther from the origin.
-  CornersReach(const PlacedCorners& corners, float radius, float size, float margin, bool solid, OffDirections& off)
+  CornersReach(const PlacedCorners& corners, float radius, float size, float margin, Vec3f held, bool solid,
+               OffDirections& off)
       : corners_(corners), off_(off), kernels_(triangle_kernels()) {
-    question_.middle = corners.middle();
+    question_.middle = corners.middle() + held;
     question_.around = 1.0001f * (radius + margin) + 1e-6f * (length(corners.origin()) + size);
     question_.keeps = off.most();
     corners.tell(shape_);

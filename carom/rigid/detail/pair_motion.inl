@@ -60,10 +60,20 @@ float look_ahead(const WorldImplementation<D>& world, const ContactRecord<D>& c,
   if (turning > far_turn * c.inner) least = min(least, closing(shape));
   return (c.flags & contact_bouncy) != 0 ? least : min(least, 0.5f * c.inner);
 }
+/// m: towards where a surface A pushed B in the step before, as far as brings B's middle back to its front. For what
+/// was pressed in by more than a quarter of its thickness, by all that lies on it or at once.
+Vec3f held_by(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c) {
+  if (c.first_manifold == none) return {};
+  const geometry::Manifold3& m = world.contacts.manifold(c.first_manifold).manifold;
+  const Vec3f middle = transform_point(c.base, ball_about(world.shapes.at(c.shape[1])).middle);
+  const float height = dot(m.normal, middle - m.points[0].point) + 0.5f * m.points[0].separation;  // over A's surface
+  return m.normal * max(0.5f * c.inner - height, 0.0f);
+}
 /// How B's shape goes past A in this step, in the frame of A's.
 geometry::detail::ShapeWay approach_of(const WorldImplementation<Dim3>& world, const ContactRecord<Dim3>& c,
-                                       float reach) {
+                                       float reach, bool known) {
   geometry::detail::ShapeWay approach;
+  if (known) approach.held = held_by(world, c);
   const ShapeRecord<Dim3>& shape = world.shapes.at(c.shape[1]);
   const Dim3::Pose pose = shape_pose(world, shape);
   const ShapeBall<Dim3> ball = ball_about(shape);

@@ -119,7 +119,7 @@ std::uint8_t update_many(WorldImplementation<D>& world, ContactRecord<D>& c, con
   const float reach = look.reach;
   Found<D> found;
   if constexpr (D::dimension == 3)
-    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c, reach), c.cache, found);
+    collide_all(a.geometry, b.geometry, c.base, reach, approach_of(world, c, reach, look.known), c.cache, found);
   else
     collide_all(a.geometry, b.geometry, store, c, look.known, reach, found);
   c.gap = found.count == 0 ? found.apart : reach;
