@@ -17,6 +17,37 @@ struct Draw {
   }
 };
 
+// Sticks have moments of inertia as 1 : 300 and more, which turn with them. While contacts took those of the step's
+// beginning, 135 of 200 capsules of 1 : 50 that were thrown like this gained more than half of their energy as they
+// landed, and one left at 44 km/s. What is left comes of the speed at which overlaps part.
+TEST(ThinPiece, GainsNothingWhereItLands) {
+  for (const float half : {0.025f, 0.01f})
+    for (const geometry::Shape3& shape :
+         {geometry::Shape3(geometry::Box{{half, 0.5f, half}}), geometry::Shape3(geometry::Capsule3{0.5f, half}),
+          geometry::Shape3(geometry::Cylinder{0.5f, half})})
+      for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+        World3 world(world_with<Dim3>());
+        add_ground(world);
+        Draw draw{seed};
+        BodyDef<Dim3> body;
+        const float w = draw(), x = draw(), y = draw(), z = draw();
+        body.position = {0, 0.8, 0};
+        body.rotation = normalize(Quatf{w, x, y, z});
+        for (int i = 0; i < 3; ++i) body.linear_velocity[i] = 3 * draw() - (i == 1 ? 3.0f : 0.0f);
+        for (int i = 0; i < 3; ++i) body.angular_velocity[i] = (seed % 2 == 0 ? 10.0f : 30.0f) * draw();
+        world.add_shape(world.create_body(body).value(), shape).value();
+        double first = 0, least = 0;
+        for (int i = 0; i < 90; ++i) {
+          world.step(frame).value();
+          const Totals<Dim3> t = world.totals();
+          const double now = t.kinetic_energy + t.potential_energy;
+          if (i == 0) first = least = now;
+          ASSERT_LT(now - least, 0.1 * first) << "half " << half << " seed " << seed << " step " << i;
+          least = std::min(least, now);
+        }
+      }
+}
+
 struct Burst {
   double fastest = 0;  ///< m/s
   double gain = 0;     ///< of the energy of all in a step, over what there was at first

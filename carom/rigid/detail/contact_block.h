@@ -102,8 +102,8 @@ struct alignas(64) ContactRaw {
 template <class D, int W>
 struct alignas(64) ContactExtra {
   static constexpr int angular = D::dimension == 2 ? 1 : 3;
-  float rolling_lever[W];                                ///< m: the torque is at most this times the normal force
-  float rolling_response[D::dimension == 2 ? 1 : 6][W];  ///< 2D: its inverse, 0: none
+  float rolling_lever[W];  ///< m: the torque is at most this times the normal force
+  float rolling_mass[W];   ///< kg·m², 0: does not roll; plane alone, in space it is found from those of the bodies
   float rolling_impulse[angular][W];
   float bounce_speed[D::max_points][W];  ///< m/s to leave the surface with, 0: does not bounce
   float closing_acceleration[W];         ///< m/s² along the normal
@@ -177,6 +177,8 @@ struct ContactKernels {
   /// Fills a block from its `raw`. anchor_rate: 1/s, at which sticking friction takes slip back. friction_leak: part of
   /// its impulse that is forgotten in a substep where faces are squeezed. Bits by lane: its friction sticks anew.
   std::uint32_t (*prepare)(void* block, void* raw, float anchor_rate, float friction_leak) = nullptr;
+  /// The masses of all rows of a block anew, from its bodies' inertia. Space alone.
+  void (*masses)(void* block) = nullptr;
   /// again: to the bodies of ContactBlock::again only.
   void (*warm_start)(SolverBody<D>* bodies, Blocks blocks, const void* extra, int begin, int end, bool again) = nullptr;
   /// order: 0 … 3, in which the points of a manifold come (see list_stages).

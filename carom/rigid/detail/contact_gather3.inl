@@ -197,8 +197,6 @@ std::uint32_t approach3(const ContactSources<Dim3>& from, const std::int32_t* li
   const F restitution = head[1], lever = head[2];
   const auto rolls = lever > zero, bouncy = restitution > zero;
   lever.store(e.rolling_lever);
-  for (int i = 0; i < 6; ++i)
-    (F::load(c.inverse_inertia_a[i]) + F::load(c.inverse_inertia_b[i])).store(e.rolling_response[i]);
   for (int i = 0; i < 3; ++i) keep(rolls, old[i]).store(e.rolling_impulse[i]);
   WideInt<W>::zero().store(e.struck);
   zero.store(e.closing_acceleration);

@@ -300,6 +300,7 @@ ContactKernels<Dim3> kernels(Dim3) {
   k.width = W;
   k.gather = gather3<W>;
   k.prepare = prepare3<W>;
+  k.masses = find_masses_again3<W>;
   k.approach = approach3<W>;
   k.closing = closing3<W>;
   k.store = store3<W>;

@@ -206,7 +206,7 @@ void relax2(SolverBody<Dim2>* bodies, void* blocks, void* extra, int begin, int 
         ContactExtra<Dim2, W>& e = static_cast<ContactExtra<Dim2, W>*>(extra)[k];
         const F old = F::load(e.rolling_impulse[0]), limit = F::load(e.rolling_lever) * load;
         const F lambda =
-            select(rubs, clamp(old - F::load(e.rolling_response[0]) * (b.w - a.w), F::splat(0) - limit, limit), old);
+            select(rubs, clamp(old - F::load(e.rolling_mass) * (b.w - a.w), F::splat(0) - limit, limit), old);
         lambda.store(e.rolling_impulse[0]);
         a.w -= ia * (lambda - old);
         b.w += ib * (lambda - old);

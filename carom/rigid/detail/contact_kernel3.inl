@@ -161,7 +161,9 @@ CAROM_SIMD_INLINE void solve_rolling3(ContactExtra<Dim3, W>& e, Velocity3<W>& a,
   using F = WideFloat<W>;
   const WideVec3<W> old = load3<W>(e.rolling_impulse);
   // Against the spin, as friction is: not along what its inertia would ask for, or logs roll on while they tilt.
-  const WideVec3<W> spin = subtract(b.w, a.w), turned = multiply(load_symmetric<W>(e.rolling_response), spin);
+  const WideSymmetric<W> response = {ia.xx + ib.xx, ia.yy + ib.yy, ia.zz + ib.zz,
+                                     ia.xy + ib.xy, ia.xz + ib.xz, ia.yz + ib.yz};
+  const WideVec3<W> spin = subtract(b.w, a.w), turned = multiply(response, spin);
   const WideVec3<W> step = multiply(spin, dot(spin, spin) / (dot(spin, turned) + F::splat(1e-30f)));
   WideVec3<W> lambda = subtract(old, step);
   const F limit = F::load(e.rolling_lever) * load, size = sqrt(dot(lambda, lambda));

@@ -114,14 +114,14 @@ void prepare_rolling(const StepContext<D>& context, std::int32_t index, ContactE
   const WorldImplementation<D>& world = context.world;
   const ManifoldRecord<D>& m = world.contacts.manifold(index);
   const ContactRecord<D>& c = world.contacts.at(m.contact);
-  const BodyMotion<D>&a = world.bodies.motion[std::size_t(c.body[0])], &b = world.bodies.motion[std::size_t(c.body[1])];
-  const auto k = a.world_inverse_inertia * load_share(a) + b.world_inverse_inertia * load_share(b);
   extra.rolling_lever[lane] = m.rolling_lever;
   if constexpr (D::dimension == 2) {
-    extra.rolling_response[0][lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
+    const BodyMotion<D>&a = world.bodies.motion[std::size_t(c.body[0])],
+          &b = world.bodies.motion[std::size_t(c.body[1])];
+    const float k = a.world_inverse_inertia * load_share(a) + b.world_inverse_inertia * load_share(b);
+    extra.rolling_mass[lane] = m.rolling_lever > 0 && k > 0 ? 1 / k : 0;
     extra.rolling_impulse[0][lane] = m.rolling_lever > 0 ? m.impulses.rolling : 0;
   } else {
-    put(extra.rolling_response, lane, k);
     put(extra.rolling_impulse, lane, m.rolling_lever > 0 ? m.impulses.rolling : Vec3f{});
   }
 }

@@ -139,8 +139,14 @@ CAROM_SIMD_INLINE void prepare_friction3(ContactBlock<Dim3, W>& c, ContactRaw<Di
   (zero - rate * dot(slip, u)).store(c.tangent_target[1]);
 }
 
+/// How tangents respond: 11, 22, 12 of a symmetric matrix.
 template <int W>
-CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c, const ContactRaw<Dim3, W>& raw, WideFloat<W> leak) {
+struct TangentResponse {
+  WideFloat<W> k11, k22, k12;
+};
+/// The masses of the rows, from those of the bodies. Points that exist have a normal_mass.
+template <int W>
+CAROM_SIMD_INLINE TangentResponse<W> find_masses3(ContactBlock<Dim3, W>& c) {
   using F = WideFloat<W>;
   const F mass = F::load(c.inverse_mass_a) + F::load(c.inverse_mass_b);
   const WideSymmetric<W> ia = load_symmetric<W>(c.inverse_inertia_a), ib = load_symmetric<W>(c.inverse_inertia_b);
@@ -148,7 +154,8 @@ CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c, const ContactRa
   for (int i = 0; i < 4; ++i) {
     const WideVec3<W> ra = load3<W>(c.point[i].r_a), ta = cross(ra, n), tb = cross(add(ra, offset), n);
     const F response = mass + dot(ta, multiply(ia, ta)) + dot(tb, multiply(ib, tb));
-    inverse_or_zero(F::load(c.point[i].normal_mass), response).store(c.point[i].normal_mass);
+    const F exists = keep(F::load(c.point[i].normal_mass) > F::zero(), F::splat(1));
+    inverse_or_zero(exists, response).store(c.point[i].normal_mass);
   }
   const WideVec3<W> t = load3<W>(c.tangent), u = cross(n, t), ra = load3<W>(c.patch_r_a), rb = add(ra, offset);
   const WideVec3<W> ta = cross(ra, t), tb = cross(rb, t), ua = cross(ra, u), ub = cross(rb, u);
@@ -159,12 +166,24 @@ CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c, const ContactRa
   (k22 * s).store(c.tangent_mass[0]);
   (k11 * s).store(c.tangent_mass[1]);
   (F::splat(0) - k12 * s).store(c.tangent_mass[2]);
+  const WideVec3<W> spin = add(multiply(ia, n), multiply(ib, n));
+  inverse_or_zero(F::splat(1), dot(n, spin)).store(c.twist_mass);
+  return {k11, k22, k12};
+}
+/// Bodies have turned.
+template <int W>
+void find_masses_again3(void* block) {
+  find_masses3(*static_cast<ContactBlock<Dim3, W>*>(block));
+}
+
+template <int W>
+CAROM_SIMD_INLINE void prepare_masses3(ContactBlock<Dim3, W>& c, const ContactRaw<Dim3, W>& raw, WideFloat<W> leak) {
+  using F = WideFloat<W>;
+  const auto [k11, k22, k12] = find_masses3(c);
   const F forgotten = leak * F::load(raw.squeezed);
   const F l1 = forgotten * F::load(c.tangent_impulse[0]), l2 = forgotten * F::load(c.tangent_impulse[1]);
   (F::load(c.tangent_target[0]) - (k11 * l1 + k12 * l2)).store(c.tangent_target[0]);
   (F::load(c.tangent_target[1]) - (k12 * l1 + k22 * l2)).store(c.tangent_target[1]);
-  const WideVec3<W> spin = add(multiply(ia, n), multiply(ib, n));
-  inverse_or_zero(F::splat(1), dot(n, spin)).store(c.twist_mass);
 }
 
 template <int W>

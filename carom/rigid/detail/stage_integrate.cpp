@@ -10,9 +10,10 @@ namespace {
 
 constexpr float still_turn = 0.99999f;  ///< less than half a degree
 
-/// Constraints see a body's inertia as it was when the step began. Of what is slender and turns far within a step they
-/// would so make energy: a blow that the long axis takes easily is then one on the others. What they gave to the spin
-/// since the body last turned is cut back until it holds no more energy than they reckoned with.
+/// Contacts have the arms and normals of the step's beginning, and of a body that turns slowly the inertia. Of what is
+/// slender and turns far within a step they would so make energy: a blow that the long axis takes easily is then one on
+/// the others. What they gave to the spin since the body last turned is cut back until it holds no more energy than it
+/// would as the body stood when the step began.
 void bound_spin(StepContext<Dim3>& context, int place) {
   const std::int32_t body = context.drives[place].body;
   SolverBody<Dim3>& s = context.bodies[body];

@@ -17,11 +17,12 @@ constexpr std::size_t few_rows = 300, few_bodies = 512;
 int color_of_rank(int rank) { return rank == 0 ? overflow_color : rank - 1; }
 
 bool is_of_pushes(SolverPass pass) { return pass == SolverPass::take_back || pass == SolverPass::settle; }
+bool leaves_joints(SolverPass pass) { return is_of_pushes(pass) || pass == SolverPass::turn_masses; }
 
-/// Pieces of the joints of a colour; what settles leaves them alone.
+/// Pieces of the joints of a colour.
 template <class D>
 int joint_units_of(const StepContext<D>& context, SolverPass pass, int color) {
-  return is_of_pushes(pass) ? 0 : joint_units(context.world, color);
+  return leaves_joints(pass) ? 0 : joint_units(context.world, color);
 }
 template <class D>
 int block_count_of(const StepContext<D>& context, SolverPass pass, int color) {
@@ -123,6 +124,11 @@ void list_stages(StepContext<D>& context) {
     add_color_stages(context, SolverPass::solve, order);
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
+    if (!context.slender.empty()) {
+      scratch.solver_stages.push_back({SolverPass::turn_slender});
+      scratch.solver_loops.push_back({1, 1});
+      add_color_stages(context, SolverPass::turn_masses);
+    }
     const bool last = substep + 1 == context.substeps;
     add_impact_stage(context, last ? ImpactMoment::end_of_step : ImpactMoment::end_of_substep);
     add_tree_stage(context, SolverPass::factorise_trees);
@@ -178,10 +184,12 @@ void run_color(StepContext<D>& context, SolverStage stage, int color, ThreadShar
   const ColorBlocks& blocks = context.world.scratch.blocks[color];
   if (is_warm_start(stage.pass))
     warm_start_joints(context, color, share);
-  else if (!is_of_pushes(stage.pass))
+  else if (!leaves_joints(stage.pass))
     solve_joints(context, color, stage.pass == SolverPass::solve, share);
   const int count = block_count_of(context, stage.pass, color), first = share.begin(count), last = share.end(count);
   if (first >= last) return;
+  if constexpr (D::dimension == 3)
+    if (stage.pass == SolverPass::turn_masses) return turn_masses(context, color, first, last);
   if (stage.pass == SolverPass::solve && blocks.kept != nullptr)
     context.world.kernels.keep(blocks.blocks, blocks.kept, first, last, context.contact_softness);
   if (is_of_pushes(stage.pass))
@@ -195,8 +203,11 @@ void run_color(StepContext<D>& context, SolverStage stage, int color, ThreadShar
 template <class D>
 void run_stage(StepContext<D>& context, int index, int begin, int end) {
   const SolverStage stage = context.world.scratch.solver_stages[std::size_t(index)];
-  if constexpr (D::dimension == 3)
+  if constexpr (D::dimension == 3) {
     if (stage.pass == SolverPass::flights) return fly_through(context, begin, end);
+    if (stage.pass == SolverPass::turn_slender) return turn_slender(context);
+    if (stage.pass == SolverPass::turn_masses && !context.many_turned) return;
+  }
   if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end, stage.order != 0);
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
   if (stage.pass == SolverPass::impacts) return solve_impacts(context, ImpactMoment(stage.order));
@@ -219,6 +230,7 @@ void solve_constraints(StepContext<D>& context) {
   core::TaskScheduler& scheduler = few ? alone : context.scheduler;
   scheduler.run_stages(context.world.scratch.solver_loops,
                        [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
+  for (const std::int32_t body : context.slender) context.world.scratch.again[std::size_t(body)] = 0;
 }
 
 template <class D>

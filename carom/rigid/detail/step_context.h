@@ -1,6 +1,9 @@
 // What a stage of the step sees.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "carom/core/arena.h"
 #include "carom/core/scheduler.h"
 #include "carom/rigid/detail/body_store.h"
@@ -103,12 +106,14 @@ struct StepContext {
   float contact_stiffness = 0;  ///< 1/s²: ω² of contacts between moving bodies
   ContactSoftness contact_softness{};
   Softness joint_softness{}, coupling_softness{};
-  float rest_speed = 0;                  ///< m/s between bodies at rest with each other (load.h)
-  float push_speed = 0;                  ///< m/s, limit of the speed at which overlaps separate
-  Flight<D>* flights = nullptr;          ///< by place in BodyStore::awake
-  SolverBody<D>* bodies = nullptr;       ///< by slot; never write to fixed or kinematic ones
-  BodyDrive<D>* drives = nullptr;        ///< in the order of BodyStore::awake
-  typename D::Angular* spins = nullptr;  ///< of those that are `bounded`, likewise: rad/s when they last turned
+  float rest_speed = 0;                     ///< m/s between bodies at rest with each other (load.h)
+  float push_speed = 0;                     ///< m/s, limit of the speed at which overlaps separate
+  Flight<D>* flights = nullptr;             ///< by place in BodyStore::awake
+  SolverBody<D>* bodies = nullptr;          ///< by slot; never write to fixed or kinematic ones
+  BodyDrive<D>* drives = nullptr;           ///< in the order of BodyStore::awake
+  typename D::Angular* spins = nullptr;     ///< of those that are `bounded`, likewise: rad/s when they last turned
+  std::span<const std::int32_t> slender{};  ///< bodies of which contacts see the inertia of every substep
+  bool many_turned = false;                 ///< of those, since the step began
 };
 
 }  // namespace carom::rigid::detail

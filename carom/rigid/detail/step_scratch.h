@@ -61,6 +61,8 @@ enum class SolverPass : std::uint8_t {
   solve,
   solve_trees,
   positions,
+  turn_slender,  ///< the inertia of slender bodies, and the masses of their contacts where they are few
+  turn_masses,   ///< where they are many
   factorise_trees,
   take_back,  ///< what pushed something out
   settle,     ///< what is pushed out: relaxing of normals, before the pass that counts
@@ -81,7 +83,7 @@ struct SolverStage {
 inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
-  return 1 + std::size_t(substeps) * std::size_t(8 + (settling > 0 ? 4 + settling : 3) * (color_count + 1));
+  return 1 + std::size_t(substeps) * std::size_t(9 + (settling > 0 ? 5 + settling : 4) * (color_count + 1));
 }
 
 /// How a body came out of a step; body_flew only until continuous collision has looked at it.
