@@ -66,6 +66,23 @@ inline Lane<D, W> lane_of(const WorldImplementation<D>& world, const ManifoldRec
           m.place.position % lanes};
 }
 
+inline constexpr std::size_t many_bodies = 16;  ///< one in so many of those awake: then all blocks are looked at
+
+/// Calls f(block, lane, mark, side of the body) for the places of a body's contacts in the blocks.
+template <class D, int W, class F>
+void for_lanes_of(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
+    const ContactRecord<D>& c = world.contacts.at(key >> 1);
+    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
+      const GraphPlace place = world.contacts.manifold(m).place;
+      if (place.color < 0) continue;  // not in the graph
+      const Lane<D, W> lane = lane_of<D, W>(world, world.contacts.manifold(m));
+      f(lane.block, lane.lane, world.scratch.blocks[place.color].marks[place.position], key & 1);
+    }
+    key = c.next[key & 1];
+  }
+}
+
 /// As the kernels' function of this name.
 template <class Rotation, class V>
 inline V turned_back_change(const Rotation& turn, const V& n) {

@@ -11,7 +11,6 @@
 #include "carom/rigid/detail/contact_foresight.h"
 #include "carom/rigid/detail/contact_lanes.h"
 #include "carom/rigid/detail/contact_middle.h"
-#include "carom/rigid/detail/move_body.h"
 #include "carom/rigid/detail/stages.h"
 // Parts of this file:
 #include "carom/rigid/detail/contact_lane_begin.inl"
@@ -172,23 +171,6 @@ bool prepare_blocks(StepContext<D>& context) {
   return any_strikes;
 }
 
-constexpr std::size_t many_bodies = 16;  ///< one in so many of those awake: then all blocks are looked at
-
-/// Calls f(block, lane, mark, side of the body) for the places of a body's contacts in the blocks.
-template <class D, int W, class F>
-void for_lanes_of(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
-  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_contact; key != none;) {
-    const ContactRecord<D>& c = world.contacts.at(key >> 1);
-    for (std::int32_t m = c.first_manifold; m != none; m = world.contacts.manifold(m).next) {
-      const GraphPlace place = world.contacts.manifold(m).place;
-      if (place.color < 0) continue;  // not in the graph
-      const Lane<D, W> lane = lane_of<D, W>(world, world.contacts.manifold(m));
-      f(lane.block, lane.lane, world.scratch.blocks[place.color].marks[place.position], key & 1);
-    }
-    key = c.next[key & 1];
-  }
-}
-
 /// Finds the contacts that settle: those of bodies out of which something is pushed, or that are pushed themselves;
 /// all, where these are many, because then the blow that pressed them into each other goes through all.
 template <class D, int W>
@@ -285,70 +267,14 @@ void find_again(StepContext<D>& context, bool any_strikes) {
     for_marked(world, color, mark_again, [&](std::int32_t) { world.scratch.blocks[color].again = true; });
 }
 
-constexpr float fast_spin = 0.05f;     ///< rad in a step
-constexpr float least_turned = 0.01f;  ///< sine of half the angle
-
-/// Lists bodies whose inertia turns much with them: contacts are to see it in every substep. Those that turn already
-/// take impulses again, because what contacts did to a body that stood otherwise is something else now. Returns whether
-/// there are any of these.
-bool list_slender(StepContext<Dim2>&) { return false; }
-bool list_slender(StepContext<Dim3>& context) {
-  WorldImplementation<Dim3>& world = context.world;
-  const std::vector<std::int32_t>& awake = world.bodies.awake;
-  std::span<std::int32_t> list;
-  std::size_t count = 0;
-  bool any = false;
-  for (const std::int32_t body : awake) {
-    const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(body)];
-    if (m.slender == 0) continue;
-    const BodyRecord& record = world.bodies.record[std::size_t(body)];
-    if (!may_turn_freely(m, record) || record.constraint_count == 0 || record.joint_count != 0) continue;
-    if (count == 0) list = context.arena.allocate<std::int32_t>(awake.size());
-    list[count++] = body;
-    const float turn = context.dt * math::length(context.bodies[body].angular_velocity);
-    if (turn > fast_spin) take_again(world, body), any = true;
-  }
-  context.slender = list.first(count);
-  return any;
-}
-
-/// The inertia of a body that has turned, in one lane.
-template <int W>
-void put_inertia(const WorldImplementation<Dim3>& world, std::int32_t body, ContactBlock<Dim3, W>& block, int lane) {
-  const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(body)];
-  const bool is_a = block.body_a[lane] == body;
-  const float share = (is_a ? block.inverse_mass_a : block.inverse_mass_b)[lane] / m.inverse_mass;  // load.h
-  put(is_a ? block.inverse_inertia_a : block.inverse_inertia_b, lane, share * m.world_inverse_inertia);
-}
-
-template <int W>
-void turn_few(WorldImplementation<Dim3>& world, std::int32_t body) {
-  for_lanes_of<Dim3, W>(world, body, [&](ContactBlock<Dim3, W>& block, int lane, std::uint8_t&, int) {
-    put_inertia(world, body, block, lane);
-    world.kernels.masses(&block);
-  });
-}
-
-template <int W>
-void turn_blocks(WorldImplementation<Dim3>& world, int color, int begin, int end) {
-  const std::uint8_t* const turned = world.scratch.again.data();
-  for (int k = begin; k < end; ++k) {
-    ContactBlock<Dim3, W>& block = static_cast<ContactBlock<Dim3, W>*>(world.scratch.blocks[color].blocks)[k];
-    bool any = false;
-    for (int lane = 0; lane < (color == overflow_color ? 1 : W); ++lane)
-      for (const std::int32_t body : {block.body_a[lane], block.body_b[lane]})
-        if (body >= 0 && turned[body] != 0) put_inertia(world, body, block, lane), any = true;
-    if (any) world.kernels.masses(&block);
-  }
-}
-
 template <class D, int W>
 void prepare_and_mark(StepContext<D>& context) {
   context.world.scratch.again.resize(context.world.bodies.record.size());
   context.world.scratch.wedged.resize(context.world.bodies.record.size());
   const bool any_strikes = prepare_blocks<D, W>(context);
-  const bool any_slender = list_slender(context);
-  find_again<D, W>(context, any_strikes || any_slender);
+  bool any_turns = false;
+  if constexpr (D::dimension == 3) any_turns = list_slender(context);
+  find_again<D, W>(context, any_strikes || any_turns);
   mark_settling<D, W>(context);
   WorldImplementation<D>& world = context.world;
   if (world.hit_event_shapes == 0) return;
@@ -449,37 +375,6 @@ void prepare_contacts(StepContext<D>& context) {
     if (context.world.kernels.width == 8) return prepare_and_mark<D, 8>(context);
   }
   prepare_and_mark<D, 4>(context);
-}
-void turn_slender(StepContext<Dim3>& context) {
-  WorldImplementation<Dim3>& world = context.world;
-  std::vector<std::uint8_t>& has_turned = world.scratch.again;  // 0 in the substeps
-  std::size_t count = 0;
-  for (const std::int32_t body : context.slender) {
-    const Quatf& turn = context.bodies[body].delta_rotation;
-    has_turned[std::size_t(body)] = math::length_squared(turn.vector()) > least_turned * least_turned;
-    if (has_turned[std::size_t(body)] == 0) continue;
-    ++count;
-    BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(body)];
-    m.world_inverse_inertia = inverse_inertia_in_world(m, turn * world.bodies.pose[std::size_t(body)].rotation,
-                                                       world.bodies.record[std::size_t(body)]);
-  }
-  context.many_turned = many_bodies * count > world.bodies.awake.size();
-  if (context.many_turned) return;
-  for (const std::int32_t body : context.slender) {
-    if (has_turned[std::size_t(body)] == 0) continue;
-    if constexpr (math::widest_lanes > 4) {
-      if (world.kernels.width == 16) turn_few<16>(world, body);
-      if (world.kernels.width == 8) turn_few<8>(world, body);
-    }
-    if (world.kernels.width == 4) turn_few<4>(world, body);
-  }
-}
-void turn_masses(StepContext<Dim3>& context, int color, int begin, int end) {
-  if constexpr (math::widest_lanes > 4) {
-    if (context.world.kernels.width == 16) return turn_blocks<16>(context.world, color, begin, end);
-    if (context.world.kernels.width == 8) return turn_blocks<8>(context.world, color, begin, end);
-  }
-  turn_blocks<4>(context.world, color, begin, end);
 }
 template <class D>
 void store_contacts(StepContext<D>& context) {

@@ -124,7 +124,7 @@ void list_stages(StepContext<D>& context) {
     add_color_stages(context, SolverPass::solve, order);
     add_tree_stage(context, SolverPass::solve_trees);
     add_body_stage(context, SolverPass::positions);
-    if (!context.slender.empty()) {
+    if (!context.slender.bodies.empty()) {
       scratch.solver_stages.push_back({SolverPass::turn_slender});
       scratch.solver_loops.push_back({1, 1});
       add_color_stages(context, SolverPass::turn_masses);
@@ -206,7 +206,7 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   if constexpr (D::dimension == 3) {
     if (stage.pass == SolverPass::flights) return fly_through(context, begin, end);
     if (stage.pass == SolverPass::turn_slender) return turn_slender(context);
-    if (stage.pass == SolverPass::turn_masses && !context.many_turned) return;
+    if (stage.pass == SolverPass::turn_masses && !context.slender.many) return;
   }
   if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end, stage.order != 0);
   if (stage.pass == SolverPass::positions) return integrate_positions(context, begin, end);
@@ -230,7 +230,6 @@ void solve_constraints(StepContext<D>& context) {
   core::TaskScheduler& scheduler = few ? alone : context.scheduler;
   scheduler.run_stages(context.world.scratch.solver_loops,
                        [&](int stage, int begin, int end, int) { run_stage(context, stage, begin, end); });
-  for (const std::int32_t body : context.slender) context.world.scratch.again[std::size_t(body)] = 0;
 }
 
 template <class D>

@@ -81,10 +81,14 @@ void prepare_drives(StepContext<D>& context);
 /// All substeps of those bodies in places [begin, end) of the list of awake bodies that nothing touches.
 void fly_through(StepContext<Dim3>& context, int begin, int end);
 void bound_spins(StepContext<Dim3>& context);
+/// Lists bodies whose inertia turns much with them: contacts are to see it in every substep. Those that turn already
+/// take impulses again, because what contacts did to a body that stood otherwise is something else now. Returns whether
+/// there are any of these.
+bool list_slender(StepContext<Dim3>& context);
 /// The inertia of slender bodies that have turned in this step, and the masses of their contacts; of many, those are
 /// left to turn_masses, for blocks [begin, end) of a colour.
 void turn_slender(StepContext<Dim3>& context);
-void turn_masses(StepContext<Dim3>& context, int color, int begin, int end);
+void turn_masses(const StepContext<Dim3>& context, int color, int begin, int end);
 /// Of the others there, by one substep.
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on);

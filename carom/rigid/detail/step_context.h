@@ -95,6 +95,14 @@ float contact_hertz(const WorldDef<D>& definition, int substeps, float inverse_h
 /// 1/s², ω² of a spring of so many Hz.
 inline float stiffness_of(float hertz) { return 4 * math::pi_f * math::pi_f * hertz * hertz; }
 
+/// Those of which contacts see the inertia of every substep.
+struct SlenderBodies {
+  std::span<const std::int32_t> bodies{};  ///< slots
+  std::span<Mat3f> inverse_inertia{};      ///< 1/(kg·m²), world axes, as contacts see it, of what has turned
+  std::span<std::int32_t> place{};         ///< by slot: 1 + that in these lists of what has turned; 0
+  bool many = false;                       ///< have turned
+};
+
 template <class D>
 struct StepContext {
   WorldImplementation<D>& world;
@@ -106,14 +114,13 @@ struct StepContext {
   float contact_stiffness = 0;  ///< 1/s²: ω² of contacts between moving bodies
   ContactSoftness contact_softness{};
   Softness joint_softness{}, coupling_softness{};
-  float rest_speed = 0;                     ///< m/s between bodies at rest with each other (load.h)
-  float push_speed = 0;                     ///< m/s, limit of the speed at which overlaps separate
-  Flight<D>* flights = nullptr;             ///< by place in BodyStore::awake
-  SolverBody<D>* bodies = nullptr;          ///< by slot; never write to fixed or kinematic ones
-  BodyDrive<D>* drives = nullptr;           ///< in the order of BodyStore::awake
-  typename D::Angular* spins = nullptr;     ///< of those that are `bounded`, likewise: rad/s when they last turned
-  std::span<const std::int32_t> slender{};  ///< bodies of which contacts see the inertia of every substep
-  bool many_turned = false;                 ///< of those, since the step began
+  float rest_speed = 0;                  ///< m/s between bodies at rest with each other (load.h)
+  float push_speed = 0;                  ///< m/s, limit of the speed at which overlaps separate
+  Flight<D>* flights = nullptr;          ///< by place in BodyStore::awake
+  SolverBody<D>* bodies = nullptr;       ///< by slot; never write to fixed or kinematic ones
+  BodyDrive<D>* drives = nullptr;        ///< in the order of BodyStore::awake
+  typename D::Angular* spins = nullptr;  ///< of those that are `bounded`, likewise: rad/s when they last turned
+  SlenderBodies slender;
 };
 
 }  // namespace carom::rigid::detail
