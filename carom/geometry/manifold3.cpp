@@ -204,17 +204,19 @@ void flipped(const Shape3& a, const Shape3& b, const Transform3f& x, float margi
 }
 void none(const Shape3&, const Shape3&, const Transform3f&, float, PairCache&, Manifold3&) {}
 
-// Rows: A; columns: B; sphere, capsule, box, cylinder, cone, ellipsoid, hull, plane.
+// Rows: A; columns: B; sphere, capsule, box, cylinder, cone, ellipsoid, hull, plane. What has a general method is asked
+// for in A's frame: of a small shape on a wide one, whose far corners lose a tenth of a millimetre in another's, that is
+// the wide one's.
 constexpr Collide table[8][8] = {
     {sphere_sphere, flipped<capsule_sphere>, flipped<box_sphere>, flipped<general>, flipped<general>, flipped<general>,
      flipped<general>, flipped<plane_any>},
     {capsule_sphere, capsule_capsule, flipped<box_capsule>, flipped<general>, flipped<general>, flipped<general>,
      flipped<general>, flipped<plane_any>},
-    {box_sphere, box_capsule, box_box, flipped<general>, flipped<general>, general, general, flipped<plane_any>},
-    {general, general, general, general, flipped<general>, flipped<general>, flipped<general>, flipped<plane_any>},
-    {general, general, general, general, general, flipped<general>, flipped<general>, flipped<plane_any>},
-    {general, general, flipped<general>, general, general, general, flipped<general>, flipped<plane_any>},
-    {general, general, flipped<general>, general, general, general, general, flipped<plane_any>},
+    {box_sphere, box_capsule, box_box, general, general, general, general, flipped<plane_any>},
+    {general, general, general, general, general, general, general, flipped<plane_any>},
+    {general, general, general, general, general, general, general, flipped<plane_any>},
+    {general, general, general, general, general, general, general, flipped<plane_any>},
+    {general, general, general, general, general, general, general, flipped<plane_any>},
     {plane_any, plane_any, plane_any, plane_any, plane_any, plane_any, plane_any, none},
 };
 
