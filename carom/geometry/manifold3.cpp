@@ -205,8 +205,8 @@ void flipped(const Shape3& a, const Shape3& b, const Transform3f& x, float margi
 void none(const Shape3&, const Shape3&, const Transform3f&, float, PairCache&, Manifold3&) {}
 
 // Rows: A; columns: B; sphere, capsule, box, cylinder, cone, ellipsoid, hull, plane. What has a general method is asked
-// for in A's frame: of a small shape on a wide one, whose far corners lose a tenth of a millimetre in another's, that is
-// the wide one's.
+// for in A's frame: of a small shape on a wide one, whose far corners lose a tenth of a millimetre in another's, that
+// is the wide one's.
 constexpr Collide table[8][8] = {
     {sphere_sphere, flipped<capsule_sphere>, flipped<box_sphere>, flipped<general>, flipped<general>, flipped<general>,
      flipped<general>, flipped<plane_any>},
