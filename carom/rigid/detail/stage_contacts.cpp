@@ -345,7 +345,6 @@ void turn_blocks(WorldImplementation<Dim3>& world, int color, int begin, int end
 template <class D, int W>
 void prepare_and_mark(StepContext<D>& context) {
   context.world.scratch.again.resize(context.world.bodies.record.size());
-  context.world.scratch.wedged.resize(context.world.bodies.record.size());
   const bool any_strikes = prepare_blocks<D, W>(context);
   const bool any_slender = list_slender(context);
   find_again<D, W>(context, any_strikes || any_slender);
