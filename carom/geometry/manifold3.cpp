@@ -202,6 +202,21 @@ void flipped(const Shape3& a, const Shape3& b, const Transform3f& x, float margi
   else
     out.normal = -rotate(x.q, out.normal);
 }
+// A cylinder or cone on a box is asked about in its own frame, where the corners of a wide box would lose a tenth of a
+// millimetre: so of the box only what is near counts.
+void box_round(const Shape3& a, const Shape3& b, const Transform3f& x, float margin, PairCache& cache, Manifold3& out) {
+  const bool cone = b.type == ShapeType3::cone;
+  const float outer = cone ? b.cone.half_height + b.cone.radius + b.cone.rounding
+                           : b.cylinder.half_height + b.cylinder.radius + b.cylinder.rounding;
+  const float around = 8 * outer + margin;
+  const Vec3f h = a.box.half_extents, reach{around, around, around};
+  const Vec3f low = max(-h, x.p - reach), high = min(h, x.p + reach), half = (high - low) * 0.5f;
+  if (half == h || !(half.x > 0 && half.y > 0 && half.z > 0)) return flipped<general>(a, b, x, margin, cache, out);
+  const Vec3f center = (low + high) * 0.5f;
+  flipped<general>(Box{half, a.box.radius}, b, {x.p - center, x.q}, margin, cache, out);
+  for (int i = 0; i < out.count; ++i) out.points[i].point += center;
+}
+
 void none(const Shape3&, const Shape3&, const Transform3f&, float, PairCache&, Manifold3&) {}
 
 // Rows: A; columns: B; sphere, capsule, box, cylinder, cone, ellipsoid, hull, plane.
@@ -210,7 +225,7 @@ constexpr Collide table[8][8] = {
      flipped<general>, flipped<plane_any>},
     {capsule_sphere, capsule_capsule, flipped<box_capsule>, flipped<general>, flipped<general>, flipped<general>,
      flipped<general>, flipped<plane_any>},
-    {box_sphere, box_capsule, box_box, flipped<general>, flipped<general>, general, general, flipped<plane_any>},
+    {box_sphere, box_capsule, box_box, box_round, box_round, general, general, flipped<plane_any>},
     {general, general, general, general, flipped<general>, flipped<general>, flipped<general>, flipped<plane_any>},
     {general, general, general, general, general, flipped<general>, flipped<general>, flipped<plane_any>},
     {general, general, flipped<general>, general, general, general, flipped<general>, flipped<plane_any>},

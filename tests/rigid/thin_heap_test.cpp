@@ -157,6 +157,24 @@ TEST(ThinHeap, FallsAsleep) {
   }
 }
 
+// Ten cards of 10 cm, 3 mm thick, fall on each other from a few millimetres. Those below have to bear the others: as
+// long as they counted for no more mass than they have, they lay in each other, four tenths of their height in all, and
+// a heap of them shivered for good.
+TEST(ThinHeap, CardsThatFellIntoEachOtherPart) {
+  World3 world(world_with<Dim3>());
+  add_ground(world);
+  const float thickness = 0.1f / 30;
+  double top = 0;
+  std::vector<BodyId> cards;
+  for (int i = 0; i < 10; ++i)
+    cards.push_back(add_body<Dim3>(world, BodyType::dynamic, geometry::Box{{0.05f, 0.5f * thickness, 0.05f}},
+                                   {0, double(thickness) * (2.5 + 3 * i), 0}));
+  run(world, 180);
+  for (const BodyId card : cards) top = std::max(top, world.state(card).value().pose.position.y);
+  EXPECT_GT(top, 9.2 * double(thickness));
+  EXPECT_LT(world.worst_penetration(), 0.15f * thickness);
+}
+
 /// Thirty cards of the plane, 1 : 20, fall on a ground. How many of such heaps have a card that goes into it by more
 /// than half its length?
 int entered(double size, std::uint32_t heaps, void (*add)(World2&)) {

@@ -260,7 +260,13 @@ static void reach(Vec3f& arms, const ShapeRecord<Dim3>& shape, const Vec3f& cent
     return;
   }
   const geometry::Bounds3f box = geometry::bounds(shape.geometry, shape.local);
-  reach_point(max(abs(box.low - center), abs(box.high - center)));
+  const Vec3f corner = max(abs(box.low - center), abs(box.high - center));
+  const float along = arms.y;
+  reach_point(corner);
+  const bool round = shape.geometry.type == geometry::ShapeType3::cylinder ||
+                     shape.geometry.type == geometry::ShapeType3::cone ||
+                     shape.geometry.type == geometry::ShapeType3::capsule;
+  if (round && shape.at_origin && center.x == 0 && center.z == 0) arms.y = max(along, max(corner.x, corner.z));
 }
 static std::uint8_t slenderness(const WorldImplementation<Dim2>& world, std::int32_t body) {
   const Vec2f center = world.bodies.motion[std::size_t(body)].local_center;

@@ -178,6 +178,14 @@ struct WideSoftness {
   }
 };
 
+/// m: so far the load may move on a body before friction lets go of its anchor; `arm`: from the patch to the nearer
+/// centre. Where something rolls by a whole radius its anchor stands beside it, and what asks that back would spin it.
+template <int W>
+CAROM_SIMD_INLINE WideFloat<W> anchor_reach(WideFloat<W> arm) {
+  using F = WideFloat<W>;
+  return min(F::splat(0.05f) * arm + F::splat(0.01f), F::splat(0.25f) * arm);
+}
+
 template <int W, int Columns, class Body>
 CAROM_SIMD_INLINE void gather(const Body* bodies, const std::int32_t* index, int offset,
                               WideFloat<W> (&columns)[Columns]) {

@@ -112,41 +112,21 @@ void put_marks(const GatheredLanes& found, int lanes, std::uint8_t* marks) {
     marks[lane] = std::uint8_t((found.anchored >> lane & 1u) * mark_anchored | (found.open >> lane & 1u) * mark_open);
 }
 
-/// Finds bodies of which something overlaps by more than half the thickness of the thinner one.
-template <class D, int W>
-void mark_wedged(WorldImplementation<D>& world, const float (&thin)[W], int lanes, const ContactBlock<D, W>& block) {
-  bool any = false;
-  for (const auto& point : block.point)
-    for (int lane = 0; lane < W; ++lane) any |= point.separation[lane] < -thin[lane];
-  if (!any) return;
-  const auto mark = [&](std::uint8_t& to) {  // by all threads: all write the same
-    std::atomic_ref<std::uint8_t>(to).store(1, std::memory_order_relaxed);
-  };
-  for (int lane = 0; lane < lanes; ++lane)
-    for (const auto& point : block.point)
-      if (point.separation[lane] < -thin[lane])
-        for (const std::int32_t body : {block.body_a[lane], block.body_b[lane]})
-          if (body >= 0) mark(world.scratch.wedged[std::size_t(body)]), mark(world.scratch.any_wedged);
-}
-
 /// The lanes of a block from the records of `list`, and their marks.
 template <class D, int W>
 void gather_block(const StepContext<D>& context, const ContactSources<D>& sources, std::span<const std::int32_t> list,
                   ContactBlock<D, W>& block, ContactRaw<D, W>& raw, ContactExtra<D, W>* extra, std::uint8_t* marks) {
   const int lanes = int(list.size());
   typename D::Vector across[W];
-  float thin[W] = {};       // m: half of the thickness of the thinner shape
   std::uint32_t meets = 0;  // bits by lane
   for (int lane = 0; lane < lanes; ++lane) {
     const std::int32_t index = list[std::size_t(lane)];
     const ContactRecord<D>& c = sources.contacts[sources.manifolds[index].contact];
-    thin[lane] = c.inner;
     if (may_foresee(c)) meets |= std::uint32_t(put_where_it_meets(context, index, across[lane])) << lane;
   }
   const WorldImplementation<D>& world = context.world;
   const GatheredLanes found = world.kernels.gather(sources, list.data(), lanes, &block, &raw);
   put_marks<W>(found, lanes, marks);
-  mark_wedged(context.world, thin, lanes, block);
   for (std::uint32_t left = found.placed & lane_bits(lanes); left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const ContactRecord<D>& c = world.contacts.at(world.contacts.manifold(list[std::size_t(lane)]).contact);

@@ -86,7 +86,7 @@ CAROM_SIMD_INLINE void prepare_friction2(ContactBlock<Dim2, W>& c, ContactRaw<Di
   const WideVec2<W> center_b = add(center, load2<W>(c.center_offset));
   const WideVec2<W> a = subtract(rotate(load_turn<W>(raw.rotation_a), load2<W>(raw.anchor_a)), center);
   const WideVec2<W> b = subtract(rotate(load_turn<W>(raw.rotation_b), load2<W>(raw.anchor_b)), center_b);
-  const F reach = F::splat(0.05f) * min(sqrt(dot(center, center)), sqrt(dot(center_b, center_b))) + F::splat(0.01f);
+  const F reach = anchor_reach(min(sqrt(dot(center, center)), sqrt(dot(center_b, center_b))));
   const F state = F::load(raw.anchor_state);
   const auto holds = (state > one) & (dot(b, b) < reach * reach);
   const WideVec2<W> none = {zero, zero}, slip = select(holds, subtract(b, a), none);

@@ -125,7 +125,7 @@ CAROM_SIMD_INLINE void prepare_friction3(ContactBlock<Dim3, W>& c, ContactRaw<Di
   // Where friction sticks is remembered on both bodies, so that a body at rest on a slope stays there for good.
   const WideVec3<W> a = subtract(rotate(to_matrix(load_turn<W>(raw.rotation_a)), load3<W>(raw.anchor_a)), center);
   const WideVec3<W> b = subtract(rotate(to_matrix(load_turn<W>(raw.rotation_b)), load3<W>(raw.anchor_b)), center_b);
-  const F reach = F::splat(0.05f) * arm + F::splat(0.01f);
+  const F reach = anchor_reach(arm);
   const F state = F::load(raw.anchor_state);
   const auto holds = (state > one) & (dot(b, b) < reach * reach);
   const WideVec3<W> none = {zero, zero, zero}, slip = select(holds, subtract(b, a), none);

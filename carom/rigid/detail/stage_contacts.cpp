@@ -270,7 +270,6 @@ void find_again(StepContext<D>& context, bool any_strikes) {
 template <class D, int W>
 void prepare_and_mark(StepContext<D>& context) {
   context.world.scratch.again.resize(context.world.bodies.record.size());
-  context.world.scratch.wedged.resize(context.world.bodies.record.size());
   const bool any_strikes = prepare_blocks<D, W>(context);
   bool any_turns = false;
   if constexpr (D::dimension == 3) any_turns = list_slender(context);

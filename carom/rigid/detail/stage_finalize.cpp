@@ -14,8 +14,7 @@ namespace {
 
 constexpr int finalize_grain = 128, hit_grain = 128;
 constexpr float settling_speed = 3;  ///< of its sleep speed, below which a body that lies on something settles
-constexpr float settling_resistance =
-    0.014f;  ///< lever arm over the half thickness: holds a ball on .8°, as sleep does alone
+constexpr float settling_resistance = 0.014f;  ///< lever arm over the radius: holds a ball on .8°, as sleep does alone
 
 float spin_of(float w) { return math::abs(w); }
 float spin_of(const Vec3f& w) { return math::length(w); }
@@ -37,24 +36,45 @@ float response_of(const Mat3f& inverse_inertia, const Vec3f& spin, float size) {
   return math::length(inverse_inertia * spin) / size;
 }
 
-bool rolls(geometry::ShapeType2 type) {
-  return type == geometry::ShapeType2::circle || type == geometry::ShapeType2::capsule;
+/// m: of what it rolls on; 0: on nothing round. `inner`: half of the body's thickness.
+float rolling_radius(const geometry::Shape2& s, float inner) {
+  using geometry::ShapeType2;
+  return s.type == ShapeType2::circle || s.type == ShapeType2::capsule ? inner : 0;
 }
-bool rolls(geometry::ShapeType3 type) {
-  return type == geometry::ShapeType3::sphere || type == geometry::ShapeType3::capsule;
+float rolling_radius(const geometry::Shape3& s, float inner) {
+  switch (s.type) {
+    case geometry::ShapeType3::sphere:
+    case geometry::ShapeType3::capsule:
+    case geometry::ShapeType3::ellipsoid:
+      return inner;
+    case geometry::ShapeType3::cylinder:  // a coin rolls, and rocks, on its rim
+      return s.cylinder.radius;
+    case geometry::ShapeType3::cone:
+      return s.cone.radius;
+    default:
+      return 0;
+  }
 }
 
-/// A ball that lies on others without rolling resistance would roll among them for ever, and keep a heap awake. Sleep
-/// stops what is slow and alone; what is slow among others is stopped by some rolling resistance under the load that it
-/// carries. slowness: 0 … 1. Returns the spin that is left.
+/// What rolls of a spin: what turns about the direction of the load spins on its spot.
+float rolling_part(float spin, const Vec2f&) { return spin; }
+Vec3f rolling_part(const Vec3f& spin, const Vec3f& load) {
+  const float squared = math::length_squared(load);
+  return squared > 0 ? spin - load * (dot(load, spin) / squared) : spin;
+}
+
+/// What is round and lies on others would roll among them for ever where nothing resists it, and keep a heap awake.
+/// Sleep stops what is slow and alone; what is slow among others is stopped by some rolling resistance under the load
+/// that it carries. slowness: 0 … 1.
 template <class D>
-float settle(const StepContext<D>& context, const BodyMotion<D>& m, SolverBody<D>& s, float load, float spin,
-             float slowness) {
-  const float torque = slowness * settling_resistance * m.inner_extent * load * float(context.substeps);
-  const float lost = torque * response_of(m.world_inverse_inertia, s.angular_velocity, spin);
-  const float left = max(spin - lost, 0.0f);
-  s.angular_velocity *= left / spin;
-  return left;
+void settle(const StepContext<D>& context, const BodyMotion<D>& m, SolverBody<D>& s, float radius,
+            const BodyLoad<D>& load, float slowness) {
+  const auto rolling = rolling_part(s.angular_velocity, load.sum);
+  const float spin = spin_of(rolling);
+  if (!(spin > 0)) return;
+  const float torque = slowness * settling_resistance * radius * load.size * float(context.substeps);
+  const float left = max(spin - torque * response_of(m.world_inverse_inertia, rolling, spin), 0.0f);
+  s.angular_velocity = (s.angular_velocity - rolling) + rolling * (left / spin);
 }
 
 /// Where the hulls of a body of several shapes are and go, all of which are asked in every step while it is quick: as
@@ -214,9 +234,7 @@ static void follow_load_of(StepContext<D>& context, std::int32_t body, const Bod
     wishes.push_back({body, 0});
   } else if (level <= m.load_level) {
     m.load_level = std::uint16_t(level);
-  } else if (world.scratch.wedged[std::size_t(body)] == 0) {
-    // Bodies that are wedged in each other press by their overlap and not by a load: were they given more mass for it,
-    // they would press the more.
+  } else {
     const int limit = jointed ? level : max(int(m.load_limit), free_level);
     m.load_level = std::uint16_t(max(int(m.load_level), min(level, limit)));
     // To ask costs a walk over all contacts.
@@ -267,11 +285,14 @@ static std::uint8_t finalize_body(StepContext<D>& context, int place, const Body
   const bool may_sleep = record.sleep_speed > 0 && (record.flags & body_allow_sleep) != 0;
   const float slow = settling_speed * sleep_speed;
   if (may_sleep && world.definition.allow_sleep && load.size > 0 && spin > 0 && record.joint_count == 0 &&
-      speed < slow && rolls(world.shapes.at(record.first_shape).geometry.type)) {
-    const float left = settle(context, m, s, load.size, spin, 1 - speed / slow);
-    speed = max(math::length(s.linear_velocity), D::dimension == 3 && m.slender != 0
-                                                     ? way_of_turn(m, pose.rotation, s.angular_velocity)
-                                                     : left * max(m.outer_extent, 0.01f));
+      speed < slow) {
+    const float radius = rolling_radius(world.shapes.at(record.first_shape).geometry, m.inner_extent);
+    if (radius > 0) {
+      settle(context, m, s, radius, load, 1 - speed / slow);
+      speed = max(math::length(s.linear_velocity), D::dimension == 3 && m.slender != 0
+                                                       ? way_of_turn(m, pose.rotation, s.angular_velocity)
+                                                       : spin_of(s.angular_velocity) * max(m.outer_extent, 0.01f));
+    }
   }
   if (may_sleep && speed < sleep_speed && pushed_squared < square(0.2f * sleep_speed))
     record.sleep_timer += context.dt * pace;
@@ -293,7 +314,6 @@ void finalize_bodies(StepContext<D>& context) {
   scratch.swept.resize(count);
   const float gravity = math::length(world.definition.gravity);
   const int width = world.kernels.width;
-  if (scratch.wedged.size() < world.bodies.record.size()) scratch.wedged.resize(world.bodies.record.size());
   for (std::vector<LoadWish>& list : scratch.load_wishes) list.clear();
   context.scheduler.parallel_for(int(count), finalize_grain, [&](int begin, int end, int worker) {
     std::vector<LoadWish>& wishes = scratch.load_wishes[std::size_t(worker)];
@@ -325,8 +345,6 @@ void finalize_bodies(StepContext<D>& context) {
       }
     }
   });
-  if (std::exchange(scratch.any_wedged, std::uint8_t(0)) != 0)
-    std::fill(scratch.wedged.begin(), scratch.wedged.end(), std::uint8_t(0));
   grant_loads(context);
   for (std::size_t i = 0; i < count; ++i)
     if (scratch.body_changes[i] == body_broke) {

@@ -132,8 +132,6 @@ struct StepScratch {
   std::vector<std::int32_t> dropped;                ///< bodies that are their own selves again
   std::vector<std::uint8_t> again;                  ///< by slot of the body: takes impulses of contacts again in every
                                                     ///< substep (list_stages); nothing between steps
-  std::vector<std::uint8_t> wedged;                 ///< by slot of the body: something overlaps deep with it; likewise
-  std::uint8_t any_wedged = 0;                      ///< is there one
   std::vector<std::uint64_t> placed;                ///< manifolds of all colours behind their places (order_by_place)
   std::vector<std::int32_t> hits;                   ///< manifolds of what may be told as a hit
   std::vector<Flight<D>> flights;                   ///< by place in BodyStore::awake

@@ -98,7 +98,6 @@ void reserve_world(WorldImplementation<D>& world, const Capacity& capacity) {
   for (auto& list : s.load_wishes) list.reserve(bodies);
   s.dropped.reserve(bodies);
   s.again.reserve(bodies);
-  s.wedged.reserve(bodies);
   s.flights.reserve(bodies);
   s.placed.reserve(manifolds);
   s.impacts.reserve(manifolds);
