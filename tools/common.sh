@@ -67,6 +67,11 @@ jobs=$(nproc)
 # units enough.
 unity=(-DCAROM_UNITY=ON "-DCAROM_UNITY_BATCH=$((jobs < 6 ? 48 / jobs : 8))")
 
+# build FOLDER OPTION…: compilers and linkers take their memory in large pages where the system gives these to who asks,
+# which saves clang a sixth of its processor time (by the C library of 2.35 or newer; an older one does not look).
+large_pages=GLIBC_TUNABLES=glibc.malloc.hugetlb=1
+build() { env "$large_pages" cmake --build "$1" --parallel "$jobs" "${@:2}"; }
+
 # build_native: the release build in build/release, as few translation units (a cold build is short).
 build_native() {
   local extra=()
@@ -74,8 +79,8 @@ build_native() {
   say "configuring build/release"
   quietly configure cmake --preset release "${unity[@]}" "${extra[@]}" "$@"
   say "building with $jobs jobs"
-  if [ -t 1 ]; then cmake --build build/release --parallel "$jobs" || fail "the build"
-  else quietly build cmake --build build/release --parallel "$jobs"; fi
+  if [ -t 1 ]; then build build/release || fail "the build"
+  else quietly build build build/release; fi
 }
 
 # What building for WebAssembly needs, given the version that newest_clang names.
@@ -88,7 +93,7 @@ build_wasm() {
   command -v ccache >/dev/null && extra+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   say "building for WebAssembly"
   quietly configure-wasm cmake --preset wasm "${unity[@]}" "${extra[@]}"
-  quietly build-wasm cmake --build build/wasm --parallel "$jobs" --target "${wasm_targets[@]}"
+  quietly build-wasm build build/wasm --target "${wasm_targets[@]}"
 }
 
 # build_page: for `carom serve`, in apps/playground/dist.
