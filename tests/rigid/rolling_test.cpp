@@ -95,8 +95,8 @@ TEST(Rolling, LogsThatRollSlowlyFallAsleep) {
   }
 }
 
-// A coin that leans on another rolls on both rims to and fro, and loses nothing by it: of these forty nine were still
-// awake after a minute.
+// A coin that leans on another rolls on both rims to and fro, and loses nothing by it: of 200 a fifth were still awake
+// after a minute.
 TEST(Rolling, ACoinThatLeansRocksToRest) {
   std::uint32_t r = 1;
   const auto draw = [&] {
