@@ -166,8 +166,7 @@ std::uint32_t approach2(const ContactSources<Dim2>& from, const std::int32_t* li
   gather_from<&LaneRecords::manifold, ManifoldRows2::rolling - 8>(lane, old);
   const auto rolls = head[2] > zero, bouncy = head[1] > zero;
   head[2].store(e.rolling_lever);
-  inverse_or_zero(keep(rolls, one), F::load(c.inverse_inertia_a) + F::load(c.inverse_inertia_b))
-      .store(e.rolling_mass);
+  inverse_or_zero(keep(rolls, one), F::load(c.inverse_inertia_a) + F::load(c.inverse_inertia_b)).store(e.rolling_mass);
   keep(rolls, old[2]).store(e.rolling_impulse[0]);
   WideInt<W>::zero().store(e.struck);
   zero.store(e.closing_acceleration);
