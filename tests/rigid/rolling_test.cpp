@@ -98,11 +98,7 @@ TEST(Rolling, LogsThatRollSlowlyFallAsleep) {
 // A coin that leans on another rolls on both rims to and fro, and loses nothing by it: of 200 a fifth were still awake
 // after a minute.
 TEST(Rolling, ACoinThatLeansRocksToRest) {
-  std::uint32_t r = 1;
-  const auto draw = [&] {
-    r = 1664525u * r + 1013904223u;
-    return float(r >> 8) / 8388608.0f - 1;
-  };
+  Draw draw{1};
   int awake = 0;
   for (int k = 0; k < 40; ++k) {
     World3 world(world_with<Dim3>());

@@ -104,6 +104,14 @@ std::vector<BodyId> add_pyramid(World<D>& world, int base, double z = 0) {
     for (int i = 0; i < base - row; ++i) bodies.push_back(add_box<D>(world, at<D>(0.5 * row + i, 0.5 + row, z)));
   return bodies;
 }
+/// Random numbers from −1 to 1, the same on every machine.
+struct Draw {
+  std::uint32_t r;
+  float operator()() {
+    r = 1664525u * r + 1013904223u;
+    return float(r >> 8) / 8388608.0f - 1;
+  }
+};
 /// A mixed heap that is thrown together: what determinism is tested on.
 template <class D>
 std::vector<BodyId> add_heap(World<D>& world, int layers) {
