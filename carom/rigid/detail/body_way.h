@@ -75,7 +75,8 @@ void stop_at(WorldImplementation<D>& world, std::int32_t body, float fraction) {
   typename D::Pose& pose = world.bodies.pose[std::size_t(body)];
   const typename D::Rotation end = pose.rotation;
   pose.rotation = rotation_after(start, end, f);
-  if (m.gyroscopic) set_back_spin(world.bodies.solver[std::size_t(body)], end, pose.rotation);
+  if (m.gyroscopic || world.bodies.record[std::size_t(body)].joint_count > 0)
+    set_back_spin(world.bodies.solver[std::size_t(body)], end, pose.rotation);
   start.turn = start.turn * f;
   pose_from_center(world, body);
   start.fraction = fraction;

@@ -177,6 +177,8 @@ class Tree {
   void solve_positions() {
     drive(true);
     const double before = energy_.kinetic();
+    limit_spins();
+    solve_velocities(false);
     approach();
     const double after = energy_.kinetic();
     range_.work = after - before;
@@ -227,6 +229,13 @@ class Tree {
   }
 
  private:
+  void limit_spins() {
+    for (int i = range_.first_body; i < range_.body_end; ++i) {
+      SolverBody<D>& body = context_.bodies[trees_.bodies[std::size_t(i)].body];
+      const float turn = context_.h * magnitude(body.angular_velocity);
+      if (turn > max_turn) body.angular_velocity *= max_turn / turn;
+    }
+  }
   /// Calls on_axis(joint, number of its axis, the row of the child, that of the parent, coordinate, law) and
   /// on_turn(joint, turns of its bodies, block).
   template <class OnAxis, class OnTurn>

@@ -150,6 +150,8 @@ class Builder {
     const auto center = world_.bodies.motion[std::size_t(body)].local_center;
     return (on_b ? frames.frame_b.p : frames.frame_a.p) - center;
   }
+  static bool is_slender(const BodyMotion<Dim2>&) { return false; }
+  static bool is_slender(const BodyMotion<Dim3>& m) { return m.slender != 0; }
   double inverse_inertia(std::int32_t body) const {
     const BodyMotion<D>& m = world_.bodies.motion[std::size_t(body)];
     double mean;
@@ -193,6 +195,7 @@ class Builder {
       const bool turns = (data.parts & (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0 &&
                          (grounded || turns_rigidly(data));  // the hinges of a free figure bear little
       if ((data.parts & part_path) != 0) return true;        // a bead lives by its energy
+      if (is_slender(motion) && turns_rigidly(data)) return true;
       if (carried * inverse_mass > direct_mass_ratio) return true;
       if (m * d * d * inverse_inertia(body.body) > direct_arm_ratio) return true;
       if (turns && load.inertia * (carried / load.mass) * inverse_turn > direct_inertia_ratio) return true;

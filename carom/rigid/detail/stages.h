@@ -112,6 +112,21 @@ void release_broken_bodies(WorldImplementation<D>& world);
 /// Fast bodies stop where they first meet fixed geometry (bullets: any).
 template <class D>
 void stop_fast_bodies(StepContext<D>& context);
+/// What is welded to a body that was stopped stops with it; scratch.fast grows by those that were slow.
+template <class D>
+void stop_what_is_welded(WorldImplementation<D>& world);
+/// Calls f(body) for the dynamic bodies to which rigid welds hold a body.
+template <class D, class F>
+void for_each_weld(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none;) {
+    const JointHeader& header = world.joints.headers[std::size_t(key >> 1)];
+    const std::int32_t other = header.body[1 - (key & 1)];
+    const auto* weld = world.joints.at(key >> 1).template get<WeldJointDef>();
+    key = header.next[key & 1];
+    if (weld == nullptr || weld->linear.hertz > 0 || weld->angular.hertz > 0 || header.place.color < 0) continue;
+    if (other != none && world.bodies.is_dynamic(other)) f(other);
+  }
+}
 /// Trees take over the bounds that changed.
 template <class D>
 void update_trees(WorldImplementation<D>& world);

@@ -164,6 +164,7 @@ struct StepScratch {
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake
   std::vector<std::int32_t> driven_over;                       ///< bodies
+  std::vector<std::int32_t> welded;                            ///< bodies, of one that was stopped
   std::vector<std::int32_t> broken;                            ///< bodies to be quarantined
   std::vector<std::uint8_t> body_changes;                      ///< by place in BodyStore::awake
   std::vector<std::uint8_t> contact_changes;                   ///< by place in ContactStore::awake
