@@ -49,6 +49,23 @@ TEST(ThinPiece, GainsNothingWhereItLands) {
       }
 }
 
+/// Two sticks end to end, flung as one with `along` of spin about their length besides.
+template <template <class> class Joint>
+void fling_pair(World3& world, std::uint32_t seed, float spin, float along, float half) {
+  BodyDef<Dim3> body = flung(seed, 1.8, spin);
+  const Vec3f length = rotate(body.rotation, Vec3f{0, 1, 0});
+  body.angular_velocity += along * length;
+  Joint<Dim3> joint;
+  joint.frame_a.p = {0, 0.5f, 0}, joint.frame_b.p = {0, -0.5f, 0};
+  joint.body_a = world.create_body(body).value();
+  body.position = body.position + Vec3d(length);
+  body.linear_velocity += cross(body.angular_velocity, length);
+  joint.body_b = world.create_body(body).value();
+  for (const BodyId id : {joint.body_a, joint.body_b})
+    world.add_shape(id, geometry::Capsule3{0.5f - half, half}).value();
+  world.create_joint(joint).value();
+}
+
 // The same of two that a ball joint holds together at their ends: with the inertia of the beginning one in ten of those
 // of 1 : 50 gained more than half of its energy.
 TEST(ThinPiece, GainsLittleWithAJoint) {
@@ -56,19 +73,30 @@ TEST(ThinPiece, GainsLittleWithAJoint) {
     for (std::uint32_t seed = 1; seed <= 60; ++seed) {
       World3 world(world_with<Dim3>());
       add_ground(world);
-      BodyDef<Dim3> body = flung(seed, 1.8, 10);
-      BallJointDef<Dim3> joint;
-      joint.frame_a.p = {0, 0.5f, 0}, joint.frame_b.p = {0, -0.5f, 0};
-      joint.body_a = world.create_body(body).value();
-      const Vec3f along = rotate(body.rotation, Vec3f{0, 1, 0});
-      body.position = body.position + Vec3d(along);
-      body.linear_velocity += cross(body.angular_velocity, along);
-      joint.body_b = world.create_body(body).value();
-      for (const BodyId id : {joint.body_a, joint.body_b})
-        world.add_shape(id, geometry::Capsule3{0.5f - half, half}).value();
-      world.create_joint(joint).value();
+      fling_pair<BallJointDef>(world, seed, 10, 0, half);
       ASSERT_LT(gain_of(world, 120), 0.15) << "half " << half << " seed " << seed;
     }
+}
+
+// Where a weld holds them: 132 of 200 like these, flung with 30 rad/s, were thrown by 10¹⁷ m/s. Continuous collision
+// set back one and not the other, which the weld made energy of, and a stick that rolls turns so far in a substep that
+// its error of attitude is only known up to whole revolutions.
+TEST(ThinPiece, GainsNothingWhereItIsWelded) {
+  for (const float half : {0.025f, 0.01f})
+    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+      World3 world(world_with<Dim3>());
+      add_ground(world);
+      fling_pair<WeldJointDef>(world, seed, seed % 2 == 0 ? 10.0f : 30.0f, 0, half);
+      ASSERT_LT(gain_of(world, 120), 0.05) << "half " << half << " seed " << seed;
+    }
+}
+// In the air 34 of 200 did, with 100 rad/s about their length.
+TEST(ThinPiece, GainsNothingWhereItWhirls) {
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    World3 world(world_with<Dim3>());
+    fling_pair<WeldJointDef>(world, seed, 60, 100, 0.01f);
+    ASSERT_LT(gain_of(world, 120), 1e-3) << "seed " << seed;
+  }
 }
 
 struct Burst {

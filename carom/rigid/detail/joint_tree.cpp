@@ -14,6 +14,7 @@ constexpr double correction_share = 0.3;         ///< of an error that a substep
 constexpr double largest_correction_speed = 10;  ///< m/s and rad/s
 constexpr int refinements = 6;                   ///< most Newton steps toward the joint at the end of the substep
 constexpr double small_error = 1e-6;             ///< m and rad: no further step
+constexpr float far_turn = 0.5f;                 ///< rad in a substep
 /// Under tension F a body swings between its joints at up to ω² = F r/I. Positions that follow from velocities bear
 /// ω h < 2, and long before that what swings faster than this square gets inertia for it (see `stiffen`).
 constexpr double calm_swing = 0.25;
@@ -177,8 +178,8 @@ class Tree {
   void solve_positions() {
     drive(true);
     const double before = energy_.kinetic();
-    limit_spins();
-    solve_velocities(false);
+    // An error of attitude is known up to a whole revolution: what turns far in a substep first agrees on how fast.
+    if (limit_spins() > far_turn) solve_velocities(false);
     approach();
     const double after = energy_.kinetic();
     range_.work = after - before;
@@ -229,12 +230,16 @@ class Tree {
   }
 
  private:
-  void limit_spins() {
+  /// Returns the greatest turn of a body in this substep, rad. Faster ones than may be are slowed.
+  float limit_spins() {
+    float greatest = 0;
     for (int i = range_.first_body; i < range_.body_end; ++i) {
       SolverBody<D>& body = context_.bodies[trees_.bodies[std::size_t(i)].body];
       const float turn = context_.h * magnitude(body.angular_velocity);
+      greatest = max(greatest, turn);
       if (turn > max_turn) body.angular_velocity *= max_turn / turn;
     }
+    return greatest;
   }
   /// Calls on_axis(joint, number of its axis, the row of the child, that of the parent, coordinate, law) and
   /// on_turn(joint, turns of its bodies, block).
@@ -325,8 +330,8 @@ class Tree {
           const double correction =
               clamp(correction_share * joint.error[k] * inverse_h, -largest_correction_speed, largest_correction_speed);
           const double miss = (double(error) - joint.error[k]) * inverse_h + correction;
-          worst = max(worst, math::abs(miss));
           joint.residual[k] = miss + joint.compliance[k] * joint.impulse[k];
+          worst = max(worst, math::abs(joint.residual[k]));
           ++k;
         });
         for (; k < joint.rows; ++k) joint.residual[k] = 0;
