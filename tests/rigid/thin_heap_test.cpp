@@ -50,8 +50,8 @@ TEST(ThinPiece, GainsNothingWhereItLands) {
 }
 
 /// Two sticks end to end, flung as one with `along` of spin about their length besides.
-template <template <class> class Joint>
-void fling_pair(World3& world, std::uint32_t seed, float spin, float along, float half) {
+template <template <class> class Joint, class Change>
+void fling_pair(World3& world, std::uint32_t seed, float spin, float along, float half, Change&& change) {
   BodyDef<Dim3> body = flung(seed, 1.8, spin);
   const Vec3f length = rotate(body.rotation, Vec3f{0, 1, 0});
   body.angular_velocity += along * length;
@@ -63,38 +63,39 @@ void fling_pair(World3& world, std::uint32_t seed, float spin, float along, floa
   joint.body_b = world.create_body(body).value();
   for (const BodyId id : {joint.body_a, joint.body_b})
     world.add_shape(id, geometry::Capsule3{0.5f - half, half}).value();
+  change(joint);
   world.create_joint(joint).value();
 }
 
-// The same of two that a ball joint holds together at their ends: with the inertia of the beginning one in ten of those
-// of 1 : 50 gained more than half of its energy.
-TEST(ThinPiece, GainsLittleWithAJoint) {
+// The same of two that a joint holds together at their ends. With the inertia of the beginning one in ten of those of
+// 1 : 50 on a ball joint gained more than half of its energy; on hinges, and welded, one in two was thrown by up to
+// 10¹⁷ m/s. Continuous collision set back one and not the other, which the joint made energy of; a stick that rolls
+// turns so far in a substep that its error of attitude is only known up to whole revolutions; and a contact began each
+// substep with what the last one had given to both.
+template <template <class> class Joint, class Change>
+void expect_no_gain(const char* name, Change&& change) {
   for (const float half : {0.025f, 0.01f})
-    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
       World3 world(world_with<Dim3>());
       add_ground(world);
-      fling_pair<BallJointDef>(world, seed, 10, 0, half);
-      ASSERT_LT(gain_of(world, 120), 0.15) << "half " << half << " seed " << seed;
+      fling_pair<Joint>(world, seed, seed % 2 == 0 ? 10.0f : 30.0f, 0, half, change);
+      ASSERT_LT(gain_of(world, 120), 0.1) << name << ", half " << half << " seed " << seed;
     }
 }
-
-// Where a weld holds them: 132 of 200 like these, flung with 30 rad/s, were thrown by 10¹⁷ m/s. Continuous collision
-// set back one and not the other, which the weld made energy of, and a stick that rolls turns so far in a substep that
-// its error of attitude is only known up to whole revolutions.
-TEST(ThinPiece, GainsNothingWhereItIsWelded) {
-  for (const float half : {0.025f, 0.01f})
-    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
-      World3 world(world_with<Dim3>());
-      add_ground(world);
-      fling_pair<WeldJointDef>(world, seed, seed % 2 == 0 ? 10.0f : 30.0f, 0, half);
-      ASSERT_LT(gain_of(world, 120), 0.05) << "half " << half << " seed " << seed;
-    }
+TEST(ThinPiece, GainsNothingOnAJoint) {
+  const auto nothing = [](auto&) {};
+  expect_no_gain<WeldJointDef>("weld", nothing);
+  expect_no_gain<BallJointDef>("ball", nothing);
+  expect_no_gain<BallJointDef>("cone", [](BallJointDef<Dim3>& joint) { joint.cone_angle = 0.5f; });
+  expect_no_gain<HingeJointDef>("hinge", nothing);
+  expect_no_gain<HingeJointDef>("hinge with stops",
+                                [](HingeJointDef<Dim3>& joint) { joint.limit = {true, -0.5f, 0.5f}; });
 }
 // In the air 34 of 200 did, with 100 rad/s about their length.
 TEST(ThinPiece, GainsNothingWhereItWhirls) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     World3 world(world_with<Dim3>());
-    fling_pair<WeldJointDef>(world, seed, 60, 100, 0.01f);
+    fling_pair<WeldJointDef>(world, seed, 60, 100, 0.01f, [](auto&) {});
     ASSERT_LT(gain_of(world, 120), 1e-3) << "seed " << seed;
   }
 }

@@ -169,7 +169,7 @@ struct AngularAxis {
         return sine > 1e-6f ? u * (1 / sine) : rotate(a, Vec3f{1, 0, 0});
       }
       if (with_coordinate) coordinate = twist_angle(conjugate(a) * b);
-      return (z_a + z_b) * (1 / max(1 + cosine, 0.02f));
+      return 1 + cosine > 0.02f ? (z_a + z_b) * (1 / (1 + cosine)) : Vec3f{};  // all but opposite: no twist
     }
   }
   template <class Pair>

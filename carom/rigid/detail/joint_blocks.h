@@ -188,6 +188,9 @@ struct HingeBlock {
     u = cross(z, x);
     v = cross(z, y);
     error = {dot(z, x), dot(z, y)};
+    // The sine of the angle; beyond a right one it goes on growing, so that nothing comes to rest upside down.
+    const float sine = math::length(error);
+    if (dot(z, cross(x, y)) < 0 && sine > 1e-3f) error *= (2 - sine) / sine;
   }
   template <class Pair>
   void warm_start(Pair& pair) const {

@@ -285,7 +285,11 @@ CAROM_SIMD_INLINE void place_hinge(LimbLanes<Dim3, W>& c, const Turn<W>& a, cons
   const Lanes<3, W> x = axis_x(a), y = axis_y(a), u = cross(z, x), v = cross(z, y);
   store(u, c.hinge_u);
   store(v, c.hinge_v);
-  store(Lanes<2, W>{{dot(z, x), dot(z, y)}}, c.hinge_error);
+  const Lanes<2, W> error = {{dot(z, x), dot(z, y)}};
+  const F sine = sqrt(error.v[0] * error.v[0] + error.v[1] * error.v[1]);
+  const F more = (F::splat(2) - sine) * reciprocal_above(sine, F::splat(1e-3f));
+  store(multiply(error, select((dot(z, axis_z(a)) < F::zero()) & (sine > F::splat(1e-3f)), more, F::splat(1))),
+        c.hinge_error);
   const Lanes<3, W> ku = times(t, u), kv = times(t, v);
   const F k11 = dot(u, ku), k12 = dot(u, kv), k22 = dot(v, kv);
   const F i1 = reciprocal_above(k11, F::zero()), l21 = k12 * i1;
@@ -348,7 +352,7 @@ CAROM_SIMD_INLINE void place(LimbLanes<Dim3, W>& c, const Placement3<W>& a, cons
   if (c.parts & part_twist) {
     const Turn<W> q = product(Turn<W>{qa.w, multiply(qa.u, F::splat(-1))}, qb);
     const F sign = copysign(F::splat(1), q.w);
-    const Lanes<3, W> n = multiply(add(za, zb), F::splat(1) / max(F::splat(1) + dot(za, zb), F::splat(0.02f)));
+    const Lanes<3, W> n = multiply(add(za, zb), reciprocal_above(F::splat(1) + dot(za, zb), F::splat(0.02f)));
     store(n, c.twist_axis);
     place_law(c.law, F::splat(2) * arc(q.u.v[2] * sign, q.w * sign), dot(n, times(both, n)));
   }

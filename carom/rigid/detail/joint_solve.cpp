@@ -43,13 +43,13 @@ inline void turn_inertias(JointRecord<Dim3>& record, const StepContext<Dim3>& co
     turn_inertia(record.tensors()[1], motion[std::size_t(record.body_b)], context.bodies[record.body_b].delta_rotation);
 }
 
-template <class I, bool first_of_substep, class D, class Act>
+template <class I, class D, class Act>
 void act_on(JointRecord<D>& record, SolverBody<D>* bodies, const Act& act) {
   BodyPair<D, I> pair;
   load_pair(pair, record, bodies);
   for_each_block(record, [&](JointPart, auto& block) {
     if (record.direct != Direct::nothing && is_rigid(block)) return;
-    if (!first_of_substep && record.direct == Direct::all && is_driven<D>(block)) return;
+    if (record.direct == Direct::all && is_driven<D>(block)) return;
     act(pair, block);
   });
   save_pair(pair, record, bodies);
@@ -81,11 +81,11 @@ void for_each_record(StepContext<D>& context, const JointUnits& units, ThreadSha
     if constexpr (D::dimension == 3) {
       if (!record.isotropic) {
         if constexpr (first_of_substep) turn_inertias(record, context);
-        act_on<Mat3f, first_of_substep>(record, context.bodies, act);
+        act_on<Mat3f>(record, context.bodies, act);
         continue;
       }
     }
-    act_on<float, first_of_substep>(record, context.bodies, act);
+    act_on<float>(record, context.bodies, act);
   }
 }
 

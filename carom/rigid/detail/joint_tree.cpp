@@ -113,6 +113,12 @@ class Tree {
     }
   }
 
+  /// Where a substep has brought the bodies.
+  void follow() {
+    factorise();
+    if (range_.drives && range_.slender) measure_drives();
+  }
+
   /// How the axes that are driven move, held by the whole tree.
   void measure_drives() {
     int drives = 0;
@@ -171,7 +177,10 @@ class Tree {
   void begin() {
     for (int j = range_.first_joint; j < range_.joint_end; ++j)
       for (double& x : trees_.joints[std::size_t(j)].impulse) x = 0;
-    solve_velocities(false);
+    find_residuals(false);
+    clear_loads();
+    if (range_.drives) load_drives();
+    respond<true>();
   }
 
   /// Before positions move: the errors at the end of the substep shall be a share of those now.
@@ -191,17 +200,7 @@ class Tree {
     }
   }
   void solve_velocities(bool damp) {
-    for (int j = range_.first_joint; j < range_.joint_end; ++j) {
-      TreeJoint<D>& joint = trees_.joints[std::size_t(j)];
-      double child[dofs], parent[dofs] = {};
-      velocity_of(child, context_.bodies[trees_.bodies[std::size_t(joint.child)].body]);
-      const JointRecord<D>& record = record_of(joint);
-      const std::int32_t other = joint.child_is_b ? record.body_a : record.body_b;
-      if (other != none) velocity_of(parent, context_.bodies[other]);
-      for (int k = 0; k < joint.rows; ++k)
-        joint.residual[k] = (k < joint.rigid_rows ? 1 : (damp ? joint.damping : 0)) *
-                            (inner_product(joint.child_row[k], child) + inner_product(joint.parent_row[k], parent));
-    }
+    find_residuals(damp);
     solve();
   }
   void settle() {
@@ -265,6 +264,32 @@ class Tree {
       });
     }
   }
+  void find_residuals(bool damp) {
+    for (int j = range_.first_joint; j < range_.joint_end; ++j) {
+      TreeJoint<D>& joint = trees_.joints[std::size_t(j)];
+      double child[dofs], parent[dofs] = {};
+      velocity_of(child, context_.bodies[trees_.bodies[std::size_t(joint.child)].body]);
+      const JointRecord<D>& record = record_of(joint);
+      const std::int32_t other = joint.child_is_b ? record.body_a : record.body_b;
+      if (other != none) velocity_of(parent, context_.bodies[other]);
+      for (int k = 0; k < joint.rows; ++k)
+        joint.residual[k] = (k < joint.rigid_rows ? 1 : (damp ? joint.damping : 0)) *
+                            (inner_product(joint.child_row[k], child) + inner_product(joint.parent_row[k], parent));
+    }
+  }
+  /// What motors, springs, friction and stops gave in the last substep, on the bodies.
+  void load_drives() {
+    for_each_drive(
+        [&](TreeJoint<D>& joint, int, const Row& child, const Row& parent, float, AxisLaw& law) {
+          if (range_.slender) law.lower_impulse = law.upper_impulse = 0;
+          add_load(joint, child, parent, double(law.total()));
+        },
+        [&](TreeJoint<D>& joint, const BodyPair<D>&, AngularBlock<D>& block) {
+          Row child, parent;
+          fill_turn(joint, block.impulse, child, parent);
+          add_load(joint, child, parent, 1);
+        });
+  }
   /// Motors, springs, friction and stops, one after the other.
   void drive(bool use_bias) {
     if (!range_.drives) return;
@@ -290,14 +315,19 @@ class Tree {
           if (record.body_a != none) pair.spin_a = context_.bodies[record.body_a].angular_velocity;
           pair.spin_b = context_.bodies[record.body_b].angular_velocity;
           const typename D::Angular impulse = block.solve(pair, joint.turn_mobility, pass);
-          Row child = {}, parent = {};
-          for (int i = 0; i < turning; ++i) {
-            child[dimension + i] = (joint.child_is_b ? 1 : -1) * double(component(impulse, i));
-            parent[dimension + i] = -child[dimension + i];
-          }
+          Row child, parent;
+          fill_turn(joint, impulse, child, parent);
           push(joint, child, parent, 1);
           respond<true>();
         });
+  }
+  /// Rows of an impulse that turns B.
+  static void fill_turn(const TreeJoint<D>& joint, const typename D::Angular& impulse, Row& child, Row& parent) {
+    for (int i = 0; i < dofs; ++i) child[i] = parent[i] = 0;
+    for (int i = 0; i < turning; ++i) {
+      child[dimension + i] = (joint.child_is_b ? 1 : -1) * double(component(impulse, i));
+      parent[dimension + i] = -child[dimension + i];
+    }
   }
   static float component(float x, int) { return x; }
   static float component(const Vec3f& x, int i) { return x[i]; }
@@ -307,13 +337,19 @@ class Tree {
   }
   /// An impulse along a row, for `respond`.
   void push(const TreeJoint<D>& joint, const Row& child, const Row& parent, double impulse) {
-    for (int i = range_.first_body; i < range_.body_end; ++i)
-      for (double& x : trees_.bodies[std::size_t(i)].load) x = 0;
+    clear_loads();
     for (int j = range_.first_joint; j < range_.joint_end; ++j)
       for (double& x : trees_.joints[std::size_t(j)].residual) x = 0;
-    for (int c = 0; c < dofs; ++c) trees_.bodies[std::size_t(joint.child)].load[c] = child[c] * impulse;
+    add_load(joint, child, parent, impulse);
+  }
+  void clear_loads() {
+    for (int i = range_.first_body; i < range_.body_end; ++i)
+      for (double& x : trees_.bodies[std::size_t(i)].load) x = 0;
+  }
+  void add_load(const TreeJoint<D>& joint, const Row& child, const Row& parent, double impulse) {
+    for (int c = 0; c < dofs; ++c) trees_.bodies[std::size_t(joint.child)].load[c] += child[c] * impulse;
     for (int c = 0; joint.parent != none && c < dofs; ++c)
-      trees_.bodies[std::size_t(joint.parent)].load[c] = parent[c] * impulse;
+      trees_.bodies[std::size_t(joint.parent)].load[c] += parent[c] * impulse;
   }
   void approach() {
     for (int pass = 0; pass < refinements; ++pass) {
@@ -501,8 +537,7 @@ class Tree {
 
   /// Solves for the residuals of the joints; adds to impulses and velocities.
   void solve() {
-    for (int i = range_.first_body; i < range_.body_end; ++i)
-      for (double& x : trees_.bodies[std::size_t(i)].load) x = 0;
+    clear_loads();
     respond<true>();
   }
   /// What impulses on the bodies (their `load`) and the residuals change. Not `to_bodies`: only tells it, in `load`.
@@ -585,7 +620,7 @@ void run_trees(StepContext<D>& context, SolverPass pass, int begin, int end) {
     else if (pass == SolverPass::solve_trees)
       tree.solve_positions();
     else if (pass == SolverPass::factorise_trees)
-      tree.factorise();
+      tree.follow();
     else
       tree.settle();
   }

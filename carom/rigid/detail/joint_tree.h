@@ -73,6 +73,7 @@ struct TreeRange {
   bool free = false;           ///< no joint to the ground
   bool moving_ground = false;  ///< hangs on a kinematic body
   bool drives = false;         ///< solves the motors, springs and stops of its joints
+  bool slender = false;        ///< some body's inertia turns so much with it that drives are measured in each substep
   double work = 0;             ///< J, of the joints in this substep
 };
 

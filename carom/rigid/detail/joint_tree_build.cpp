@@ -23,6 +23,12 @@ bool has_rigid_rows(const JointData<D>& data) {
   return is_rod(data) || holds_axes(data) || ((parts & part_angular) != 0 && turns_rigidly(data));
 }
 
+/// Of a slender body iteration makes energy there: a little of what pushes it across its length spins it fast about it.
+template <class D>
+bool holds_more_than_a_point(const JointData<D>& data) {
+  return (data.parts & (part_hinge | part_slide)) != 0 || is_rod(data) || holds_axes(data) || turns_rigidly(data);
+}
+
 template <class D>
 class Builder {
  public:
@@ -115,6 +121,8 @@ class Builder {
     tree.closing = std::int32_t(closing);
     tree.joint_end = std::int32_t(trees_.joints.size());
     tree.free = ground == none;
+    for (std::size_t i = first_body; i < trees_.bodies.size(); ++i)
+      tree.slender = tree.slender || is_slender(world_.bodies.motion[std::size_t(trees_.bodies[i].body)]);
     for (std::size_t j = first_joint; j < trees_.joints.size(); ++j) {
       const JointHeader& on = joints_.headers[std::size_t(trees_.joints[j].joint)];
       for (const std::int32_t body : on.body)
@@ -195,7 +203,7 @@ class Builder {
       const bool turns = (data.parts & (part_hinge | part_angular | part_turn_x | part_turn_y | part_turn_z)) != 0 &&
                          (grounded || turns_rigidly(data));  // the hinges of a free figure bear little
       if ((data.parts & part_path) != 0) return true;        // a bead lives by its energy
-      if (is_slender(motion) && turns_rigidly(data)) return true;
+      if (is_slender(motion) && holds_more_than_a_point(data)) return true;
       if (carried * inverse_mass > direct_mass_ratio) return true;
       if (m * d * d * inverse_inertia(body.body) > direct_arm_ratio) return true;
       if (turns && load.inertia * (carried / load.mass) * inverse_turn > direct_inertia_ratio) return true;

@@ -246,7 +246,10 @@ template <class D>
 void take_back_gravity(WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start, float dt) {
   if (start.fraction >= 1) return;
   std::int32_t held = world.bodies.record[std::size_t(body)].constraint_count;
-  if (held != 0) for_each_weld(world, body, [&](std::int32_t) { --held; });
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none && held > 0;) {
+    if (is_welded(world.joints.at(key >> 1))) --held;
+    key = world.joints.headers[std::size_t(key >> 1)].next[key & 1];
+  }
   if (held != 0) return;
   const float pace = world.bodies.pace(body);
   const float gained = world.bodies.motion[std::size_t(body)].gravity_scale * (1 - start.fraction) * dt * pace * pace;
@@ -297,7 +300,7 @@ void make_room(StepScratch<D>& scratch, std::size_t bodies) {
   room(scratch.strays);
   room(scratch.driven);
   room(scratch.driven_over);
-  room(scratch.welded);
+  room(scratch.tied);
   room(scratch.bullet_pairs);
   room(scratch.bullet_meetings);
   room(scratch.pair_meetings);
@@ -386,7 +389,7 @@ void stop_fast_bodies(StepContext<D>& context) {
     scratch.bullet_pairs.insert(scratch.bullet_pairs.end(), list.begin(), list.end());
   pair_strays(world);
   if (!scratch.bullet_pairs.empty()) meet_in_order(context);
-  stop_what_is_welded(world);
+  stop_what_is_tied(context);
   context.scheduler.parallel_for(int(scratch.fast.size()), 64, [&](int begin, int end, int) {
     for (int k = begin; k < end; ++k) {
       const std::size_t place = std::size_t(scratch.fast[std::size_t(k)]);

@@ -9,6 +9,7 @@ namespace carom::rigid::detail {
 namespace {
 
 constexpr float fast_spin = 0.05f;     ///< rad in a step
+constexpr float whirling = 0.5f;       ///< likewise
 constexpr float least_turned = 0.01f;  ///< sine of half the angle
 
 /// The inertia of a body that has turned, in one lane. `place`: SlenderBodies::place.
@@ -24,6 +25,14 @@ void turn_few(const StepContext<Dim3>& context, std::int32_t body, std::int32_t 
   for_lanes_of<Dim3, W>(context.world, body, [&](ContactBlock<Dim3, W>& block, int lane, std::uint8_t&, int) {
     put_inertia(context, body, place, block, lane);
     context.world.kernels.masses(&block);
+  });
+}
+
+template <int W>
+void forget_few(const StepContext<Dim3>& context, std::int32_t body) {
+  for_lanes_of<Dim3, W>(context.world, body, [](ContactBlock<Dim3, W>& block, int lane, std::uint8_t&, int) {
+    for (auto& point : block.point) point.impulse[lane] = 0;
+    block.tangent_impulse[0][lane] = block.tangent_impulse[1][lane] = block.twist_impulse[lane] = 0;
   });
 }
 
@@ -47,12 +56,13 @@ bool list_slender(StepContext<Dim3>& context) {
   const std::vector<std::int32_t>& awake = world.bodies.awake;
   std::span<std::int32_t> list;
   std::size_t count = 0;
-  bool any = false;
+  bool any = false, any_jointed = false;
   for (const std::int32_t body : awake) {
     const BodyMotion<Dim3>& m = world.bodies.motion[std::size_t(body)];
     if (m.slender == 0) continue;
     const BodyRecord& record = world.bodies.record[std::size_t(body)];
     if (!may_turn_freely(m, record) || record.first_contact == none) continue;
+    any_jointed = any_jointed || record.joint_count > 0;
     if (count == 0) list = context.arena.allocate<std::int32_t>(awake.size());
     list[count++] = body;
     const float turn = context.dt * math::length(context.bodies[body].angular_velocity);
@@ -60,7 +70,7 @@ bool list_slender(StepContext<Dim3>& context) {
   }
   if (count == 0) return false;
   context.slender = {list.first(count), context.arena.allocate<Mat3f>(count),
-                     context.arena.allocate_zeroed<std::int32_t>(world.bodies.record.size())};
+                     context.arena.allocate_zeroed<std::int32_t>(world.bodies.record.size()), false, any_jointed};
   return any;
 }
 
@@ -97,6 +107,18 @@ void turn_masses(const StepContext<Dim3>& context, int color, int begin, int end
     if (context.world.kernels.width == 8) return turn_blocks<8>(context, color, begin, end);
   }
   turn_blocks<4>(context, color, begin, end);
+}
+void forget_blows(const StepContext<Dim3>& context) {
+  const WorldImplementation<Dim3>& world = context.world;
+  for (const std::int32_t body : context.slender.bodies) {
+    if (world.bodies.record[std::size_t(body)].joint_count == 0) continue;
+    if (!(context.dt * math::length(context.bodies[body].angular_velocity) > whirling)) continue;
+    if constexpr (math::widest_lanes > 4) {
+      if (world.kernels.width == 16) forget_few<16>(context, body);
+      if (world.kernels.width == 8) forget_few<8>(context, body);
+    }
+    if (world.kernels.width == 4) forget_few<4>(context, body);
+  }
 }
 
 }  // namespace carom::rigid::detail

@@ -117,6 +117,10 @@ void list_stages(StepContext<D>& context) {
     // many passes over the contacts are saved. Those of joints turn with the bodies, and an impact takes away what
     // pressed there before it.
     const bool carry_on = substep > 0 && context.world.scratch.impacts.empty();
+    if (substep > 0 && context.slender.any_jointed) {
+      scratch.solver_stages.push_back({SolverPass::forget_blows});
+      scratch.solver_loops.push_back({1, 1});
+    }
     add_body_stage(context, SolverPass::velocities, carry_on ? 1 : 0);
     add_impact_stage(context, ImpactMoment::after_forces);
     add_color_stages(context, carry_on ? SolverPass::warm_start_again : SolverPass::warm_start);
@@ -206,6 +210,7 @@ void run_stage(StepContext<D>& context, int index, int begin, int end) {
   if constexpr (D::dimension == 3) {
     if (stage.pass == SolverPass::flights) return fly_through(context, begin, end);
     if (stage.pass == SolverPass::turn_slender) return turn_slender(context);
+    if (stage.pass == SolverPass::forget_blows) return forget_blows(context);
     if (stage.pass == SolverPass::turn_masses && !context.slender.many) return;
   }
   if (stage.pass == SolverPass::velocities) return integrate_velocities(context, begin, end, stage.order != 0);

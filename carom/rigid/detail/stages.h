@@ -89,6 +89,9 @@ bool list_slender(StepContext<Dim3>& context);
 /// left to turn_masses, for blocks [begin, end) of a colour.
 void turn_slender(StepContext<Dim3>& context);
 void turn_masses(const StepContext<Dim3>& context, int color, int begin, int end);
+/// What contacts of slender bodies that whirl on joints gave in the last substep is not what they begin with. A contact
+/// sees one body, the joint gives its blow to others too, and what was too much of it is then not taken back.
+void forget_blows(const StepContext<Dim3>& context);
 /// Of the others there, by one substep.
 template <class D>
 void integrate_velocities(StepContext<D>& context, int begin, int end, bool carry_on);
@@ -112,21 +115,13 @@ void release_broken_bodies(WorldImplementation<D>& world);
 /// Fast bodies stop where they first meet fixed geometry (bullets: any).
 template <class D>
 void stop_fast_bodies(StepContext<D>& context);
-/// What is welded to a body that was stopped stops with it; scratch.fast grows by those that were slow.
+/// What is welded to a body that was stopped stops with it, and slender bodies on pins; scratch.fast grows by those
+/// that were slow.
 template <class D>
-void stop_what_is_welded(WorldImplementation<D>& world);
-/// Calls f(body) for the dynamic bodies to which rigid welds hold a body.
-template <class D, class F>
-void for_each_weld(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
-  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none;) {
-    const JointHeader& header = world.joints.headers[std::size_t(key >> 1)];
-    const std::int32_t other = header.body[1 - (key & 1)];
-    const auto* weld = world.joints.at(key >> 1).template get<WeldJointDef>();
-    key = header.next[key & 1];
-    if (weld == nullptr || weld->linear.hertz > 0 || weld->angular.hertz > 0 || header.place.color < 0) continue;
-    if (other != none && world.bodies.is_dynamic(other)) f(other);
-  }
-}
+void stop_what_is_tied(StepContext<D>& context);
+/// Is it a weld without springs?
+template <class D>
+bool is_welded(const JointData<D>& data);
 /// Trees take over the bounds that changed.
 template <class D>
 void update_trees(WorldImplementation<D>& world);

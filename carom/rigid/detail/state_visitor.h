@@ -128,7 +128,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
          solver_loops, sweeps, sweeping, watches, old_bounds, moved_place, moved, sweep, strips, found_outgrown,
          outgrown, outgrown_places, new_bounds, found_pairs, met_sensors, pairs, found_bullet_pairs, found_strays,
          strays, driven, bullet_pairs, bullet_meetings, pair_meetings, first_bullet_pair, swept, fast, driven_over,
-         welded, broken, body_changes, contact_changes, found_manifolds, manifolds, island_parent, island_list,
+         tied, broken, body_changes, contact_changes, found_manifolds, manifolds, island_parent, island_list,
          island_bodies, island_ends, doomed_contacts, new_touches, new_manifolds, island_restless, island_substeps,
          whole_awake, whole_trees, whole_colors, contact_begin, contact_end, pending_contact_end, contact_hit,
          sensor_begin, sensor_end, pending_sensor_end, fell_asleep, quarantined, body_moves, joint_break,
@@ -171,7 +171,7 @@ void visit_scratch(Scratch& scratch, Visit& visit) {
   visit.scratch(swept);
   visit.scratch(fast);
   visit.scratch(driven_over);
-  visit.scratch(welded);
+  visit.scratch(tied);
   visit.scratch(broken);
   visit.scratch(body_changes);
   visit.scratch(contact_changes);

@@ -101,6 +101,7 @@ struct SlenderBodies {
   std::span<Mat3f> inverse_inertia{};      ///< 1/(kg·m²), world axes, as contacts see it, of what has turned
   std::span<std::int32_t> place{};         ///< by slot: 1 + that in these lists of what has turned; 0
   bool many = false;                       ///< have turned
+  bool any_jointed = false;
 };
 
 template <class D>

@@ -61,6 +61,7 @@ enum class SolverPass : std::uint8_t {
   solve,
   solve_trees,
   positions,
+  forget_blows,  ///< of slender bodies with joints that whirl
   turn_slender,  ///< the inertia of slender bodies, and the masses of their contacts where they are few
   turn_masses,   ///< where they are many
   factorise_trees,
@@ -83,7 +84,7 @@ struct SolverStage {
 inline constexpr int settle_passes = 4;
 /// So many stages a step has at most.
 inline constexpr std::size_t most_solver_stages(int substeps, int settling = 0) {
-  return 1 + std::size_t(substeps) * std::size_t(9 + (settling > 0 ? 5 + settling : 4) * (color_count + 1));
+  return 1 + std::size_t(substeps) * std::size_t(10 + (settling > 0 ? 5 + settling : 4) * (color_count + 1));
 }
 
 /// How a body came out of a step; body_flew only until continuous collision has looked at it.
@@ -164,7 +165,7 @@ struct StepScratch {
   std::vector<SweepStart<D>> swept;                            ///< by place in BodyStore::awake
   std::vector<std::int32_t> fast;                              ///< places in BodyStore::awake
   std::vector<std::int32_t> driven_over;                       ///< bodies
-  std::vector<std::int32_t> welded;                            ///< bodies, of one that was stopped
+  std::vector<std::int32_t> tied;                              ///< bodies, to one that was stopped
   std::vector<std::int32_t> broken;                            ///< bodies to be quarantined
   std::vector<std::uint8_t> body_changes;                      ///< by place in BodyStore::awake
   std::vector<std::uint8_t> contact_changes;                   ///< by place in ContactStore::awake
