@@ -28,6 +28,8 @@ struct SoftThing {
   std::vector<SoftPin> pins;
   std::vector<int> pinned, pin_of;  ///< vertex of each pin; pin of each vertex, −1: free
   std::vector<SoftTouch> touches;
+  std::vector<SoftFaceTouch> face_touches;  ///< in this substep
+  std::vector<std::uint64_t> seen_edges;    ///< scratch: of faces that share them
   SoftMatrix matrix;
   SoftSolver solver;
   SoftObstacles obstacles;
