@@ -10,6 +10,7 @@ using math::Mat3f;
 
 namespace {
 
+constexpr float touching_slack = 0.02f;           // of what keeps apart: so little is left to the next substep
 constexpr float slow_rise = 0.1f, fast_rise = 4;  // m/s, of what is too deep
 
 /// Velocity of what a touch lies on: before the solve, and how the solve changes it.
@@ -87,6 +88,7 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
   bool again = false;
   // What hardly pulls where nothing that moves hangs on it is let go for the next substep, not for this one.
   const float slight = solver.ties.empty() ? soft_pull * h : 0;
+  const float slack = touching_slack * float(all.apart);
   for (std::size_t i = 0; i < all.position.size(); ++i) {
     SoftTouch& touch = all.touches[i];
     if (!touch.near) continue;
@@ -100,7 +102,7 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
     }
     const Vec3f before = all.velocity[i] - surface_velocity(touch.plane, obstacles);
     const Vec3f change = solver.change[i] - surface_change(touch, obstacles, solver);
-    if (float(touch.plane.separation) + h * dot(n, before + change) >= -1e-6f) continue;
+    if (float(touch.plane.separation) + h * dot(n, before + change) >= -slack) continue;
     touch.active = again = true;
     touch.given = -math::max(float(touch.plane.separation), 0.0f) / h - dot(n, before);
   }
