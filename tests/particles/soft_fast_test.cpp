@@ -78,7 +78,7 @@ std::ostream& operator<<(std::ostream& out, const Shot& shot) {
 
 TEST(SoftFast, NonePassesATautCloth) {
   math::Random random(11);
-  int shots = 0, through = 0;
+  int shots = 0;
   World3 still = weightless();
   const Cloth taut = taut_sheet(still);
   for (int kind = 0; kind < 5; ++kind)
@@ -98,15 +98,10 @@ TEST(SoftFast, NonePassesATautCloth) {
         const bool met =
             length(Vec3d(world.state(shot.body)->linear_velocity) - shot.speed * shot.way) > 1e-4 * shot.speed;
         EXPECT_TRUE(met) << kind << ' ' << i << ": " << shot << " is not met";
-        // What is heavier or faster strains the cloth beyond what it bears: some of it goes through.
-        if (shot.speed < (shot.mass < 1000 * math::pow(2 * shot.size, 3) ? 150 : 35))
-          EXPECT_FALSE(passed) << kind << ' ' << i << ": " << shot << " goes through";
+        EXPECT_FALSE(passed) << kind << ' ' << i << ": " << shot << " goes through";
         ++shots;
-        through += passed;
       }
   RecordProperty("shots", shots);
-  RecordProperty("through", through);
-  EXPECT_LT(27 * through, shots);
 }
 
 // In a group with a block of foam under the sheet, which the sheet is flung against.
@@ -139,9 +134,7 @@ TEST(SoftFast, GroupsMeetWhatIsFast) {
         }
         EXPECT_GT(length(Vec3d(world.state(shot.body)->linear_velocity) - shot.speed * shot.way), 1e-4 * shot.speed)
             << kind << ' ' << i << ": " << shot << " is not met";
-        // What is heavy is squeezed through where the foam bears the sheet.
-        if (shot.speed < 150 && shot.mass < 1000 * math::pow(2 * shot.size, 3))
-          EXPECT_FALSE(passed) << kind << ' ' << i << ": " << shot << " goes through";
+        EXPECT_FALSE(passed) << kind << ' ' << i << ": " << shot << " goes through";
         for (const Vec3f v : below.velocities()) EXPECT_LT(length(v), 2 * shot.speed);
       }
 }

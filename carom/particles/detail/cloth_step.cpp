@@ -111,6 +111,7 @@ void ClothState::end_substep(float h) {
     greatest_tension = math::max(greatest_tension, double(strain.tension()));
   }
   react_touches(touching(), h, obstacles, solver, pin_impulse.data());
+  press_faces(*this, h, pin_impulse.data());
   for (std::size_t i = 0; i < position.size(); ++i) velocity[i] += solver.change[i].vector();
   if (self_collide) keep_apart(h);
   for (std::size_t i = 0; i < position.size(); ++i) position[i] += Vec3d(h * velocity[i]);

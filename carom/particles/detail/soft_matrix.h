@@ -189,6 +189,7 @@ class SoftSolver {
   std::vector<SoftVector> reaction;  ///< (D + K) x − b of what is held
   std::vector<SoftMover> movers;
   std::vector<SoftTie> ties;  ///< by body, then by particle
+  std::vector<int> tie_of;    ///< by particle; −1: none
 
   void set_lanes(int lanes);  ///< 4, 8 or 16, of those that the machine has; 0: as many as it has
   const SoftKernels& kernels() const { return *kernels_; }
@@ -224,6 +225,7 @@ class SoftSolver {
   void prepare(const SoftMatrix& matrix, bool again);
   // soft_movers.cpp
   Vec3f carried(const SoftTie& tie, const SoftTwist& motion) const;  ///< of the tie's particle, where it is held
+  Vec3f own(std::size_t node, Vec3f x) const;
   Vec3f row(const SoftMatrix& matrix, int node, const SoftVector* x) const;
   void prepare_movers(const SoftMatrix& matrix);
   void answer(const SoftMatrix& matrix, const SoftTie& tie, const SoftVector* x, SoftTwist& out) const;
@@ -244,7 +246,7 @@ class SoftSolver {
   std::vector<SoftVector> forward_, from_;                  ///< scaled, by place; what no one hangs on after the last
   AlignedFloats swept_, direction_, back_, sum_, answer_;   ///< scaled, by tile
   std::vector<SoftVector> field_, pull_;                    ///< of the particles, by the bodies' motion
-  std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_;
+  std::vector<SoftTwist> mover_residual_, mover_direction_, mover_back_, mover_image_, mover_start_, mover_answer_;
   std::vector<SoftBlock> scale_;      ///< W by place, with W Wᵀ the inverse of the diagonal within what is free
   AlignedFloats scale_tiles_;         ///< the same by tile
   AlignedFloats lower_;               ///< Wᵀ K W below the diagonal, by the tiles' entries

@@ -54,10 +54,15 @@ Vec3f SoftSolver::carried(const SoftTie& tie, const SoftTwist& motion) const {
   return hold.rank == 3 ? v : dot(hold.normal, v) * hold.normal;
 }
 
+/// Of D, with what contacts with other systems add to it.
+Vec3f SoftSolver::own(std::size_t node, Vec3f x) const {
+  return meets ? diagonal[node] * x + met[node] * x : diagonal[node] * x;
+}
+
 /// Row of D + K times x.
 Vec3f SoftSolver::row(const SoftMatrix& matrix, int node, const SoftVector* x) const {
   const std::size_t i = std::size_t(node);
-  return SoftVector(matrix.whole_row(i, x)).vector() + diagonal[i] * x[i].vector();
+  return SoftVector(matrix.whole_row(i, x)).vector() + own(i, x[i].vector());
 }
 
 /// Adds what a body has to give by a tie for a motion x of the particles.
@@ -77,8 +82,9 @@ void SoftSolver::answer(const SoftMatrix& matrix, const SoftTie& tie, const Soft
 
 void SoftSolver::prepare_movers(const SoftMatrix& matrix) {
   if (ties.empty()) return;
-  for (auto* list : {&mover_residual_, &mover_direction_, &mover_back_, &mover_image_, &mover_start_})
+  for (auto* list : {&mover_residual_, &mover_direction_, &mover_back_, &mover_image_, &mover_start_, &mover_answer_})
     list->resize(movers.size());
+  for (SoftTwist& answer : mover_answer_) answer = {};
   for (SoftVector& v : field_) v = {};
   for (std::size_t b = 0; b < movers.size(); ++b) {
     SoftMover& mover = movers[b];
@@ -203,7 +209,7 @@ void SoftSolver::sweep_up(const SoftMatrix& matrix, const std::vector<SoftTwist>
     }
     for (int k = matrix.far_first_[i]; k < matrix.far_first_[i + 1] && !matrix.far_ahead; ++k)
       pull_[matrix.far_column_[std::size_t(k)]] += (matrix.link_scale * matrix.far_value_[std::size_t(k)]) * v;
-    pull_[i] += diagonal[i] * v;
+    pull_[i] += own(i, v);
   }
 }
 
@@ -216,7 +222,7 @@ double SoftSolver::start_movers(const SoftMatrix& matrix) {
 }
 
 double SoftSolver::finish_movers(const SoftMatrix& matrix) {
-  // u = (D + L)⁻¹ D (q − t): D's product is undone by the sweep's division but for what lies below.
+  // u = (D + L)⁻¹ (D (q − t) + answer): D's product is undone by the sweep's division but for what lies below.
   unscale(matrix, field_);
   double curvature = 0;
   for (std::size_t b = 0; b < movers.size(); ++b) {
@@ -225,7 +231,7 @@ double SoftSolver::finish_movers(const SoftMatrix& matrix) {
     if (mover.from == mover.to) continue;
     SoftTwist lower;
     for (int k = mover.from; k < mover.to; ++k) answer(matrix, ties[std::size_t(k)], field_.data(), lower);
-    const SoftTwist u = mover_direction_[b] - mover_back_[b] - solve_factor(mover.factor, lower);
+    const SoftTwist u = mover_direction_[b] - mover_back_[b] + solve_factor(mover.factor, mover_answer_[b] - lower);
     for (int k = mover.from; k < mover.to; ++k)
       field_[std::size_t(ties[std::size_t(k)].node)] += carried(ties[std::size_t(k)], u);
     mover_image_[b] = mover_back_[b] + u;

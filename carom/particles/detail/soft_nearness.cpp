@@ -146,7 +146,7 @@ void SoftMeeting::find_pair(std::size_t a, std::size_t b, float h) {
   const geometry::Bounds3d both{max(bounds_[a].low, bounds_[b].low), min(bounds_[a].high, bounds_[b].high)};
   const Vec3d margin{double(reach), double(reach), double(reach)};
   const Vec3d from = both.low - margin, to = both.high + margin;
-  if (from.x > to.x || from.y > to.y || from.z > to.z) return;
+  if (!(from.x <= to.x && from.y <= to.y && from.z <= to.z)) return;
   lay_faces(other, origin, Vec3f(from - origin), Vec3f(to - origin), reach);
   if (faces_.empty()) return;
   if (one.closed) find_normals(a);

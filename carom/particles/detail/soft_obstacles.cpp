@@ -179,7 +179,6 @@ void SoftObstacles::find_pulls(rigid::World3& world, double dt) {
 }
 
 void SoftObstacles::enter(float h, SoftSolver& solver) const {
-  solver.ties.clear();
   solver.movers.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = bodies[b];

@@ -100,7 +100,7 @@ class SoftObstacles {
   }
   /// What all else does to the bodies in this step, by what they did in the last one.
   void find_pulls(rigid::World3& world, double dt);
-  /// The bodies as unknowns of a substep, not yet tied to anything.
+  /// The bodies as unknowns of a substep, before tie_touches.
   void enter(float h, SoftSolver& solver) const;
   /// Moves the bodies on by a substep, as the solver has it.
   void advance(double h, const SoftSolver& solver);

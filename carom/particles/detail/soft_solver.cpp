@@ -21,6 +21,7 @@ void SoftSolver::resize(const SoftMatrix& matrix) {
     list->resize(n);
   diagonal.resize(n);
   met.resize(n);
+  tie_of.assign(n, -1);
   holds.resize(n);
   for (auto* list : {&forward_, &from_}) list->assign((tiles + 1) * soft_lanes, SoftVector{});
   for (auto* list : {&swept_, &direction_, &back_, &sum_, &answer_}) *list = AlignedFloats(tiles * soft_vector);
@@ -259,7 +260,12 @@ void SoftSolver::end_iterations(const SoftMatrix& matrix) {
 Vec3f SoftSolver::back_at(const SoftMatrix& matrix, std::uint32_t node) const {
   const std::size_t p = std::size_t(matrix.tiles_.place[node]);
   const float* const t = back_.data() + p / soft_lanes * soft_vector + p % soft_lanes;
-  return SoftVector(scale_[p].times(SoftBlock::Lanes{t[0], t[soft_lanes], t[2 * soft_lanes], 0}));
+  Vec3f motion = SoftVector(scale_[p].times(SoftBlock::Lanes{t[0], t[soft_lanes], t[2 * soft_lanes], 0}));
+  if (const int k = tie_of[node]; k >= 0) {
+    const SoftTie& tie = ties[std::size_t(k)];
+    motion += carried(tie, mover_back_[std::size_t(tie.body)]);
+  }
+  return motion;
 }
 
 void SoftSolver::add_answer(const SoftMatrix& matrix, std::uint32_t node, Vec3f impulse) {
@@ -267,12 +273,17 @@ void SoftSolver::add_answer(const SoftMatrix& matrix, std::uint32_t node, Vec3f 
   float* const out = &answer_[p / soft_lanes * soft_vector + p % soft_lanes];
   const Vec3f scaled = SoftVector(scale_[p].transposed_times(lanes_of(impulse)));
   for (int k = 0; k < 3; ++k) out[k * soft_lanes] += scaled[k];
+  if (const int k = tie_of[node]; k >= 0 && holds[node].rank != 0) {
+    const SoftTie& tie = ties[std::size_t(k)];
+    mover_answer_[std::size_t(tie.body)].push(tie.arm, Vec3d(impulse - holds[node].filter(impulse)));
+  }
 }
 
 void SoftSolver::clear_answer(const SoftMatrix& matrix, std::uint32_t node) {
   const std::size_t p = std::size_t(matrix.tiles_.place[node]);
   float* const out = &answer_[p / soft_lanes * soft_vector + p % soft_lanes];
   for (int k = 0; k < 3; ++k) out[k * soft_lanes] = 0;
+  if (const int k = tie_of[node]; k >= 0) mover_answer_[std::size_t(ties[std::size_t(k)].body)] = {};
 }
 
 /// What the holds had to give.

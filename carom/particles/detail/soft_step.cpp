@@ -122,6 +122,7 @@ void SoftState::begin_substep(float h, Vec3f gravity) {
 
 void SoftState::end_substep(float h) {
   react_touches(touching(), h, obstacles, solver, nullptr);
+  press_faces(*this, h, nullptr);
   for (std::size_t i = 0; i < position.size(); ++i) {
     velocity[i] += solver.change[i].vector();
     position[i] += Vec3d(h * velocity[i]);

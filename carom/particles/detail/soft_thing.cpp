@@ -84,6 +84,7 @@ void SoftThing::end_step(rigid::World3& world, double dt) {
 
 void SoftThing::hold(float h) {
   hold_pins(touching(), solver);
+  face_touches.clear();
   if (!collide || obstacles.empty()) {
     for (SoftTouch& touch : touches) touch = {};
     return;
@@ -96,6 +97,8 @@ void SoftThing::hold(float h) {
           obstacles.nearest(position[i], apart, apart + 2 * double(h) * (double(length(velocity[i])) + double(h) * 20),
                             double(h), touches[i].plane);
   });
+  find_sides(*this);
+  if (obstacles.fast) find_face_touches(*this, h);
   meet_faces(*this, h);
   tasks().parallel_for(count, touch_chunk, [&](int from, int to, int) {
     for (std::size_t i = std::size_t(from); i < std::size_t(to); ++i)

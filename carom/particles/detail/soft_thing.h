@@ -28,6 +28,8 @@ struct SoftThing {
   std::vector<SoftPin> pins;
   std::vector<int> pinned, pin_of;  ///< vertex of each pin; pin of each vertex, −1: free
   std::vector<SoftTouch> touches;
+  std::vector<SoftFaceTouch> face_touches;  ///< in this substep
+  std::vector<std::uint64_t> seen_edges;    ///< scratch: of faces that share them
   SoftMatrix matrix;
   SoftSolver solver;
   SoftObstacles obstacles;
@@ -55,7 +57,7 @@ struct SoftThing {
   virtual void end_step(rigid::World3& world, double dt);
 
   void hold(float h);  ///< what is pinned or touches, in this substep
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass}; }
+  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass, apart}; }
   core::TaskScheduler& tasks() const;
 };
 

@@ -10,11 +10,12 @@ using math::Mat3f;
 
 namespace {
 
+constexpr float touching_slack = 0.02f;           // of what keeps apart: so little is left to the next substep
 constexpr float slow_rise = 0.1f, fast_rise = 4;  // m/s, of what is too deep
 
 /// Velocity of what a touch lies on: before the solve, and how the solve changes it.
-Vec3f surface_velocity(const SoftTouch& touch, const SoftObstacles& obstacles) {
-  return Vec3f(obstacles.bodies[std::size_t(touch.plane.body)].velocity_at(touch.plane.at));
+Vec3f surface_velocity(const SoftPlane& plane, const SoftObstacles& obstacles) {
+  return Vec3f(obstacles.bodies[std::size_t(plane.body)].velocity_at(plane.at));
 }
 Vec3f surface_change(const SoftTouch& touch, const SoftObstacles& obstacles, const SoftSolver& solver) {
   const std::size_t b = std::size_t(touch.plane.body);
@@ -24,10 +25,18 @@ Vec3f surface_change(const SoftTouch& touch, const SoftObstacles& obstacles, con
 
 }  // namespace
 
+// What moves is not thrown: the world moves it through a blow a little otherwise than the substeps here foresee. But
+// what comes fast would sink in by that, a corner after another.
+float greatest_rise(const SoftPlane& plane, const SoftObstacles& obstacles) {
+  if (!obstacles.bodies[std::size_t(plane.body)].moves) return 1;
+  return obstacles.fast ? math::clamp(0.3f * length(surface_velocity(plane, obstacles)), slow_rise, fast_rise)
+                        : slow_rise;
+}
+
 void hold_touch(SoftTouch& touch, std::size_t i, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver) {
   const Vec3f n(touch.plane.normal);
-  const Vec3f against = velocity - surface_velocity(touch, obstacles);
+  const Vec3f against = velocity - surface_velocity(touch.plane, obstacles);
   touch.grip = 0;
   if (touch.push > 0) {
     touch.slip = against - dot(n, against) * n;
@@ -39,17 +48,12 @@ void hold_touch(SoftTouch& touch, std::size_t i, Vec3f velocity, double friction
   const float deep = float(touch.plane.separation);
   touch.active = touch.active || deep < 0;
   if (!touch.active) return;
-  // What moves is not thrown: the world moves it through a blow a little otherwise than the substeps here foresee. But
-  // what comes fast would sink in by that, a corner after another.
-  float fastest = 1;
-  if (obstacles.bodies[std::size_t(touch.plane.body)].moves)
-    fastest = obstacles.fast ? math::clamp(0.3f * length(surface_velocity(touch, obstacles)), slow_rise, fast_rise)
-                             : slow_rise;
-  const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, fastest);
+  const float target = deep > 0 ? -deep / h : math::min(-0.2f * deep / h, greatest_rise(touch.plane, obstacles));
   touch.given = target - dot(n, against);
 }
 
 void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSolver& solver) {
+  for (const SoftTie& tie : solver.ties) solver.tie_of[std::size_t(tie.node)] = -1;
   solver.ties.clear();
   for (std::size_t i = 0; i < all.touches.size(); ++i) {
     const SoftTouch& touch = all.touches[i];
@@ -76,6 +80,7 @@ void tie_touches(const SoftTouching& all, const SoftObstacles& obstacles, SoftSo
     SoftMover& mover = solver.movers[std::size_t(solver.ties[k].body)];
     if (mover.to == 0) mover.from = int(k);
     mover.to = int(k) + 1;
+    solver.tie_of[std::size_t(solver.ties[k].node)] = int(k);
   }
 }
 
@@ -83,6 +88,7 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
   bool again = false;
   // What hardly pulls where nothing that moves hangs on it is let go for the next substep, not for this one.
   const float slight = solver.ties.empty() ? soft_pull * h : 0;
+  const float slack = touching_slack * float(all.apart);
   for (std::size_t i = 0; i < all.position.size(); ++i) {
     SoftTouch& touch = all.touches[i];
     if (!touch.near) continue;
@@ -94,9 +100,9 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
       again |= pull > slight * all.mass[i];
       continue;
     }
-    const Vec3f before = all.velocity[i] - surface_velocity(touch, obstacles);
+    const Vec3f before = all.velocity[i] - surface_velocity(touch.plane, obstacles);
     const Vec3f change = solver.change[i] - surface_change(touch, obstacles, solver);
-    if (float(touch.plane.separation) + h * dot(n, before + change) >= -1e-6f) continue;
+    if (float(touch.plane.separation) + h * dot(n, before + change) >= -slack) continue;
     touch.active = again = true;
     touch.given = -math::max(float(touch.plane.separation), 0.0f) / h - dot(n, before);
   }

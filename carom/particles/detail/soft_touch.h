@@ -21,6 +21,17 @@ struct SoftTouch {
   Vec3f slip{};     ///< m/s, before the solve
 };
 
+/// A place of a face that something fast meets, or may meet in a substep.
+struct SoftFaceTouch {
+  std::uint32_t corner[3] = {};
+  Vec3f share{};
+  SoftPlane plane{};
+  float least = 0;      ///< m/s along the normal, of the place against the body
+  float lightness = 0;  ///< 1/kg, of both
+  SoftTwist answer{};   ///< of the body, to an impulse of 1 N·s
+  float impulse = 0;    ///< N·s
+};
+
 /// What touches or is pinned in a substep.
 struct SoftTouching {
   std::vector<SoftTouch>& touches;
@@ -29,15 +40,26 @@ struct SoftTouching {
   const std::vector<math::Vec3d>& position;
   const std::vector<Vec3f>& velocity;
   const std::vector<float>& mass;
+  double apart = 0;  ///< m, from what they touch
 };
 
 struct SoftThing;
+/// Which side of a sheet each shape is on that faces may meet between their corners.
+void find_sides(SoftThing& thing);
 /// Of what is small or comes fast what its faces meet between their corners: each of these is held off the plane where
 /// the body is nearest to the face.
 void meet_faces(SoftThing& thing, float h);
+/// All places where something fast may come through a face in a substep. Before meet_faces, which chooses one for each
+/// corner.
+void find_face_touches(SoftThing& thing, float h);
+/// After the solve, in which a corner is held off one plane: holds every such place by impulses. `pin_impulse`: by pin,
+/// may be null.
+void press_faces(SoftThing& thing, float h, Vec3d* pin_impulse);
 /// s, of a substep of h at most and `least` at least: as far as something fast may come before it is seen to touch.
 double stride(const SoftThing& thing, double h, double least);
 
+/// m/s, at which what is too deep rises at most.
+float greatest_rise(const SoftPlane& plane, const SoftObstacles& obstacles);
 /// Enters the touch of particle i, which is near, into the system. `friction`: of the particles' material.
 void hold_touch(SoftTouch& touch, std::size_t i, Vec3f velocity, double friction, float h,
                 const SoftObstacles& obstacles, SoftSolver& solver);
