@@ -186,9 +186,10 @@ class Tree {
   /// Before positions move: the errors at the end of the substep shall be a share of those now.
   void solve_positions() {
     drive(true);
+    const float turn = limit_spins();
     const double before = energy_.kinetic();
     // An error of attitude is known up to a whole revolution: what turns far in a substep first agrees on how fast.
-    if (limit_spins() > far_turn) solve_velocities(false);
+    if (turn > far_turn) solve_velocities(false);
     approach();
     const double after = energy_.kinetic();
     range_.work = after - before;

@@ -247,8 +247,9 @@ void take_back_gravity(WorldImplementation<D>& world, std::int32_t body, const S
   if (start.fraction >= 1) return;
   std::int32_t held = world.bodies.record[std::size_t(body)].constraint_count;
   for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none && held > 0;) {
-    if (is_welded(world.joints.at(key >> 1))) --held;
-    key = world.joints.headers[std::size_t(key >> 1)].next[key & 1];
+    const JointHeader& header = world.joints.headers[std::size_t(key >> 1)];
+    if (header.place.color >= 0 && is_welded(world.joints.at(key >> 1))) --held;
+    key = header.next[key & 1];
   }
   if (held != 0) return;
   const float pace = world.bodies.pace(body);
