@@ -57,7 +57,7 @@ struct SoftThing {
   virtual void end_step(rigid::World3& world, double dt);
 
   void hold(float h);  ///< what is pinned or touches, in this substep
-  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass, apart}; }
+  SoftTouching touching() { return {touches, pins, pinned, position, velocity, mass, closed ? 0 : apart}; }
   core::TaskScheduler& tasks() const;
 };
 

@@ -10,7 +10,8 @@ using math::Mat3f;
 
 namespace {
 
-constexpr float touching_slack = 0.02f;           // of what keeps apart: so little is left to the next substep
+constexpr float touching_slack = 0.02f;           // of what keeps a sheet apart: so little is left to the next substep
+constexpr float least_slack = 1e-6f;              // m; all that a body has, because what it sinks in by is work
 constexpr float slow_rise = 0.1f, fast_rise = 4;  // m/s, of what is too deep
 
 /// Velocity of what a touch lies on: before the solve, and how the solve changes it.
@@ -88,7 +89,7 @@ bool revise_touches(const SoftTouching& all, float h, const SoftObstacles& obsta
   bool again = false;
   // What hardly pulls where nothing that moves hangs on it is let go for the next substep, not for this one.
   const float slight = solver.ties.empty() ? soft_pull * h : 0;
-  const float slack = touching_slack * float(all.apart);
+  const float slack = math::max(touching_slack * float(all.apart), least_slack);
   for (std::size_t i = 0; i < all.position.size(); ++i) {
     SoftTouch& touch = all.touches[i];
     if (!touch.near) continue;

@@ -40,7 +40,7 @@ struct SoftTouching {
   const std::vector<math::Vec3d>& position;
   const std::vector<Vec3f>& velocity;
   const std::vector<float>& mass;
-  double apart = 0;  ///< m, from what they touch
+  double apart = 0;  ///< m, of a sheet from what it touches; 0: a body
 };
 
 struct SoftThing;
