@@ -113,18 +113,19 @@ TEST(ModelsBar, AHundredThousandProjectilesInATown) {
 
 TEST(ModelsBar, TakingAim) {
   using namespace ballistics;
+  constexpr int often = 2000;  // for a twentieth of a second: a machine that others use is slow for moments
   const Projectile shot = projectile_from_terminal_speed(60);
   const Conditions air{.air = environment::AirColumn::uniform(1.225)};
   const Shooter shooter{.muzzle_speed = 120};
   const Target moving{{200, 20, -30}, {5, 0, 8}, {}};
-  EXPECT_LT(fastest(200, [&] { (void)aim(shot, air, shooter, moving, {.high_arc = false}).value().low.value(); }),
+  EXPECT_LT(fastest(often, [&] { (void)aim(shot, air, shooter, moving, {.high_arc = false}).value().low.value(); }),
             2 * 20e-6);
-  EXPECT_LT(fastest(200, [&] { EXPECT_FALSE(aim(shot, air, shooter, {{2000, 0, 0}, {}, {}}).value()); }), 2 * 20e-6);
+  EXPECT_LT(fastest(often, [&] { EXPECT_FALSE(aim(shot, air, shooter, {{2000, 0, 0}, {}, {}}).value()); }), 2 * 20e-6);
   // Both arcs of a bullet in the wind, of a mortar bomb, and at a target that circles.
   const Conditions windy{.wind = environment::WindColumn(
                              environment::Wind{.velocity = {6, 0, 3}, .profile = environment::WindProfile::power})};
   const auto both = [&](const Projectile& projectile, double speed, Vec3d target) {
-    return fastest(200, [&] {
+    return fastest(often, [&] {
       const auto aims = aim(projectile, windy, {.muzzle_speed = speed, .muzzle = {0, 2, 0}}, {target, {}, {}}).value();
       EXPECT_TRUE(aims.low && aims.high);
     });
@@ -133,7 +134,8 @@ TEST(ModelsBar, TakingAim) {
   EXPECT_LT(both(bullet, 400, {900, 30, 200}), 2 * 20e-6);
   EXPECT_LT(both(projectile_from_size(DragCurve(.14), 13.585, .11956), 250, {3500, 50, 300}), 2 * 20e-6);
   const auto circles = [](double t) { return Vec3d{800 + 30 * math::cos(.5 * t), 20, 30 * math::sin(.5 * t)}; };
-  EXPECT_LT(fastest(200, [&] { EXPECT_TRUE(aim(bullet, windy, {.muzzle_speed = 400}, circles).value()); }), 2 * 20e-6);
+  EXPECT_LT(fastest(often, [&] { EXPECT_TRUE(aim(bullet, windy, {.muzzle_speed = 400}, circles).value()); }),
+            2 * 20e-6);
 }
 
 // Both arcs of random targets, those that keep their velocity and fast ones that move as they like (up to eight tenths
