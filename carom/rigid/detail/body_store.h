@@ -92,6 +92,10 @@ bool may_leave_bounds(const BodyMotion<D>& m) {
   return false;
 }
 
+/// Does it spin so lightly about its length that this takes far less than a turn about another axis?
+inline bool is_slender(const BodyMotion<Dim2>&) { return false; }
+inline bool is_slender(const BodyMotion<Dim3>& m) { return m.slender != 0; }
+
 /// How far a turn (rad, world axes) moves the surface of a body at most: a long one that rolls moves it little.
 inline float way_of_turn(const BodyMotion<Dim2>& m, const Rot2f&, float turn) {
   return math::abs(turn) * m.outer_extent;

@@ -42,11 +42,7 @@ class Figure {
   /// f(joint, other body).
   template <class F>
   void for_joints(std::int32_t body, F&& f) const {
-    for (std::int32_t key = world_.bodies.record[std::size_t(body)].first_joint; key != none;) {
-      const JointHeader& header = world_.joints.headers[std::size_t(key >> 1)];
-      f(key >> 1, header.body[1 - (key & 1)]);
-      key = header.next[key & 1];
-    }
+    for_each_joint(world_, body, [&](std::int32_t joint, int, std::int32_t other) { f(joint, other); });
   }
 
   const WorldImplementation<D>& world_;

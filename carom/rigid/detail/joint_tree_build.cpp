@@ -56,11 +56,9 @@ class Builder {
   /// Calls f(joint, other body, is the body B?) for the rigid joints of a body.
   template <class F>
   void for_joints(std::int32_t body, F&& f) const {
-    for (std::int32_t key = world_.bodies.record[std::size_t(body)].first_joint; key != none;) {
-      const JointHeader& header = joints_.headers[std::size_t(key >> 1)];
-      if (takes_part(key >> 1)) f(key >> 1, header.body[1 - (key & 1)], (key & 1) == 1);
-      key = header.next[key & 1];
-    }
+    for_each_joint(world_, body, [&](std::int32_t joint, int side, std::int32_t other) {
+      if (takes_part(joint)) f(joint, other, side == 1);
+    });
   }
 
   void component(std::int32_t seed) {
@@ -158,8 +156,6 @@ class Builder {
     const auto center = world_.bodies.motion[std::size_t(body)].local_center;
     return (on_b ? frames.frame_b.p : frames.frame_a.p) - center;
   }
-  static bool is_slender(const BodyMotion<Dim2>&) { return false; }
-  static bool is_slender(const BodyMotion<Dim3>& m) { return m.slender != 0; }
   double inverse_inertia(std::int32_t body) const {
     const BodyMotion<D>& m = world_.bodies.motion[std::size_t(body)];
     double mean;

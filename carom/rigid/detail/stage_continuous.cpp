@@ -246,11 +246,11 @@ template <class D>
 void take_back_gravity(WorldImplementation<D>& world, std::int32_t body, const SweepStart<D>& start, float dt) {
   if (start.fraction >= 1) return;
   std::int32_t held = world.bodies.record[std::size_t(body)].constraint_count;
-  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none && held > 0;) {
-    const JointHeader& header = world.joints.headers[std::size_t(key >> 1)];
-    if (header.place.color >= 0 && is_welded(world.joints.at(key >> 1))) --held;
-    key = header.next[key & 1];
-  }
+  if (held != 0)
+    for_each_joint(world, body, [&](std::int32_t joint, int, std::int32_t) {
+      const bool holds = world.joints.headers[std::size_t(joint)].place.color >= 0;
+      if (holds && is_welded(world.joints.at(joint))) --held;
+    });
   if (held != 0) return;
   const float pace = world.bodies.pace(body);
   const float gained = world.bodies.motion[std::size_t(body)].gravity_scale * (1 - start.fraction) * dt * pace * pace;

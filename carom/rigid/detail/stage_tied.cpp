@@ -21,9 +21,6 @@ bool is_pinned(const JointData<D>& data) {
   return true;
 }
 
-inline bool spins_lightly(const BodyMotion<Dim2>&) { return false; }
-inline bool spins_lightly(const BodyMotion<Dim3>& m) { return m.slender != 0; }
-
 template <class D>
 class Tied {
  public:
@@ -71,19 +68,16 @@ class Tied {
   template <class F>
   void for_each_tie(std::int32_t body, F&& f) const {
     const auto& motion = world_.bodies.motion;
-    for (std::int32_t key = world_.bodies.record[std::size_t(body)].first_joint; key != none;) {
-      const std::int32_t joint = key >> 1, side = key & 1;
-      const JointHeader& header = world_.joints.headers[std::size_t(joint)];
-      key = header.next[side];
-      const std::int32_t other = header.body[1 - side];
-      if (header.place.color < 0 || other == none || !world_.bodies.is_dynamic(other)) continue;
-      if (world_.bodies.record[std::size_t(other)].awake_index == none) continue;
+    for_each_joint(world_, body, [&](std::int32_t joint, int side, std::int32_t other) {
+      if (world_.joints.headers[std::size_t(joint)].place.color < 0) return;
+      if (other == none || !world_.bodies.is_dynamic(other)) return;
+      if (world_.bodies.record[std::size_t(other)].awake_index == none) return;
       const JointData<D>& data = world_.joints.at(joint);
       const bool welded = is_welded(data);
       const bool pinned =
-          (spins_lightly(motion[std::size_t(body)]) || spins_lightly(motion[std::size_t(other)])) && is_pinned(data);
+          (is_slender(motion[std::size_t(body)]) || is_slender(motion[std::size_t(other)])) && is_pinned(data);
       if (welded || pinned) f(joint, side, other, welded);
-    }
+    });
   }
   void gather(std::int32_t body) {
     bodies_.assign(1, body);

@@ -110,6 +110,15 @@ template <class D>
 void test_joints(WorldImplementation<D>& world);
 template <class D>
 void break_joints(WorldImplementation<D>& world);
+/// Calls f(joint, side of the body, the other body or `none`) for the joints of a body, the last made first.
+template <class D, class F>
+void for_each_joint(const WorldImplementation<D>& world, std::int32_t body, F&& f) {
+  for (std::int32_t key = world.bodies.record[std::size_t(body)].first_joint; key != none;) {
+    const JointHeader& header = world.joints.headers[std::size_t(key >> 1)];
+    f(key >> 1, key & 1, header.body[1 - (key & 1)]);
+    key = header.next[key & 1];
+  }
+}
 /// Destroys every joint of a body (detaching each), before the body goes.
 template <class D>
 void destroy_joints_of(WorldImplementation<D>& world, std::int32_t body);
